@@ -1,0 +1,58 @@
+# loadshare: `make help` lists what can be done.
+PYTHON ?= python3
+VENV   := .venv
+BIN    := $(VENV)/bin
+CASE   ?= cases/fgfbstts/limit_ring.toml
+WORKERS ?= 2
+# BLAS gains nothing on matrices of this size, and its threads fight with the test workers.
+export OPENBLAS_NUM_THREADS = 1
+
+.DEFAULT_GOAL := help
+.PHONY: help run test test-all lint format types layers docs docs-serve cases clean
+
+help: ## list the targets
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  %-12s %s\n", $$1, $$2}'
+
+$(VENV)/.run: pyproject.toml constraints.txt
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e .
+	@touch $@
+
+$(VENV)/.dev: $(VENV)/.run
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
+	@touch $@
+
+run: $(VENV)/.run ## run the main job (CASE=cases/… for another case)
+	$(BIN)/loadshare run $(CASE)
+
+test: lint types layers docs ## check and test everything that is not slow
+	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow"
+
+test-all: lint types layers docs ## the same with the slow tests
+	$(BIN)/python -m pytest -n $(WORKERS)
+
+lint: $(VENV)/.dev ## ruff: style and formatting
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+format: $(VENV)/.dev ## rewrite the sources in the one format
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+types: $(VENV)/.dev ## mypy, strict
+	$(BIN)/mypy
+
+layers: $(VENV)/.dev ## data flows one way (import-linter)
+	$(BIN)/lint-imports
+
+docs: $(VENV)/.dev ## build the documentation, strict
+	$(BIN)/mkdocs build --strict --quiet
+
+docs-serve: $(VENV)/.dev ## serve the documentation while writing
+	$(BIN)/mkdocs serve
+
+cases: $(VENV)/.run ## write the generated cases again
+	$(BIN)/python -m loadshare.case.families cases
+
+clean: ## remove what was built
+	rm -rf $(VENV) site dist build .pytest_cache .mypy_cache .ruff_cache
