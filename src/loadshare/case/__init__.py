@@ -1,0 +1,37 @@
+"""Cases: what a user writes about a transmission, read, checked, and kept as it was written."""
+
+from loadshare.case.content import Content
+from loadshare.case.gears import Eccentricity, Errors, Gear, Offset, Polar
+from loadshare.case.links import Backlashes, Range, Ring, Shaft, Spline
+from loadshare.case.meshes import Law, Mesh, Table
+from loadshare.case.model import Case
+from loadshare.case.operation import March, Operating, Stage
+from loadshare.case.quantity import Quantity
+from loadshare.case.reader import load_case
+from loadshare.case.schema import case_schema
+from loadshare.case.starter import starter_case
+
+__all__ = [
+    "Backlashes",
+    "Case",
+    "Content",
+    "Eccentricity",
+    "Errors",
+    "Gear",
+    "Law",
+    "March",
+    "Mesh",
+    "Offset",
+    "Operating",
+    "Polar",
+    "Quantity",
+    "Range",
+    "Ring",
+    "Shaft",
+    "Spline",
+    "Stage",
+    "Table",
+    "case_schema",
+    "load_case",
+    "starter_case",
+]

@@ -1,0 +1,73 @@
+"""Splines and limit rings must have something to hold, and laws that can be held."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from loadshare.case.checks.fit import SQUARE
+from loadshare.case.draft import Draft
+from loadshare.case.links import Backlashes
+from loadshare.case.place import axis_of, dot
+from loadshare.errors import Problem
+
+
+def check_support(draft: Draft) -> Iterator[Problem]:
+    """Yield splines and rings on gears that cannot move."""
+    for section in ("splines", "rings"):
+        for name in draft.names(section):
+            gear = draft.gears.get(name)
+            if gear is not None and gear.support == "rigid":
+                message = f"cannot move, but there is {section}.{name}"
+                hint = "Leave the support out, or make it free."
+                yield draft.problem(("gears", name, "support"), message, hint=hint)
+
+
+def check_spline_law(draft: Draft) -> Iterator[Problem]:
+    """Yield splines whose force would drop as they move, or that have no room to slip."""
+    for name, spline in draft.splines.items():
+        bound, stiffness = spline.fixed_bound, spline.bending_stiffness.si
+        stick = None if spline.stick_limit is None else spline.stick_limit.si
+        if stick is None and bound is not None:
+            stick = bound / stiffness
+        # F_m / K_w, written with a few digits, must not fail for its last one.
+        if bound is not None and stick is not None and stiffness * stick > bound * (1 + 1e-6):
+            message = (
+                f"the force would drop where slip begins: K_w S1 = {stiffness:g} N/m × {stick:g} m"
+                f" = {stiffness * stick:g} N is above F_m = {bound:g} N"
+            )
+            hint = f"A stick_limit of {1e6 * bound / stiffness:.6g} um or less would do."
+            yield draft.problem(("splines", name, "stick_limit"), message, hint=hint)
+        if stick is not None and spline.clearance.si < stick:
+            message = f"is below the stick limit of {1e6 * stick:g} um"
+            yield draft.problem(("splines", name, "clearance"), message)
+
+
+def check_ring_neighbours(draft: Draft) -> Iterator[Problem]:
+    """Yield rings whose neighbours are not two others with parallel axes."""
+    for name, ring in draft.rings.items():
+        if ring.neighbours is None:
+            continue
+        path = ("rings", name, "neighbours")
+        if name in ring.neighbours or ring.neighbours[0] == ring.neighbours[1]:
+            yield draft.problem(path, "are not two other gears")
+            continue
+        for number, neighbour in enumerate(ring.neighbours):
+            own, other = draft.gears.get(name), draft.gears.get(neighbour)
+            if own is None or other is None:
+                continue
+            if 1 - abs(dot(axis_of(own), axis_of(other))) > SQUARE:
+                message = f"its axis is not parallel to that of gear {name}"
+                yield draft.problem((*path, number), message)
+
+
+def check_float_backlashes(draft: Draft) -> Iterator[Problem]:
+    """Yield float ranges that are to follow from backlashes which are not given."""
+    for name, ring in draft.rings.items():
+        if not isinstance(ring.float_, Backlashes):
+            continue
+        for side in ("upward", "downward"):
+            for number, key in enumerate(getattr(ring.float_, side)):
+                mesh = draft.meshes.get(key)
+                if mesh is not None and not mesh.given("backlash", "normal_backlash"):
+                    path = ("rings", name, "float", side, number)
+                    yield draft.problem(path, "this mesh has no backlash", hint="Give it one.")

@@ -1,0 +1,57 @@
+"""What a case file may say, as one table of elements."""
+
+from __future__ import annotations
+
+from pydantic import Field
+
+from loadshare.case.element import Element
+from loadshare.case.gears import Errors, Gear
+from loadshare.case.links import Ring, Shaft, Spline
+from loadshare.case.meshes import Mesh
+from loadshare.case.operation import March, Operating, Stage
+
+ABOUT = ("title", "source", "notes", "assumed")
+"""The keys that say something about a case and nothing about the machine."""
+
+
+class Content(Element):
+    """A transmission, how it is loaded, and what is known about these inputs."""
+
+    title: str = ""
+    """One line that says what the case is."""
+
+    source: str = ""
+    """Where its numbers come from."""
+
+    notes: str = ""
+    """Anything else a reader should know."""
+
+    assumed: tuple[str, ...] = ()
+    """Key paths of inputs that are assumptions; a star stands for any name."""
+
+    operating: Operating
+    """The operating point: where the power enters and leaves, and how much of it."""
+
+    march: March | None = None
+    """A march through the rotation of one gear, for errors that turn with their gears."""
+
+    gears: dict[str, Gear]
+    """The gears, by name."""
+
+    meshes: dict[str, Mesh]
+    """The meshes; one named a-b joins the driver a to the driven gear b."""
+
+    shafts: dict[str, Shaft] = Field(default_factory=dict)
+    """The torsion shafts; one named a-b joins the gears a and b."""
+
+    splines: dict[str, Spline] = Field(default_factory=dict)
+    """The clearance splines, by the gear that each carries."""
+
+    rings: dict[str, Ring] = Field(default_factory=dict)
+    """The limit rings, by the gear that each surrounds."""
+
+    errors: dict[str, Errors] = Field(default_factory=dict)
+    """The installation and manufacturing errors, by gear."""
+
+    stages: dict[str, Stage] = Field(default_factory=dict)
+    """The stages in which load sharing is counted, by name."""

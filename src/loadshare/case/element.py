@@ -1,0 +1,176 @@
+"""What all elements of a case have in common: frozen, strict, with rules across their fields."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, Self, TypeVar
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    Tag,
+    ValidationError,
+    model_validator,
+)
+from pydantic_core import InitErrorDetails, PydanticCustomError
+
+from loadshare.case.keys import Path, look_up
+from loadshare.case.quantity import Quantity
+
+# Marks a step of pydantic's error locations as the choice of a shape, which is no key of the case.
+MARK = "shape:"
+VALUE, LIST, NESTED, TABLE, LIMITS = (
+    f"{MARK}{name}" for name in ("value", "list", "nested", "table", "limits")
+)
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A rule across the fields of an element that does not hold.
+
+    Parameters
+    ----------
+    message : str
+        What is wrong, without a full stop.
+    path : tuple of str or int
+        The key concerned, below the element.
+    allowed, hint : str
+        As in `Problem`.
+    """
+
+    message: str
+    path: Path = ()
+    allowed: str = ""
+    hint: str = ""
+
+
+class Element(BaseModel):
+    """Base of the tables of a case file."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        frozen=True,
+        use_attribute_docstrings=True,
+        protected_namespaces=(),
+    )
+
+    def rules(self) -> Iterator[Rule]:
+        """Yield the rules across this element's fields that do not hold.
+
+        Yields
+        ------
+        Rule
+            One for each.
+        """
+        yield from ()
+
+    @model_validator(mode="after")
+    def _keep_rules(self) -> Self:
+        broken = [
+            InitErrorDetails(
+                type=PydanticCustomError(
+                    "said",
+                    "{said}. {allowed} {hint}",
+                    {"said": rule.message, "allowed": rule.allowed, "hint": rule.hint},
+                ),
+                loc=rule.path,
+                input=look_up(written(self), rule.path) if rule.path else None,
+            )
+            for rule in self.rules()
+        ]
+        if broken:
+            raise ValidationError.from_exception_data(type(self).__name__, broken)
+        return self
+
+    def given(self, *fields: str) -> list[str]:
+        """Return those of the named fields that hold a value, as the keys of the case file.
+
+        Parameters
+        ----------
+        *fields : str
+            Names of fields.
+
+        Returns
+        -------
+        list of str
+            The keys, in the same order.
+        """
+        return [name for name in fields if getattr(self, name) is not None]
+
+
+def written(element: Element) -> dict[str, Any]:
+    """Return an element as plain data, with what the user wrote and nothing else.
+
+    Parameters
+    ----------
+    element : Element
+        The element.
+
+    Returns
+    -------
+    dict
+        Tables, lists, texts and numbers, by the keys of the case file.
+    """
+    data: dict[str, Any] = element.model_dump(mode="json", by_alias=True, exclude_unset=True)
+    return data
+
+
+def shaped(allowed: str, *, limits: tuple[str, ...] = ()) -> Discriminator:
+    """Return what picks the member of a union by the shape of the value: one problem, not several.
+
+    Parameters
+    ----------
+    allowed : str
+        What may be given, in words.
+    limits : tuple of str
+        Keys by which a table belongs to the `LIMITS` member rather than the `TABLE` one.
+
+    Returns
+    -------
+    pydantic.Discriminator
+        For members tagged `VALUE`, `LIST`, `NESTED` (list of lists), `TABLE` or `LIMITS`.
+    """
+
+    def shape(value: Any) -> str:
+        if isinstance(value, Mapping):
+            return LIMITS if any(key in value for key in limits) else TABLE
+        if isinstance(value, Element):
+            return LIMITS if any(hasattr(value, key) for key in limits) else TABLE
+        if isinstance(value, list | tuple):
+            return NESTED if value and isinstance(value[0], list | tuple) else LIST
+        return VALUE
+
+    return Discriminator(shape, custom_error_type="shape", custom_error_message=allowed)
+
+
+T = TypeVar("T")
+
+PerPosition = Annotated[
+    Annotated[T, Tag(VALUE)] | Annotated[tuple[T, ...], Field(min_length=1), Tag(LIST)],
+    shaped("a value with its unit, or a list of them, one per position"),
+]
+"""A value that may be given once, or once per position."""
+
+
+def without_default(schema: dict[str, Any]) -> None:
+    """Leave a default that no user would write out of the schema, in place."""
+    del schema["default"]
+
+
+def values(value: Quantity | tuple[Quantity, ...]) -> tuple[float, ...]:
+    """Return a value that may be given per position as a list [SI units].
+
+    Parameters
+    ----------
+    value : Quantity or tuple of Quantity
+        A value that may be given per position.
+
+    Returns
+    -------
+    tuple of float
+        One value, or one per position.
+    """
+    return tuple(item.si for item in (value if isinstance(value, tuple) else (value,)))

@@ -1,0 +1,182 @@
+"""What joins gears or holds them: shafts, clearance splines, limit rings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field, Strict, Tag
+
+from loadshare.case.element import (
+    LIMITS,
+    LIST,
+    TABLE,
+    VALUE,
+    Element,
+    Rule,
+    shaped,
+    without_default,
+)
+from loadshare.case.quantity import (
+    FORCE,
+    LENGTH,
+    STIFFNESS,
+    TORSIONAL_STIFFNESS,
+    Angle,
+    Length,
+    Quantity,
+)
+
+Clearance = Annotated[Quantity, LENGTH.bounded(at_least=0)]
+Radius = Annotated[Quantity, LENGTH.bounded(above=0)]
+Load = Annotated[Quantity, FORCE.bounded(at_least=0)]
+
+
+class Shaft(Element):
+    """A torsion shaft between two gears."""
+
+    ends: tuple[str, str] = Field(default=("", ""), json_schema_extra=without_default)
+    """The two gears that it joins; taken from the shaft's name when left out."""
+
+    stiffness: Annotated[
+        Quantity | Literal["rigid"], TORSIONAL_STIFFNESS.bounded(above=0).or_words("rigid")
+    ]
+    """Torsional stiffness [torque/angle], or rigid."""
+
+    clocking: Angle = Quantity("0 rad", 0.0)
+    """Angle by which the second end lags the first when unloaded [angle]."""
+
+
+class Spline(Element):
+    """A clearance spline on a gear: it sticks, then slips, then its clearance is used up."""
+
+    bending_stiffness: Annotated[Quantity, STIFFNESS.bounded(above=0)]
+    """Bending stiffness of the spline shaft, K_w [force/length]."""
+
+    clearance: Clearance
+    """Displacement at which the clearance is used up, S2 [length]."""
+
+    stick_limit: Clearance | None = None
+    """Displacement up to which the spline sticks, S1 [length]; F_m / K_w when left out."""
+
+    friction_force: Load | None = None
+    """Friction bound given outright, F_m [force]."""
+
+    friction: Annotated[float, Strict(), Field(ge=0, allow_inf_nan=False)] | None = None
+    """Coefficient of friction [-]; goes with `normal_force` or `radius`."""
+
+    normal_force: Load | None = None
+    """Normal force of the spline, F_N [force]; the friction bound is friction times it."""
+
+    radius: Radius | None = None
+    """Radius at which the torque presses on the spline [length]: F_N = torque / radius."""
+
+    def rules(self) -> Iterator[Rule]:
+        """Yield what does not hold of the ways to give the friction."""
+        allowed = "friction_force; friction and normal_force; or friction and radius"
+        ways = [
+            {"friction_force"},
+            {"friction", "normal_force"},
+            {"friction", "radius"},
+        ]
+        given = self.given("friction_force", "friction", "normal_force", "radius")
+        if not given:
+            yield Rule("has no friction bound", allowed=allowed)
+        elif set(given) not in ways:
+            yield Rule(f"has no clear friction bound: {', '.join(given)}", allowed=allowed)
+
+    @property
+    def fixed_bound(self) -> float | None:
+        """Friction bound F_m [N], or None where it follows the torque."""
+        if self.friction_force is not None:
+            return self.friction_force.si
+        if self.friction is not None and self.normal_force is not None:
+            return self.friction * self.normal_force.si
+        return None
+
+
+class Range(Element):
+    """A float range to either side."""
+
+    up: Clearance
+    """Float outwards [length]."""
+
+    down: Clearance
+    """Float inwards [length]."""
+
+
+class Backlashes(Element):
+    """A float range as the backlashes that the float has to take up."""
+
+    upward: Annotated[tuple[str, ...], Field(min_length=1)]
+    """Meshes whose backlashes the float takes up outwards."""
+
+    downward: Annotated[tuple[str, ...], Field(min_length=1)]
+    """Meshes whose backlashes the float takes up inwards."""
+
+
+class Ring(Element):
+    """A limit ring on a gear: a drum between two neighbours, or a circle."""
+
+    model_config = ConfigDict(validate_by_name=False, validate_by_alias=True)
+
+    neighbours: tuple[str, str] | None = None
+    """Drum: the two gears whose rings it rolls on, the first to the right of outwards."""
+
+    clearance: Annotated[
+        Annotated[Clearance, Tag(VALUE)] | Annotated[tuple[Clearance, Clearance], Tag(LIST)],
+        shaped("a length, or a list of 2 lengths, one per neighbour"),
+    ] = Quantity("0 um", 0.0)
+    """Drum: gap between the rings [length], for both neighbours or each."""
+
+    float_: (
+        Annotated[
+            Annotated[Clearance, Tag(VALUE)]
+            | Annotated[Range, Tag(TABLE)]
+            | Annotated[Backlashes, Tag(LIMITS)],
+            shaped(
+                "a length, a table of up and down, or a table of upward and downward meshes",
+                limits=("upward", "downward"),
+            ),
+        ]
+        | None
+    ) = Field(default=None, alias="float")
+    """Drum: float across the line of the neighbours [length], or the meshes that set it."""
+
+    radius: Annotated[Quantity, LENGTH.bounded(at_least=0)] | None = None
+    """Circle: radius of the disc in which the centre may move [length]."""
+
+    offset: tuple[Length, Length] = (Quantity("0 mm", 0.0), Quantity("0 mm", 0.0))
+    """Circle: middle of the disc, from the gear's centre [length]."""
+
+    stiffness: Annotated[
+        Quantity | Literal["rigid"], STIFFNESS.bounded(above=0).or_words("rigid")
+    ] = "rigid"
+    """Stiffness of the ring [force/length], or rigid."""
+
+    measured: Literal["assembled", "nominal"] = "assembled"
+    """What the clearance is measured on: the gears with their installation errors, or without."""
+
+    def rules(self) -> Iterator[Rule]:
+        """Yield what does not hold of the two forms."""
+        forms = "drum (neighbours, float, clearance) or circle (radius, offset)"
+        drum = [
+            key
+            for key, name in (
+                ("neighbours", "neighbours"),
+                ("float", "float_"),
+                ("clearance", "clearance"),
+            )
+            if name in self.model_fields_set
+        ]
+        circle = [key for key in ("radius", "offset") if key in self.model_fields_set]
+        if drum and circle:
+            yield Rule(f"mixes two forms: {', '.join(drum)}; {', '.join(circle)}", allowed=forms)
+        elif not drum and not circle:
+            yield Rule("has no form", allowed=forms)
+        elif drum and self.neighbours is None:
+            yield Rule("is missing", ("neighbours",), "a list of 2 gears")
+        elif drum and self.float_ is None:
+            yield Rule("is missing", ("float",), LENGTH.allowed)
+        elif circle and self.radius is None:
+            yield Rule("is missing", ("radius",), LENGTH.allowed)

@@ -1,0 +1,153 @@
+"""Meshes and the laws by which they yield."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import Annotated
+
+from pydantic import Field, Tag
+
+from loadshare.case.element import (
+    LIST,
+    NESTED,
+    Element,
+    PerPosition,
+    Rule,
+    shaped,
+    values,
+    without_default,
+)
+from loadshare.case.quantity import (
+    ANGLE,
+    HERTZ_COMPLIANCE,
+    LENGTH,
+    TORQUE,
+    TORSIONAL_COMPLIANCE,
+    TORSIONAL_STIFFNESS,
+    Angle,
+    Quantity,
+)
+from loadshare.case.words import count
+
+STEEPEST = Quantity("45 deg", math.radians(45))
+LAWS = ("stiffness", "law", "table")
+
+Play = Annotated[Quantity, LENGTH.bounded(at_least=0)]
+MeshStiffness = Annotated[Quantity, TORSIONAL_STIFFNESS.bounded(above=0)]
+Bending = Annotated[Quantity, TORSIONAL_COMPLIANCE.bounded(at_least=0)]
+Hertz = Annotated[Quantity, HERTZ_COMPLIANCE.bounded(at_least=0)]
+TableTorque = Annotated[Quantity, TORQUE.bounded(above=0)]
+TableAngle = Annotated[Quantity, ANGLE.bounded(above=0)]
+
+
+class Law(Element):
+    """Loaded deformation of a mesh at the driver: a + b T + c T^(2/3)."""
+
+    a: PerPosition[Angle] = Quantity("0 rad", 0.0)
+    """Unloaded gap [angle], one value or one per position."""
+
+    b: PerPosition[Bending] = Quantity("0 rad/(N*m)", 0.0)
+    """Tooth and root bending [angle/torque], one value or one per position."""
+
+    c: PerPosition[Hertz] = Quantity("0 rad/(N*m)^(2/3)", 0.0)
+    """Hertz contact [angle/torque^(2/3)], one value or one per position."""
+
+    def rules(self) -> Iterator[Rule]:
+        """Yield the positions at which the mesh would be rigid."""
+        b, c = values(self.b), values(self.c)
+        rigid = [k for k in range(max(len(b), len(c))) if b[k % len(b)] == c[k % len(c)] == 0]
+        if rigid:
+            yield Rule("b and c are both 0: the mesh would be rigid", hint="Give b, c or both.")
+
+
+class Table(Element):
+    """Loaded deformation of a mesh at the driver as points; the point (0, 0) is implied."""
+
+    torque: Annotated[tuple[TableTorque, ...], Field(min_length=1)]
+    """Torques at the driver, increasing [torque]."""
+
+    deflection: Annotated[
+        Annotated[tuple[TableAngle, ...], Field(min_length=1), Tag(LIST)]
+        | Annotated[tuple[tuple[TableAngle, ...], ...], Tag(NESTED)],
+        shaped("a list of angles, or one such list per position"),
+    ]
+    """Deflections at the driver, increasing [angle]; one list, or one list per position."""
+
+    def rules(self) -> Iterator[Rule]:
+        """Yield the lists that do not increase or do not fit."""
+        if not _increases(self.torque):
+            yield Rule("does not increase", ("torque",))
+        for path, points in self._curves():
+            if len(points) != len(self.torque):
+                number = f"has {count(len(points))}, torque has {len(self.torque)}"
+                yield Rule(number, path)
+            elif not _increases(points):
+                yield Rule("does not increase", path)
+
+    @property
+    def curves(self) -> tuple[tuple[Quantity, ...], ...]:
+        """The deflections [angle]: one curve, or one per position."""
+        return tuple(points for _, points in self._curves())
+
+    def _curves(self) -> Iterator[tuple[tuple[str | int, ...], tuple[Quantity, ...]]]:
+        flat = tuple(point for point in self.deflection if isinstance(point, Quantity))
+        if flat:
+            yield ("deflection",), flat
+        for number, points in enumerate(self.deflection):
+            if isinstance(points, tuple):
+                yield ("deflection", number), points
+
+
+class Mesh(Element):
+    """A pair of gears in mesh; compliance and gap are angles at the driver."""
+
+    driver: str = Field(default="", json_schema_extra=without_default)
+    """Gear that drives; the first of the mesh's name when left out."""
+
+    driven: str = Field(default="", json_schema_extra=without_default)
+    """Gear that is driven; the second of the mesh's name when left out."""
+
+    pressure_angle: Annotated[Quantity, ANGLE.bounded(above=0, at_most=STEEPEST)]
+    """Transverse working pressure angle, at most 45 deg [angle]."""
+
+    helix_angle: Annotated[Quantity, ANGLE] = Quantity("0 deg", 0.0)
+    """Base helix angle [angle]."""
+
+    stiffness: PerPosition[MeshStiffness] | None = None
+    """Constant stiffness at the driver [torque/angle], one value or one per position."""
+
+    law: Law | None = None
+    """Deformation law a + b T + c T^(2/3) at the driver [angle]."""
+
+    table: Table | None = None
+    """Deformation at the driver [angle] as a table over the torque [torque]."""
+
+    gap: PerPosition[Angle] | None = None
+    """Unloaded gap at the driver that opens the mesh [angle], one value or one per position."""
+
+    backlash: Play | None = None
+    """Circumferential working backlash [length]; without any backlash the coast flank is free."""
+
+    normal_backlash: Play | None = None
+    """Backlash along the line of action [length], in place of `backlash`."""
+
+    def rules(self) -> Iterator[Rule]:
+        """Yield what does not hold of laws, gaps and backlashes."""
+        laws = self.given(*LAWS)
+        if not laws:
+            yield Rule("has no deformation law", allowed=f"one of {', '.join(LAWS)}")
+        elif len(laws) > 1:
+            hint = f"Drop {' or '.join(laws)}; an inherited one with `remove`."
+            yield Rule(f"has {len(laws)} deformation laws: {', '.join(laws)}", hint=hint)
+        if self.gap is not None and self.law is not None and any(values(self.law.a)):
+            yield Rule("stands beside law.a: give one or the other", ("gap",))
+        if self.backlash is not None and self.normal_backlash is not None:
+            yield Rule("stands beside backlash: give one or the other", ("normal_backlash",))
+        if abs(self.helix_angle.si) >= math.pi / 2:
+            yield Rule("is 90 deg or more", ("helix_angle",), ANGLE.allowed)
+
+
+def _increases(points: tuple[Quantity, ...]) -> bool:
+    return all(low.si < high.si for low, high in pairwise(points))

@@ -1,0 +1,178 @@
+"""The case: what a user says about a transmission, checked, with every value as it was written."""
+
+from __future__ import annotations
+
+import copy
+import hashlib
+import json
+from collections.abc import Mapping
+from pathlib import Path as FilePath
+from typing import Any
+
+from pydantic import PrivateAttr
+
+from loadshare.case.checks import check
+from loadshare.case.content import ABOUT, Content
+from loadshare.case.draft import plain, read_draft
+from loadshare.case.keys import parse
+from loadshare.case.origin import Origin
+from loadshare.case.patterns import covers
+from loadshare.case.revise import revise
+from loadshare.errors import CaseError, Problem
+
+
+class Case(Content):
+    """A transmission, how it is loaded, and what is known about these inputs.
+
+    Physical values may be texts with a unit, pint quantities or `Quantity`; elements may be tables
+    or models. Two cases are equal when they say the same, whatever their names and files.
+
+    Parameters
+    ----------
+    content : mapping, optional
+        The sections of a case file, see `Content`.
+    name : str
+        Name of the case, by default that of its file.
+    origin : Origin, optional
+        Where its keys were written; for messages.
+    **sections
+        More sections, or all of them.
+
+    Raises
+    ------
+    CaseError
+        With all problems of the case at once.
+    """
+
+    _data: dict[str, Any] = PrivateAttr()
+    _origin: Origin = PrivateAttr()
+    _name: str = PrivateAttr()
+
+    def __init__(
+        self,
+        content: Mapping[str, Any] | None = None,
+        /,
+        *,
+        name: str = "",
+        origin: Origin | None = None,
+        **sections: Any,
+    ) -> None:
+        data = plain({**(content or {}), **sections})
+        origin = origin or Origin(name or "case")
+        draft = read_draft(data, origin)
+        problems = [*draft.problems, *check(draft)]
+        if problems:
+            raise CaseError(problems)
+        super().__init__(**draft.content())
+        self._data, self._origin, self._name = data, origin, name
+
+    @property
+    def name(self) -> str:
+        """Name of the case, by default that of its file without the ending."""
+        return self._name
+
+    @property
+    def hash(self) -> str:
+        """SHA-256 of what bears on the mechanics: the values in SI units, no titles and notes."""
+        content = self.model_dump(mode="json", by_alias=True, exclude=set(ABOUT), context="SI")
+        text = json.dumps(content, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the case as plain data, with every value as it was written.
+
+        Returns
+        -------
+        dict
+            Tables, lists, texts and numbers, by the keys of the case file.
+        """
+        return copy.deepcopy(self._data)
+
+    def to_toml(self, path: str | FilePath | None = None) -> str:
+        """Return the case as a case file that stands alone, and write it where a path is given.
+
+        Parameters
+        ----------
+        path : str or pathlib.Path, optional
+            File to write.
+
+        Returns
+        -------
+        str
+            The text; `load_case` on it gives an equal case.
+        """
+        from loadshare.case.writer import toml_text
+
+        text = toml_text(self._data)
+        if path is not None:
+            FilePath(path).write_text(text, encoding="utf-8")
+        return text
+
+    def replace(self, changes: Mapping[str, Any]) -> Case:
+        """Return a copy with some keys changed, checked like any other case.
+
+        Parameters
+        ----------
+        changes : mapping of str to object
+            New values by dotted key path, as in ``{'meshes."4-6".stiffness': "4e6 N*m/rad"}``;
+            None removes the key.
+
+        Returns
+        -------
+        Case
+            The changed case.
+
+        Raises
+        ------
+        CaseError
+            If a path leads nowhere, or with all problems of the changed case.
+        """
+        data, origin = revise(self._data, self._origin, changes)
+        return Case(data, name=self._name, origin=origin)
+
+    def problem(self, key: str, message: str, allowed: str = "", hint: str = "") -> Problem:
+        """Return a problem with a key of this case, with its file and what was given.
+
+        Parameters
+        ----------
+        key : str
+            Dotted key path.
+        message, allowed, hint : str
+            As in `Problem`.
+
+        Returns
+        -------
+        Problem
+            The problem, to be raised in a `CaseError`.
+        """
+        return self._origin.problem(self._data, parse(key), message, allowed, hint)
+
+    def is_assumed(self, key: str) -> bool:
+        """Tell whether an input is marked as assumed, itself or as part of what is.
+
+        Parameters
+        ----------
+        key : str
+            Dotted key path.
+
+        Returns
+        -------
+        bool
+            Whether a pattern of `assumed` covers it.
+        """
+        path = parse(key)
+        return any(covers(parse(pattern), path) for pattern in self.assumed)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Case):
+            return NotImplemented
+        return self.__dict__ == other.__dict__
+
+    def __hash__(self) -> int:
+        return hash(self.hash)
+
+    def __repr__(self) -> str:
+        parts = f"{len(self.gears)} gears, {len(self.meshes)} meshes"
+        return f"Case({self._name or 'unnamed'}: {parts})"
+
+    __str__ = __repr__

@@ -1,0 +1,88 @@
+"""How the train runs: its load, its march through the mesh cycle, its stages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Literal
+
+from pydantic import Field, Strict
+
+from loadshare.case.element import Element, PerPosition, Rule, values
+from loadshare.case.quantity import ANGULAR_SPEED, POWER, TORQUE, Quantity, Torque
+
+InputTorque = Annotated[Quantity, TORQUE.bounded(at_least=0)]
+InputPower = Annotated[Quantity, POWER.bounded(at_least=0)]
+Count = Annotated[int, Strict(), Field(ge=1)]
+
+
+class Operating(Element):
+    """Where the power enters and leaves, and how much of it."""
+
+    input: str
+    """Gear at which the torque enters."""
+
+    output: str
+    """Gear at which it leaves."""
+
+    running: Literal["counter-clockwise", "clockwise"] = "counter-clockwise"
+    """Sense of rotation of the input gear, seen against its axis."""
+
+    torque: PerPosition[InputTorque] | None = None
+    """Input torque [torque], one value or one per position."""
+
+    power: PerPosition[InputPower] | None = None
+    """Input power [power], one value or one per position; goes with `speed`."""
+
+    speed: Annotated[Quantity, ANGULAR_SPEED.bounded(above=0)] | None = None
+    """Speed of the input gear [angle/time]."""
+
+    positions: Count = 1
+    """Number of meshing positions in a mesh cycle [-]."""
+
+    external: dict[str, Torque] = Field(default_factory=dict)
+    """Further torques on gears [torque], positive in the gear's sense of rotation."""
+
+    def rules(self) -> Iterator[Rule]:
+        """Yield what does not hold of torque, power and speed."""
+        allowed = "torque, or power and speed"
+        if self.torque is not None and self.power is not None:
+            yield Rule("stands beside torque: give one or the other", ("power",), allowed)
+        elif self.power is not None and self.speed is None:
+            yield Rule("is missing", ("speed",), ANGULAR_SPEED.allowed, "It goes with power.")
+        elif self.torque is None and self.power is None:
+            yield Rule("has no load", allowed=allowed)
+        if self.input == self.output:
+            yield Rule("is the input as well", ("output",), "another gear")
+
+    @property
+    def input_torque(self) -> tuple[float, ...]:
+        """Input torque [N·m], one value or one per position."""
+        if self.torque is not None:
+            return values(self.torque)
+        if self.power is None or self.speed is None:
+            raise ValueError("an operating point without a load")
+        speed = self.speed.si
+        return tuple(power / speed for power in values(self.power))
+
+
+class March(Element):
+    """A march through the rotation of one gear, for errors that turn with their gears."""
+
+    gear: str
+    """Gear whose revolutions are counted."""
+
+    revolutions: Annotated[float, Strict(), Field(gt=0, allow_inf_nan=False)]
+    """How far to march [revolutions]."""
+
+    steps: Count
+    """Number of steps [-]."""
+
+
+class Stage(Element):
+    """A set of meshes over which load sharing is counted."""
+
+    meshes: Annotated[tuple[str, ...], Field(min_length=1)]
+    """Meshes of the stage, one per branch."""
+
+    groups: tuple[Annotated[tuple[str, ...], Field(min_length=1)], ...] | None = None
+    """Meshes that share one torque, as lists; all of the stage when left out."""

@@ -1,0 +1,68 @@
+"""Where each key of a case was written."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from loadshare.case.keys import Path, dotted, look_up
+from loadshare.case.words import as_given
+from loadshare.errors import Problem
+
+
+@dataclass(frozen=True)
+class Origin:
+    """The file of each key; a case built in Python has one made-up file.
+
+    Parameters
+    ----------
+    file : str
+        File of every key that `files` does not name.
+    files : mapping
+        File of a key and of all below it, by key path.
+    """
+
+    file: str = "case"
+    files: Mapping[Path, str] = field(default_factory=dict)
+
+    def of(self, path: Path) -> str:
+        """Return the file in which a key stands.
+
+        Parameters
+        ----------
+        path : tuple of str or int
+            Its path; of a key that stands nowhere, the table that would hold it counts.
+
+        Returns
+        -------
+        str
+            The file.
+        """
+        for length in range(len(path), 0, -1):
+            if path[:length] in self.files:
+                return self.files[path[:length]]
+        return self.file
+
+    def problem(
+        self, data: Mapping[str, object], path: Path, message: str, allowed: str, hint: str
+    ) -> Problem:
+        """Return a problem with a key, with its file and what was given.
+
+        Parameters
+        ----------
+        data : mapping
+            The case as plain data.
+        path : tuple of str or int
+            The key.
+        message, allowed, hint : str
+            As in `Problem`.
+
+        Returns
+        -------
+        Problem
+            The problem.
+        """
+        value = look_up(data, path)
+        # A whole element in a message would bury it.
+        given = "" if isinstance(value, Mapping) else as_given(value)
+        return Problem(self.of(path), dotted(path), given, message, allowed, hint)

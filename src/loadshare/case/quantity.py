@@ -1,0 +1,229 @@
+"""Physical values: what the user wrote, and what it is in SI."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, replace
+from decimal import Decimal
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic_core import PydanticCustomError, core_schema
+
+from loadshare.case.units import COMMON, kind_of, si_factor
+from loadshare.case.words import did_you_mean
+
+if TYPE_CHECKING:
+    from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+
+NUMBER = r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?"
+_QUANTITY = re.compile(rf"\s*({NUMBER}|[+\-−]?(?:inf|nan))\s*(?![\s\d.,])(.*?)\s*", re.DOTALL)
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A physical value; two are equal when they are written alike.
+
+    Parameters
+    ----------
+    text : str
+        What the user wrote, such as ``45.9 mm``.
+    si : float
+        The value in SI units, angles in radians.
+    """
+
+    text: str
+    si: float
+
+    def __float__(self) -> float:
+        return self.si
+
+    def __str__(self) -> str:
+        return self.text
+
+
+@dataclass(frozen=True)
+class Dimension:
+    """What a physical value of a field must measure; the annotation that makes pydantic read it.
+
+    Parameters
+    ----------
+    unit : str
+        The SI unit in which it is kept.
+    kind : str
+        Its name in messages, with the article.
+    example : str
+        A value as a user would write it.
+    at_least, above : float or None
+        Lower bounds of the value in SI units, themselves allowed and not.
+    at_most : Quantity or None
+        Upper bound.
+    words : tuple of str
+        Words that may stand in its place.
+    """
+
+    unit: str
+    kind: str
+    example: str
+    at_least: float | None = None
+    above: float | None = None
+    at_most: Quantity | None = None
+    words: tuple[str, ...] = ()
+
+    def bounded(
+        self,
+        *,
+        at_least: float | None = None,
+        above: float | None = None,
+        at_most: Quantity | None = None,
+    ) -> Dimension:
+        """Return this dimension with bounds [lower ones in SI units]."""
+        return replace(self, at_least=at_least, above=above, at_most=at_most)
+
+    def or_words(self, *words: str) -> Dimension:
+        """Return this dimension with words that may stand in its place."""
+        return replace(self, words=words)
+
+    def read(self, given: object) -> Quantity | str:
+        """Return the value that a user gave.
+
+        Parameters
+        ----------
+        given : object
+            A text with a unit, a pint quantity, a `Quantity`, or one of the words.
+
+        Returns
+        -------
+        Quantity or str
+            The value; a word stays as it is.
+
+        Raises
+        ------
+        pydantic_core.PydanticCustomError
+            If it is neither, or out of bounds; the message is for the user.
+        """
+        if isinstance(given, str) and given in self.words:
+            return given
+        text = as_text(given)
+        if isinstance(text, int | float) and not isinstance(text, bool):
+            raise self._problem(f"{text} has no unit", number=str(text))
+        match = _QUANTITY.fullmatch(text) if isinstance(text, str) else None
+        if match is None:
+            hint = did_you_mean(text, self.words)
+            raise self._problem("is not a number followed by a unit", hint=hint)
+        number, unit = match[1].replace("−", "-"), match[2]
+        if not unit:
+            raise self._problem(f"{number} has no unit", number=number)
+        try:
+            factor = si_factor(unit, self.unit)
+        except ValueError as error:
+            unknown = str(error)
+            fitting = [unit for unit in COMMON if si_factor(unit, self.unit) is not None]
+            hint = did_you_mean(unknown, fitting) or did_you_mean(unknown, COMMON)
+            raise self._problem(f"the unit {unknown} is not known", hint=hint) from None
+        if factor is None:
+            kind = kind_of(unit) or f"in {unit}"
+            raise self._problem(f"is {kind}, {self.kind} is needed")
+        # Decimal keeps "45.9 mm" and "0.0459 m" the same number.
+        value = Quantity(str(text), float(Decimal(number) * Decimal(repr(factor))))
+        self._check(value.si)
+        return value
+
+    @property
+    def allowed(self) -> str:
+        """What may be given, in words."""
+        return self._allowed()
+
+    def _check(self, si: float) -> None:
+        if not math.isfinite(si):
+            raise self._problem("is not finite")
+        if self.above is not None and si <= self.above:
+            limit = "positive" if self.above == 0 else f"above {self.above:g} {self.unit}"
+            raise self._problem(f"is not {limit}")
+        if self.at_least is not None and si < self.at_least:
+            low = f"is below {self.at_least:g} {self.unit}"
+            raise self._problem("is negative" if self.at_least == 0 else low)
+        if self.at_most is not None and si > self.at_most.si:
+            raise self._problem(f"is above {self.at_most}")
+
+    def _allowed(self, number: str | None = None) -> str:
+        example = self.example
+        if number is not None:
+            example = f"{number} {self.example.partition(' ')[2]}"
+        words = "".join(f'"{word}", ' for word in self.words)
+        return f'{words}{"or " if words else ""}{self.kind} such as "{example}"'
+
+    def _problem(
+        self, message: str, *, hint: str = "", number: str | None = None
+    ) -> PydanticCustomError:
+        said = {"said": message, "allowed": self._allowed(number), "hint": hint}
+        return PydanticCustomError("said", "{said}. Allowed: {allowed}. {hint}", said)
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> core_schema.CoreSchema:
+        return core_schema.no_info_plain_validator_function(
+            self.read,
+            serialization=core_schema.plain_serializer_function_ser_schema(_written, info_arg=True),
+        )
+
+    def __get_pydantic_json_schema__(
+        self, schema: core_schema.CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        number = rf"\s*{NUMBER}\s*[^\s\d.,].*"
+        return {
+            "type": "string",
+            "description": self.allowed,
+            "pattern": f"^({'|'.join((*self.words, number))})$",
+            "examples": [*self.words, self.example],
+        }
+
+
+def as_text(given: object) -> object:
+    """Return a physical value as text, and anything else as it is.
+
+    Parameters
+    ----------
+    given : object
+        A `Quantity`, a pint quantity of any registry, or something else.
+
+    Returns
+    -------
+    object
+        Number and unit as text; something else unchanged.
+    """
+    if isinstance(given, Quantity):
+        return given.text
+    magnitude, units = getattr(given, "magnitude", None), getattr(given, "units", None)
+    if magnitude is None or units is None:
+        return given
+    return f"{float(magnitude)!r} {units:~C}".strip()
+
+
+def _written(value: Quantity | str, info: core_schema.SerializationInfo) -> str | float:
+    if isinstance(value, Quantity):
+        return value.si if info.context == "SI" else value.text
+    return value
+
+
+LENGTH = Dimension("m", "a length", "45.9 mm")
+ANGLE = Dimension("rad", "an angle", "20 deg")
+ANGULAR_SPEED = Dimension("rad/s", "an angular speed", "8780 rpm")
+POWER = Dimension("W", "a power", "2000 kW")
+TORQUE = Dimension("N*m", "a torque", "2175 N*m")
+FORCE = Dimension("N", "a force", "500 N")
+STIFFNESS = Dimension("N/m", "a stiffness", "1.78e7 N/m")
+TORSIONAL_STIFFNESS = Dimension("N*m/rad", "a torsional stiffness", "5e5 N*m/rad")
+TORSIONAL_COMPLIANCE = Dimension("rad/(N*m)", "a torsional compliance", "2e-7 rad/(N*m)")
+HERTZ_COMPLIANCE = Dimension("rad/(N*m)^(2/3)", "a Hertz compliance", "1e-6 rad/(N*m)^(2/3)")
+
+Length = Annotated[Quantity, LENGTH]
+Angle = Annotated[Quantity, ANGLE]
+AngularSpeed = Annotated[Quantity, ANGULAR_SPEED]
+Power = Annotated[Quantity, POWER]
+Torque = Annotated[Quantity, TORQUE]
+Force = Annotated[Quantity, FORCE]
+Stiffness = Annotated[Quantity, STIFFNESS]
+TorsionalStiffness = Annotated[Quantity, TORSIONAL_STIFFNESS]
+TorsionalCompliance = Annotated[Quantity, TORSIONAL_COMPLIANCE]
+HertzCompliance = Annotated[Quantity, HERTZ_COMPLIANCE]

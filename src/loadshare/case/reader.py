@@ -1,0 +1,142 @@
+"""Case files: read, inherited, merged, and turned into a case."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path as FilePath
+from typing import Any
+
+from loadshare.case.keys import Path, parse, walk
+from loadshare.case.model import Case
+from loadshare.case.origin import Origin
+from loadshare.case.revise import drop
+from loadshare.case.words import as_given
+from loadshare.errors import CaseError, Problem
+
+_PLACE = re.compile(r"(.*) \(at (.*)\)", re.DOTALL)
+
+
+def load_case(path: str | FilePath) -> Case:
+    """Read a case file, with all that it inherits.
+
+    Parameters
+    ----------
+    path : str or pathlib.Path
+        The file.
+
+    Returns
+    -------
+    Case
+        The case, named after the file.
+
+    Raises
+    ------
+    CaseError
+        With all problems of the case at once.
+    """
+    path = FilePath(path)
+    data, files, problems = _read(path, ())
+    try:
+        case = Case(data, name=path.stem, origin=Origin(str(path), files))
+    except CaseError as error:
+        raise CaseError((*problems, *error.problems)) from None
+    if problems:
+        raise CaseError(problems)
+    return case
+
+
+def _read(
+    path: FilePath, chain: tuple[FilePath, ...]
+) -> tuple[dict[str, Any], dict[Path, str], list[Problem]]:
+    """Return the merged data of a file, the file of each key, and problems that can be outlived."""
+    own = _parse(path)
+    base, removals = own.pop("extends", None), own.pop("remove", [])
+    data: dict[str, Any] = {}
+    files: dict[Path, str] = {}
+    problems: list[Problem] = []
+    if base is not None:
+        data, files, problems = _read(_base_of(path, base, (*chain, path)), (*chain, path))
+    if not isinstance(removals, list):
+        allowed = 'a list such as ["errors.6"]'
+        problems.append(
+            Problem(str(path), "remove", as_given(removals), "cannot stand here", allowed)
+        )
+        removals = []
+    for number, key in enumerate(removals):
+        problems += _remove(data, files, key, Problem(str(path), f"remove[{number}]", "", ""))
+    # What the base assumes stays assumed: a case may only add to it.
+    inherited, added = data.get("assumed", []), own.get("assumed", [])
+    _merge(data, own)
+    if isinstance(inherited, list) and isinstance(added, list) and (inherited or added):
+        data["assumed"] = [*inherited, *(item for item in added if item not in inherited)]
+        files |= {("assumed", number): files[("assumed",)] for number in range(len(inherited))}
+    files.update(dict.fromkeys(walk(own), str(path)))
+    return data, files, problems
+
+
+def _remove(
+    data: dict[str, Any], files: dict[Path, str], key: object, place: Problem
+) -> list[Problem]:
+    """Drop an inherited key; `place` is where the wish stands."""
+    try:
+        path = parse(key) if isinstance(key, str) else ()
+    except ValueError:
+        path = ()
+    if not path:
+        return [
+            Problem(
+                place.file,
+                place.key,
+                as_given(key),
+                "is not a key path",
+                'a text such as "errors.6"',
+            )
+        ]
+    hint = drop(data, path)
+    if hint is not None:
+        return [Problem(place.file, place.key, as_given(key), "is not inherited", "", hint)]
+    for known in [known for known in files if known[: len(path)] == path]:
+        del files[known]
+    return []
+
+
+def _merge(data: dict[str, Any], own: Mapping[str, Any]) -> None:
+    """Lay a file's own keys over the inherited ones, in place."""
+    for key, value in own.items():
+        inherited = data.get(key)
+        if isinstance(value, Mapping) and isinstance(inherited, dict):
+            _merge(inherited, value)
+        else:
+            data[key] = value
+
+
+def _base_of(path: FilePath, base: object, chain: tuple[FilePath, ...]) -> FilePath:
+    """Return the file that `path` extends; `chain` is how it was reached itself."""
+    given = as_given(base)
+    if not isinstance(base, str):
+        allowed = 'a file such as "base.toml"'
+        raise CaseError([Problem(str(path), "extends", given, "is not a file", allowed)])
+    target = path.parent / base
+    if target.resolve() in [file.resolve() for file in chain]:
+        circle = " → ".join(str(file) for file in (*chain, target))
+        raise CaseError([Problem(str(path), "extends", given, f"closes a circle: {circle}")])
+    if not target.is_file():
+        raise CaseError([Problem(str(path), "extends", given, "there is no such file")])
+    return target
+
+
+def _parse(path: FilePath) -> dict[str, Any]:
+    """Return what a file itself says."""
+    try:
+        return tomllib.loads(path.read_text(encoding="utf-8"))
+    except tomllib.TOMLDecodeError as error:
+        match = _PLACE.fullmatch(str(error))
+        what, where = match.groups() if match else (str(error), "an unknown place")
+        why = f"is not valid TOML at {where}: {what.lower()}"
+    except UnicodeDecodeError as error:
+        why = f"is not UTF-8 text at byte {error.start}"
+    except OSError as error:
+        why = (error.strerror or "cannot be read").lower()
+    raise CaseError([Problem(str(path), "", "", why)])

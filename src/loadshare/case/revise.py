@@ -1,0 +1,136 @@
+"""Changes to a case by key path."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Mapping
+from typing import Any
+
+from loadshare.case.content import Content
+from loadshare.case.draft import plain
+from loadshare.case.keys import Path, dotted, look_up, parse
+from loadshare.case.origin import Origin
+from loadshare.case.words import as_given, did_you_mean
+from loadshare.errors import CaseError, Problem
+
+FILE = "changes"
+
+
+def revise(
+    data: Mapping[str, Any], origin: Origin, changes: Mapping[str, Any]
+) -> tuple[dict[str, Any], Origin]:
+    """Return plain data with some keys changed, and where they stand now.
+
+    Parameters
+    ----------
+    data : mapping
+        A case as plain data; left as it is.
+    origin : Origin
+        Where its keys stand.
+    changes : mapping of str to object
+        New values by dotted key path; None removes the key.
+
+    Returns
+    -------
+    tuple of dict and Origin
+        The changed data and its origin.
+
+    Raises
+    ------
+    CaseError
+        If a path leads nowhere.
+    """
+    changed = copy.deepcopy(dict(data))
+    files = dict(origin.files)
+    problems = []
+    for key, value in changes.items():
+        try:
+            path = parse(key)
+        except ValueError:
+            problems.append(Problem(FILE, key, as_given(plain(value)), "is not a key path"))
+            continue
+        lost = (change if value is not None else drop)(changed, path, plain(value))
+        if lost is None:
+            files = {known: file for known, file in files.items() if known[: len(path)] != path}
+            files[path] = FILE
+        else:
+            problems.append(Problem(FILE, key, as_given(plain(value)), "leads nowhere", "", lost))
+    if problems:
+        raise CaseError(problems)
+    return changed, Origin(origin.file, files)
+
+
+def change(data: dict[str, Any], path: Path, value: Any) -> str | None:
+    """Set the value at a key path, in place.
+
+    Parameters
+    ----------
+    data : dict
+        A case as plain data.
+    path : tuple of str or int
+        The key; the table that holds it must exist, or be a section of a case file.
+    value : object
+        The new value.
+
+    Returns
+    -------
+    str or None
+        None, or a hint where the path leads nowhere.
+    """
+    if len(path) > 1 and path[0] in Content.model_fields and path[0] not in data:
+        data[str(path[0])] = {}
+    holder = look_up(data, path[:-1])
+    step = path[-1]
+    if isinstance(holder, dict) and isinstance(step, str):
+        holder[step] = value
+        return None
+    if isinstance(holder, list) and isinstance(step, int) and step < len(holder):
+        holder[step] = value
+        return None
+    return nearest(data, path)
+
+
+def drop(data: dict[str, Any], path: Path, _: Any = None) -> str | None:
+    """Remove a key, in place.
+
+    Parameters
+    ----------
+    data : dict
+        A case as plain data.
+    path : tuple of str or int
+        The key.
+
+    Returns
+    -------
+    str or None
+        None, or a hint where the path leads nowhere.
+    """
+    holder = look_up(data, path[:-1])
+    if isinstance(holder, dict) and path[-1] in holder:
+        del holder[path[-1]]
+        return None
+    return nearest(data, path)
+
+
+def nearest(data: Mapping[str, Any], path: Path) -> str:
+    """Return a hint at what a path that leads nowhere could have meant.
+
+    Parameters
+    ----------
+    data : mapping
+        A case as plain data.
+    path : tuple of str or int
+        The path.
+
+    Returns
+    -------
+    str
+        A did-you-mean at the first step that fails, or what is missing there.
+    """
+    for length in range(len(path)):
+        above = look_up(data, path[:length])
+        if isinstance(above, Mapping) and path[length] not in above:
+            options = {dotted((*path[:length], key)): key for key in above}
+            wrong = dotted(path[: length + 1])
+            return did_you_mean(wrong, options) or f"There is no {wrong}."
+    return f"There is no {dotted(path)}."

@@ -1,0 +1,143 @@
+"""The units a case may use: a small registry in which the angle is a dimension of its own."""
+
+from __future__ import annotations
+
+from functools import cache, lru_cache
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import pint
+
+# With the radian as a base unit, a torque (N*m) cannot pass for a torsional stiffness (N*m/rad).
+DEFINITIONS = """
+milli- = 1e-3 = m-
+micro- = 1e-6 = µ- = μ- = u-
+nano- = 1e-9 = n-
+centi- = 1e-2 = c-
+kilo- = 1e3 = k-
+mega- = 1e6 = M-
+giga- = 1e9 = G-
+
+meter = [length] = m = metre
+micron = 1e-6 * meter
+inch = 0.0254 * meter = in
+foot = 0.3048 * meter = ft
+gram = [mass] = g
+second = [time] = s
+minute = 60 * second = min
+hour = 3600 * second = h
+radian = [angle] = rad
+degree = 3.141592653589793 / 180 * radian = deg = °
+arcminute = degree / 60 = arcmin
+arcsecond = degree / 3600 = arcsec
+revolution = 6.283185307179586 * radian = rev = r
+rpm = revolution / minute
+hertz = revolution / second = Hz
+newton = 1000 * gram * meter / second ** 2 = N
+pound_force = 4.4482216152605 * newton = lbf
+pascal = newton / meter ** 2 = Pa
+watt = newton * meter / second = W
+horsepower = 745.6998715822702 * watt = hp
+"""
+
+# What a did-you-mean may propose: the spellings that engineers use.
+COMMON = (
+    *("m", "mm", "um", "µm", "micron", "nm", "cm", "in", "ft", "g", "kg", "s", "ms", "min", "h"),
+    *("rad", "mrad", "urad", "deg", "arcmin", "arcsec", "rev", "rpm", "Hz"),
+    *("N", "kN", "MN", "lbf", "W", "kW", "MW", "hp", "Pa", "MPa", "GPa"),
+    *("N*m", "kN*m", "N*mm", "N/m", "N/mm", "N/um", "N*m/rad", "rad/(N*m)", "rad/(N*m)^(2/3)"),
+)
+
+# The SI unit in which each kind of quantity is kept, by the name that messages use.
+KINDS = {
+    "a length": "m",
+    "an angle": "rad",
+    "a mass": "kg",
+    "a time": "s",
+    "a speed": "m/s",
+    "an angular speed": "rad/s",
+    "a frequency": "1/s",
+    "a force": "N",
+    "a torque": "N*m",
+    "a torque per angle": "N*m/rad",
+    "a stiffness": "N/m",
+    "a power": "W",
+    "a pressure": "Pa",
+}
+
+
+@cache
+def registry() -> pint.UnitRegistry[float]:
+    """Return the registry of the units that a case may use.
+
+    Returns
+    -------
+    pint.UnitRegistry
+        Built on first use, shared afterwards; the angle is a dimension of its own.
+    """
+    import pint
+
+    units: pint.UnitRegistry[float] = pint.UnitRegistry(None, cache_folder=None)
+    units.load_definitions(DEFINITIONS.splitlines())
+    return units
+
+
+@lru_cache(maxsize=1024)
+def si_factor(unit: str, target: str) -> float | None:
+    """Return by what a number in `unit` is multiplied to be in `target`.
+
+    Parameters
+    ----------
+    unit : str
+        A unit as an engineer writes it: ``mm``, ``N·m/rad``, ``rad/(N*m)^(2/3)``.
+    target : str
+        The SI unit wanted.
+
+    Returns
+    -------
+    float or None
+        The factor, or None where the two units are of different dimensions.
+
+    Raises
+    ------
+    ValueError
+        For a text that is no unit; the argument is the part that is not known.
+    """
+    given, wanted = _parse(unit), _parse(target)
+    if given.dimensionality != wanted.dimensionality:
+        return None
+    return float((given / wanted).to_base_units().magnitude)
+
+
+def kind_of(unit: str) -> str | None:
+    """Return what kind of quantity `unit` measures, or None where it has no name of its own.
+
+    Parameters
+    ----------
+    unit : str
+        A unit that `si_factor` accepts.
+
+    Returns
+    -------
+    str or None
+        Such as ``a length``.
+    """
+    return next((kind for kind, si in KINDS.items() if si_factor(unit, si) is not None), None)
+
+
+@lru_cache(maxsize=1024)
+def _parse(unit: str) -> pint.Quantity[float]:
+    import pint
+
+    text = unit.replace("·", "*").replace("⋅", "*").replace("^", "**")
+    try:
+        parsed = registry().parse_expression(text)
+    except pint.UndefinedUnitError as error:
+        names = error.unit_names
+        raise ValueError(names if isinstance(names, str) else names[0]) from None
+    except Exception as error:  # the parser raises whatever its tokenizer meets
+        raise ValueError(unit) from error
+    # A number is no unit, and "5 mm" after another number is a slip of the pen.
+    if not isinstance(parsed, registry().Quantity) or parsed.magnitude != 1 or parsed.unitless:
+        raise ValueError(unit)
+    return parsed

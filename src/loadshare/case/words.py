@@ -1,0 +1,91 @@
+"""How problems are worded: near misses, lists of choices, what the user gave."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from difflib import get_close_matches
+from typing import Any
+
+from loadshare.case.keys import BARE
+
+LONGEST = 72
+
+
+def did_you_mean(word: object, known: Iterable[str]) -> str:
+    """Return a sentence that proposes the nearest known word, or nothing.
+
+    Parameters
+    ----------
+    word : object
+        What was given.
+    known : iterable of str
+        What could have been meant.
+
+    Returns
+    -------
+    str
+        ``Did you mean base_radius?``, or an empty text.
+    """
+    options = list(known)
+    near: list[str] = []
+    if isinstance(word, str):
+        near = [option for option in options if option.casefold() == word.casefold()]
+        near = near or get_close_matches(word, options, n=1)
+    return f"Did you mean {near[0]}?" if near else ""
+
+
+def choices(known: Iterable[str], most: int = 24) -> str:
+    """Return a list of choices, cut where it would bury the message.
+
+    Parameters
+    ----------
+    known : iterable of str
+        The choices, in the order to show.
+    most : int
+        How many to show at most.
+
+    Returns
+    -------
+    str
+        The choices, separated by commas; ends in an ellipsis where some are left out.
+    """
+    names = list(known)
+    return ", ".join(names[:most]) + (", …" if len(names) > most else "")
+
+
+def count(number: int, noun: str = "value") -> str:
+    """Return a number of things in words: ``1 value``, ``2 values``."""
+    return f"{number} {noun}" + ("" if number == 1 else "s")
+
+
+def as_given(value: Any) -> str:
+    """Return a value as TOML would show it, shortened to what a message can hold.
+
+    Parameters
+    ----------
+    value : object
+        A value of a case; None for nothing.
+
+    Returns
+    -------
+    str
+        The text.
+    """
+    text = "" if value is None else _toml(value)
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 1]}…"
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, Mapping):
+        pairs = (f"{_key(key)} = {_toml(item)}" for key, item in value.items())
+        return f"{{ {', '.join(pairs)} }}" if value else "{}"
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_toml, value))}]"
+    if isinstance(value, str | bool):
+        return json.dumps(value, ensure_ascii=False)
+    return str(value)
+
+
+def _key(key: object) -> str:
+    return str(key) if BARE.fullmatch(str(key)) else json.dumps(str(key), ensure_ascii=False)

@@ -1,0 +1,124 @@
+"""The certificate of an equilibrium (formulation, section 8).
+
+It is recomputed from the train and the claimed displacements and forces alone. No solver's word, no programme and
+no row enters it: a slip in any of them shows here.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from loadshare.certify import residuals
+from loadshare.certify.floats import FloatState, float_states
+from loadshare.certify.state import State
+from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.train import Train
+
+TOLERANCE = 1e-9
+"""Largest scaled residual of a certified answer."""
+BAND = 1e-9
+"""Band in which a margin counts as none, in deflections of the case."""
+
+
+@dataclass(frozen=True, slots=True)
+class Residual:
+    """One figure of a certificate.
+
+    Attributes
+    ----------
+    value : float
+        In `unit`.
+    unit : str
+    scaled : float
+        Over the case's load, deflection, or both; dimensionless.
+    where : str
+        Element that shows the value.
+    """
+
+    value: float
+    unit: str
+    scaled: float
+    where: str
+
+
+@dataclass(frozen=True, slots=True)
+class Certificate:
+    """Verdict on an answer.
+
+    Attributes
+    ----------
+    residuals : mapping of str to Residual
+        "force_balance" [N], "moment_balance" [N, over base radius], "penetration" [m], "complementarity" [J],
+        "deformation_law" [m], "cone_membership" [N], "energy_gap" [J].
+    floats : mapping of gear to FloatState
+    tolerance : float
+        Largest scaled residual allowed.
+    load, deflection : float
+        Scales [N], [m].
+    """
+
+    residuals: Mapping[str, Residual]
+    floats: Mapping[str, FloatState]
+    tolerance: float
+    load: float
+    deflection: float
+
+    @property
+    def worst(self) -> float:
+        """Largest scaled residual."""
+        return max(r.scaled for r in self.residuals.values())
+
+    @property
+    def passed(self) -> bool:
+        """Whether every scaled residual is within the tolerance."""
+        return self.worst <= self.tolerance
+
+    @property
+    def failing(self) -> dict[str, Residual]:
+        """Residuals beyond the tolerance."""
+        return {n: r for n, r in self.residuals.items() if not r.scaled <= self.tolerance}
+
+
+def certify(train: Train, answer: Equilibrium, tolerance: float = TOLERANCE) -> Certificate:
+    """Judge a claimed equilibrium.
+
+    Parameters
+    ----------
+    train : Train
+    answer : Equilibrium
+    tolerance : float
+        Largest scaled residual of a certified answer.
+
+    Returns
+    -------
+    Certificate
+        Passed or not; nothing is raised for a wrong answer.
+    """
+    state = State(train, answer)
+    load, deflection = state.force_scale, state.length_scale
+    work = load * deflection
+
+    def scaled(found: tuple[float, str], unit: str, scale: float) -> Residual:
+        value, where = found
+        ratio = value / scale
+        return Residual(value, unit, math.inf if math.isnan(ratio) else ratio, where)
+
+    return Certificate(
+        residuals={
+            "force_balance": scaled(residuals.force_balance(state), "N", load),
+            "moment_balance": scaled(residuals.moment_balance(state), "N", load),
+            "penetration": scaled(residuals.penetration(state), "m", deflection),
+            "complementarity": scaled(residuals.complementarity(state), "J", work),
+            "deformation_law": scaled(residuals.deformation_law(state), "m", deflection),
+            "cone_membership": scaled(
+                residuals.cone_membership(state, BAND * deflection), "N", load
+            ),
+            "energy_gap": scaled(residuals.energy_gap(state), "J", work),
+        },
+        floats=float_states(state, BAND),
+        tolerance=tolerance,
+        load=load,
+        deflection=deflection,
+    )

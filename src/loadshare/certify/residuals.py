@@ -1,0 +1,162 @@
+"""The residuals of a claimed equilibrium (formulation, section 8), each the worst over the train."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from loadshare.certify.state import State
+
+
+def force_balance(state: State) -> tuple[float, str]:
+    """Largest unbalanced force [N] on a gear that can be displaced, and the gear."""
+    train = state.train
+    total = {
+        name: -np.asarray(gear.support) * (gear.frame @ state.moved(name)) @ gear.frame
+        for name, gear in train.gears.items()
+        if gear.support is not None
+    }
+    for push in state.pushes:
+        for gear, sign in ((push.pushed, 1.0), (push.pushing, -1.0)):
+            if gear in total:
+                total[gear] = total[gear] + sign * push.force * push.normal
+    for pull in state.pulls:
+        total[pull.gear] = total[pull.gear] + pull.reaction
+    return _worst({g: float(np.linalg.norm(train.gears[g].frame @ f)) for g, f in total.items()})
+
+
+def moment_balance(state: State) -> tuple[float, str]:
+    """Largest unbalanced moment over base radius [N] on a set of gears that turn as one, and a gear of it."""
+    train = state.train
+    moment = dict.fromkeys(train.gears, 0.0)
+    for gear, torque in state.situation.torque.items():
+        moment[gear] += torque
+    for mesh in train.meshes.values():
+        for drive in mesh.flanks:
+            force = state.answer.flank_force[mesh.flank_name(drive)]
+            along = 1.0 if drive else -1.0
+            moment[mesh.driver] -= along * mesh.radii[0] * force
+            moment[mesh.driven] += along * mesh.radii[1] * force
+    for name, wind in state.winds():
+        shaft = train.shafts[name]
+        if not math.isinf(shaft.stiffness):
+            moment[shaft.first] -= shaft.stiffness * wind
+            moment[shaft.second] += shaft.stiffness * wind
+    unbalanced = {}
+    for group in _turning_as_one(state):
+        if train.output not in group:
+            radius = max(train.gears[g].base_radius for g in group)
+            unbalanced[group[0]] = abs(math.fsum(moment[g] for g in group)) / radius
+    return _worst(unbalanced)
+
+
+def _turning_as_one(state: State) -> list[list[str]]:
+    """Gears joined by rigid shafts."""
+    groups = {g: [g] for g in state.train.gears}
+    for shaft in state.train.shafts.values():
+        first, second = groups[shaft.first], groups[shaft.second]
+        if math.isinf(shaft.stiffness) and first is not second:
+            first += second
+            groups |= dict.fromkeys(second, first)
+    return list({id(g): g for g in groups.values()}.values())
+
+
+def penetration(state: State) -> tuple[float, str]:
+    """Deepest overlap [m] that a force of the claimed size does not explain, and the contact."""
+    overlaps = {}
+    for push in state.pushes:
+        overlaps[push.name] = push.approach - push.law.compression(max(push.force, 0.0))
+    for pull in state.pulls:
+        overlaps[pull.name] = float(np.linalg.norm(pull.offset)) - pull.law.reach
+    return _worst(overlaps)
+
+
+def complementarity(state: State) -> tuple[float, str]:
+    """Largest work [J] of a force over an open gap, and the contact."""
+    return _worst(
+        {
+            p.name: p.force * (p.law.compression(max(p.force, 0.0)) - p.approach)
+            for p in state.pushes
+        }
+    )
+
+
+def deformation_law(state: State) -> tuple[float, str]:
+    """Largest misfit [m] of a compressed contact with its law, or of a rigid shaft, and the element."""
+    misfits = {
+        p.name: abs(p.approach - p.law.compression(p.force)) for p in state.pushes if p.force > 0.0
+    }
+    for name, wind in state.winds():
+        shaft = state.train.shafts[name]
+        if math.isinf(shaft.stiffness):
+            misfits[name] = abs(wind) * state.train.gears[shaft.first].base_radius
+    for name, gear in state.train.gears.items():
+        allowed = np.zeros(3)
+        if gear.support is not None:
+            allowed = (gear.frame @ state.moved(name)) @ gear.frame
+        misfits[f"gear {name}"] = float(np.linalg.norm(state.moved(name) - allowed))
+    held = state.answer.rotation[state.train.output] * state.train.gears[state.train.output].base_radius
+    misfits[f"gear {state.train.output} rotation"] = abs(held)
+    return _worst(misfits)
+
+
+def cone_membership(state: State, band: float) -> tuple[float, str]:
+    """Largest excess [N] of a force over what its contact or graph admits, and the element.
+
+    Parameters
+    ----------
+    state : State
+    band : float
+        Radius [m] within which a graph's corner admits its whole step.
+    """
+    excess = {p.name: -p.force for p in state.pushes}
+    for pull in state.pulls:
+        radius = float(np.linalg.norm(pull.offset))
+        size = float(np.linalg.norm(pull.reaction))
+        low, high = pull.law.interval(radius, band)
+        along = size
+        sideways = 0.0
+        if radius > band:
+            outward = pull.offset / radius
+            along = -float(pull.reaction @ outward)
+            sideways = float(np.linalg.norm(pull.reaction + along * outward))
+        excess[pull.name] = max(low - along, along - high, sideways)
+    return _worst(excess)
+
+
+def energy_gap(state: State) -> tuple[float, str]:
+    """Difference of the potential and the complementary energy [J], which an equilibrium makes zero."""
+    primal, dual = [], []
+    for gear, torque in state.situation.torque.items():
+        primal.append(-torque * state.answer.rotation[gear])
+    for push in state.pushes:
+        primal.append(push.law.energy(push.approach))
+        dual += [-push.law.complementary(max(push.force, 0.0)), push.force * push.at_rest]
+    for name, wind in state.winds():
+        shaft = state.train.shafts[name]
+        if not math.isinf(shaft.stiffness):
+            energy = 0.5 * shaft.stiffness * wind**2
+            primal.append(energy)
+            dual += [-energy, -shaft.stiffness * wind * shaft.clocking]
+    for name, gear in state.train.gears.items():
+        if gear.support is not None:
+            energy = 0.5 * float(gear.support @ (gear.frame @ state.moved(name)) ** 2)
+            primal.append(energy)
+            dual.append(-energy)
+    for pull in state.pulls:
+        size = float(np.linalg.norm(pull.reaction))
+        primal.append(pull.law.energy(float(np.linalg.norm(pull.offset))))
+        dual += [-pull.law.complementary(size), float(pull.reaction @ pull.centre)]
+    return abs(math.fsum(primal) - math.fsum(dual)), "the whole train"
+
+
+def _worst(values: dict[str, float]) -> tuple[float, str]:
+    """Largest value, not below zero, and where it stands; a value that is not a number is the worst."""
+    worst, where = 0.0, ""
+    for name, value in values.items():
+        if math.isnan(value):
+            return math.inf, name
+        if value > worst:
+            worst, where = value, name
+    return worst, where

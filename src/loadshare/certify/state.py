@@ -1,0 +1,209 @@
+"""The answer seen as mechanics: approaches, margins and forces, computed body by body.
+
+Nothing here knows of programmes or rows. Forces are vectors that act on centres, moments are force times base
+radius, and each contact is judged at the displaced position.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.gear import Vector
+from loadshare.train.law import RIGID, Law, PowerLaw
+from loadshare.train.radial import RadialLaw, round_ring_law
+from loadshare.train.ring import DrumRing, RoundRing
+from loadshare.train.train import Situation, Train
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Push:
+    """A unilateral contact at the answer.
+
+    Attributes
+    ----------
+    name : str
+    gear : str or None
+        The gear whose float it limits, for a ring's contact.
+    force : float
+        [N], as claimed.
+    approach : float
+        [m], positive when compressed.
+    at_rest : float
+        Approach [m] that remains when all coordinates of its tangent plane are zero (minus the gap).
+    law : Law
+    normal : ndarray, shape (3,)
+        Direction of the force on the pushed gear.
+    pushed, pushing : str or None
+        Gears that receive +F n and −F n; None is the housing.
+    """
+
+    name: str
+    gear: str | None
+    force: float
+    approach: float
+    at_rest: float
+    law: Law
+    normal: Vector
+    pushed: str | None
+    pushing: str | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pull:
+    """A radial element at the answer.
+
+    Attributes
+    ----------
+    name, gear : str
+    law : RadialLaw
+    offset : ndarray, shape (3,)
+        Displacement of the gear's centre from the element's [m].
+    centre : ndarray, shape (3,)
+        The element's centre [m].
+    reaction : ndarray, shape (3,)
+        Force on the gear [N], as claimed.
+    is_ring : bool
+    """
+
+    name: str
+    gear: str
+    law: RadialLaw
+    offset: Vector
+    centre: Vector
+    reaction: Vector
+    is_ring: bool
+
+
+@dataclass(frozen=True)
+class State:
+    """A train, a position and an answer to be judged."""
+
+    train: Train
+    answer: Equilibrium
+
+    @cached_property
+    def situation(self) -> Situation:
+        """What the position brings."""
+        return self.train.situation(self.answer.index)
+
+    def moved(self, gear: str) -> Vector:
+        """Displacement p (3,) [m]."""
+        return np.asarray(self.answer.displacement[gear])
+
+    @cached_property
+    def pushes(self) -> tuple[Push, ...]:
+        """All unilateral contacts: flanks, arcs, stops."""
+        return (*self._flanks(), *self._ring_contacts())
+
+    def _flanks(self) -> Iterator[Push]:
+        phi, offset = self.answer.rotation, self.situation.offset
+        for mesh in self.train.meshes.values():
+            errors = offset[mesh.driver] - offset[mesh.driven]
+            relative = self.moved(mesh.driver) - self.moved(mesh.driven) + errors
+            turned = (phi[mesh.driver], phi[mesh.driven])
+            position = self.situation.mesh_position[mesh.name]
+            for drive in mesh.flanks:
+                name = mesh.flank_name(drive)
+                yield Push(
+                    name=name,
+                    gear=None,
+                    force=self.answer.flank_force[name],
+                    approach=mesh.approach(drive, position, turned, relative),
+                    at_rest=mesh.approach(drive, position, (0.0, 0.0), errors),
+                    law=mesh.law(position),
+                    normal=mesh.direction(drive)[2],
+                    pushed=mesh.driven,
+                    pushing=mesh.driver,
+                )
+
+    def _ring_contacts(self) -> Iterator[Push]:
+        for ring in self.train.rings.values():
+            if not isinstance(ring, DrumRing):
+                continue
+            law = RIGID if math.isinf(ring.stiffness) else PowerLaw(1.0 / ring.stiffness)
+            for side, neighbour in enumerate(ring.neighbours):
+                arc = self.train.arc(ring, side, self.situation)
+                relative = self.moved(ring.gear) - self.moved(neighbour)
+                normal, margin = arc.normal(relative), arc.margin(relative)
+                name = ring.arc_name(neighbour)
+                yield Push(
+                    name=name,
+                    gear=ring.gear,
+                    force=self.answer.ring_force[name],
+                    approach=-margin,
+                    at_rest=float(normal @ relative) - margin,
+                    law=law,
+                    normal=normal,
+                    pushed=ring.gear,
+                    pushing=neighbour,
+                )
+            across = float(ring.across @ self.moved(ring.gear))
+            for name, sign, limit in zip(
+                ring.stop_names, (1.0, -1.0), (ring.up, ring.down), strict=True
+            ):
+                yield Push(
+                    name=name,
+                    gear=ring.gear,
+                    force=self.answer.ring_force[name],
+                    approach=sign * across - limit,
+                    at_rest=-limit,
+                    law=law,
+                    normal=-sign * ring.across,
+                    pushed=ring.gear,
+                    pushing=None,
+                )
+
+    @cached_property
+    def pulls(self) -> tuple[Pull, ...]:
+        """All radial elements: splines and round rings."""
+        found = []
+        for gear, spline in self.train.splines.items():
+            law = spline.law(self.shaft_torque(gear))
+            reaction = np.asarray(self.answer.radial_reaction[spline.name])
+            moved = self.moved(gear)
+            found.append(Pull(spline.name, gear, law, moved, np.zeros(3), reaction, False))
+        for gear, ring in self.train.rings.items():
+            if isinstance(ring, RoundRing):
+                law = round_ring_law(ring.radius, ring.stiffness)
+                reaction = np.asarray(self.answer.radial_reaction[ring.name])
+                offset = self.moved(gear) - ring.offset
+                found.append(Pull(ring.name, gear, law, offset, ring.offset, reaction, True))
+        return tuple(found)
+
+    def winds(self) -> Iterator[tuple[str, float]]:
+        """Every shaft with its wind-up φ_a − φ_b − clocking [rad]."""
+        phi = self.answer.rotation
+        for name, shaft in self.train.shafts.items():
+            yield name, phi[shaft.first] - phi[shaft.second] - shaft.clocking
+
+    def shaft_torque(self, gear: str) -> float:
+        """Torque [N·m] that a gear takes from its elastic shafts."""
+        total = 0.0
+        for name, wind in self.winds():
+            shaft = self.train.shafts[name]
+            if not math.isinf(shaft.stiffness):
+                total += shaft.stiffness * wind * ((gear == shaft.second) - (gear == shaft.first))
+        return total
+
+    @cached_property
+    def force_scale(self) -> float:
+        """Largest force of the case [N]: flanks, reactions, external pushes; 1 N when nothing acts."""
+        gears = self.train.gears
+        forces = [abs(p.force) for p in self.pushes]
+        forces += [float(np.linalg.norm(p.reaction)) for p in self.pulls]
+        forces += [abs(t) / gears[g].base_radius for g, t in self.situation.torque.items()]
+        return max(forces, default=0.0) or 1.0
+
+    @cached_property
+    def length_scale(self) -> float:
+        """Deflection of the case [m]: largest compression, displacement or error; 1 µm when there is none."""
+        lengths = [max(p.law.compression(abs(p.force)), 0.0) for p in self.pushes]
+        lengths += [float(np.linalg.norm(self.moved(g))) for g in self.train.gears]
+        lengths += [float(np.linalg.norm(c)) for c in self.situation.offset.values()]
+        return max(lengths, default=0.0) or 1e-6

@@ -1,0 +1,89 @@
+"""The exceptions of `loadshare`, and the problems a case can have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One thing that is wrong with a case, told so that its reader can put it right.
+
+    Parameters
+    ----------
+    file : str
+        The file in which the offending key stands.
+    key : str
+        Dotted path of the key, as in ``meshes."4-6".stiffness``; empty for the file as a whole.
+    given : str
+        What stands there now, as text; empty when nothing does.
+    message : str
+        What is wrong with it, without a full stop.
+    allowed : str
+        What may stand there instead.
+    hint : str
+        A whole sentence that helps, such as a did-you-mean.
+    """
+
+    file: str
+    key: str
+    given: str
+    message: str
+    allowed: str = ""
+    hint: str = ""
+
+    def __str__(self) -> str:
+        place = " = ".join(part for part in (self.key, self.given) if part)
+        parts = [f"{': '.join(part for part in (self.file, place, self.message) if part)}."]
+        if self.allowed:
+            parts.append(f"Allowed: {self.allowed}" + ("." if self.allowed[-1] != "…" else ""))
+        if self.hint:
+            parts.append(self.hint)
+        return " ".join(parts)
+
+
+class LoadshareError(Exception):
+    """Base of every error that `loadshare` raises on purpose."""
+
+
+class CaseError(LoadshareError):
+    """A case that cannot be used, with everything that is wrong with it.
+
+    Parameters
+    ----------
+    problems : iterable of Problem
+        All problems found.
+    """
+
+    def __init__(self, problems: Iterable[Problem]) -> None:
+        self.problems = tuple(problems)
+        super().__init__(self.problems)
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self.problems))
+
+
+class Refused(LoadshareError):  # noqa: N818 -- an answer is refused; nothing went wrong in the code
+    """An answer that is not handed out because it could not be certified.
+
+    Parameters
+    ----------
+    message : str
+        Why the answer is refused.
+    figures : mapping of str to float
+        The figures that failed, by name.
+    partial : object, optional
+        The result of what was certified all the same, such as the other positions of a case.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        figures: Mapping[str, float] | None = None,
+        partial: Any = None,
+    ) -> None:
+        self.figures = dict(figures or {})
+        self.partial = partial
+        super().__init__(message)

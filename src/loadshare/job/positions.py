@@ -1,0 +1,178 @@
+"""Solve a case: `loadshare.solve`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Protocol
+
+from loadshare._version import __version__
+from loadshare.case import Case, load_case
+from loadshare.certify.certificate import TOLERANCE
+from loadshare.errors import Refused
+from loadshare.job.ladder import Answer, climb
+from loadshare.results.result import Effort, Position, Result, Stamp
+from loadshare.results.share import largest, pair_shares, stage_shares
+from loadshare.solver import Options
+from loadshare.train import Train, build_train
+
+
+class Progress(Protocol):
+    """Called after every position."""
+
+    def __call__(self, done: int, total: int) -> None:
+        """Tell that `done` of `total` positions are finished."""
+
+
+def solve(
+    case: Case | str | Path,
+    *,
+    solver: str = "clarabel",
+    method: str = "newton",
+    reduce: bool = True,
+    tolerance: float = TOLERANCE,
+    positions: Iterable[int] | None = None,
+    progress: Progress | None = None,
+) -> Result:
+    """Find and certify the equilibrium of a case at every position.
+
+    Parameters
+    ----------
+    case : Case or path
+        A case, or the path of a case file.
+    solver : {"clarabel", "osqp", "cvxpy"}
+        Back-end of the first rung.
+    method : {"newton", "picard", "power"}
+        Form of the outer loop for nonlinear mesh laws.
+    reduce : bool
+        Leave out, and verify, what cannot matter; the answer does not depend on it.
+    tolerance : float
+        Largest scaled residual of a certified answer.
+    positions : iterable of int, optional
+        1-based positions to solve; all by default.
+    progress : Progress, optional
+        Called after every position.
+
+    Returns
+    -------
+    Result
+
+    Raises
+    ------
+    CaseError
+        If the case cannot be used; all problems are listed.
+    Refused
+        If a position has no certified answer. The positions that have one are in its ``partial``.
+    ValueError
+        If a solver, method or position does not exist.
+
+    Examples
+    --------
+    >>> import loadshare as ls
+    >>> result = ls.solve("cases/fgfbstts/base.toml")
+    >>> result.passed
+    True
+    """
+    case, train = _prepare(case)
+    options = Options(solver=solver, method=method, reduce=reduce)
+    wanted = _wanted(train, positions)
+    answers: list[Answer] = []
+    refusals: list[Refused] = []
+    for done, index in enumerate(wanted, start=1):
+        try:
+            answers.append(climb(train, index, options, tolerance))
+        except Refused as refusal:
+            refusals.append(refusal)
+        if progress is not None:
+            progress(done, len(wanted))
+    result = _result(case, train, answers, options, tolerance) if answers else None
+    if refusals:
+        figures = {name: value for r in refusals for name, value in r.figures.items()}
+        raise Refused("\n".join(str(r) for r in refusals), figures, partial=result)
+    assert result is not None
+    return result
+
+
+def explain(case: Case | str | Path, position: int = 1, *, method: str = "newton") -> Answer:
+    """Solve one position and return everything that is known of how it was solved.
+
+    Raises
+    ------
+    CaseError, Refused, ValueError
+        As :func:`solve`.
+    """
+    case, train = _prepare(case)
+    (index,) = _wanted(train, [position])
+    return climb(train, index, Options(method=method), TOLERANCE)
+
+
+def _prepare(case: Case | str | Path) -> tuple[Case, Train]:
+    if not isinstance(case, Case):
+        case = load_case(case)
+    return case, build_train(case)
+
+
+def _wanted(train: Train, positions: Iterable[int] | None) -> list[int]:
+    wanted = list(range(1, train.count + 1)) if positions is None else list(positions)
+    wrong = [k for k in wanted if not 1 <= k <= train.count]
+    if wrong or not wanted:
+        told = ", ".join(map(str, wrong)) or "none given"
+        raise ValueError(f"positions {told}: this case has positions 1 to {train.count}")
+    return wanted
+
+
+def _result(
+    case: Case, train: Train, answers: list[Answer], options: Options, tolerance: float
+) -> Result:
+    positions = tuple(_position(train, a) for a in answers)
+    stages = train.stages
+    return Result(
+        stamp=Stamp(
+            version=__version__,
+            case=case.name,
+            title=case.title,
+            case_hash=case.hash,
+            solver=options.solver,
+            method=options.method,
+            reduce=options.reduce,
+            tolerance=tolerance,
+            stop=options.stop,
+        ),
+        frames={
+            n: (tuple(g.frame[0].tolist()), tuple(g.frame[1].tolist()))
+            for n, g in train.gears.items()
+        },
+        stages={s.name: s.meshes for s in stages},
+        positions=positions,
+        omega=largest([p.share for p in positions], stages),
+        pair_omega=largest([p.pair_share for p in positions], stages),
+    )
+
+
+def _position(train: Train, answer: Answer) -> Position:
+    found = answer.equilibrium
+    drive, coast = {}, {}
+    for name, mesh in train.meshes.items():
+        forces = [found.flank_force[mesh.flank_name(d)] for d in mesh.flanks]
+        coast[name] = mesh.radii[0] * forces[1] if len(forces) > 1 else 0.0
+        drive[name] = mesh.radii[0] * forces[0] - coast[name]
+    moved = {n: g.frame @ found.displacement[n] for n, g in train.gears.items()}
+    return Position(
+        position=found.index,
+        torque=drive,
+        coast_torque=coast,
+        share=stage_shares(drive, train.stages),
+        pair_share=pair_shares(drive, train.stages),
+        rotation={g: float(v) for g, v in found.rotation.items()},
+        displacement={n: (float(d[0]), float(d[1])) for n, d in moved.items()},
+        floats=answer.certificate.floats,
+        certificate=answer.certificate,
+        undetermined=found.undetermined,
+        effort=Effort(
+            rung=answer.rung,
+            method=answer.record.method,
+            kind=answer.record.kind,
+            iterations=len(answer.record.iterations),
+            rounds=answer.record.rounds,
+        ),
+    )

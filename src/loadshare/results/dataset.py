@@ -1,0 +1,138 @@
+"""Results as labelled arrays (xarray) and tables (pandas)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+    from loadshare.results.result import Position, Result
+
+
+def dataset(result: Result) -> xr.Dataset:
+    """Build the labelled arrays of a result.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensions position, mesh, gear, component, float and figure; every variable carries its unit.
+    """
+    import xarray as xr
+
+    positions = result.positions
+    first = positions[0]
+    meshes, gears = list(first.torque), list(first.rotation)
+    floats, residuals = list(first.floats), list(first.certificate.residuals)
+
+    def over(names: list[str], read: Callable[[Position], Mapping[str, object]]) -> np.ndarray:
+        """Array position × name; what a mapping lacks or leaves open becomes NaN."""
+        rows = [[read(p).get(n) for n in names] for p in positions]
+        return np.array([[np.nan if v is None else v for v in row] for row in rows], dtype=float)
+
+    def variable(
+        dims: tuple[str, ...], values: np.ndarray, units: str, long_name: str
+    ) -> tuple[tuple[str, ...], np.ndarray, dict[str, str]]:
+        return dims, values, {"units": units, "long_name": long_name}
+
+    on_mesh, on_gear, on_float = ("position", "mesh"), ("position", "gear"), ("position", "float")
+    displacement = np.array([[p.displacement[g] for g in gears] for p in positions])
+    reaction = np.array([[p.floats[g].reaction for g in floats] for p in positions], dtype=float)
+    data = {
+        "torque": variable(
+            on_mesh, over(meshes, lambda p: p.torque), "N m", "torque on the driver"
+        ),
+        "coast_torque": variable(
+            on_mesh, over(meshes, lambda p: p.coast_torque), "N m", "torque on the coast flank"
+        ),
+        "share": variable(
+            on_mesh, over(meshes, lambda p: p.share), "1", "load-sharing coefficient, stage mean"
+        ),
+        "pair_share": variable(
+            on_mesh,
+            over(meshes, lambda p: p.pair_share),
+            "1",
+            "load-sharing coefficient, group mean",
+        ),
+        "rotation": variable(
+            on_gear, over(gears, lambda p: p.rotation), "rad", "elastic rotation"
+        ),
+        "displacement": variable(
+            ("position", "gear", "component"),
+            displacement.reshape(len(positions), len(gears), 2),
+            "m",
+            "displacement of the centre in the gear's transverse frame",
+        ),
+        "margin": variable(
+            on_float,
+            over(floats, lambda p: {g: f.margin for g, f in p.floats.items()}),
+            "m",
+            "distance to the nearest boundary of the float's region",
+        ),
+        "on_boundary": variable(
+            on_float,
+            over(floats, lambda p: {g: f.state == "on boundary" for g, f in p.floats.items()}),
+            "1",
+            "1 where the float rests on a boundary",
+        ),
+        "reaction": variable(
+            ("position", "float", "component"),
+            reaction.reshape(len(positions), len(floats), 2),
+            "N",
+            "force of the ring on the float",
+        ),
+        "residual": variable(
+            ("position", "figure"),
+            over(
+                residuals,
+                lambda p: {n: r.scaled for n, r in p.certificate.residuals.items()},
+            ),
+            "1",
+            "scaled residual of the certificate",
+        ),
+    }
+    stamp = result.stamp
+    return xr.Dataset(
+        data,
+        coords={
+            "position": [p.position for p in positions],
+            "mesh": meshes,
+            "gear": gears,
+            "component": ["x", "y"],
+            "float": floats,
+            "figure": residuals,
+        },
+        attrs={
+            "title": stamp.title or stamp.case,
+            "case": stamp.case,
+            "case_hash": stamp.case_hash,
+            "loadshare_version": stamp.version,
+            "solver": stamp.solver,
+            "method": stamp.method,
+            "tolerance": stamp.tolerance,
+        },
+    )
+
+
+def frame(result: Result) -> pd.DataFrame:
+    """One row per position and mesh: torque [N·m], coefficients, and the position's worst residual."""
+    import pandas as pd
+
+    rows = [
+        {
+            "position": p.position,
+            "mesh": mesh,
+            "torque": torque,
+            "coast_torque": p.coast_torque[mesh],
+            "share": p.share.get(mesh),
+            "pair_share": p.pair_share.get(mesh),
+            "worst_residual": p.certificate.worst,
+        }
+        for p in result.positions
+        for mesh, torque in p.torque.items()
+    ]
+    return pd.DataFrame(rows).astype({"share": float, "pair_share": float})

@@ -1,0 +1,198 @@
+"""A result: what was found at every position, and what it was found from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from loadshare.certify import Certificate, FloatState
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+Pair = tuple[float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Stamp:
+    """Where a result comes from.
+
+    Attributes
+    ----------
+    version : str
+        Of loadshare.
+    case : str
+        Name of the case.
+    title : str
+    case_hash : str
+        SHA-256 of the case's physical content.
+    solver, method : str
+    reduce : bool
+    tolerance : float
+        Of the certificate.
+    stop : float
+        Of the outer loop.
+    """
+
+    version: str
+    case: str
+    title: str
+    case_hash: str
+    solver: str
+    method: str
+    reduce: bool
+    tolerance: float
+    stop: float
+
+
+@dataclass(frozen=True, slots=True)
+class Effort:
+    """How a position was solved.
+
+    Attributes
+    ----------
+    rung : str
+        Which rung of the ladder answered.
+    method : str
+    kind : str
+        Class of the programme: "linear", "QP", "SOCP" or "power cone".
+    iterations, rounds : int
+        Passes of the outer loop; plans tried.
+    """
+
+    rung: str
+    method: str
+    kind: str
+    iterations: int
+    rounds: int
+
+
+@dataclass(frozen=True, slots=True)
+class Position:
+    """What was found at one position.
+
+    Attributes
+    ----------
+    position : int
+        1-based.
+    torque : mapping of mesh to float
+        Torque on the driver, drive flank less coast flank [N·m].
+    coast_torque : mapping of mesh to float
+        Part on the coast flank [N·m], ≥ 0.
+    share, pair_share : mapping of mesh to float or None
+        Ω over the mean of the stage, and of the branch's group.
+    rotation : mapping of gear to float
+        φ [rad], positive in the running sense.
+    displacement : mapping of gear to (float, float)
+        [m], in the gear's transverse frame; the global x, y for a gear whose axis is z.
+    floats : mapping of gear to FloatState
+    certificate : Certificate
+    undetermined : tuple of str
+        Coordinates that the equilibrium does not determine; the least-norm displacement is given.
+    effort : Effort
+    """
+
+    position: int
+    torque: Mapping[str, float]
+    coast_torque: Mapping[str, float]
+    share: Mapping[str, float | None]
+    pair_share: Mapping[str, float | None]
+    rotation: Mapping[str, float]
+    displacement: Mapping[str, Pair]
+    floats: Mapping[str, FloatState]
+    certificate: Certificate
+    undetermined: tuple[str, ...]
+    effort: Effort
+
+
+@dataclass(frozen=True)
+class Result:
+    """Certified equilibria of a case.
+
+    Attributes
+    ----------
+    stamp : Stamp
+    frames : mapping of gear to ((float, float, float), (float, float, float))
+        Directions of the two displacement components.
+    stages : mapping of stage to tuple of mesh names
+    positions : tuple of Position
+    omega, pair_omega : mapping of stage to float or None
+        Largest Ω of each stage and of the system, by stage mean and by group mean.
+    """
+
+    stamp: Stamp
+    frames: Mapping[str, tuple[tuple[float, float, float], tuple[float, float, float]]]
+    stages: Mapping[str, tuple[str, ...]]
+    positions: tuple[Position, ...]
+    omega: Mapping[str, float | None]
+    pair_omega: Mapping[str, float | None]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every position is certified (an uncertified one is refused, so always true from `solve`)."""
+        return all(p.certificate.passed for p in self.positions)
+
+    @property
+    def certificate(self) -> Certificate:
+        """The worst certificate over the positions."""
+        return max((p.certificate for p in self.positions), key=lambda c: c.worst)
+
+    @property
+    def floats(self) -> tuple[Mapping[str, FloatState], ...]:
+        """Rest of every float, one mapping per position."""
+        return tuple(p.floats for p in self.positions)
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """All figures as labelled arrays with units in their attributes."""
+        from loadshare.results.dataset import dataset
+
+        return dataset(self)
+
+    @property
+    def torque(self) -> xr.DataArray:
+        """Torque on the driver [N·m], position × mesh."""
+        return self.dataset["torque"]
+
+    @property
+    def share(self) -> xr.DataArray:
+        """Ω over the stage's mean, position × mesh."""
+        return self.dataset["share"]
+
+    @property
+    def pair_share(self) -> xr.DataArray:
+        """Ω over the group's mean, position × mesh."""
+        return self.dataset["pair_share"]
+
+    @property
+    def displacement(self) -> xr.DataArray:
+        """Displacement of the centres [m], position × gear × component."""
+        return self.dataset["displacement"]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data, as the JSON file holds it."""
+        from loadshare.results.document import to_document
+
+        return to_document(self)
+
+    def to_json(self, path: str | Path | None = None) -> str:
+        """JSON text of the result; written to `path` as well, if given."""
+        from loadshare.results.files import write_json
+
+        return write_json(self, path)
+
+    def to_netcdf(self, path: str | Path) -> None:
+        """Write the labelled arrays, and the whole result with them, to a netCDF file."""
+        from loadshare.results.files import write_netcdf
+
+        write_netcdf(self, path)
+
+    def to_frame(self) -> pd.DataFrame:
+        """Torques and coefficients as a table, one row per position and mesh."""
+        from loadshare.results.dataset import frame
+
+        return frame(self)

@@ -1,0 +1,165 @@
+"""Which parts of a scene are in play, and the programme that follows.
+
+A plan starts from what a loaded train most likely does: drive flanks carry load, everything else is idle. What turns
+out otherwise is put in play and the scene is solved again (see *Reduction is verified, not trusted* in the design
+notes). Source: formulation, section 11.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+
+from loadshare.scene.programme import Array, Cone, Programme
+from loadshare.scene.scene import Row, Scene
+from loadshare.train.law import PowerLaw
+from loadshare.train.radial import RadialLaw
+
+
+class Role(Enum):
+    """What a plan does with a row or a radial element."""
+
+    OPEN = "removed: cannot touch here"
+    CLOSED = "bilateral: carries load here"
+    IN_PLAY = "in play"
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """Roles of all rows (arcs included) and radial elements, by name.
+
+    A radial element that is not in play stays on its first piece: a linear spring (CLOSED), or nothing (OPEN).
+    """
+
+    rows: Mapping[str, Role]
+    radials: Mapping[str, Role]
+
+    @classmethod
+    def full(cls, scene: Scene) -> Plan:
+        """Put everything in play."""
+        names = [r.name for r in scene.rows] + [a.name for a in scene.arcs]
+        return cls(
+            dict.fromkeys(names, Role.IN_PLAY),
+            {r.name: Role.IN_PLAY for r in scene.radials},
+        )
+
+    @classmethod
+    def lean(cls, scene: Scene) -> Plan:
+        """Take drive flanks as closed and everything else as idle."""
+        rows = {r.name: Role.CLOSED if r.kind == "drive flank" else Role.OPEN for r in scene.rows}
+        rows |= {a.name: Role.OPEN for a in scene.arcs}
+        return cls(rows, {r.name: Role.CLOSED for r in scene.radials})
+
+    def with_in_play(self, names: set[str]) -> Plan:
+        """Put the named rows and radial elements in play as well."""
+        return replace(
+            self,
+            rows={n: Role.IN_PLAY if n in names else r for n, r in self.rows.items()},
+            radials={n: Role.IN_PLAY if n in names else r for n, r in self.radials.items()},
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Linearisation:
+    """Where the outer loop stands.
+
+    Attributes
+    ----------
+    x : ndarray, shape (n,)
+        Coordinates [m] at which arcs are replaced by faces.
+    compliance : mapping of row name to (float, float)
+        Linear compliance [m/N] and offset [m] that stand for a nonlinear law.
+    radial_laws : mapping of radial name to RadialLaw
+        Laws at the current torques.
+    """
+
+    x: Array
+    compliance: Mapping[str, tuple[float, float]]
+    radial_laws: Mapping[str, RadialLaw]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Units:
+    """How a programme's numbers turn back into SI.
+
+    Attributes
+    ----------
+    force, length : float
+        [N], [m].
+    row_norms : ndarray, shape (m,)
+        Norms of the SI rows: a row's force is F̂ · force / norm.
+    """
+
+    force: float
+    length: float
+    row_norms: Array
+
+
+def programme(
+    scene: Scene, plan: Plan, at: Linearisation, exact_hertz: bool = False
+) -> tuple[Programme, Units]:
+    """Write the programme of a plan at a linearisation.
+
+    Parameters
+    ----------
+    scene : Scene
+    plan : Plan
+    at : Linearisation
+    exact_hertz : bool
+        Keep b + c laws as they are (the power-cone form) instead of linearising them.
+
+    Returns
+    -------
+    Programme
+        Dimensionless, rows of unit norm.
+    Units
+    """
+    force, length = scene.force_unit(), scene.length_unit()
+    stiffness = scene.stiffness.copy()
+    load = scene.load.copy()
+    cones = []
+    for radial in scene.radials:
+        law = at.radial_laws[radial.name]
+        first = law.pieces[0]
+        unbounded = len(law.pieces) == 1 and first.force == 0.0 and np.isinf(first.length)
+        if plan.radials[radial.name] is Role.IN_PLAY and not unbounded:
+            scaled = law.scaled(force, length)
+            cones.append(Cone(radial.name, radial.matrix, radial.centre / length, scaled))
+        elif first.force == 0.0:
+            stiffness += first.stiffness * radial.matrix.T @ radial.matrix
+            load += first.stiffness * radial.matrix.T @ radial.centre
+    rows = [r for r in scene.rows_at(at.x) if plan.rows[r.name] is not Role.OPEN]
+    norms = np.array([float(np.linalg.norm(r.vector)) for r in rows])
+    vectors = np.array([r.vector for r in rows]).reshape(len(rows), scene.size)
+    linear, hertz, gaps = np.zeros(len(rows)), np.zeros(len(rows)), np.zeros(len(rows))
+    for e, (row, norm) in enumerate(zip(rows, norms, strict=True)):
+        b, c, offset = _compliance(row, at, exact_hertz)
+        scaled_law = PowerLaw(b, c).scaled(force / norm, length * norm)
+        linear[e], hertz[e] = scaled_law.b, scaled_law.c
+        gaps[e] = (row.gap + offset) / (length * norm)
+    return (
+        Programme(
+            stiffness=stiffness * length / force,
+            load=load / force,
+            names=tuple(r.name for r in rows),
+            rows=vectors / norms[:, None],
+            gaps=gaps,
+            linear=linear,
+            hertz=hertz,
+            assumed_closed=np.array([plan.rows[r.name] is Role.CLOSED for r in rows], dtype=bool),
+            cones=tuple(cones),
+        ),
+        Units(force, length, norms),
+    )
+
+
+def _compliance(row: Row, at: Linearisation, exact_hertz: bool) -> tuple[float, float, float]:
+    """Return b [m/N], c [m/N^(2/3)] and the offset [m] of a row."""
+    law = row.law
+    if isinstance(law, PowerLaw) and (exact_hertz or law.is_linear):
+        return law.b, law.c, 0.0
+    b, offset = at.compliance[row.name]
+    return b, 0.0, offset

@@ -1,0 +1,194 @@
+"""Everything that happens at one position, in SI units, as named coordinates, rows and radial elements."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.train.law import Law
+from loadshare.train.radial import RadialLaw
+from loadshare.train.ring import Arc
+from loadshare.train.train import Situation, Spline, Train
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Rotation:
+    """How the rotation of a gear follows from the coordinates: φ = rate · x[index] + constant.
+
+    Attributes
+    ----------
+    index : int or None
+        Coordinate (an arc length on the base circle [m]), or None for a gear that cannot turn.
+    rate : float
+        [rad/m].
+    constant : float
+        [rad], from the clocking of rigid shafts.
+    """
+
+    index: int | None
+    rate: float
+    constant: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Row:
+    """A unilateral contact: approach a·x − g, force F ≥ 0.
+
+    Attributes
+    ----------
+    name : str
+    kind : str
+        "drive flank", "coast flank", "stop" or "arc".
+    vector : ndarray, shape (n,)
+        a, dimensionless.
+    gap : float
+        g [m].
+    law : Law
+    """
+
+    name: str
+    kind: str
+    vector: Array
+    gap: float
+    law: Law
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ArcRow:
+    """A ring's exclusion arc, which becomes a row at each iterate.
+
+    Attributes
+    ----------
+    name : str
+    arc : Arc
+    relative : ndarray, shape (3, n)
+        Relative displacement of the two centres from the coordinates.
+    law : Law
+    """
+
+    name: str
+    arc: Arc
+    relative: Array
+    law: Law
+
+    def row(self, x: Array) -> Row:
+        """Tangent face at the coordinates x [m]: −n·Δ ≤ g."""
+        normal, bound = self.arc.face(self.relative @ x)
+        return Row(self.name, "arc", -(normal @ self.relative), bound, self.law)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Radial:
+    """A radial element on p = P x − m.
+
+    Attributes
+    ----------
+    name, gear : str
+    matrix : ndarray, shape (2, n)
+        P.
+    centre : ndarray, shape (2,)
+        m [m].
+    source : RadialLaw or Spline
+        A fixed law, or a spline whose friction may follow the torque.
+    """
+
+    name: str
+    gear: str
+    matrix: Array
+    centre: Array
+    source: RadialLaw | Spline
+
+    @property
+    def follows_torque(self) -> bool:
+        """Whether the law must be settled in the outer loop."""
+        return isinstance(self.source, Spline) and self.source.friction_force is None
+
+    def law(self, torque: float) -> RadialLaw:
+        """Law when the gear takes `torque` [N·m] from its shafts."""
+        return self.source.law(torque) if isinstance(self.source, Spline) else self.source
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scene:
+    """The whole contact problem of a position: minimise ½xᵀHx − fᵀx + Σ U(a·x − g) + Σ W(|Px − m|).
+
+    Attributes
+    ----------
+    train, situation
+        Where it comes from.
+    coordinates : tuple of str
+        Names; every coordinate is a length [m].
+    stiffness : ndarray, shape (n, n)
+        H [N/m], from shafts and supports.
+    load : ndarray, shape (n,)
+        f [N].
+    rows : tuple of Row
+    arcs : tuple of ArcRow
+    radials : tuple of Radial
+    rotation : mapping of gear to Rotation
+    displacement : mapping of gear to slice
+        Where the two displacement components of a moving gear stand.
+    removed : tuple of (str, str)
+        What never became a coordinate or row, and why.
+    """
+
+    train: Train
+    situation: Situation
+    coordinates: tuple[str, ...]
+    stiffness: Array
+    load: Array
+    rows: tuple[Row, ...]
+    arcs: tuple[ArcRow, ...]
+    radials: tuple[Radial, ...]
+    rotation: dict[str, Rotation]
+    displacement: dict[str, slice]
+    removed: tuple[tuple[str, str], ...]
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return len(self.coordinates)
+
+    def rows_at(self, x: Array) -> tuple[Row, ...]:
+        """All rows, arcs replaced by their faces at x."""
+        return self.rows + tuple(a.row(x) for a in self.arcs)
+
+    def force_unit(self) -> float:
+        """Force that the scene is measured by [N]: the largest external push, or 1 N at rest."""
+        pushes = [
+            abs(t) / self.train.gears[g].base_radius for g, t in self.situation.torque.items()
+        ]
+        return max(pushes, default=0.0) or 1.0
+
+    def length_unit(self) -> float:
+        """Length that the scene is measured by [m]: the median compression of a flank under the force unit."""
+        force = self.force_unit()
+        compressions = [r.law.compression(force) for r in self.rows if r.kind == "drive flank"]
+        return float(np.median(compressions)) if compressions else 1e-6
+
+    def shaft_torque(self, gear: str, x: Array) -> float:
+        """Torque [N·m] that `gear` takes from its elastic shafts at the coordinates x."""
+        total = 0.0
+        for shaft in self.train.shafts.values():
+            if gear not in (shaft.first, shaft.second) or math.isinf(shaft.stiffness):
+                continue
+            wind = self.angle(shaft.first, x) - self.angle(shaft.second, x) - shaft.clocking
+            total += shaft.stiffness * wind * (1.0 if gear == shaft.second else -1.0)
+        return total
+
+    def angle(self, gear: str, x: Array) -> float:
+        """Rotation φ [rad] of a gear at the coordinates x."""
+        r = self.rotation[gear]
+        return r.constant + (r.rate * float(x[r.index]) if r.index is not None else 0.0)
+
+    def moved(self, gear: str, x: Array) -> Array:
+        """Displacement p (3,) [m] of a gear at the coordinates x."""
+        where = self.displacement.get(gear)
+        if where is None:
+            return np.zeros(3)
+        return np.asarray(x[where] @ self.train.gears[gear].frame)

@@ -1,0 +1,58 @@
+"""The one small interface behind which solvers stand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from importlib import import_module
+from typing import Protocol
+
+from loadshare.scene.programme import Point, Programme
+
+
+class BackendFailure(RuntimeError):
+    """A solver gave no usable answer; the message says what it reported."""
+
+
+class Backend(Protocol):
+    """A solver of programmes.
+
+    What it returns is a proposal: the active set is read from it and solved exactly, and the certificate judges
+    the outcome. A back-end's own status is never believed.
+    """
+
+    name: str
+    kinds: frozenset[str]
+
+    def solve(self, programme: Programme) -> Point:
+        """Solve a programme whose kind is among `kinds`.
+
+        Raises
+        ------
+        BackendFailure
+            If the solver gives no point at all.
+        """
+
+
+KINDS_QP = frozenset({"linear", "QP"})
+KINDS_CONIC = KINDS_QP | {"SOCP", "power cone"}
+
+_ROOMS: dict[str, str] = {
+    "clarabel": "loadshare.solver.clarabel_",
+    "osqp": "loadshare.solver.osqp_",
+    "cvxpy": "loadshare.solver.cvxpy_",
+}
+SOLVERS = tuple(_ROOMS)
+
+
+def backend(name: str) -> Backend:
+    """Return the back-end called `name`, importing its solver only now.
+
+    Raises
+    ------
+    ValueError
+        If there is no such back-end.
+    """
+    if name not in _ROOMS:
+        raise ValueError(f"unknown solver {name!r}; allowed: {', '.join(SOLVERS)}")
+    make: Callable[[], Backend] = import_module(_ROOMS[name]).make
+    return make()

@@ -1,0 +1,50 @@
+"""Clarabel, called directly: the default back-end, and the only direct one for every class of programme."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loadshare.scene.programme import Point, Programme
+from loadshare.solver.backend import KINDS_CONIC, Backend, BackendFailure
+from loadshare.solver.conic import conic_form
+
+
+class Clarabel:
+    """Interior-point method for QP, SOCP and power cones."""
+
+    name = "clarabel"
+    kinds = KINDS_CONIC
+
+    def solve(self, programme: Programme) -> Point:
+        """See :meth:`loadshare.solver.backend.Backend.solve`."""
+        import clarabel
+
+        form = conic_form(programme)
+        kinds = {
+            "zero": clarabel.ZeroConeT,
+            "nonnegative": clarabel.NonnegativeConeT,
+            "second-order": clarabel.SecondOrderConeT,
+        }
+        cones = [
+            clarabel.PowerConeT(size) if kind == "power" else kinds[kind](int(size))
+            for kind, size in form.cones
+        ]
+        settings = clarabel.DefaultSettings()
+        settings.verbose = False
+        settings.presolve_enable = False
+        settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-11
+        settings.max_iter = 200
+        answer = clarabel.DefaultSolver(
+            form.quadratic, form.linear, form.matrix, form.bounds, cones, settings
+        ).solve()
+        z, dual = np.array(answer.x), np.array(answer.z)
+        if not (np.isfinite(z).all() and np.isfinite(dual).all()):
+            raise BackendFailure(f"Clarabel gave no point (status {answer.status})")
+        if "Infeasible" in str(answer.status):
+            raise BackendFailure(f"Clarabel reports {answer.status}")
+        return form.point(z, dual)
+
+
+def make() -> Backend:
+    """Return the back-end."""
+    return Clarabel()

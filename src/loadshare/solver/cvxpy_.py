@@ -1,0 +1,80 @@
+"""The readable reference formulation in CVXPY: the programme as the theory page writes it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loadshare.scene.programme import Cone, Point, Programme
+from loadshare.solver.backend import KINDS_CONIC, Backend, BackendFailure
+
+
+class Cvxpy:
+    """CVXPY with Clarabel underneath; slow, short, and written from the formulas rather than from matrices."""
+
+    name = "cvxpy"
+    kinds = KINDS_CONIC
+
+    def solve(self, programme: Programme) -> Point:
+        """See :meth:`loadshare.solver.backend.Backend.solve`."""
+        import cvxpy as cp
+
+        x = cp.Variable(len(programme.load))
+        energy = 0.5 * cp.sum_squares(_square_root(programme.stiffness).T @ x) - programme.load @ x
+        contacts, constraints = [], []
+        for e in range(len(programme.gaps)):
+            yielded = 0.0
+            b, c = float(programme.linear[e]), float(programme.hertz[e])
+            if b > 0.0:
+                bending = cp.Variable()  # compression over √b, so that its energy is a plain square
+                energy += 0.5 * cp.square(bending)
+                yielded += np.sqrt(b) * bending
+            if c > 0.0:
+                hertz = cp.Variable(nonneg=True)
+                energy += 0.4 * c**-1.5 * cp.power(hertz, 2.5)
+                yielded += hertz
+            approach = programme.rows[e] @ x - float(programme.gaps[e])
+            closed = bool(programme.assumed_closed[e])
+            contacts.append(approach == yielded if closed else approach <= yielded)
+        radials = []
+        for cone in programme.cones:
+            law_energy, offset = self._radial(cone, x, constraints)
+            energy += law_energy
+            radials.append(offset)
+        problem = cp.Problem(cp.Minimize(energy), [*contacts, *radials, *constraints])
+        try:
+            problem.solve(solver=cp.CLARABEL, tol_gap_abs=1e-11, tol_gap_rel=1e-11, tol_feas=1e-11)
+        except cp.error.SolverError as error:
+            raise BackendFailure(f"CVXPY gave no point ({error})") from error
+        if x.value is None:
+            raise BackendFailure(f"CVXPY gave no point (status {problem.status})")
+        forces = np.array([float(c.dual_value) for c in contacts])
+        cone_forces = np.array([r.dual_value for r in radials]).reshape(-1, 2)
+        return Point(np.asarray(x.value), forces, cone_forces)
+
+    @staticmethod
+    def _radial(cone: Cone, x: object, constraints: list[object]) -> tuple[object, object]:
+        """Energy of a radial graph as an inf-convolution of its pieces, and its offset equation."""
+        import cvxpy as cp
+
+        energy, total = 0.0, 0.0
+        for piece in cone.law.pieces:
+            s = cp.Variable(2)
+            if piece.force > 0.0:
+                energy += piece.force * cp.norm(s, 2)
+            if piece.stiffness > 0.0:
+                energy += 0.5 * piece.stiffness * cp.sum_squares(s)
+            if np.isfinite(piece.length):
+                constraints.append(cp.norm(s, 2) <= piece.length)
+            total = total + s
+        return energy, cone.matrix @ x - cone.centre == total
+
+
+def _square_root(matrix: np.ndarray) -> np.ndarray:
+    """L with L Lᵀ = H for a semidefinite H."""
+    values, vectors = np.linalg.eigh(matrix)
+    return np.asarray(vectors * np.sqrt(np.maximum(values, 0.0)))
+
+
+def make() -> Backend:
+    """Return the back-end."""
+    return Cvxpy()

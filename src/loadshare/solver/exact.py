@@ -1,0 +1,310 @@
+"""The exact solve on an identified active set, and the exchange of what was wrongly identified.
+
+An interior-point answer says roughly where every contact and every radial graph stands. Here that set is fixed,
+the remaining (smooth) equations are solved to round-off by Newton's method, the signs are checked, and rows or
+places whose sign is wrong are exchanged. Kinks therefore never depend on a small interior-point number.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from loadshare.scene.programme import Array, Cone, Point, Programme
+from loadshare.solver.kkt import solve_symmetric
+
+SIGN = 1e-11
+"""Dimensionless violation of a sign that counts as round-off, relative to the largest quantity of its sort."""
+NEWTON_STEPS = 40
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a radial element stands on its graph: on a piece, or on the vertical step in front of one."""
+
+    piece: int
+    corner: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class ActiveSet:
+    """Closed rows and the places of the radial elements."""
+
+    closed: tuple[bool, ...]
+    places: tuple[Place, ...]
+
+
+def first_guess(programme: Programme) -> ActiveSet:
+    """Assumed rows closed, everything else open and on its first piece."""
+    start = (Place(0, corner=cone.law.step(0)[1] > 0.0) for cone in programme.cones)
+    return ActiveSet(tuple(bool(c) for c in programme.assumed_closed), tuple(start))
+
+
+def identify(programme: Programme, point: Point) -> ActiveSet:
+    """Read the active set from an approximate answer.
+
+    A row is closed if its force, turned into a length by the row's compliance, exceeds its gap. A radial element
+    stands where its graph is nearest.
+    """
+    forces = np.maximum(point.forces, 0.0)
+    compressed = programme.linear * forces + programme.hertz * np.cbrt(forces) ** 2
+    slack = programme.gaps + compressed - programme.rows @ point.x
+    closed = programme.assumed_closed | (forces * (programme.linear + 1.0) > slack)
+    places = (
+        _nearest(cone, float(np.linalg.norm(cone.offset(point.x))), float(np.linalg.norm(force)))
+        for cone, force in zip(programme.cones, point.cone_forces, strict=True)
+    )
+    return ActiveSet(tuple(bool(c) for c in closed), tuple(places))
+
+
+def _nearest(cone: Cone, radius: float, force: float) -> Place:
+    """Place on the graph that is nearest to (radius, force)."""
+    law = cone.law
+    candidates = []
+    for k, piece in enumerate(law.pieces):
+        begin = law.start(k)
+        inner = min(max(radius - begin, 0.0), piece.length)
+        size = piece.force + (piece.stiffness * inner if piece.stiffness else 0.0)
+        distance = np.hypot(radius - begin - inner, force - size)
+        candidates.append((distance, Place(k)))
+    for k in range(len(law.pieces) + 1):
+        low, high = law.step(k)
+        if high > low:
+            distance = np.hypot(radius - law.start(k), force - min(max(force, low), high))
+            candidates.append((distance, Place(k, corner=True)))
+    return min(candidates, key=lambda c: float(c[0]))[1]
+
+
+def solve_exact(
+    programme: Programme, guess: ActiveSet, start: Point | None = None, rounds: int = 0
+) -> tuple[Point, ActiveSet] | None:
+    """Solve on an active set and exchange until every sign is right.
+
+    Parameters
+    ----------
+    programme : Programme
+    guess : ActiveSet
+    start : Point, optional
+        Where Newton's method begins; it matters only for curved places (radial graphs, Hertz laws).
+    rounds : int
+        Exchanges allowed; 0 allows as many as the programme's size justifies.
+
+    Returns
+    -------
+    (Point, ActiveSet) or None
+        None if the exchange finds no consistent set.
+    """
+    size = programme.stiffness.shape[0]
+    if start is None:
+        start = Point(
+            np.zeros(size), np.zeros(len(programme.gaps)), np.zeros((len(programme.cones), 2))
+        )
+    limit = rounds or 20 + 6 * (len(programme.gaps) + len(programme.cones))
+    active, seen = guess, {guess}
+    for _ in range(limit):
+        point = _solve_fixed(programme, active, start)
+        if point is None:
+            thinner = _without_weakest(programme, active, start)
+            if thinner is None or thinner in seen:
+                return None
+            seen.add(thinner)
+            active = thinner
+            continue
+        better = _exchange(programme, active, point, one_only=False)
+        if better == active:
+            return point, active
+        if better in seen:
+            better = _exchange(programme, active, point, one_only=True)
+        seen.add(better)
+        active, start = better, point
+    return None
+
+
+def _without_weakest(programme: Programme, active: ActiveSet, start: Point) -> ActiveSet | None:
+    """Open the closed row with the smallest force: too many rigid rows at once contradict each other."""
+    closed = [e for e, c in enumerate(active.closed) if c and not programme.assumed_closed[e]]
+    if not closed:
+        return None
+    weakest = min(closed, key=lambda e: float(start.forces[e]))
+    rows = list(active.closed)
+    rows[weakest] = False
+    return replace(active, closed=tuple(rows))
+
+
+def _solve_fixed(programme: Programme, active: ActiveSet, start: Point) -> Point | None:
+    """Newton's method on the smooth equations of an active set."""
+    x, forces, cone_forces = start.x, start.forces, start.cone_forces
+    curved = bool(programme.cones) or bool(programme.hertz.any())
+    previous = np.inf
+    for _ in range(NEWTON_STEPS if curved else 1):
+        solved = _newton_system(programme, active, Point(x, forces, cone_forces))
+        if solved is None:
+            return None
+        point = solved
+        step = float(np.abs(point.x - x).max(initial=0.0))
+        step = max(step, float(np.abs(point.forces - forces).max(initial=0.0)))
+        x, forces, cone_forces = point.x, point.forces, point.cone_forces
+        size = 1.0 + float(np.abs(x).max(initial=0.0))
+        if not curved or step <= 1e-15 * size or (step <= 1e-11 * size and step >= 0.5 * previous):
+            return point
+        previous = step
+    return None if previous > 1e-10 else point
+
+
+def _newton_system(programme: Programme, active: ActiveSet, at: Point) -> Point | None:
+    """One Newton step, in the absolute form that a linear problem solves at once."""
+    size = programme.stiffness.shape[0]
+    closed = np.array(active.closed, dtype=bool)
+    stiffness, load = programme.stiffness.copy(), programme.load.copy()
+    compliance, gaps = _row_tangents(programme, at.forces)
+    columns = [programme.rows[closed].T]
+    bounds = [gaps[closed]]
+    multipliers: list[tuple[int, Array]] = []  # cone number and the directions of its multiplier
+    for j, (cone, place) in enumerate(zip(programme.cones, active.places, strict=True)):
+        tangent, residual_force, directions, bound = _cone_tangent(
+            cone, place, at.x, at.cone_forces[j]
+        )
+        stiffness += cone.matrix.T @ tangent @ cone.matrix
+        load += cone.matrix.T @ (tangent @ (cone.matrix @ at.x) - residual_force)
+        if len(directions):
+            columns.append((directions @ cone.matrix).T)
+            bounds.append(bound + directions @ cone.centre)
+            multipliers.append((j, directions))
+    border = np.hstack(columns)
+    count = border.shape[1]
+    matrix = np.zeros((size + count, size + count))
+    matrix[:size, :size] = stiffness
+    matrix[:size, size:] = border
+    matrix[size:, :size] = border.T
+    flanks = int(closed.sum())
+    matrix[range(size, size + flanks), range(size, size + flanks)] = -compliance[closed]
+    solved = solve_symmetric(matrix, np.concatenate([load, *bounds]), size)
+    if solved is None:
+        return None
+    x = solved.values[:size]
+    forces = np.zeros(len(programme.gaps))
+    forces[closed] = solved.values[size : size + flanks]
+    cone_forces = np.zeros((len(programme.cones), 2))
+    for j, (cone, place) in enumerate(zip(programme.cones, active.places, strict=True)):
+        if not place.corner:
+            cone_forces[j] = _piece_force(cone, place, cone.offset(x))
+    at_multiplier = size + flanks
+    for j, directions in multipliers:
+        width = len(directions)
+        cone_forces[j] = solved.values[at_multiplier : at_multiplier + width] @ directions
+        at_multiplier += width
+    return Point(x, forces, cone_forces, solved.moves)
+
+
+def _row_tangents(programme: Programme, forces: Array) -> tuple[Array, Array]:
+    """Tangent compliances and gaps of the rows at the current forces."""
+    if not programme.hertz.any():
+        return programme.linear, programme.gaps
+    root = np.cbrt(np.maximum(forces, 1e-12))
+    return (
+        programme.linear + 2.0 / 3.0 * programme.hertz / root,
+        programme.gaps + programme.hertz * root**2 / 3.0,
+    )
+
+
+def _piece_force(cone: Cone, place: Place, offset: Array) -> Array:
+    """Force of a radial element on a piece, as a vector along its offset."""
+    piece = cone.law.pieces[place.piece]
+    begin = cone.law.start(place.piece)
+    radius = float(np.linalg.norm(offset))
+    if piece.force == piece.stiffness * begin or radius == 0.0:
+        return np.asarray(piece.stiffness * offset)
+    return np.asarray((piece.force + piece.stiffness * (radius - begin)) / radius * offset)
+
+
+def _cone_tangent(
+    cone: Cone, place: Place, x: Array, force: Array
+) -> tuple[Array, Array, Array, Array]:
+    """Tangent stiffness (2, 2), force at x (2,), multiplier directions (d, 2) and their bounds (d,)."""
+    none = np.zeros((0, 2))
+    offset = cone.offset(x)
+    radius = float(np.linalg.norm(offset))
+    if place.corner:
+        limit = cone.law.start(place.piece)
+        if limit == 0.0:
+            return np.zeros((2, 2)), np.zeros(2), np.eye(2), np.zeros(2)
+        along = offset / radius if radius > 0.0 else _direction(force)
+        across = np.eye(2) - np.outer(along, along)
+        size = max(float(along @ force), 0.0)
+        # The step's multiplier turns with the offset: its share of the tangent is λ/R across the radius.
+        tangent = size / limit * across
+        return tangent, tangent @ offset, along[None, :], np.array([limit])
+    piece = cone.law.pieces[place.piece]
+    begin = cone.law.start(place.piece)
+    if piece.force == piece.stiffness * begin:
+        return piece.stiffness * np.eye(2), piece.stiffness * offset, none, np.zeros(0)
+    if radius == 0.0:
+        offset, radius = _direction(force) * max(begin, 1e-9), max(begin, 1e-9)
+    along = offset / radius
+    size = piece.force + piece.stiffness * (radius - begin)
+    tangent = piece.stiffness * np.outer(along, along)
+    tangent = tangent + max(size, 0.0) / radius * (np.eye(2) - np.outer(along, along))
+    return tangent, size * along, none, np.zeros(0)
+
+
+def _direction(force: Array) -> Array:
+    size = float(np.linalg.norm(force))
+    return force / size if size > 0.0 else np.array([1.0, 0.0])
+
+
+def _exchange(programme: Programme, active: ActiveSet, point: Point, one_only: bool) -> ActiveSet:
+    """Flip rows with the wrong sign and move radial elements off places they have left."""
+    force_band = SIGN * max(1.0, float(np.abs(point.forces).max(initial=0.0)))
+    length_band = SIGN * max(1.0, float(np.abs(point.x).max(initial=0.0)))
+    wrong: list[tuple[float, int]] = []
+    approach = programme.rows @ point.x - programme.gaps
+    for e, closed in enumerate(active.closed):
+        if programme.assumed_closed[e]:
+            continue
+        excess = -point.forces[e] / force_band if closed else approach[e] / length_band
+        if excess > 1.0:
+            wrong.append((float(excess), e))
+    count = len(active.closed)
+    moves: dict[int, Place] = {}
+    for j, (cone, place) in enumerate(zip(programme.cones, active.places, strict=True)):
+        excess, moved = _misplaced(cone, place, point, j, force_band, length_band)
+        if excess > 1.0:
+            wrong.append((excess, count + j))
+            moves[count + j] = moved
+    if one_only and wrong:
+        wrong = [max(wrong)]
+    rows, places = list(active.closed), list(active.places)
+    for _, k in wrong:
+        if k < count:
+            rows[k] = not rows[k]
+        else:
+            places[k - count] = moves[k]
+    return replace(active, closed=tuple(rows), places=tuple(places))
+
+
+def _misplaced(
+    cone: Cone, place: Place, point: Point, j: int, force_band: float, length_band: float
+) -> tuple[float, Place]:
+    """By how many bands a radial element is off its place, and where it should stand instead."""
+    law, k = cone.law, place.piece
+    offset = cone.offset(point.x)
+    if place.corner:
+        low, high = law.step(k)
+        along = _direction(offset) if law.start(k) > 0.0 else _direction(point.cone_forces[j])
+        size = float(along @ point.cone_forces[j])
+        if size > high:
+            return (size - high) / force_band, Place(k)
+        return (low - size) / force_band, Place(k - 1) if k > 0 else place
+    radius = float(np.linalg.norm(offset))
+    begin, end = law.start(k), law.start(k + 1)
+    if radius > end:
+        low, high = law.step(k + 1)
+        return (radius - end) / length_band, Place(k + 1, corner=high > low)
+    if radius < begin and k > 0:
+        low, high = law.step(k)
+        back = Place(k, corner=True) if high > low else Place(k - 1)
+        return (begin - radius) / length_band, back
+    if k == 0 and law.pieces[0].force > 0.0 and offset @ point.cone_forces[j] < 0.0:
+        return 2.0, Place(0, corner=True)
+    return 0.0, place

@@ -1,0 +1,65 @@
+"""One programme solved: an active set that still holds, or a back-end followed by the exact solve."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from loadshare.scene.programme import Point, Programme
+from loadshare.solver.backend import Backend, BackendFailure
+from loadshare.solver.exact import ActiveSet, first_guess, identify, solve_exact
+
+
+class Unsolved(RuntimeError):
+    """A programme has no answer, or none was found; the message says which."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Inner:
+    """Answer of one programme, its active set, and how it came about."""
+
+    point: Point
+    active: ActiveSet | None
+    via: str
+
+
+def solve_programme(
+    programme: Programme, backend: Backend, warm: Inner | None, polish: bool
+) -> Inner:
+    """Solve a programme.
+
+    Parameters
+    ----------
+    programme : Programme
+    backend : Backend
+    warm : Inner or None
+        Answer of a neighbouring programme (the pass before); its active set is tried first.
+    polish : bool
+        Solve exactly on the identified active set.
+
+    Raises
+    ------
+    Unsolved
+        If the programme contradicts itself or no consistent active set is found.
+    """
+    kind = programme.kind
+    if kind == "linear" and polish:
+        exact = solve_exact(programme, first_guess(programme))
+        if exact is None:
+            raise Unsolved("nothing holds the train: the linear system contradicts itself")
+        return Inner(*exact, "linear solve")
+    if polish and warm is not None and warm.active is not None:
+        exact = solve_exact(programme, warm.active, warm.point, rounds=3)
+        if exact is not None:
+            return Inner(*exact, "active set kept")
+    if kind not in backend.kinds:
+        raise Unsolved(f"{backend.name} does not solve programmes of class {kind}")
+    try:
+        rough = backend.solve(programme)
+    except BackendFailure as failure:
+        raise Unsolved(str(failure)) from failure
+    if not polish:
+        return Inner(rough, None, backend.name)
+    exact = solve_exact(programme, identify(programme, rough), rough)
+    if exact is None:
+        raise Unsolved(f"no consistent active set was found from the answer of {backend.name}")
+    return Inner(*exact, f"{backend.name} + exact")

@@ -1,0 +1,94 @@
+"""Symmetric saddle-point systems: solved to round-off, rank defects found and settled by least norm."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from loadshare.scene.programme import Array
+
+RANK = 1e-13
+"""Eigenvalues of the equilibrated matrix below this, relative to the largest, count as zero."""
+CONSISTENT = 1e-9
+"""Relative residual above which a rank-deficient system has no solution."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Solved:
+    """Solution of a system, and the directions (size, f) in which its coordinates may move freely."""
+
+    values: Array
+    moves: Array
+
+
+def solve_symmetric(matrix: Array, right: Array, size: int) -> Solved | None:
+    """Solve K z = r for a symmetric K, least-norm in the first `size` unknowns where K is singular.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (N, N)
+        K, indefinite.
+    right : ndarray, shape (N,)
+        r.
+    size : int
+        Number of leading unknowns (coordinates); the rest are forces.
+
+    Returns
+    -------
+    Solved or None
+        None if the system contradicts itself.
+    """
+    from scipy.linalg import lapack
+
+    if not len(right):
+        return Solved(right, np.zeros((size, 0)))
+    scale = _equilibrate(matrix)
+    scaled = matrix * scale[:, None] * scale
+    factor, pivots, fault = lapack.dgetrf(scaled)
+    if fault == 0:
+        reciprocal, _ = lapack.dgecon(factor, np.abs(scaled).sum(axis=0).max())
+        if reciprocal > RANK:
+            values = np.zeros_like(right)
+            for _ in range(3):  # the first pass solves, the others refine
+                residual = right - matrix @ values
+                values = values + scale * lapack.dgetrs(factor, pivots, scale * residual)[0]
+            return Solved(values, np.zeros((size, 0)))
+    return _least_norm(matrix, scaled, scale, right, size)
+
+
+def _equilibrate(matrix: Array) -> Array:
+    """Symmetric scaling that brings every row's largest entry near 1."""
+    scale = np.ones(len(matrix))
+    for _ in range(4):
+        largest = np.abs(matrix * scale[:, None] * scale).max(axis=1)
+        scale = scale / np.sqrt(np.where(largest > 0.0, largest, 1.0))
+    return scale
+
+
+def _least_norm(
+    matrix: Array, scaled: Array, scale: Array, right: Array, size: int
+) -> Solved | None:
+    eigenvalues, vectors = np.linalg.eigh(scaled)
+    kept = np.abs(eigenvalues) > RANK * np.abs(eigenvalues).max()
+    basis = vectors[:, kept]
+    values = np.zeros_like(right)
+    for _ in range(3):
+        residual = scale * (right - matrix @ values)
+        values = values + scale * (basis @ ((basis.T @ residual) / eigenvalues[kept]))
+    left = np.abs(scale * (right - matrix @ values)).max()
+    if left > CONSISTENT * max(np.abs(scale * right).max(), 1e-300):
+        return None
+    null = scale[:, None] * vectors[:, ~kept]
+    if null.shape[1] == 0:
+        return Solved(values, np.zeros((size, 0)))
+    null /= np.linalg.norm(null, axis=0)
+    outer, sizes, inner = np.linalg.svd(null[:size], full_matrices=True)
+    freedom = int((sizes > 1e-8).sum())
+    moves = null @ inner[:freedom].T / sizes[:freedom]
+    values = values - moves @ (outer[:, :freedom].T @ values[:size])
+    forces_only = null @ inner[freedom:].T
+    if forces_only.shape[1]:
+        share = np.linalg.lstsq(forces_only[size:], values[size:], rcond=None)[0]
+        values = values - forces_only @ share
+    return Solved(values, moves[:size])

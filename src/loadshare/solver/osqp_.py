@@ -1,0 +1,48 @@
+"""OSQP, called directly and polished: a first-order method for QPs, on another principle than Clarabel's."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loadshare.scene.programme import Point, Programme
+from loadshare.solver.backend import KINDS_QP, Backend, BackendFailure
+from loadshare.solver.conic import conic_form
+
+
+class Osqp:
+    """Operator splitting with polish."""
+
+    name = "osqp"
+    kinds = KINDS_QP
+
+    def solve(self, programme: Programme) -> Point:
+        """See :meth:`loadshare.solver.backend.Backend.solve`."""
+        import osqp
+
+        form = conic_form(programme)
+        equalities = int(sum(size for kind, size in form.cones if kind == "zero"))
+        lower = np.full(len(form.bounds), -np.inf)
+        lower[:equalities] = form.bounds[:equalities]
+        solver = osqp.OSQP()
+        solver.setup(
+            form.quadratic,
+            form.linear,
+            form.matrix,
+            lower,
+            form.bounds,
+            verbose=False,
+            polishing=True,
+            eps_abs=1e-9,
+            eps_rel=1e-9,
+            max_iter=100_000,
+        )
+        answer = solver.solve(raise_error=False)
+        z, dual = np.asarray(answer.x, dtype=float), np.asarray(answer.y, dtype=float)
+        if z.size == 0 or not (np.isfinite(z).all() and np.isfinite(dual).all()):
+            raise BackendFailure(f"OSQP gave no point (status {answer.info.status})")
+        return form.point(z, dual)
+
+
+def make() -> Backend:
+    """Return the back-end."""
+    return Osqp()

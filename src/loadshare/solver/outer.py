@@ -1,0 +1,233 @@
+"""The outer loop: nonlinear mesh laws, ring faces and friction bounds settle together (formulation, section 7).
+
+*Picard* replaces each law by its secant compliance at the last force, *Newton* by its tangent. Both stop when, at
+the answer of a programme, the laws, the ring faces and the friction bounds that the programme used differ from the
+true ones by no more than a stated misfit, measured in deflections and loads of the case.
+
+A tangent at vanishing force has infinite compliance, so a Newton step is taken at the force that belongs to the
+*displacement* (which is finite and positive for a compressed flank), and a step that does not lessen the misfit
+is shortened until the true energy, which is convex, falls. That is what makes light load converge.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from loadshare.scene.plan import Linearisation, Plan, Role, Units, programme
+from loadshare.scene.programme import Array, Point
+from loadshare.scene.scene import Scene
+from loadshare.solver.backend import Backend
+from loadshare.solver.energy import potential
+from loadshare.solver.inner import Inner, Unsolved, solve_programme
+from loadshare.solver.record import Iteration, Options
+from loadshare.train.radial import RadialLaw
+
+STALLED = 1e-9
+"""A loop whose misfit no longer falls is taken as arrived at round-off below this, as stuck above."""
+SHRINK = 0.1
+"""An open flank's next tangent is taken at this fraction of its last force."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Settled:
+    """Answer of the outer loop in SI units.
+
+    Attributes
+    ----------
+    x : ndarray, shape (n,)
+        [m].
+    forces : dict of row name to float
+        [N], of the rows of the plan.
+    radial_forces : dict of radial name to ndarray, shape (2,)
+        Force along its offset [N], of the radials in play.
+    laws : dict of radial name to RadialLaw
+        At the settled torques.
+    moves : ndarray, shape (n, f)
+        Directions that the equilibrium leaves undetermined.
+    kind : str
+    iterations : tuple of Iteration
+    """
+
+    x: Array
+    forces: dict[str, float]
+    radial_forces: dict[str, Array]
+    laws: dict[str, RadialLaw]
+    moves: Array
+    kind: str
+    iterations: tuple[Iteration, ...]
+
+
+@dataclass(slots=True)
+class _State:
+    """Where the loop linearises next."""
+
+    x: Array
+    forces: dict[str, float]
+    torques: dict[str, float]
+
+
+def settle(scene: Scene, plan: Plan, backend: Backend, options: Options, method: str) -> Settled:
+    """Run the outer loop on a plan.
+
+    Raises
+    ------
+    Unsolved
+        If a programme has no answer, or the loop does not arrive within the allowed iterations.
+    ValueError
+        If a spline's law would drop at the torque it carries.
+    """
+    state = _start(scene)
+    warm: Inner | None = None
+    history: list[Iteration] = []
+    for _ in range(options.max_iterations):
+        laws = {r.name: r.law(state.torques[r.gear]) for r in scene.radials}
+        at = Linearisation(state.x, _compliances(scene, state.forces, method), laws)
+        written, units = programme(scene, plan, at, exact_hertz=method == "power")
+        warm = solve_programme(written, backend, warm, options.polish)
+        x = warm.point.x * units.length
+        forces = _forces(written.names, warm.point, units)
+        torques = {r.gear: scene.shaft_torque(r.gear, x) for r in scene.radials}
+        law_misfit = _law_misfit(scene, at, forces, method)
+        face_misfit = _face_misfit(scene, plan, state.x, x, forces)
+        friction_misfit = _friction_misfit(scene, state.torques, torques)
+        step = 1.0
+        if method == "newton" and history and law_misfit > history[-1].law > options.stop:
+            step = _step(scene, plan, laws, state.x, x)
+        now = Iteration(written.kind, warm.via, law_misfit, face_misfit, friction_misfit, step)
+        history.append(now)
+        if now.misfit <= options.stop or (_stalled(history) and now.misfit <= STALLED):
+            return Settled(
+                x,
+                forces,
+                {
+                    c.name: f * units.force
+                    for c, f in zip(written.cones, warm.point.cone_forces, strict=True)
+                },
+                {r.name: r.law(torques[r.gear]) for r in scene.radials},
+                warm.point.moves,
+                written.kind,
+                tuple(history),
+            )
+        x = state.x + step * (x - state.x)
+        state = _State(x, _next_forces(scene, plan, state.forces, forces, x, method), torques)
+    raise Unsolved(
+        f"the {method} loop did not settle in {options.max_iterations} passes "
+        f"(last misfit {history[-1].misfit:.2e})"
+    )
+
+
+def _start(scene: Scene) -> _State:
+    """Every contact under the force unit, every spline under the whole input torque."""
+    unit = scene.force_unit()
+    situation, gears = scene.situation, scene.train.gears
+    driving = situation.torque[scene.train.input]
+    names = [r.name for r in scene.rows] + [a.name for a in scene.arcs]
+    return _State(
+        np.zeros(scene.size),
+        dict.fromkeys(names, unit),
+        {r.gear: driving / gears[r.gear].ratio for r in scene.radials},
+    )
+
+
+def _compliances(
+    scene: Scene, forces: dict[str, float], method: str
+) -> dict[str, tuple[float, float]]:
+    """Linear stand-ins of the laws: secants through the origin (Picard) or tangents (Newton)."""
+    laws = {r.name: r.law for r in scene.rows} | {a.name: a.law for a in scene.arcs}
+    if method == "picard":
+        return {n: (law.secant(forces[n]), 0.0) for n, law in laws.items()}
+    return {n: law.tangent(forces[n]) for n, law in laws.items()}
+
+
+def _forces(names: tuple[str, ...], point: Point, units: Units) -> dict[str, float]:
+    values = point.forces * units.force / units.row_norms
+    return {n: float(f) for n, f in zip(names, values, strict=True)}
+
+
+def _law_misfit(scene: Scene, at: Linearisation, forces: dict[str, float], method: str) -> float:
+    """Largest difference between a law and what stood for it, at the forces found [deflections]."""
+    worst = 0.0
+    for row in scene.rows:
+        force = abs(forces.get(row.name, 0.0))
+        if force == 0.0 or row.law.is_linear or method == "power":
+            continue
+        b, offset = at.compliance[row.name]
+        worst = max(worst, abs(row.law.compression(force) - b * force - offset))
+    return worst / scene.length_unit()
+
+
+def _face_misfit(
+    scene: Scene, plan: Plan, before: Array, x: Array, forces: dict[str, float]
+) -> float:
+    """Largest difference between arcs and the faces used, where they touch [deflections] and push [loads]."""
+    worst = 0.0
+    for arc in scene.arcs:
+        if plan.rows[arc.name] is Role.OPEN:
+            continue
+        relative = arc.relative @ x
+        margin = arc.arc.margin(relative)
+        force = forces[arc.name]
+        if force == 0.0 and margin >= 0.0:
+            continue
+        normal, bound = arc.arc.face(arc.relative @ before)
+        worst = max(worst, abs(margin - bound - float(normal @ relative)) / scene.length_unit())
+        turned = float(np.linalg.norm(arc.arc.normal(relative) - normal))
+        worst = max(worst, turned * abs(force) / scene.force_unit())
+    return worst
+
+
+def _friction_misfit(scene: Scene, used: dict[str, float], found: dict[str, float]) -> float:
+    """Largest change of a friction bound that follows the torque [loads]."""
+    worst = 0.0
+    for radial in scene.radials:
+        if radial.follows_torque:
+            spline = scene.train.splines[radial.gear]
+            change = spline.bound(found[radial.gear]) - spline.bound(used[radial.gear])
+            worst = max(worst, abs(change))
+    return worst / scene.force_unit()
+
+
+def _step(
+    scene: Scene, plan: Plan, laws: dict[str, RadialLaw], before: Array, after: Array
+) -> float:
+    """Halve the step until the true energy falls."""
+    here = potential(scene, plan, laws, before)
+    step = 1.0
+    while step > 1e-3 and potential(scene, plan, laws, before + step * (after - before)) > here:
+        step *= 0.5
+    return step
+
+
+def _next_forces(
+    scene: Scene,
+    plan: Plan,
+    before: dict[str, float],
+    found: dict[str, float],
+    x: Array,
+    method: str,
+) -> dict[str, float]:
+    """Forces at which the laws are linearised next."""
+    unit = scene.force_unit()
+    forces = dict(before)
+    for row in scene.rows:
+        role = plan.rows[row.name]
+        if role is Role.OPEN or row.law.is_linear:
+            continue
+        if method == "picard":
+            forces[row.name] = max(abs(found[row.name]), 1e-18 * unit)
+            continue
+        approach = float(row.vector @ x) - row.gap
+        if role is Role.CLOSED:
+            approach = abs(approach)
+        if approach > 0.0:
+            forces[row.name] = max(row.law.force(approach), 1e-18 * unit)
+        else:
+            forces[row.name] = max(SHRINK * before[row.name], 1e-18 * unit)
+    return forces
+
+
+def _stalled(history: list[Iteration]) -> bool:
+    """Whether the misfit has stopped falling."""
+    return len(history) > 3 and history[-1].misfit >= 0.5 * min(h.misfit for h in history[-4:-1])

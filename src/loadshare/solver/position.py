@@ -1,0 +1,162 @@
+"""One position solved: plans are tried from lean to full, and each is verified before it is believed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loadshare.errors import Refused
+from loadshare.scene.plan import Plan, Role
+from loadshare.scene.programme import Array
+from loadshare.scene.scene import Scene
+from loadshare.solver.backend import Backend, backend
+from loadshare.solver.inner import Unsolved
+from loadshare.solver.outer import Settled, settle
+from loadshare.solver.record import Options, Record
+from loadshare.train.equilibrium import Equilibrium
+
+VERIFIED = 1e-11
+"""Violation of a removed inequality that counts as round-off, in deflections and loads."""
+
+
+def solve_scene(scene: Scene, options: Options) -> tuple[Equilibrium, Record]:
+    """Find the equilibrium of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    options : Options
+
+    Returns
+    -------
+    Equilibrium
+        In SI units; not yet certified.
+    Record
+
+    Raises
+    ------
+    Refused
+        If the scene has no equilibrium or none was found; the message names the elements.
+    """
+    solver = backend(options.solver)
+    plan = Plan.lean(scene) if options.reduce else Plan.full(scene)
+    rounds = 0
+    while True:
+        rounds += 1
+        try:
+            settled, method = _settle(scene, plan, solver, options)
+        except Unsolved as failure:
+            wider = _wider(scene, plan)
+            if wider is None:
+                raise Refused(_refusal(scene, str(failure)), {}) from failure
+            plan = wider
+            continue
+        margins = _margins(scene, plan, settled)
+        wrong = {name for name, (holds, _) in margins.items() if not holds}
+        if not wrong:
+            break
+        plan = plan.with_in_play(wrong)
+    removed = scene.removed + tuple((name, why) for name, (_, why) in margins.items())
+    record = Record(
+        options.solver,
+        method,
+        settled.kind,
+        settled.iterations,
+        plan,
+        rounds,
+        removed,
+        scene.coordinates,
+    )
+    return _equilibrium(scene, plan, settled), record
+
+
+def _settle(
+    scene: Scene, plan: Plan, solver: Backend, options: Options
+) -> tuple[Settled, str]:
+    """Run the outer loop, with the other form if the chosen one does not settle."""
+    other = {"newton": "picard", "picard": "newton"}.get(options.method)
+    try:
+        return settle(scene, plan, solver, options, options.method), options.method
+    except ValueError as error:
+        raise Refused(str(error), {}) from error
+    except Unsolved:
+        if other is None or all(r.law.is_linear for r in scene.rows):
+            raise
+    return settle(scene, plan, solver, options, other), other
+
+
+def _wider(scene: Scene, plan: Plan) -> Plan | None:
+    """Return the next plan when one has no answer: with all limits in play, then with everything."""
+    limits = {r.name for r in scene.rows if r.kind == "stop"}
+    limits |= {a.name for a in scene.arcs} | {r.name for r in scene.radials}
+    for names in (limits, set(plan.rows) | set(plan.radials)):
+        wider = plan.with_in_play(names)
+        if wider != plan:
+            return wider
+    return None
+
+
+def _margins(scene: Scene, plan: Plan, settled: Settled) -> dict[str, tuple[bool, str]]:
+    """For everything left out: whether leaving it out was right, and the figure that says so."""
+    length, force = scene.length_unit(), scene.force_unit()
+    length *= VERIFIED * max(1.0, float(np.abs(settled.x).max(initial=0.0)) / length)
+    largest = max((abs(f) for f in settled.forces.values()), default=0.0)
+    force = VERIFIED * max(force, largest)
+    found: dict[str, tuple[bool, str]] = {}
+    for row in scene.rows_at(settled.x):
+        role = plan.rows[row.name]
+        if role is Role.OPEN:
+            gap = row.gap - float(row.vector @ settled.x)
+            found[row.name] = (gap >= -length, f"open by {gap * 1e6:.4g} µm")
+        elif role is Role.CLOSED:
+            carried = settled.forces[row.name]
+            why = f"closed under {carried:.6g} N: a spring, not an inequality"
+            found[row.name] = (carried >= -force, why)
+    for radial in scene.radials:
+        if plan.radials[radial.name] is Role.IN_PLAY:
+            continue
+        first = settled.laws[radial.name].pieces[0]
+        radius = float(np.linalg.norm(radial.matrix @ settled.x - radial.centre))
+        holds = first.force == 0.0 and radius <= first.length + length
+        room = (first.length - radius) * 1e6
+        found[radial.name] = (holds, f"{first.name}: {room:.4g} µm before the next piece")
+    return found
+
+
+def _equilibrium(scene: Scene, plan: Plan, settled: Settled) -> Equilibrium:
+    """Turn an answer into physical terms."""
+    train, x = scene.train, settled.x
+    flanks = {r.name for r in scene.rows if r.kind.endswith("flank")}
+    contacts = [r.name for r in scene.rows if r.kind == "stop"] + [a.name for a in scene.arcs]
+    reactions: dict[str, Array] = {}
+    for radial in scene.radials:
+        force = settled.radial_forces.get(radial.name)
+        if force is None:
+            first = settled.laws[radial.name].pieces[0]
+            force = first.stiffness * (radial.matrix @ x - radial.centre)
+        reactions[radial.name] = -force @ train.gears[radial.gear].frame
+    return Equilibrium(
+        index=scene.situation.index,
+        rotation={g: scene.angle(g, x) for g in train.gears},
+        displacement={g: scene.moved(g, x) for g in train.gears},
+        flank_force={n: max(settled.forces.get(n, 0.0), 0.0) for n in sorted(flanks)},
+        ring_force={n: max(settled.forces.get(n, 0.0), 0.0) for n in contacts},
+        radial_reaction=reactions,
+        undetermined=tuple(
+            name
+            for name, move in zip(scene.coordinates, settled.moves, strict=False)
+            if np.abs(move).max(initial=0.0) > 1e-6
+        ),
+    )
+
+
+def _refusal(scene: Scene, why: str) -> str:
+    """Say what an engineer can look at when nothing holds."""
+    train = scene.train
+    loose = [g for g in train.floating if g not in train.splines and g not in train.rings]
+    hint = ""
+    if loose:
+        hint = (
+            f"; gears {', '.join(loose)} float without a spline or ring that could hold them: "
+            "check their supports"
+        )
+    return f"position {scene.situation.index}: {why}{hint}"

@@ -1,0 +1,289 @@
+"""From a case to a train: everything in SI, geometry settled once."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from loadshare import case as spec
+from loadshare.errors import CaseError, Problem
+from loadshare.train.gear import Gear, Vector, transverse_frame
+from loadshare.train.kinematics import Kinematics, settle
+from loadshare.train.law import Law, PowerLaw, TableLaw
+from loadshare.train.mesh import Contact, Mesh
+from loadshare.train.offset import Offset
+from loadshare.train.ring import DrumRing, Ring, RoundRing, transverse
+from loadshare.train.train import Shaft, Spline, Stage, Train
+
+AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+
+
+def build_train(case: spec.Case) -> Train:
+    """Turn a case into a train.
+
+    Parameters
+    ----------
+    case : spec.Case
+
+    Returns
+    -------
+    Train
+
+    Raises
+    ------
+    CaseError
+        If gears turn against each other or the train would lock, or a ring's float cannot be derived; all
+        problems are listed.
+    """
+    kinematics = _kinematics(case)
+    problems = [case.problem(c.key, c.message) for c in kinematics.conflicts]
+    if problems:
+        raise CaseError(problems)
+    gears = kinematics.gears
+    meshes = {n: _mesh(n, m, gears, kinematics.contacts[n]) for n, m in case.meshes.items()}
+    rings: dict[str, Ring] = {}
+    for name, ring in case.rings.items():
+        try:
+            rings[name] = _ring(name, ring, gears, meshes)
+        except ValueError as error:
+            problems.append(_ring_problem(case, name, str(error)))
+    if problems:
+        raise CaseError(problems)
+    operating = case.operating
+    return Train(
+        name=case.name,
+        gears=gears,
+        meshes=meshes,
+        shafts={n: _shaft(n, s) for n, s in case.shafts.items()},
+        splines={n: _spline(n, s) for n, s in case.splines.items()},
+        rings=rings,
+        offsets={n: _offset(e, gears[n]) for n, e in case.errors.items()},
+        stages=tuple(
+            Stage(n, tuple(s.meshes), tuple(s.groups or (s.meshes,)))
+            for n, s in case.stages.items()
+        ),
+        input=operating.input,
+        output=operating.output,
+        input_torque=operating.input_torque,
+        external={n: t.si for n, t in operating.external.items()},
+        positions=operating.positions,
+        march=(case.march.gear, case.march.revolutions, case.march.steps) if case.march else None,
+    )
+
+
+def _kinematics(case: spec.Case) -> Kinematics:
+    running = 1 if case.operating.running == "counter-clockwise" else -1
+    unsettled = {n: _gear(case, n, g, running) for n, g in case.gears.items()}
+    return settle(
+        unsettled,
+        {n: (str(m.driver), str(m.driven)) for n, m in case.meshes.items()},
+        {n: (s.ends[0], s.ends[1]) for n, s in case.shafts.items() if s.ends},
+        case.operating.input,
+    )
+
+
+def _gear(case: spec.Case, name: str, gear: spec.Gear, running: int) -> Gear:
+    axis = np.array(AXES[gear.axis] if isinstance(gear.axis, str) else gear.axis, dtype=float)
+    axis /= np.linalg.norm(axis)
+    return Gear(
+        name=name,
+        kind=gear.type,
+        centre=_centre(case, gear),
+        axis=axis,
+        frame=transverse_frame(axis),
+        base_radius=gear.acting_radius,
+        sense=running,
+        teeth=gear.teeth,
+        support=_support(gear, name in case.splines or name in case.rings),
+        ratio=1.0,
+    )
+
+
+def _vector(lengths: tuple[spec.Quantity, ...]) -> Vector:
+    return np.array([q.si for q in lengths] + [0.0] * (3 - len(lengths)))
+
+
+def _direction(angle: float) -> Vector:
+    return np.array([math.cos(angle), math.sin(angle), 0.0])
+
+
+def _centre(case: spec.Case, gear: spec.Gear) -> Vector:
+    centre = gear.centre
+    if not isinstance(centre, spec.Polar):
+        return _vector(centre)
+    about = _centre(case, case.gears[centre.about]) if centre.about else np.zeros(3)
+    rise = np.array([0.0, 0.0, centre.height.si])
+    return about + centre.distance.si * _direction(centre.angle.si) + rise
+
+
+def _support(gear: spec.Gear, held_otherwise: bool) -> Vector | None:
+    support = gear.support
+    if support is None:
+        return np.zeros(2) if held_otherwise else None
+    if isinstance(support, str):
+        return np.zeros(2) if support == "free" else None
+    if isinstance(support, tuple):
+        return np.array([k.si for k in support])
+    return np.full(2, support.si)
+
+
+def _each(value: object) -> tuple[spec.Quantity, ...]:
+    return value if isinstance(value, tuple) else (value,)  # type: ignore[return-value]
+
+
+def _mesh(name: str, mesh: spec.Mesh, gears: Mapping[str, Gear], contact: Contact) -> Mesh:
+    driver, driven = gears[str(mesh.driver)], gears[str(mesh.driven)]
+    angle = mesh.pressure_angle.si
+    if mesh.normal_backlash is not None:
+        backlash = mesh.normal_backlash.si
+    elif mesh.backlash is not None:
+        backlash = mesh.backlash.si * math.cos(angle) * math.cos(mesh.helix_angle.si)
+    else:
+        backlash = math.inf
+    r = driver.base_radius
+    gap = mesh.law.a if mesh.law is not None else mesh.gap
+    return Mesh(
+        name=name,
+        driver=driver.name,
+        driven=driven.name,
+        radii=(r, driven.base_radius),
+        drive_normal=contact.normal(angle, drive=True),
+        coast_normal=contact.normal(angle, drive=False),
+        laws=_laws(mesh, r),
+        gaps=(0.0,) if gap is None else tuple(r * g.si for g in _each(gap)),
+        backlash=backlash,
+    )
+
+
+def _laws(mesh: spec.Mesh, r: float) -> tuple[Law, ...]:
+    """Angle laws at the driver turned into laws along the line of action: δ = r Δφ, T = r F."""
+    if mesh.law is not None:
+        b, c = _each(mesh.law.b), _each(mesh.law.c)
+        count = max(len(b), len(c))
+        return tuple(
+            PowerLaw(b[k % len(b)].si * r**2, c[k % len(c)].si * r ** (5.0 / 3.0))
+            for k in range(count)
+        )
+    if mesh.table is not None:
+        forces = (0.0, *(t.si / r for t in mesh.table.torque))
+        rows = mesh.table.deflection
+        several = rows if isinstance(rows[0], tuple) else (rows,)
+        return tuple(TableLaw(forces, (0.0, *(r * d.si for d in row))) for row in several)  # type: ignore[union-attr]
+    return tuple(PowerLaw(r**2 / k.si) for k in _each(mesh.stiffness))
+
+
+def _shaft(name: str, shaft: spec.Shaft) -> Shaft:
+    ends = shaft.ends or ("", "")
+    stiffness = math.inf if isinstance(shaft.stiffness, str) else shaft.stiffness.si
+    return Shaft(name, ends[0], ends[1], stiffness, shaft.clocking.si)
+
+
+def _spline(gear: str, spline: spec.Spline) -> Spline:
+    fixed: float | None = None
+    per_torque = 0.0
+    if spline.friction_force is not None:
+        fixed = spline.friction_force.si
+    elif spline.friction is not None and spline.normal_force is not None:
+        fixed = spline.friction * spline.normal_force.si
+    elif spline.friction is not None and spline.radius is not None:
+        per_torque = spline.friction / spline.radius.si
+    return Spline(
+        gear,
+        spline.bending_stiffness.si,
+        spline.stick_limit.si if spline.stick_limit is not None else None,
+        spline.clearance.si,
+        fixed,
+        per_torque,
+    )
+
+
+def _stiffness(value: spec.Quantity | str) -> float:
+    return math.inf if isinstance(value, str) else value.si
+
+
+def _ring(name: str, ring: spec.Ring, gears: Mapping[str, Gear], meshes: dict[str, Mesh]) -> Ring:
+    gear = gears[name]
+    stiffness = _stiffness(ring.stiffness)
+    if ring.radius is not None:
+        offset = np.array([q.si for q in ring.offset]) @ gear.frame
+        return RoundRing(name, ring.radius.si, offset, stiffness)
+    first, second = (gears[n] for n in ring.neighbours or ())
+    along = transverse(second.centre - first.centre, gear.axis)
+    across = np.cross(gear.axis, along / np.linalg.norm(along))
+    clearance = _each(ring.clearance)
+    if isinstance(ring.float_, spec.Backlashes):
+        up, down = (
+            _float_range(gear, across, meshes, *chains)
+            for chains in (
+                (ring.float_.upward, ring.float_.downward),
+                (ring.float_.downward, ring.float_.upward),
+            )
+        )
+    elif isinstance(ring.float_, spec.Range):
+        up, down = ring.float_.up.si, ring.float_.down.si
+    else:
+        up = down = ring.float_.si  # type: ignore[union-attr]
+    return DrumRing(
+        name,
+        (first.name, second.name),
+        across,
+        (clearance[0].si, clearance[-1].si),
+        up,
+        down,
+        stiffness,
+        ring.measured == "nominal",
+    )
+
+
+def _float_range(
+    gear: Gear,
+    across: Vector,
+    meshes: dict[str, Mesh],
+    closing: tuple[str, ...],
+    resting: tuple[str, ...],
+) -> float:
+    """Float that takes up the backlashes of a chain of meshes (formulation, section 6).
+
+    The gear rests on the first mesh of the other chain and rolls on it until the backlash of the whole chain is
+    closed: y with n_closing·ŷ y + r φ = Σ j_n and n_resting·ŷ y + r φ = 0.
+    """
+    slopes = []
+    for chain in (closing, resting):
+        mesh = meshes[chain[0]]
+        if gear.name not in (mesh.driver, mesh.driven):
+            raise ValueError(f"mesh {mesh.name} is not a mesh of gear {gear.name}")
+        side = 1.0 if mesh.driver == gear.name else -1.0
+        slopes.append(side * float(mesh.drive_normal @ across))
+    total = math.fsum(meshes[m].backlash for m in closing)
+    turn = abs(slopes[0] - slopes[1])
+    if turn < 1e-9:
+        raise ValueError(
+            f"a float of gear {gear.name} across its neighbours does not take up the backlash of mesh {closing[0]}"
+        )
+    return total / turn
+
+
+def _ring_problem(case: spec.Case, name: str, message: str) -> Problem:
+    return case.problem(
+        f"rings.{name}.float",
+        message,
+        allowed="chains that begin with a mesh of the limited gear, one on either side of it",
+    )
+
+
+def _offset(errors: spec.Errors, gear: Gear) -> Offset:
+    installation = np.zeros(3)
+    if isinstance(errors.installation, spec.Offset):
+        turned = errors.installation.direction.si
+        installation = errors.installation.amount.si * (
+            np.array([math.cos(turned), math.sin(turned)]) @ gear.frame
+        )
+    elif errors.installation is not None:
+        installation = _vector(errors.installation)
+    amplitude, angle = 0.0, 0.0
+    if errors.eccentricity is not None:
+        amplitude = errors.eccentricity.amount.si
+        angle = errors.eccentricity.direction.si + errors.eccentricity.phase.si
+    return Offset(installation, amplitude, angle)

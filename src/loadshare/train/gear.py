@@ -1,0 +1,72 @@
+"""A gear as a body: where it is, how it turns, what holds it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Vector = NDArray[np.float64]
+
+
+def transverse_frame(axis: Vector) -> NDArray[np.float64]:
+    """Two unit vectors (2, 3) that span the plane across `axis`, right-handed about it.
+
+    The first is the global x direction projected into the plane; y for a gear whose axis is x itself. For an
+    axis along z the frame is the global x, y.
+    """
+    seed = np.array([1.0, 0.0, 0.0])
+    if abs(axis @ seed) > 1.0 - 1e-9:
+        seed = np.array([0.0, 1.0, 0.0])
+    first = seed - (seed @ axis) * axis
+    first /= np.linalg.norm(first)
+    return np.array([first, np.cross(axis, first)])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Gear:
+    """One gear of a train.
+
+    Attributes
+    ----------
+    name : str
+    kind : str
+        "external", "internal" or "face".
+    centre : ndarray, shape (3,)
+        O [m].
+    axis : ndarray, shape (3,)
+        Unit vector.
+    frame : ndarray, shape (2, 3)
+        Unit vectors of the transverse plane; displacements are components along them.
+    base_radius : float
+        r_b [m]; the acting radius of a face gear.
+    sense : int
+        +1 if the gear runs counter-clockwise seen against its axis, −1 otherwise.
+    teeth : int or None
+    support : ndarray, shape (2,), or None
+        Stiffness along the frame's directions [N/m]; zeros for a free gear, None for a rigid bearing.
+    ratio : float
+        Speed over the input gear's speed, ≥ 0.
+    """
+
+    name: str
+    kind: str
+    centre: Vector
+    axis: Vector
+    frame: NDArray[np.float64]
+    base_radius: float
+    sense: int
+    teeth: int | None
+    support: Vector | None
+    ratio: float
+
+    @property
+    def moves(self) -> bool:
+        """Whether the centre can be displaced."""
+        return self.support is not None
+
+    @property
+    def floats(self) -> bool:
+        """Whether no bearing holds the centre."""
+        return self.support is not None and not self.support.any()

@@ -1,0 +1,115 @@
+"""Running senses and speed ratios, found by walking from the input gear over meshes and shafts."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from loadshare.train.gear import Gear
+from loadshare.train.mesh import Contact, MeshGeometryError, contact_of
+
+RATIO_TOLERANCE = 1e-3
+"""Largest relative difference between two paths' speed ratios that rounding of radii explains."""
+
+
+@dataclass(frozen=True, slots=True)
+class Conflict:
+    """A mesh or shaft that contradicts the rest of the train."""
+
+    key: str
+    message: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Kinematics:
+    """Gears with their senses and ratios, the contacts of the meshes, and what contradicts."""
+
+    gears: Mapping[str, Gear]
+    contacts: Mapping[str, Contact]
+    conflicts: tuple[Conflict, ...]
+
+
+def settle(
+    gears: Mapping[str, Gear],
+    meshes: Mapping[str, tuple[str, str]],
+    shafts: Mapping[str, tuple[str, str]],
+    first: str,
+) -> Kinematics:
+    """Give every gear its running sense and speed ratio.
+
+    Parameters
+    ----------
+    gears : mapping
+        Gears whose senses and ratios are not settled, except those of `first`.
+    meshes, shafts : mapping of str to (str, str)
+        Driver and driven gear; the two ends.
+    first : str
+        The input gear.
+    """
+    settled = {first: gears[first]}
+    contacts: dict[str, Contact] = {}
+    conflicts: list[Conflict] = []
+
+    def mesh_partner(name: str, here: str) -> Iterator[Gear]:
+        """Settle the partner of `here` over a mesh, walking along or against the power flow."""
+        driver, driven = meshes[name]
+        try:
+            if here == driver:
+                contact = contact_of(settled[here], gears[driven])
+                sense, other = contact.driven_sense, driven
+            else:
+                trial = replace(gears[driver], sense=1)
+                forward = contact_of(trial, gears[driven])
+                sense, other = settled[here].sense * forward.driven_sense, driver
+        except MeshGeometryError as error:
+            conflicts.append(Conflict(f'meshes."{name}"', str(error)))
+            return
+        ratio = settled[here].ratio * settled[here].base_radius / gears[other].base_radius
+        yield replace(gears[other], sense=sense, ratio=ratio)
+
+    def shaft_partner(name: str, here: str) -> Iterator[Gear]:
+        """Settle the gear at the other end of a shaft: axes that point against each other reverse the sense."""
+        a, b = shafts[name]
+        other = b if here == a else a
+        turned = -1 if settled[here].axis @ gears[other].axis < -1e-9 else 1
+        yield replace(gears[other], sense=settled[here].sense * turned, ratio=settled[here].ratio)
+
+    links = [(n, e, f'meshes."{n}"', mesh_partner) for n, e in meshes.items()]
+    links += [(n, e, f'shafts."{n}"', shaft_partner) for n, e in shafts.items()]
+    walked: set[str] = set()
+    queue = deque([first])
+    while queue:
+        here = queue.popleft()
+        for name, ends, key, partner in links:
+            if here not in ends or key in walked:
+                continue
+            walked.add(key)
+            for found in partner(name, here):
+                known = settled.get(found.name)
+                if known is None:
+                    settled[found.name] = found
+                    queue.append(found.name)
+                else:
+                    conflicts += _compare(key, known, found)
+    for name, (driver, driven) in meshes.items():
+        if driver in settled and driven in settled:
+            try:
+                contacts[name] = contact_of(settled[driver], settled[driven])
+            except MeshGeometryError:
+                continue
+    return Kinematics(settled, contacts, tuple(conflicts))
+
+
+def _compare(key: str, known: Gear, found: Gear) -> Iterator[Conflict]:
+    if known.sense != found.sense:
+        yield Conflict(
+            key,
+            f"would turn gear {known.name} against the sense in which another path turns it: the train would lock",
+        )
+    if abs(known.ratio - found.ratio) > RATIO_TOLERANCE * known.ratio:
+        yield Conflict(
+            key,
+            f"would turn gear {known.name} at {found.ratio:.6g} of the input speed, another path at "
+            f"{known.ratio:.6g}: the train would lock",
+        )

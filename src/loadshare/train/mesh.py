@@ -1,0 +1,211 @@
+"""Mesh contact: the one expression that every sign comes from (formulation, section 2)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from loadshare.train.gear import Gear, Vector
+from loadshare.train.law import Law
+
+
+class MeshGeometryError(ValueError):
+    """The two gears of a mesh cannot mesh as placed."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Contact:
+    """Where the teeth of a driver push the teeth of a driven gear.
+
+    Attributes
+    ----------
+    radial : ndarray, shape (3,)
+        ĉ, pressing the driven gear away from the driver's tooth body.
+    tangential : ndarray, shape (3,)
+        t̂, the direction in which the driver's teeth run at the pitch point.
+    driven_sense : int
+        Sense in which a push along t̂ turns the driven gear about its axis.
+    """
+
+    radial: Vector
+    tangential: Vector
+    driven_sense: int
+
+    def normal(self, pressure_angle: float, drive: bool) -> Vector:
+        """Push on the driven gear: n for the drive flank, n' for the coast flank."""
+        along = 1.0 if drive else -1.0
+        return (
+            along * math.cos(pressure_angle) * self.tangential
+            + math.sin(pressure_angle) * self.radial
+        )
+
+
+def parallel_contact(
+    driver_centre: Vector,
+    driver_axis: Vector,
+    driver_sense: int,
+    driver_internal: bool,
+    driven_centre: Vector,
+    driven_axis: Vector,
+    driven_internal: bool,
+) -> Contact:
+    """Contact of two gears with parallel axes.
+
+    ĉ points from the driver's centre to the pitch point: towards an external partner, away from the centre of an
+    internal one. A driver that is itself the internal gear pushes its pinion towards its own centre.
+
+    Raises
+    ------
+    MeshGeometryError
+        If the centres coincide in the transverse plane.
+    """
+    between = driven_centre - driver_centre
+    between = between - (between @ driver_axis) * driver_axis
+    distance = float(np.linalg.norm(between))
+    if distance == 0.0:
+        raise MeshGeometryError("the two centres coincide in the transverse plane")
+    outward = between / distance
+    to_pitch = -outward if driven_internal else outward
+    tangential = driver_sense * np.cross(driver_axis, to_pitch)
+    # The pitch point lies beyond the pinion's centre in an internal pair, between the centres otherwise.
+    arm = to_pitch if (driven_internal or driver_internal) else -to_pitch
+    sense = 1 if driven_axis @ np.cross(arm, tangential) > 0.0 else -1
+    return Contact(-to_pitch if driver_internal else to_pitch, tangential, sense)
+
+
+def face_contact(
+    pinion_centre: Vector,
+    pinion_axis: Vector,
+    face_centre: Vector,
+    face_axis: Vector,
+    driver_sense: int,
+    pinion_drives: bool,
+) -> Contact:
+    """Contact of a pinion with a face gear.
+
+    The push lies in the pinion's transverse plane with its radial part along the face gear's axis. The pitch
+    point stands at the acting radius of the face gear, on the side where the pinion lies.
+
+    Raises
+    ------
+    MeshGeometryError
+        If the pinion's centre gives no side of the face gear to mesh on.
+    """
+    towards = pinion_centre - face_centre
+    along = float(towards @ pinion_axis)
+    height = float(towards @ face_axis)
+    if along == 0.0:
+        raise MeshGeometryError("the pinion's centre lies on the face gear's axis")
+    if height == 0.0:
+        raise MeshGeometryError("the pinion's centre lies in the face gear's pitch plane")
+    arm = math.copysign(1.0, along) * pinion_axis
+    to_face = -math.copysign(1.0, height) * face_axis
+    if pinion_drives:
+        tangential = driver_sense * np.cross(pinion_axis, to_face)
+        sense = 1 if face_axis @ np.cross(arm, tangential) > 0.0 else -1
+        return Contact(to_face, tangential, sense)
+    tangential = driver_sense * np.cross(face_axis, arm)
+    sense = 1 if pinion_axis @ np.cross(to_face, tangential) > 0.0 else -1
+    return Contact(-to_face, tangential, sense)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Mesh:
+    """A mesh between a driver and a driven gear, both flanks.
+
+    Attributes
+    ----------
+    name, driver, driven : str
+    radii : tuple of float
+        Base radii of driver and driven gear [m].
+    drive_normal, coast_normal : ndarray, shape (3,)
+        n and n'.
+    laws : tuple of Law
+        One, or one per meshing position, along the line of action.
+    gaps : tuple of float
+        Unloaded gap of the drive flank along the line of action [m], one or one per position.
+    backlash : float
+        Normal backlash j_n [m]; infinite if the coast flank cannot touch.
+    """
+
+    name: str
+    driver: str
+    driven: str
+    radii: tuple[float, float]
+    drive_normal: Vector
+    coast_normal: Vector
+    laws: tuple[Law, ...]
+    gaps: tuple[float, ...]
+    backlash: float
+
+    @property
+    def flanks(self) -> tuple[bool, ...]:
+        """The flanks that can touch: drive (True) and, with a finite backlash, coast (False)."""
+        return (True,) if math.isinf(self.backlash) else (True, False)
+
+    def flank_name(self, drive: bool) -> str:
+        """Name of a flank's row: the mesh's own for the drive flank."""
+        return self.name if drive else f"{self.name} coast"
+
+    def law(self, position: int) -> Law:
+        """Compliance law of both flanks at mesh position `position` (0-based)."""
+        return self.laws[position % len(self.laws)]
+
+    def gap(self, position: int, drive: bool) -> float:
+        """Gap [m] of a flank at mesh position `position` (0-based)."""
+        return self.gaps[position % len(self.gaps)] if drive else self.backlash
+
+    def direction(self, drive: bool) -> tuple[float, float, Vector]:
+        """Coefficients of δ on φ_driver [m], φ_driven [m] and the relative offset (3,)."""
+        if drive:
+            return self.radii[0], -self.radii[1], self.drive_normal
+        return -self.radii[0], self.radii[1], self.coast_normal
+
+    def approach(
+        self,
+        drive: bool,
+        position: int,
+        rotations: tuple[float, float],
+        relative_offset: Vector,
+    ) -> float:
+        r"""Approach of a flank along the line of action [m]; positive when compressed.
+
+        .. math:: \delta = r_{bi}\varphi_i - r_{bj}\varphi_j + n\cdot((p_i + c_i) - (p_j + c_j)) - \text{gap}
+
+        Parameters
+        ----------
+        drive : bool
+            Drive flank, or coast flank.
+        position : int
+            Mesh position, 0-based.
+        rotations : tuple of float
+            φ of driver and driven gear [rad].
+        relative_offset : ndarray, shape (3,)
+            (p_i + c_i) − (p_j + c_j) [m].
+        """
+        on_driver, on_driven, normal = self.direction(drive)
+        turned = on_driver * rotations[0] + on_driven * rotations[1]
+        return turned + float(normal @ relative_offset) - self.gap(position, drive)
+
+
+def contact_of(driver: Gear, driven: Gear) -> Contact:
+    """Contact of two placed gears, face or parallel."""
+    if driven.kind == "face":
+        return face_contact(
+            driver.centre, driver.axis, driven.centre, driven.axis, driver.sense, True
+        )
+    if driver.kind == "face":
+        return face_contact(
+            driven.centre, driven.axis, driver.centre, driver.axis, driver.sense, False
+        )
+    return parallel_contact(
+        driver.centre,
+        driver.axis,
+        driver.sense,
+        driver.kind == "internal",
+        driven.centre,
+        driven.axis,
+        driven.kind == "internal",
+    )

@@ -1,0 +1,39 @@
+"""Geometric errors as centre offsets (formulation, section 1).
+
+An offset acts on approaches exactly as a displacement of the centre does, and costs no energy. An installation
+error is a fixed vector; a manufacturing eccentricity turns with its gear.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from loadshare.train.gear import Gear, Vector
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Offset:
+    """Errors of one gear.
+
+    Attributes
+    ----------
+    installation : ndarray, shape (3,)
+        Fixed offset [m].
+    eccentricity : float
+        Amplitude [m].
+    angle : float
+        Direction η plus initial phase [rad], in the gear's transverse frame.
+    """
+
+    installation: Vector
+    eccentricity: float
+    angle: float
+
+    def at(self, gear: Gear, rotation: float) -> Vector:
+        """Offset (3,) [m] of `gear` turned by `rotation` [rad] in its running sense."""
+        turned = gear.sense * rotation + self.angle
+        direction = np.array([math.cos(turned), math.sin(turned)]) @ gear.frame
+        return self.installation + self.eccentricity * direction

@@ -1,0 +1,178 @@
+"""Radial laws: a force along an offset whose size is a monotone graph of the offset's size.
+
+A clearance spline (formulation, section 5) and a round limit ring are both such graphs. A graph is a chain of
+pieces that carry the same force and add their lengths; vertical steps lie between the pieces. Written so, its
+energy is an inf-convolution and every piece is one second-order cone.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Piece:
+    """One rising or level piece of a graph.
+
+    Parameters
+    ----------
+    force : float
+        Force at its start [N].
+    stiffness : float
+        Its slope [N/m]; 0 for a level piece.
+    length : float
+        Its extent in radius [m]; infinite for a last piece without end.
+    name : str
+        What an engineer calls it: "stick", "slip", "stop", "inside".
+    """
+
+    force: float
+    stiffness: float
+    length: float
+    name: str
+
+    @property
+    def end_force(self) -> float:
+        """Force at its end [N]."""
+        return self.force if self.stiffness == 0.0 else self.force + self.stiffness * self.length
+
+
+@dataclass(frozen=True, slots=True)
+class RadialLaw:
+    """A monotone graph from radius [m] to force [N], as a chain of pieces.
+
+    If the last piece is finite, the graph ends in a vertical step without end: a rigid stop.
+    """
+
+    pieces: tuple[Piece, ...]
+
+    def start(self, piece: int) -> float:
+        """Radius [m] at which a piece begins."""
+        return math.fsum(p.length for p in self.pieces[:piece])
+
+    @property
+    def reach(self) -> float:
+        """Largest admissible radius [m]; infinite without a rigid stop."""
+        return self.start(len(self.pieces))
+
+    def step(self, corner: int) -> tuple[float, float]:
+        """Force interval [N] of the vertical step in front of piece `corner` (after the last: the stop)."""
+        low = self.pieces[corner - 1].end_force if corner > 0 else 0.0
+        high = self.pieces[corner].force if corner < len(self.pieces) else math.inf
+        return low, high
+
+    def interval(self, radius: float, band: float = 0.0) -> tuple[float, float]:
+        """Forces [N] that the graph admits at `radius` [m], corners widened by `band` [m].
+
+        A band lets an answer that stands on a corner up to round-off be judged by the whole step.
+        """
+        low, high = math.inf, 0.0
+        begin = 0.0
+        for piece in self.pieces:
+            end = begin + piece.length
+            if begin - band <= radius <= end + band:
+                inner = min(max(radius, begin), end) - begin
+                here = piece.force + (piece.stiffness * inner if piece.stiffness else 0.0)
+                low, high = min(low, here), max(high, here)
+            begin = end
+        if radius <= band:
+            low = 0.0
+        if radius >= begin - band:
+            low, high = min(low, self.pieces[-1].end_force), math.inf
+        return low, high
+
+    def energy(self, radius: float) -> float:
+        """∫F dR [J] up to `radius` [m] (a radius beyond a rigid stop costs what the stop's edge costs)."""
+        total, left = 0.0, radius
+        for piece in self.pieces:
+            inner = min(left, piece.length)
+            if inner <= 0.0:
+                break
+            total += piece.force * inner + 0.5 * piece.stiffness * inner**2
+            left -= inner
+        return total
+
+    def complementary(self, force: float) -> float:
+        """Conjugate energy sup_R (F R − W(R)) [J], exact for every piece."""
+        total = 0.0
+        for piece in self.pieces:
+            over = force - piece.force
+            if over <= 0.0:
+                continue
+            if piece.stiffness > 0.0 and over <= piece.stiffness * piece.length:
+                total += over**2 / (2.0 * piece.stiffness)
+            elif math.isinf(piece.length):
+                return math.inf
+            else:
+                total += over * piece.length - 0.5 * piece.stiffness * piece.length**2
+        return total
+
+    def scaled(self, force_unit: float, length_unit: float) -> RadialLaw:
+        """Return the law with forces in `force_unit` [N] and lengths in `length_unit` [m]."""
+        return RadialLaw(
+            tuple(
+                Piece(
+                    p.force / force_unit,
+                    p.stiffness * length_unit / force_unit,
+                    p.length / length_unit,
+                    p.name,
+                )
+                for p in self.pieces
+            )
+        )
+
+
+def spline_law(
+    bending_stiffness: float, stick_limit: float | None, clearance: float, friction: float
+) -> RadialLaw:
+    """Clearance spline: stick, slip, stop (formulation, section 5).
+
+    Parameters
+    ----------
+    bending_stiffness : float
+        K_w of the spline shaft [N/m].
+    stick_limit : float or None
+        S1 [m]; None takes F_m/K_w, where stick passes into slip without a jump.
+    clearance : float
+        S2 [m], beyond which the shaft bends again.
+    friction : float
+        Friction bound F_m [N].
+
+    Raises
+    ------
+    ValueError
+        If K_w S1 > F_m, so that the law would drop (several equilibria), or if S2 < S1. The message names
+        the numbers.
+    """
+    continuous = friction / bending_stiffness
+    s1 = continuous if stick_limit is None else stick_limit
+    if bending_stiffness * s1 > friction * (1.0 + 1e-12):
+        raise ValueError(
+            f"the spline's force would drop from K_w S1 = {bending_stiffness * s1:.6g} N to "
+            f"F_m = {friction:.6g} N where it starts to slip (K_w = {bending_stiffness:.6g} N/m, "
+            f"S1 = {s1:.6g} m): several equilibria would be possible"
+        )
+    if clearance < s1:
+        if stick_limit is not None:
+            raise ValueError(
+                f"the spline's clearance S2 = {clearance:.6g} m is smaller than the radius "
+                f"S1 = {s1:.6g} m where it starts to slip"
+            )
+        # The clearance closes before friction is overcome: the shaft bends throughout.
+        return RadialLaw((Piece(0.0, bending_stiffness, math.inf, "stick"),))
+    pieces = (
+        Piece(0.0, bending_stiffness, s1, "stick"),
+        Piece(friction, 0.0, clearance - s1, "slip"),
+        Piece(friction, bending_stiffness, math.inf, "stop"),
+    )
+    return RadialLaw(tuple(p for p in pieces if p.length > 0.0))
+
+
+def round_ring_law(radius: float, stiffness: float) -> RadialLaw:
+    """Round limit ring: nothing inside `radius` [m], then a rigid stop or `stiffness` [N/m]."""
+    free = Piece(0.0, 0.0, radius, "inside")
+    if math.isinf(stiffness):
+        return RadialLaw((free,))
+    wall = Piece(0.0, stiffness, math.inf, "on boundary")
+    return RadialLaw((free, wall) if radius > 0.0 else (wall,))

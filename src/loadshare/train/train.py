@@ -1,0 +1,226 @@
+"""The machine as a whole, and its situation at one meshing position."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from loadshare.train.gear import Gear, Vector
+from loadshare.train.mesh import Mesh
+from loadshare.train.offset import Offset
+from loadshare.train.radial import RadialLaw, spline_law
+from loadshare.train.ring import Arc, DrumRing, Ring, transverse
+
+
+@dataclass(frozen=True, slots=True)
+class Shaft:
+    """A torsion shaft: ½ K (φ_a − φ_b − clocking)².
+
+    Attributes
+    ----------
+    name, first, second : str
+    stiffness : float
+        K_T [N·m/rad]; infinite for a rigid shaft.
+    clocking : float
+        Angle by which the second end lags the first when unloaded [rad].
+    """
+
+    name: str
+    first: str
+    second: str
+    stiffness: float
+    clocking: float
+
+
+@dataclass(frozen=True, slots=True)
+class Spline:
+    """A clearance spline that holds a gear (formulation, section 5).
+
+    Attributes
+    ----------
+    gear : str
+    bending_stiffness : float
+        K_w [N/m].
+    stick_limit : float or None
+        S1 [m], or None for F_m/K_w.
+    clearance : float
+        S2 [m].
+    friction_force : float or None
+        F_m [N] where it is fixed (given, or τ F_N with F_N given).
+    friction_per_torque : float
+        τ/radius [1/m] where F_m follows the torque the gear takes from its shafts.
+    """
+
+    gear: str
+    bending_stiffness: float
+    stick_limit: float | None
+    clearance: float
+    friction_force: float | None
+    friction_per_torque: float
+
+    @property
+    def name(self) -> str:
+        """Name of the element."""
+        return f"spline {self.gear}"
+
+    def bound(self, torque: float) -> float:
+        """Friction bound F_m [N] when the spline transmits `torque` [N·m]."""
+        if self.friction_force is not None:
+            return self.friction_force
+        return self.friction_per_torque * abs(torque)
+
+    def law(self, torque: float) -> RadialLaw:
+        """Radial law at `torque` [N·m].
+
+        Raises
+        ------
+        ValueError
+            If the law would drop at this torque; the message names the numbers.
+        """
+        return spline_law(
+            self.bending_stiffness, self.stick_limit, self.clearance, self.bound(torque)
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Stage:
+    """A named stage: the meshes among which load sharing is counted."""
+
+    name: str
+    meshes: tuple[str, ...]
+    groups: tuple[tuple[str, ...], ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Situation:
+    """What changes from position to position.
+
+    Attributes
+    ----------
+    index : int
+        1-based position.
+    mesh_position : mapping of str to int
+        0-based position in the mesh cycle of each mesh.
+    rotation : mapping of str to float
+        Angle by which each gear has turned [rad].
+    offset : mapping of str to ndarray (3,)
+        Centre offsets c [m].
+    torque : mapping of str to float
+        External torques [N·m], positive in the running sense.
+    """
+
+    index: int
+    mesh_position: Mapping[str, int]
+    rotation: Mapping[str, float]
+    offset: Mapping[str, Vector]
+    torque: Mapping[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Train:
+    """A gear train in SI units: geometry, laws, errors and operating point.
+
+    Attributes
+    ----------
+    name : str
+    gears : mapping of str to Gear
+    meshes : mapping of str to Mesh
+    shafts : mapping of str to Shaft
+    splines, rings, offsets : mapping of gear name to Spline, Ring, Offset
+    stages : tuple of Stage
+    input, output : str
+    input_torque : tuple of float
+        One, or one per position [N·m].
+    external : mapping of str to float
+        Further external torques [N·m].
+    positions : int
+        Positions of a mesh cycle.
+    march : tuple of (str, float, int) or None
+        Reference gear, its revolutions and the number of steps.
+    """
+
+    name: str
+    gears: Mapping[str, Gear]
+    meshes: Mapping[str, Mesh]
+    shafts: Mapping[str, Shaft]
+    splines: Mapping[str, Spline]
+    rings: Mapping[str, Ring]
+    offsets: Mapping[str, Offset]
+    stages: tuple[Stage, ...]
+    input: str
+    output: str
+    input_torque: tuple[float, ...]
+    external: Mapping[str, float]
+    positions: int
+    march: tuple[str, float, int] | None
+
+    @property
+    def count(self) -> int:
+        """Number of positions to solve."""
+        return self.positions if self.march is None else self.march[2]
+
+    @cached_property
+    def floating(self) -> tuple[str, ...]:
+        """Gears whose rest position is reported: free ones, those on a spline, those in a ring."""
+        return tuple(
+            n for n, g in self.gears.items() if g.floats or n in self.splines or n in self.rings
+        )
+
+    def situation(self, index: int) -> Situation:
+        """Describe position `index` (1-based).
+
+        In a mesh cycle every mesh stands at the same position and the gears turn by the input gear's pitch over
+        the cycle (if its teeth are given). In a march the gears turn through whole revolutions; a mesh whose
+        driver's teeth are given stands at the position that its rotation reaches, others step one by one.
+
+        Raises
+        ------
+        IndexError
+            If there is no such position.
+        """
+        if not 1 <= index <= self.count:
+            raise IndexError(f"position {index}: this case has positions 1 to {self.count}")
+        step = index - 1
+        if self.march is None:
+            teeth = self.gears[self.input].teeth
+            turned = 2.0 * math.pi * step / (self.positions * teeth) if teeth else 0.0
+        else:
+            gear, revolutions, steps = self.march
+            turned = 2.0 * math.pi * revolutions * step / steps / self.gears[gear].ratio
+        rotation = {name: turned * gear.ratio for name, gear in self.gears.items()}
+        still = np.zeros(3)
+        torque = dict(self.external)
+        driving = self.input_torque[step % len(self.input_torque)]
+        torque[self.input] = torque.get(self.input, 0.0) + driving
+        return Situation(
+            index=index,
+            mesh_position={m: self._mesh_position(m, step, rotation) for m in self.meshes},
+            rotation=rotation,
+            offset={
+                name: self.offsets[name].at(gear, rotation[name]) if name in self.offsets else still
+                for name, gear in self.gears.items()
+            },
+            torque=torque,
+        )
+
+    def _mesh_position(self, mesh: str, step: int, rotation: Mapping[str, float]) -> int:
+        driver = self.gears[self.meshes[mesh].driver]
+        if self.march is None or driver.teeth is None:
+            return step % self.positions
+        cycles = rotation[driver.name] * driver.teeth / (2.0 * math.pi)
+        # A step that falls on a cycle's start up to round-off belongs to it, not to the end of the one before.
+        return math.floor((cycles % 1.0) * self.positions + 1e-9) % self.positions
+
+    def arc(self, ring: DrumRing, side: int, situation: Situation) -> Arc:
+        """Exclusion arc of a drum ring towards its neighbour number `side` (0 or 1)."""
+        gear, neighbour = self.gears[ring.gear], self.gears[ring.neighbours[side]]
+        nominal = transverse(gear.centre - neighbour.centre, gear.axis)
+        start = nominal
+        if ring.with_errors:
+            shift = situation.offset[gear.name] - situation.offset[neighbour.name]
+            start = nominal + transverse(shift, gear.axis)
+        return Arc(start, float(np.linalg.norm(nominal)), ring.clearances[side])

@@ -1,0 +1,25 @@
+from pathlib import Path
+
+import pytest
+
+from loadshare.case import Case, load_case
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+@pytest.fixture(scope="session")
+def drive_text() -> str:
+    """A small valid case file."""
+    return Path(__file__).with_name("drive.toml").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def drive() -> Case:
+    """The small valid case of drive.toml."""
+    return load_case(Path(__file__).with_name("drive.toml"))
+
+
+@pytest.fixture
+def cases() -> Path:
+    """The folder of shipped cases."""
+    return CASES

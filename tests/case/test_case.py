@@ -1,0 +1,140 @@
+import pickle
+
+import pint
+import pytest
+
+from loadshare.case import Case, Gear, Mesh, load_case
+from loadshare.errors import CaseError
+
+
+def test_toml_round_trip(drive, tmp_path):
+    text = drive.to_toml(tmp_path / "copy.toml")
+    assert (tmp_path / "copy.toml").read_text() == text
+    again = load_case(tmp_path / "copy.toml")
+    assert again == drive
+    assert again.to_toml() == text
+    assert again.name == "copy"
+
+
+def test_every_shipped_case_survives_toml(cases, tmp_path):
+    for path in sorted(cases.rglob("*.toml")):
+        case = load_case(path)
+        case.to_toml(tmp_path / "copy.toml")
+        again = load_case(tmp_path / "copy.toml")
+        assert again == case, path
+        assert again.hash == case.hash, path
+
+
+def test_pickle(drive):
+    again = pickle.loads(pickle.dumps(drive))
+    assert again == drive
+    assert again.name == "drive"
+    assert again.to_toml() == drive.to_toml()
+
+
+def test_errors_survive_pickle(drive):
+    with pytest.raises(CaseError) as caught:
+        drive.replace({"gears.a.base_radius": "3 kg", "gears.x": None})
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert again.problems == caught.value.problems
+    assert str(again) == str(caught.value)
+
+
+def test_a_case_built_in_python(drive):
+    theirs = pint.UnitRegistry()
+    case = Case(
+        name="built",
+        operating={"input": "1", "output": "2", "torque": theirs.Quantity(100, "N*m")},
+        gears={
+            1: Gear(centre=("0 mm", "0 mm"), base_radius="46.9846 mm"),
+            2: {"centre": ["150 mm", "0 mm"], "base_radius": theirs.Quantity(93.9693, "mm")},
+        },
+        meshes={"1-2": Mesh(pressure_angle="20 deg", stiffness="1e6 N*m/rad")},
+        march=None,
+    )
+    assert case.name == "built"
+    assert case.operating.input_torque == (100.0,)
+    assert case.gears["2"].base_radius.text == "93.9693 mm"
+    assert (case.meshes["1-2"].driver, case.meshes["1-2"].driven) == ("1", "2")
+    assert 'torque = "100.0 N*m"' in case.to_toml()
+    assert case.problem("gears.1.base_radius", "is odd").file == "built"
+
+
+def test_a_bad_case_built_in_python_is_told_in_the_same_words():
+    with pytest.raises(CaseError) as caught:
+        Case(operating={"input": "1"}, gears={}, meshes={})
+    assert str(caught.value) == "case: operating.output: is missing. Gear at which it leaves."
+
+
+def test_gears_may_have_dashes_in_their_names(drive):
+    data = drive.to_dict()
+    data["gears"]["a-1"] = data["gears"].pop("a")
+    data["gears"]["b"]["centre"]["about"] = "a-1"
+    data["meshes"]["a-1-b"] = data["meshes"].pop("a-b")
+    data["stages"]["I"]["meshes"] = ["a-1-b"]
+    data["operating"]["input"] = "a-1"
+    case = Case(data)
+    assert (case.meshes["a-1-b"].driver, case.meshes["a-1-b"].driven) == ("a-1", "b")
+
+
+def test_power_and_speed_make_a_torque(drive):
+    case = drive.replace(
+        {"operating.torque": None, "operating.power": "2000 kW", "operating.speed": "8780 rpm"}
+    )
+    assert case.operating.input_torque == pytest.approx((2175.2,), abs=0.05)
+
+
+def test_a_face_gears_acting_radius_is_the_mean_of_its_radii():
+    gear = Gear(type="face", centre=["0 mm", "0 mm"], inner_radius="200 mm", outer_radius="240 mm")
+    assert gear.acting_radius == pytest.approx(0.22)
+
+
+def test_hash_is_of_the_mechanics(drive):
+    said_otherwise = drive.replace(
+        {
+            "title": "Another",
+            "source": "x",
+            "notes": "y",
+            "assumed": ["gears"],
+            "gears.a.base_radius": "0.0469846 m",
+            "gears.a.type": "external",
+        }
+    )
+    assert said_otherwise != drive
+    assert said_otherwise.hash == drive.hash
+    assert drive.replace({'meshes."a-b".stiffness': "1.1e6 N*m/rad"}).hash != drive.hash
+    assert len(drive.hash) == 64
+
+
+def test_replace_leaves_the_case_as_it_is(drive):
+    before = drive.to_dict()
+    changed = drive.replace(
+        {
+            'meshes."c-d".stiffness[1]': "5e6 N*m/rad",
+            "errors.a": {"installation": ["1 um", "2 um"]},
+            'meshes."a-b".backlash': None,
+            "rings.c": {"neighbours": ["a", "d"], "float": {"up": "1 um", "down": "2 um"}},
+        }
+    )
+    assert drive.to_dict() == before
+    assert changed.meshes["c-d"].stiffness[1].si == 5e6
+    assert changed.errors["a"].installation[1].si == 2e-6
+    assert changed.meshes["a-b"].backlash is None
+    assert changed.rings["c"].float_.down.si == 2e-6
+    assert changed.name == "drive"
+
+
+@pytest.mark.parametrize(
+    ("key", "message"),
+    [
+        ("gears.aa.support", "leads nowhere. Did you mean gears.a?"),
+        ("gear.a.support", "leads nowhere. Did you mean gears?"),
+        ("march.steps.x", "leads nowhere. There is no march.steps."),
+        ('meshes."c-d".stiffness[7]', 'leads nowhere. There is no meshes."c-d".stiffness[7].'),
+        ("a..b", "is not a key path."),
+    ],
+)
+def test_replace_of_what_is_not_there(drive, key, message):
+    with pytest.raises(CaseError) as caught:
+        drive.replace({key: 3})
+    assert str(caught.value) == f"changes: {key} = 3: {message}"

@@ -1,0 +1,151 @@
+import math
+import subprocess
+import sys
+import time
+
+import pint
+import pytest
+from pydantic import TypeAdapter, ValidationError
+
+from loadshare.case import quantity as q
+from loadshare.case import units
+
+
+def read(kind, given):
+    return TypeAdapter(kind).validate_python(given)
+
+
+@pytest.mark.parametrize(
+    ("kind", "text", "si"),
+    [
+        (q.Length, "45.9 mm", 0.0459),
+        (q.Length, "8.24 um", 8.24e-6),
+        (q.Length, "8.24 µm", 8.24e-6),
+        (q.Length, "3 micron", 3e-6),
+        (q.Length, "3 nm", 3e-9),
+        (q.Length, "−1.5e-1 cm", -1.5e-3),
+        (q.Length, "2in", 0.0508),
+        (q.Length, "1 ft", 0.3048),
+        (q.Angle, "180 deg", math.pi),
+        (q.Angle, "1 mrad", 1e-3),
+        (q.Angle, "60 arcmin", math.radians(1)),
+        (q.Angle, "3600 arcsec", math.radians(1)),
+        (q.AngularSpeed, "60 rpm", math.tau),
+        (q.AngularSpeed, "60 rev/min", math.tau),
+        (q.AngularSpeed, "60 r/min", math.tau),
+        (q.AngularSpeed, "1 Hz", math.tau),
+        (q.Power, "2 MW", 2e6),
+        (q.Power, "1 hp", 745.6998715822702),
+        (q.Torque, "2 kN*m", 2e3),
+        (q.Torque, "2 N·mm", 2e-3),
+        (q.Torque, "2 N m", 2.0),
+        (q.Force, "1 lbf", 4.4482216152605),
+        (q.Stiffness, "1.78e7 N/m", 1.78e7),
+        (q.Stiffness, "17.8 N/um", 1.78e7),
+        (q.TorsionalStiffness, "1 N*m/mrad", 1e3),
+        (q.TorsionalCompliance, "2e-7 rad/(N*m)", 2e-7),
+        (q.HertzCompliance, "1e-6 rad/(N*m)^(2/3)", 1e-6),
+        (q.HertzCompliance, "1e-6 rad/(N*m)**(2/3)", 1e-6),
+        (q.HertzCompliance, "1 urad/(kN·m)^(2/3)", 1e-8),
+    ],
+)
+def test_units_that_engineers_write(kind, text, si):
+    value = read(kind, text)
+    assert value.text == text
+    assert float(value) == pytest.approx(si, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("kind", "given", "message"),
+    [
+        (q.Length, 45.9, '45.9 has no unit. Allowed: a length such as "45.9 mm". '),
+        (q.Length, 0, '0 has no unit. Allowed: a length such as "0 mm". '),
+        (q.Length, "45.9", '45.9 has no unit. Allowed: a length such as "45.9 mm". '),
+        (
+            q.TorsionalStiffness,
+            "5 N*m",
+            "is a torque, a torsional stiffness is needed. "
+            'Allowed: a torsional stiffness such as "5e5 N*m/rad". ',
+        ),
+        (
+            q.HertzCompliance,
+            "1 rad/(N*m)",
+            "is in rad/(N*m), a Hertz compliance is needed. "
+            'Allowed: a Hertz compliance such as "1e-6 rad/(N*m)^(2/3)". ',
+        ),
+        (
+            q.Torque,
+            "5 Nm",
+            'the unit Nm is not known. Allowed: a torque such as "2175 N*m". Did you mean N*m?',
+        ),
+        (
+            q.Length,
+            "5 MM",
+            'the unit MM is not known. Allowed: a length such as "45.9 mm". Did you mean mm?',
+        ),
+        (q.Length, "nan mm", 'is not finite. Allowed: a length such as "45.9 mm". '),
+        (q.Length, "1e999 mm", 'is not finite. Allowed: a length such as "45.9 mm". '),
+        (
+            q.Length,
+            "1,5 mm",
+            'is not a number followed by a unit. Allowed: a length such as "45.9 mm". ',
+        ),
+        (
+            q.Length,
+            True,
+            'is not a number followed by a unit. Allowed: a length such as "45.9 mm". ',
+        ),
+        (
+            q.Length,
+            "5 3 mm",
+            'is not a number followed by a unit. Allowed: a length such as "45.9 mm". ',
+        ),
+    ],
+)
+def test_values_that_are_none(kind, given, message):
+    with pytest.raises(ValidationError) as caught:
+        read(kind, given)
+    assert caught.value.errors()[0]["msg"] == message
+
+
+def test_pint_quantities_of_any_registry():
+    theirs = pint.UnitRegistry()
+    assert read(q.Length, theirs.Quantity(45.9, "mm")).si == 0.0459
+    assert read(q.Angle, theirs.Quantity(20, "deg")).text == "20.0 deg"
+    stiffness = read(q.TorsionalStiffness, theirs.Quantity(5e5, "N*m/rad"))
+    assert stiffness.si == 5e5
+    ours = units.registry().Quantity(1.0, "kN*m")
+    assert read(q.Torque, ours).si == pytest.approx(1e3)
+
+
+def test_one_length_in_two_units_is_one_number():
+    assert read(q.Length, "45.9 mm").si == read(q.Length, "0.0459 m").si
+
+
+def test_text_and_schema():
+    adapter = TypeAdapter(q.Length)
+    assert adapter.dump_python(adapter.validate_python("1 mm")) == "1 mm"
+    schema = adapter.json_schema()
+    assert schema["type"] == "string"
+    assert schema["description"] == 'a length such as "45.9 mm"'
+    assert schema["examples"] == ["45.9 mm"]
+
+
+def test_registry_is_built_fast():
+    import pint.delegates  # noqa: F401 -- what is timed is the registry, not the import
+
+    best = math.inf
+    for _ in range(3):
+        units.registry.cache_clear()
+        start = time.perf_counter()
+        units.registry()
+        best = min(best, time.perf_counter() - start)
+    # Units parsed before belong to a registry that is gone.
+    units.registry.cache_clear()
+    units._parse.cache_clear()
+    assert best < 0.03
+
+
+def test_importing_the_room_does_not_import_pint():
+    code = "import sys, loadshare.case; sys.exit('pint' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

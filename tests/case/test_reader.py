@@ -1,0 +1,142 @@
+from pathlib import Path
+
+import pytest
+
+from loadshare.case import load_case
+from loadshare.errors import CaseError
+
+
+def write(folder: Path, **files: str) -> Path:
+    """Write files by stem; return the path of the last one."""
+    for stem, text in files.items():
+        path = folder / f"{stem}.toml"
+        path.write_text(text, encoding="utf-8")
+    return path
+
+
+def said(path: Path, relative_to: Path) -> str:
+    with pytest.raises(CaseError) as caught:
+        load_case(path)
+    return str(caught.value).replace(f"{relative_to}/", "")
+
+
+def test_a_case_is_named_after_its_file(drive):
+    assert drive.name == "drive"
+    assert repr(drive) == "Case(drive: 4 gears, 2 meshes)"
+
+
+def test_tables_merge_and_the_rest_is_replaced(tmp_path, drive_text):
+    own = """
+extends = "base.toml"
+remove = ['meshes."c-d".stiffness', "stages"]
+title = "Changed"
+[gears.a]
+support = "free"
+[meshes."c-d".law]
+b = "1e-6 rad/(N*m)"
+"""
+    case = load_case(write(tmp_path, base=drive_text, changed=own))
+    assert case.title == "Changed"
+    assert case.gears["a"].support == "free"
+    assert case.gears["a"].base_radius.text == "46.9846 mm"
+    assert case.meshes["c-d"].stiffness is None
+    assert case.stages == {}
+
+
+def test_what_a_base_assumes_stays_assumed(tmp_path, drive_text):
+    own = 'extends = "base.toml"\nassumed = ["gears.b"]\n'
+    case = load_case(write(tmp_path, base=drive_text, own=own))
+    assert case.assumed == ("gears.*.base_radius", "gears.b")
+    assert case.is_assumed("gears.a.base_radius")
+    assert case.is_assumed("gears.b.centre.angle")
+    assert not case.is_assumed("gears.a.centre")
+    assert not case.is_assumed('meshes."a-b".stiffness')
+
+
+def test_inheritance_chains_and_problems_name_the_file_of_the_key(tmp_path, drive_text):
+    middle = 'extends = "base.toml"\n[gears.a]\nsupport = "3 kg"\nteeth = 20\n'
+    top = 'extends = "middle.toml"\nassumed = ["x"]\n[gears.a]\nteeth = 2\n'
+    bad = drive_text.replace('"150 mm", "150 mm"', '"150 mm", "15 mm/s"')
+    path = write(tmp_path, base=bad, middle=middle, top=top)
+    assert said(path, tmp_path).splitlines() == [
+        "top.toml: gears.a.teeth = 2: cannot stand here. Allowed: a number of at least 5.",
+        'middle.toml: gears.a.support = "3 kg": is a mass, a stiffness is needed. '
+        'Allowed: "rigid", "free", or a stiffness such as "1.78e7 N/m".',
+        'base.toml: gears.d.centre[1] = "15 mm/s": is a speed, a length is needed. '
+        'Allowed: a length such as "45.9 mm".',
+        'top.toml: assumed[1] = "x": matches no key of the case.',
+    ]
+
+
+def test_later_rooms_can_name_a_key_with_its_file(tmp_path, drive_text):
+    own = 'extends = "base.toml"\n[gears.a]\nsupport = "free"\n'
+    path = write(tmp_path, base=drive_text, own=own)
+    case = load_case(path)
+    problem = case.problem('meshes."c-d".stiffness[2]', "is odd", "less", "Think.")
+    expected = f'{tmp_path / "base.toml"}: meshes."c-d".stiffness[2] = "3e6 N*m/rad": is odd.'
+    assert str(problem) == f"{expected} Allowed: less. Think."
+    assert case.problem("gears.a.support", "x").file == str(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "[gears.a]\nteeth = = 3\n",
+            "bad.toml: is not valid TOML at line 2, column 9: invalid value.",
+        ),
+        (
+            'extends = "nowhere.toml"\n',
+            'bad.toml: extends = "nowhere.toml": there is no such file.',
+        ),
+        (
+            'extends = "bad.toml"\n',
+            'bad.toml: extends = "bad.toml": closes a circle: bad.toml → bad.toml.',
+        ),
+        (
+            "extends = 3\n",
+            'bad.toml: extends = 3: is not a file. Allowed: a file such as "base.toml".',
+        ),
+        (
+            'extends = "base.toml"\nremove = ["gears.aa", 3]\n',
+            'bad.toml: remove[0] = "gears.aa": is not inherited. Did you mean gears.a?\n'
+            "bad.toml: remove[1] = 3: is not a key path. "
+            'Allowed: a text such as "errors.6".',
+        ),
+        (
+            'extends = "base.toml"\nremove = "gears.a"\n',
+            'bad.toml: remove = "gears.a": cannot stand here. '
+            'Allowed: a list such as ["errors.6"].',
+        ),
+        (
+            'extends = "base.toml"\nname = "x"\norigin = "y"\n',
+            'bad.toml: name = "x": unknown key. Allowed: title, source, notes, assumed, operating, '
+            "march, gears, meshes, shafts, splines, rings, errors, stages.\n"
+            'bad.toml: origin = "y": unknown key. Allowed: title, source, notes, assumed, '
+            "operating, march, gears, meshes, shafts, splines, rings, errors, stages.",
+        ),
+    ],
+)
+def test_a_file_that_cannot_be_read_is_told(tmp_path, drive_text, text, message):
+    assert said(write(tmp_path, base=drive_text, bad=text), tmp_path) == message
+
+
+def test_a_file_that_is_not_there_is_told(tmp_path):
+    missing = said(tmp_path / "missing.toml", tmp_path)
+    assert missing == "missing.toml: no such file or directory."
+
+
+def test_a_file_that_is_not_text_is_told(tmp_path):
+    path = tmp_path / "latin.toml"
+    path.write_bytes(b'title = "\xfc"\n')
+    assert said(path, tmp_path) == "latin.toml: is not UTF-8 text at byte 9."
+
+
+def test_an_empty_file_lacks_the_sections_that_every_case_has(tmp_path):
+    assert said(write(tmp_path, empty=""), tmp_path).splitlines() == [
+        "empty.toml: operating: is missing. The operating point: where the power enters and leaves, "
+        "and how much of it.",
+        "empty.toml: gears: is missing. The gears, by name.",
+        "empty.toml: meshes: is missing. The meshes; one named a-b joins the driver a to the "
+        "driven gear b.",
+    ]

@@ -1,0 +1,51 @@
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from loadshare.case import Case
+from loadshare.errors import CaseError
+
+RULES = tomllib.loads(Path(__file__).with_name("rules.toml").read_text(encoding="utf-8"))["rule"]
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule["said"][0].partition(": ")[2][:40])
+def test_a_broken_rule_is_told_word_for_word(drive: Case, rule):
+    changes = dict.fromkeys(rule.get("drop", ())) | rule.get("change", {})
+    with pytest.raises(CaseError) as caught:
+        drive.replace(changes)
+    assert [str(replace(problem, file="")) for problem in caught.value.problems] == rule["said"]
+
+
+def test_no_message_speaks_the_language_of_a_library():
+    for rule in RULES:
+        for word in ("Input should", "pydantic", "validation", "NoneType", "Traceback"):
+            assert not any(word in said for said in rule["said"])
+
+
+def test_one_bad_element_hides_no_other(drive: Case):
+    with pytest.raises(CaseError) as caught:
+        drive.replace(
+            {
+                "gears.a.base_radius": "3 kg",
+                "gears.b.support": "rigd",
+                'meshes."c-d".pressure_angle': "60 deg",
+                'shafts."b-c".stiffness': 5,
+                "stages.I.meshes": ["a-x"],
+                "operating.output": "e",
+                "assumed": ["shafts.*.radius"],
+                "tittle": "x",
+            }
+        )
+    assert [problem.key for problem in caught.value.problems] == [
+        "tittle",
+        "gears.a.base_radius",
+        "gears.b.support",
+        'meshes."c-d".pressure_angle',
+        'shafts."b-c".stiffness',
+        "operating.output",
+        "stages.I.meshes[0]",
+        "assumed[0]",
+    ]
+    assert str(caught.value).count("\n") == 7
