@@ -134,8 +134,8 @@ def test_a_file_that_is_not_text_is_told(tmp_path):
 
 def test_an_empty_file_lacks_the_sections_that_every_case_has(tmp_path):
     assert said(write(tmp_path, empty=""), tmp_path).splitlines() == [
-        "empty.toml: operating: is missing. The operating point: where the power enters and leaves, "
-        "and how much of it.",
+        "empty.toml: operating: is missing. The operating point: where the power enters and "
+        "leaves, and how much of it.",
         "empty.toml: gears: is missing. The gears, by name.",
         "empty.toml: meshes: is missing. The meshes; one named a-b joins the driver a to the "
         "driven gear b.",

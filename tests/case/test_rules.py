@@ -5,6 +5,10 @@ from pathlib import Path
 import pytest
 
 from loadshare.case import Case
+from loadshare.case.checks import CHECKS
+from loadshare.case.draft import read_draft
+from loadshare.case.origin import Origin
+from loadshare.case.revise import revise
 from loadshare.errors import CaseError
 
 RULES = tomllib.loads(Path(__file__).with_name("rules.toml").read_text(encoding="utf-8"))["rule"]
@@ -16,6 +20,16 @@ def test_a_broken_rule_is_told_word_for_word(drive: Case, rule):
     with pytest.raises(CaseError) as caught:
         drive.replace(changes)
     assert [str(replace(problem, file="")) for problem in caught.value.problems] == rule["said"]
+
+
+@pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)
+def test_every_check_is_broken_by_a_rule(drive: Case, check):
+    def problems(rule):
+        changes = dict.fromkeys(rule.get("drop", ())) | rule.get("change", {})
+        data, origin = revise(drive.to_dict(), Origin(), changes)
+        return list(check(read_draft(data, origin)))
+
+    assert any(problems(rule) for rule in RULES)
 
 
 def test_no_message_speaks_the_language_of_a_library():

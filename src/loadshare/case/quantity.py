@@ -190,13 +190,15 @@ def as_text(given: object) -> object:
     Returns
     -------
     object
-        Number and unit as text; something else unchanged.
+        Number and unit as text, an array as a list of them; something else unchanged.
     """
     if isinstance(given, Quantity):
         return given.text
     magnitude, units = getattr(given, "magnitude", None), getattr(given, "units", None)
     if magnitude is None or units is None:
         return given
+    if getattr(magnitude, "ndim", 0):
+        return [f"{float(number)!r} {units:~C}" for number in magnitude]
     return f"{float(magnitude)!r} {units:~C}".strip()
 
 

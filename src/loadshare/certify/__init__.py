@@ -1,4 +1,4 @@
-"""The certificate: whether an answer is an equilibrium, recomputed from the physics and the answer alone."""
+"""The certificate: is an answer an equilibrium? Recomputed from physics and the answer alone."""
 
 from loadshare.certify.certificate import Certificate, Residual, certify
 from loadshare.certify.floats import FloatState, Touch

@@ -1,7 +1,7 @@
 """The certificate of an equilibrium (formulation, section 8).
 
-It is recomputed from the train and the claimed displacements and forces alone. No solver's word, no programme and
-no row enters it: a slip in any of them shows here.
+It is recomputed from the train and the claimed displacements and forces alone. No solver's word, no
+programme and no row enters it: a slip in any of them shows here.
 """
 
 from __future__ import annotations
@@ -50,8 +50,8 @@ class Certificate:
     Attributes
     ----------
     residuals : mapping of str to Residual
-        "force_balance" [N], "moment_balance" [N, over base radius], "penetration" [m], "complementarity" [J],
-        "deformation_law" [m], "cone_membership" [N], "energy_gap" [J].
+        "force_balance" [N], "moment_balance" [N, over base radius], "penetration" [m],
+        "complementarity" [J], "deformation_law" [m], "cone_membership" [N], "energy_gap" [J].
     floats : mapping of gear to FloatState
     tolerance : float
         Largest scaled residual allowed.

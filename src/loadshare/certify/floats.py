@@ -1,4 +1,4 @@
-"""Where each float rests: inside its region or on which boundary, and at what stage its spline stands."""
+"""Where each float rests: inside its region or on which boundary, and its spline's stage."""
 
 from __future__ import annotations
 
@@ -78,8 +78,8 @@ def float_states(state: State, band: float) -> dict[str, FloatState]:
     ----------
     state : State
     band : float
-        Relative band: a margin within band × deflection, or a reaction above band × load with no margin left, is
-        contact.
+        Relative band: a margin within band × deflection, or a reaction above band × load with no
+        margin left, is contact.
     """
     return {gear: _float_state(state, gear, band) for gear in state.train.floating}
 

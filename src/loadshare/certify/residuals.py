@@ -1,4 +1,4 @@
-"""The residuals of a claimed equilibrium (formulation, section 8), each the worst over the train."""
+"""The residuals of a claimed equilibrium (formulation, section 8), each the train's worst."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def force_balance(state: State) -> tuple[float, str]:
 
 
 def moment_balance(state: State) -> tuple[float, str]:
-    """Largest unbalanced moment over base radius [N] on a set of gears that turn as one, and a gear of it."""
+    """Largest unbalanced moment over base radius [N] on gears that turn as one, and one of them."""
     train = state.train
     moment = dict.fromkeys(train.gears, 0.0)
     for gear, torque in state.situation.torque.items():
@@ -83,7 +83,7 @@ def complementarity(state: State) -> tuple[float, str]:
 
 
 def deformation_law(state: State) -> tuple[float, str]:
-    """Largest misfit [m] of a compressed contact with its law, or of a rigid shaft, and the element."""
+    """Largest misfit [m] of a compressed contact or rigid shaft with its law, and the element."""
     misfits = {
         p.name: abs(p.approach - p.law.compression(p.force)) for p in state.pushes if p.force > 0.0
     }
@@ -96,8 +96,9 @@ def deformation_law(state: State) -> tuple[float, str]:
         if gear.support is not None:
             allowed = (gear.frame @ state.moved(name)) @ gear.frame
         misfits[f"gear {name}"] = float(np.linalg.norm(state.moved(name) - allowed))
-    held = state.answer.rotation[state.train.output] * state.train.gears[state.train.output].base_radius
-    misfits[f"gear {state.train.output} rotation"] = abs(held)
+    output = state.train.output
+    held = state.answer.rotation[output] * state.train.gears[output].base_radius
+    misfits[f"gear {output} rotation"] = abs(held)
     return _worst(misfits)
 
 
@@ -126,7 +127,7 @@ def cone_membership(state: State, band: float) -> tuple[float, str]:
 
 
 def energy_gap(state: State) -> tuple[float, str]:
-    """Difference of the potential and the complementary energy [J], which an equilibrium makes zero."""
+    """Potential less complementary energy [J]: zero at an equilibrium."""
     primal, dual = [], []
     for gear, torque in state.situation.torque.items():
         primal.append(-torque * state.answer.rotation[gear])
@@ -139,9 +140,9 @@ def energy_gap(state: State) -> tuple[float, str]:
             energy = 0.5 * shaft.stiffness * wind**2
             primal.append(energy)
             dual += [-energy, -shaft.stiffness * wind * shaft.clocking]
-    for name, gear in state.train.gears.items():
-        if gear.support is not None:
-            energy = 0.5 * float(gear.support @ (gear.frame @ state.moved(name)) ** 2)
+    for name, body in state.train.gears.items():
+        if body.support is not None:
+            energy = 0.5 * float(body.support @ (body.frame @ state.moved(name)) ** 2)
             primal.append(energy)
             dual.append(-energy)
     for pull in state.pulls:
@@ -152,7 +153,7 @@ def energy_gap(state: State) -> tuple[float, str]:
 
 
 def _worst(values: dict[str, float]) -> tuple[float, str]:
-    """Largest value, not below zero, and where it stands; a value that is not a number is the worst."""
+    """Largest value, not below zero, and where it stands; not-a-number is the worst of all."""
     worst, where = 0.0, ""
     for name, value in values.items():
         if math.isnan(value):

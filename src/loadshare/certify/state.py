@@ -1,7 +1,7 @@
 """The answer seen as mechanics: approaches, margins and forces, computed body by body.
 
-Nothing here knows of programmes or rows. Forces are vectors that act on centres, moments are force times base
-radius, and each contact is judged at the displaced position.
+Nothing here knows of programmes or rows. Forces are vectors that act on centres, moments are force
+times base radius, and each contact is judged at the displaced position.
 """
 
 from __future__ import annotations
@@ -35,7 +35,8 @@ class Push:
     approach : float
         [m], positive when compressed.
     at_rest : float
-        Approach [m] that remains when all coordinates of its tangent plane are zero (minus the gap).
+        Approach [m] that remains when all coordinates of its tangent plane are zero (minus the
+        gap).
     law : Law
     normal : ndarray, shape (3,)
         Direction of the force on the pushed gear.
@@ -193,7 +194,7 @@ class State:
 
     @cached_property
     def force_scale(self) -> float:
-        """Largest force of the case [N]: flanks, reactions, external pushes; 1 N when nothing acts."""
+        """Largest force [N] among flanks, reactions, external pushes; 1 N when nothing acts."""
         gears = self.train.gears
         forces = [abs(p.force) for p in self.pushes]
         forces += [float(np.linalg.norm(p.reaction)) for p in self.pulls]
@@ -202,7 +203,7 @@ class State:
 
     @cached_property
     def length_scale(self) -> float:
-        """Deflection of the case [m]: largest compression, displacement or error; 1 µm when there is none."""
+        """Largest compression, displacement or error [m]; 1 µm when there is none."""
         lengths = [max(p.law.compression(abs(p.force)), 0.0) for p in self.pushes]
         lengths += [float(np.linalg.norm(self.moved(g))) for g in self.train.gears]
         lengths += [float(np.linalg.norm(c)) for c in self.situation.offset.values()]

@@ -41,7 +41,8 @@ def climb(train: Train, index: int, options: Options, tolerance: float) -> Answe
     Raises
     ------
     Refused
-        If no rung gives a certified answer; the message says what failed at the first rung and carries its figures.
+        If no rung gives a certified answer; the message says what failed at the first rung and
+        carries its figures.
     """
     scene = assemble(train, index)
     first: Refused | None = None

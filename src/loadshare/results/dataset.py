@@ -20,7 +20,8 @@ def dataset(result: Result) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Dimensions position, mesh, gear, component, float and figure; every variable carries its unit.
+        Dimensions position, mesh, gear, component, float and figure; every variable carries its
+        unit.
     """
     import xarray as xr
 
@@ -58,9 +59,7 @@ def dataset(result: Result) -> xr.Dataset:
             "1",
             "load-sharing coefficient, group mean",
         ),
-        "rotation": variable(
-            on_gear, over(gears, lambda p: p.rotation), "rad", "elastic rotation"
-        ),
+        "rotation": variable(on_gear, over(gears, lambda p: p.rotation), "rad", "elastic rotation"),
         "displacement": variable(
             ("position", "gear", "component"),
             displacement.reshape(len(positions), len(gears), 2),
@@ -119,7 +118,7 @@ def dataset(result: Result) -> xr.Dataset:
 
 
 def frame(result: Result) -> pd.DataFrame:
-    """One row per position and mesh: torque [N·m], coefficients, and the position's worst residual."""
+    """Tabulate position by mesh: torque [N·m], coefficients, the position's worst residual."""
     import pandas as pd
 
     rows = [

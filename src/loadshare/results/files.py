@@ -57,7 +57,7 @@ def _write_text(file: Path, text: str) -> None:
 
 
 def write_netcdf(result: Result, path: str | Path) -> None:
-    """Write labelled arrays for every reader of netCDF, and the whole result as an attribute for us."""
+    """Write labelled arrays for any reader of netCDF, and the whole result as an attribute."""
     arrays = result.dataset.assign_attrs({DOCUMENT: write_json(result)})
     write_atomically(Path(path), lambda file: _write_arrays(arrays, file))
 

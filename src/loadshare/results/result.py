@@ -133,7 +133,7 @@ class Result:
 
     @property
     def passed(self) -> bool:
-        """Whether every position is certified (an uncertified one is refused, so always true from `solve`)."""
+        """Whether every position is certified; `solve` hands out no other result."""
         return all(p.certificate.passed for p in self.positions)
 
     @property

@@ -11,7 +11,7 @@ from loadshare.train.train import Stage
 def coefficients(
     torque: Mapping[str, float], groups: Iterable[tuple[str, ...]]
 ) -> dict[str, float | None]:
-    """Ω of every branch: its torque over the mean torque of its group; None where the group carries nothing.
+    """Ω of every branch: its torque over its group's mean; None where a group carries nothing.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """The contact problem of one meshing position: named, minimal, dimensionless.
 
-A :class:`~loadshare.scene.scene.Scene` is everything the train does at one position, in SI units and with nothing
-left out. A :class:`~loadshare.scene.plan.Plan` says which of it is in play, and why the rest is not. A
-:class:`~loadshare.scene.programme.Programme` is what a solver sees.
+A :class:`~loadshare.scene.scene.Scene` is everything the train does at one position, in SI units
+and with nothing left out. A :class:`~loadshare.scene.plan.Plan` says which of it is in play, and
+why the rest is not. A :class:`~loadshare.scene.programme.Programme` is what a solver sees.
 """
 
 from loadshare.scene.assemble import assemble

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from loadshare.scene.scene import Array, ArcRow, Radial, Rotation, Row, Scene
+from loadshare.scene.scene import ArcRow, Array, Radial, Rotation, Row, Scene
 from loadshare.train.law import RIGID, Law, PowerLaw
 from loadshare.train.radial import round_ring_law
 from loadshare.train.ring import DrumRing, RoundRing
@@ -32,9 +32,11 @@ def assemble(train: Train, index: int) -> Scene:
     moved = {n: train.gears[n].frame.T @ np.eye(size)[w] for n, w in displacement.items()}
     none = np.zeros((3, size))
     arcs, rows, radials = _rings(train, situation, moved, displacement, size)
-    for mesh in train.meshes.values():
-        if math.isinf(mesh.backlash):
-            removed.append((mesh.flank_name(False), "no backlash given: the flank cannot touch"))
+    removed += [
+        (mesh.flank_name(False), "no backlash given: the flank cannot touch")
+        for mesh in train.meshes.values()
+        if math.isinf(mesh.backlash)
+    ]
     scene_rows = (*_flanks(train, situation, rotation, moved, none, size), *rows)
     radials += [
         Radial(s.name, g, np.eye(size)[displacement[g]], np.zeros(2), s)
@@ -58,7 +60,7 @@ def assemble(train: Train, index: int) -> Scene:
 def _rotations(
     train: Train, coordinates: list[str], removed: list[tuple[str, str]]
 ) -> dict[str, Rotation]:
-    """One rotation coordinate for each set of gears joined by rigid shafts; none for the output's set."""
+    """One rotation coordinate per set of gears on rigid shafts; none for the output's set."""
     offset = {train.output: 0.0}
     sets = {train.output: train.output}
     for seed in (train.output, *train.gears):
@@ -72,7 +74,9 @@ def _rotations(
                 ends = (shaft.first, shaft.second)
                 if not math.isinf(shaft.stiffness) or here not in ends:
                     continue
-                other, lag = (ends[1], -shaft.clocking) if here == ends[0] else (ends[0], shaft.clocking)
+                forward = here == ends[0]
+                other = ends[1] if forward else ends[0]
+                lag = -shaft.clocking if forward else shaft.clocking
                 if other not in sets:
                     sets[other], offset[other] = seed, offset[here] + lag
                     removed.append((f"gear {other} rotation", f"rigid shaft {shaft.name}"))

@@ -1,8 +1,8 @@
 """Which parts of a scene are in play, and the programme that follows.
 
-A plan starts from what a loaded train most likely does: drive flanks carry load, everything else is idle. What turns
-out otherwise is put in play and the scene is solved again (see *Reduction is verified, not trusted* in the design
-notes). Source: formulation, section 11.
+A plan starts from what a loaded train most likely does: drive flanks carry load, everything else is
+idle. What turns out otherwise is put in play and the scene is solved again (see *Reduction is
+verified, not trusted* in the design notes). Source: formulation, section 11.
 """
 
 from __future__ import annotations
@@ -31,7 +31,8 @@ class Role(Enum):
 class Plan:
     """Roles of all rows (arcs included) and radial elements, by name.
 
-    A radial element that is not in play stays on its first piece: a linear spring (CLOSED), or nothing (OPEN).
+    A radial element that is not in play stays on its first piece: a linear spring (CLOSED), or
+    nothing (OPEN).
     """
 
     rows: Mapping[str, Role]

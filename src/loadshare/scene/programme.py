@@ -3,15 +3,16 @@ r"""What a solver sees: a dimensionless convex programme with named rows and con
 .. math::
 
     \min_{x,\,y,\,w,\,s} \; & \tfrac12 x^\mathsf{T} H x - f^\mathsf{T} x + \tfrac12 \lVert y\rVert^2
-        + \tfrac25 \sum_e c_e^{-3/2} w_e^{5/2}
-        + \sum_{j,i} \bigl(F_{ji} \lVert s_{ji}\rVert + \tfrac12 k_{ji} \lVert s_{ji}\rVert^2\bigr) \\
-    \text{s.t.} \; & a_e\cdot x - \sqrt{b_e}\, y_e - w_e \le g_e \quad (= g_e \text{ where assumed closed})
+        + \tfrac25 \sum_e c_e^{-3/2} w_e^{5/2} + \sum_{j,i} \bigl(F_{ji} \lVert s_{ji}\rVert +
+        \tfrac12 k_{ji} \lVert s_{ji}\rVert^2\bigr) \\
+    \text{s.t.} \; & a_e\cdot x - \sqrt{b_e}\, y_e - w_e \le g_e \quad (= g_e \text{ where assumed
+    closed})
         \qquad : F_e \\
     & P_j x - m_j = \textstyle\sum_i s_{ji}, \quad \lVert s_{ji}\rVert \le \ell_{ji} \qquad : \Phi_j
 
-y is the square-root-scaled compression of a linear compliance (b = 0 is a rigid contact and needs no special case),
-w the Hertz part (only in the power-cone form), s the pieces of a radial graph. The multiplier of a row is its force.
-Source: formulation, sections 4 to 6.
+y is the square-root-scaled compression of a linear compliance (b = 0 is a rigid contact and needs
+no special case), w the Hertz part (only in the power-cone form), s the pieces of a radial graph.
+The multiplier of a row is its force. Source: formulation, sections 4 to 6.
 """
 
 from __future__ import annotations

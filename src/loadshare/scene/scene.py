@@ -1,4 +1,4 @@
-"""Everything that happens at one position, in SI units, as named coordinates, rows and radial elements."""
+"""Everything that happens at one position, in SI: coordinates, rows and radial elements."""
 
 from __future__ import annotations
 
@@ -166,7 +166,7 @@ class Scene:
         return max(pushes, default=0.0) or 1.0
 
     def length_unit(self) -> float:
-        """Length that the scene is measured by [m]: the median compression of a flank under the force unit."""
+        """Length that the scene is measured by [m]: a flank's median compression under the unit."""
         force = self.force_unit()
         compressions = [r.law.compression(force) for r in self.rows if r.kind == "drive flank"]
         return float(np.median(compressions)) if compressions else 1e-6

@@ -1,4 +1,4 @@
-"""From a scene to an equilibrium: back-ends, the exact active-set solve, the outer loop, verified reduction."""
+"""From a scene to an equilibrium: back-ends, exact active sets, the outer loop, reduction."""
 
 from loadshare.solver.position import solve_scene
 from loadshare.solver.record import METHODS, Iteration, Options, Record

@@ -9,15 +9,15 @@ from typing import Protocol
 from loadshare.scene.programme import Point, Programme
 
 
-class BackendFailure(RuntimeError):
+class BackendFailure(RuntimeError):  # noqa: N818 -- a finding, not a fault
     """A solver gave no usable answer; the message says what it reported."""
 
 
 class Backend(Protocol):
     """A solver of programmes.
 
-    What it returns is a proposal: the active set is read from it and solved exactly, and the certificate judges
-    the outcome. A back-end's own status is never believed.
+    What it returns is a proposal: the active set is read from it and solved exactly, and the
+    certificate judges the outcome. A back-end's own status is never believed.
     """
 
     name: str

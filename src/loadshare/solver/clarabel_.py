@@ -1,4 +1,4 @@
-"""Clarabel, called directly: the default back-end, and the only direct one for every class of programme."""
+"""Clarabel, called directly: the default back-end, for every class of programme."""
 
 from __future__ import annotations
 

@@ -78,7 +78,7 @@ def conic_form(programme: Programme) -> ConicForm:
     def variable(quadratic: float, charge: float) -> int:
         costs.append(quadratic)
         charges.append(charge)
-        return n + len(costs) - 1
+        return int(n) + len(costs) - 1
 
     equal, below = _Block(("zero", 0)), _Block(("nonnegative", 0))
     others: list[_Block] = []
@@ -121,7 +121,10 @@ def conic_form(programme: Programme) -> ConicForm:
     blocks = [b for b in (equal, below, *others) if b.rows]
     first = {id(b): sum(len(c.rows) for c in blocks[:k]) for k, b in enumerate(blocks)}
     entries = [
-        (first[id(b)] + k, j, v) for b in blocks for k, row in enumerate(b.rows) for j, v in row.items()
+        (first[id(b)] + k, j, v)
+        for b in blocks
+        for k, row in enumerate(b.rows)
+        for j, v in row.items()
     ]
     total, size = sum(len(b.rows) for b in blocks), n + len(costs)
     data = np.array([v for _, _, v in entries])

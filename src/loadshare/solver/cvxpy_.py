@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from loadshare.scene.programme import Cone, Point, Programme
@@ -9,7 +11,7 @@ from loadshare.solver.backend import KINDS_CONIC, Backend, BackendFailure
 
 
 class Cvxpy:
-    """CVXPY with Clarabel underneath; slow, short, and written from the formulas rather than from matrices."""
+    """CVXPY with Clarabel underneath: slow, short, written from the formulas."""
 
     name = "cvxpy"
     kinds = KINDS_CONIC
@@ -20,7 +22,8 @@ class Cvxpy:
 
         x = cp.Variable(len(programme.load))
         energy = 0.5 * cp.sum_squares(_square_root(programme.stiffness).T @ x) - programme.load @ x
-        contacts, constraints = [], []
+        contacts: list[Any] = []
+        constraints: list[Any] = []
         for e in range(len(programme.gaps)):
             yielded = 0.0
             b, c = float(programme.linear[e]), float(programme.hertz[e])
@@ -52,7 +55,7 @@ class Cvxpy:
         return Point(np.asarray(x.value), forces, cone_forces)
 
     @staticmethod
-    def _radial(cone: Cone, x: object, constraints: list[object]) -> tuple[object, object]:
+    def _radial(cone: Cone, x: Any, constraints: list[Any]) -> tuple[Any, Any]:
         """Energy of a radial graph as an inf-convolution of its pieces, and its offset equation."""
         import cvxpy as cp
 

@@ -1,8 +1,9 @@
 """The exact solve on an identified active set, and the exchange of what was wrongly identified.
 
-An interior-point answer says roughly where every contact and every radial graph stands. Here that set is fixed,
-the remaining (smooth) equations are solved to round-off by Newton's method, the signs are checked, and rows or
-places whose sign is wrong are exchanged. Kinks therefore never depend on a small interior-point number.
+An interior-point answer says roughly where every contact and every radial graph stands. Here that
+set is fixed, the remaining (smooth) equations are solved to round-off by Newton's method, the signs
+are checked, and rows or places whose sign is wrong are exchanged. Kinks therefore never depend on a
+small interior-point number.
 """
 
 from __future__ import annotations
@@ -15,13 +16,13 @@ from loadshare.scene.programme import Array, Cone, Point, Programme
 from loadshare.solver.kkt import solve_symmetric
 
 SIGN = 1e-11
-"""Dimensionless violation of a sign that counts as round-off, relative to the largest quantity of its sort."""
+"""Violation of a sign that counts as round-off, relative to the largest quantity of its sort."""
 NEWTON_STEPS = 40
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Where a radial element stands on its graph: on a piece, or on the vertical step in front of one."""
+    """Where a radial element stands on its graph: on a piece, or on the step in front of one."""
 
     piece: int
     corner: bool = False
@@ -44,8 +45,8 @@ def first_guess(programme: Programme) -> ActiveSet:
 def identify(programme: Programme, point: Point) -> ActiveSet:
     """Read the active set from an approximate answer.
 
-    A row is closed if its force, turned into a length by the row's compliance, exceeds its gap. A radial element
-    stands where its graph is nearest.
+    A row is closed if its force, turned into a length by the row's compliance, exceeds its gap. A
+    radial element stands where its graph is nearest.
     """
     forces = np.maximum(point.forces, 0.0)
     compressed = programme.linear * forces + programme.hertz * np.cbrt(forces) ** 2
@@ -122,7 +123,7 @@ def solve_exact(
 
 
 def _without_weakest(programme: Programme, active: ActiveSet, start: Point) -> ActiveSet | None:
-    """Open the closed row with the smallest force: too many rigid rows at once contradict each other."""
+    """Open the closed row with the smallest force: too many rigid rows contradict each other."""
     closed = [e for e, c in enumerate(active.closed) if c and not programme.assumed_closed[e]]
     if not closed:
         return None
@@ -221,7 +222,7 @@ def _piece_force(cone: Cone, place: Place, offset: Array) -> Array:
 def _cone_tangent(
     cone: Cone, place: Place, x: Array, force: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Tangent stiffness (2, 2), force at x (2,), multiplier directions (d, 2) and their bounds (d,)."""
+    """Tangent (2, 2), force at x (2,), multiplier directions (d, 2) and their bounds (d,)."""
     none = np.zeros((0, 2))
     offset = cone.offset(x)
     radius = float(np.linalg.norm(offset))
@@ -232,7 +233,8 @@ def _cone_tangent(
         along = offset / radius if radius > 0.0 else _direction(force)
         across = np.eye(2) - np.outer(along, along)
         size = max(float(along @ force), 0.0)
-        # The step's multiplier turns with the offset: its share of the tangent is λ/R across the radius.
+        # The step's multiplier turns with the offset: its share of the tangent is λ/R across the
+        # radius.
         tangent = size / limit * across
         return tangent, tangent @ offset, along[None, :], np.array([limit])
     piece = cone.law.pieces[place.piece]

@@ -1,4 +1,4 @@
-"""One programme solved: an active set that still holds, or a back-end followed by the exact solve."""
+"""One programme solved: by an active set that still holds, or a back-end and the exact solve."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from loadshare.solver.backend import Backend, BackendFailure
 from loadshare.solver.exact import ActiveSet, first_guess, identify, solve_exact
 
 
-class Unsolved(RuntimeError):
+class Unsolved(RuntimeError):  # noqa: N818 -- a finding, not a fault
     """A programme has no answer, or none was found; the message says which."""
 
 

@@ -1,4 +1,4 @@
-"""Symmetric saddle-point systems: solved to round-off, rank defects found and settled by least norm."""
+"""Symmetric saddle-point systems solved to round-off, rank defects settled by least norm."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ CONSISTENT = 1e-9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Solved:
-    """Solution of a system, and the directions (size, f) in which its coordinates may move freely."""
+    """Solution of a system, and the directions (size, f) in which its coordinates are free."""
 
     values: Array
     moves: Array

@@ -1,4 +1,4 @@
-"""OSQP, called directly and polished: a first-order method for QPs, on another principle than Clarabel's."""
+"""OSQP, called directly and polished: a first-order method, for QPs only."""
 
 from __future__ import annotations
 

@@ -1,12 +1,14 @@
-"""The outer loop: nonlinear mesh laws, ring faces and friction bounds settle together (formulation, section 7).
+"""The outer loop: mesh laws, ring faces and friction bounds settle together.
 
-*Picard* replaces each law by its secant compliance at the last force, *Newton* by its tangent. Both stop when, at
-the answer of a programme, the laws, the ring faces and the friction bounds that the programme used differ from the
-true ones by no more than a stated misfit, measured in deflections and loads of the case.
+*Picard* replaces each law by its secant compliance at the last force, *Newton* by its tangent. Both
+stop when, at the answer of a programme, the laws, the ring faces and the friction bounds that the
+programme used differ from the true ones by no more than a stated misfit, measured in deflections
+and loads of the case. Source: formulation, section 7.
 
-A tangent at vanishing force has infinite compliance, so a Newton step is taken at the force that belongs to the
-*displacement* (which is finite and positive for a compressed flank), and a step that does not lessen the misfit
-is shortened until the true energy, which is convex, falls. That is what makes light load converge.
+A tangent at vanishing force has infinite compliance, so a Newton step is taken at the force that
+belongs to the *displacement* (which is finite and positive for a compressed flank), and a step that
+does not lessen the misfit is shortened until the true energy, which is convex, falls. That is what
+makes light load converge.
 """
 
 from __future__ import annotations
@@ -25,7 +27,7 @@ from loadshare.solver.record import Iteration, Options
 from loadshare.train.radial import RadialLaw
 
 STALLED = 1e-9
-"""A loop whose misfit no longer falls is taken as arrived at round-off below this, as stuck above."""
+"""A loop whose misfit no longer falls has arrived at round-off below this, and is stuck above."""
 SHRINK = 0.1
 """An open flank's next tangent is taken at this fraction of its last force."""
 
@@ -161,7 +163,7 @@ def _law_misfit(scene: Scene, at: Linearisation, forces: dict[str, float], metho
 def _face_misfit(
     scene: Scene, plan: Plan, before: Array, x: Array, forces: dict[str, float]
 ) -> float:
-    """Largest difference between arcs and the faces used, where they touch [deflections] and push [loads]."""
+    """Largest difference between arcs and the faces that stood for them [deflections, loads]."""
     worst = 0.0
     for arc in scene.arcs:
         if plan.rows[arc.name] is Role.OPEN:

@@ -1,4 +1,4 @@
-"""One position solved: plans are tried from lean to full, and each is verified before it is believed."""
+"""One position solved: plans from lean to full, each verified before it is believed."""
 
 from __future__ import annotations
 
@@ -69,9 +69,7 @@ def solve_scene(scene: Scene, options: Options) -> tuple[Equilibrium, Record]:
     return _equilibrium(scene, plan, settled), record
 
 
-def _settle(
-    scene: Scene, plan: Plan, solver: Backend, options: Options
-) -> tuple[Settled, str]:
+def _settle(scene: Scene, plan: Plan, solver: Backend, options: Options) -> tuple[Settled, str]:
     """Run the outer loop, with the other form if the chosen one does not settle."""
     other = {"newton": "picard", "picard": "newton"}.get(options.method)
     try:
@@ -85,7 +83,7 @@ def _settle(
 
 
 def _wider(scene: Scene, plan: Plan) -> Plan | None:
-    """Return the next plan when one has no answer: with all limits in play, then with everything."""
+    """Return the plan to try next: with all limits in play, then with everything."""
     limits = {r.name for r in scene.rows if r.kind == "stop"}
     limits |= {a.name for a in scene.arcs} | {r.name for r in scene.radials}
     for names in (limits, set(plan.rows) | set(plan.radials)):

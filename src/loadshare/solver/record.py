@@ -18,14 +18,16 @@ class Options:
     solver : str
         Back-end: "clarabel", "osqp" or "cvxpy".
     method : str
-        "newton" (tangent compliances), "picard" (secant compliances) or "power" (one power-cone programme).
+        "newton" (tangent compliances), "picard" (secant compliances) or "power" (one power-cone
+        programme).
     reduce : bool
         Leave out what cannot matter (and verify it), or put the whole scene in play.
     polish : bool
-        Solve exactly on the identified active set. Without it the back-end's bare answer is taken, which hardly ever
-        passes the certificate; it serves comparisons.
+        Solve exactly on the identified active set. Without it the back-end's bare answer is taken,
+        which hardly ever passes the certificate; it serves comparisons.
     stop : float
-        Outer loop: largest misfit of laws, faces and friction bounds, in units of deflection and load.
+        Outer loop: largest misfit of laws, faces and friction bounds, in units of deflection and
+        load.
     max_iterations : int
         Of the outer loop, before the other method is tried.
     """
@@ -53,7 +55,8 @@ class Iteration:
     via : str
         How it was solved: "linear solve", "active set kept", or "<solver> + exact".
     law, face, friction : float
-        Misfits after the pass: compliance laws and ring faces [deflections], friction bounds [loads].
+        Misfits after the pass: compliance laws and ring faces [deflections], friction bounds
+        [loads].
     step : float
         Fraction of the step that was taken.
     """

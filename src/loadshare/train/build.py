@@ -8,6 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from loadshare import case as spec
+from loadshare.case.place import axis_of, centres_of
 from loadshare.errors import CaseError, Problem
 from loadshare.train.gear import Gear, Vector, transverse_frame
 from loadshare.train.kinematics import Kinematics, settle
@@ -16,8 +17,6 @@ from loadshare.train.mesh import Contact, Mesh
 from loadshare.train.offset import Offset
 from loadshare.train.ring import DrumRing, Ring, RoundRing, transverse
 from loadshare.train.train import Shaft, Spline, Stage, Train
-
-AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
 
 def build_train(case: spec.Case) -> Train:
@@ -34,8 +33,8 @@ def build_train(case: spec.Case) -> Train:
     Raises
     ------
     CaseError
-        If gears turn against each other or the train would lock, or a ring's float cannot be derived; all
-        problems are listed.
+        If gears turn against each other or the train would lock, or a ring's float cannot be
+        derived; all problems are listed.
     """
     kinematics = _kinematics(case)
     problems = [case.problem(c.key, c.message) for c in kinematics.conflicts]
@@ -75,22 +74,28 @@ def build_train(case: spec.Case) -> Train:
 
 def _kinematics(case: spec.Case) -> Kinematics:
     running = 1 if case.operating.running == "counter-clockwise" else -1
-    unsettled = {n: _gear(case, n, g, running) for n, g in case.gears.items()}
+    centres = centres_of(case.gears)
+    unsettled = {n: _gear(case, n, g, centres[n], running) for n, g in case.gears.items()}
     return settle(
         unsettled,
-        {n: (str(m.driver), str(m.driven)) for n, m in case.meshes.items()},
-        {n: (s.ends[0], s.ends[1]) for n, s in case.shafts.items() if s.ends},
+        {n: (m.driver, m.driven) for n, m in case.meshes.items()},
+        {n: s.ends for n, s in case.shafts.items()},
         case.operating.input,
     )
 
 
-def _gear(case: spec.Case, name: str, gear: spec.Gear, running: int) -> Gear:
-    axis = np.array(AXES[gear.axis] if isinstance(gear.axis, str) else gear.axis, dtype=float)
-    axis /= np.linalg.norm(axis)
+def _gear(
+    case: spec.Case,
+    name: str,
+    gear: spec.Gear,
+    centre: tuple[float, float, float],
+    running: int,
+) -> Gear:
+    axis = np.array(axis_of(gear))
     return Gear(
         name=name,
         kind=gear.type,
-        centre=_centre(case, gear),
+        centre=np.array(centre),
         axis=axis,
         frame=transverse_frame(axis),
         base_radius=gear.acting_radius,
@@ -105,19 +110,6 @@ def _vector(lengths: tuple[spec.Quantity, ...]) -> Vector:
     return np.array([q.si for q in lengths] + [0.0] * (3 - len(lengths)))
 
 
-def _direction(angle: float) -> Vector:
-    return np.array([math.cos(angle), math.sin(angle), 0.0])
-
-
-def _centre(case: spec.Case, gear: spec.Gear) -> Vector:
-    centre = gear.centre
-    if not isinstance(centre, spec.Polar):
-        return _vector(centre)
-    about = _centre(case, case.gears[centre.about]) if centre.about else np.zeros(3)
-    rise = np.array([0.0, 0.0, centre.height.si])
-    return about + centre.distance.si * _direction(centre.angle.si) + rise
-
-
 def _support(gear: spec.Gear, held_otherwise: bool) -> Vector | None:
     support = gear.support
     if support is None:
@@ -129,12 +121,16 @@ def _support(gear: spec.Gear, held_otherwise: bool) -> Vector | None:
     return np.full(2, support.si)
 
 
-def _each(value: object) -> tuple[spec.Quantity, ...]:
-    return value if isinstance(value, tuple) else (value,)  # type: ignore[return-value]
+def _each(
+    value: spec.Quantity | tuple[spec.Quantity, ...] | None,
+) -> tuple[spec.Quantity, ...]:
+    if value is None:
+        return ()
+    return value if isinstance(value, tuple) else (value,)
 
 
 def _mesh(name: str, mesh: spec.Mesh, gears: Mapping[str, Gear], contact: Contact) -> Mesh:
-    driver, driven = gears[str(mesh.driver)], gears[str(mesh.driven)]
+    driver, driven = gears[mesh.driver], gears[mesh.driven]
     angle = mesh.pressure_angle.si
     if mesh.normal_backlash is not None:
         backlash = mesh.normal_backlash.si
@@ -168,33 +164,26 @@ def _laws(mesh: spec.Mesh, r: float) -> tuple[Law, ...]:
         )
     if mesh.table is not None:
         forces = (0.0, *(t.si / r for t in mesh.table.torque))
-        rows = mesh.table.deflection
-        several = rows if isinstance(rows[0], tuple) else (rows,)
-        return tuple(TableLaw(forces, (0.0, *(r * d.si for d in row))) for row in several)  # type: ignore[union-attr]
+        return tuple(
+            TableLaw(forces, (0.0, *(r * d.si for d in curve))) for curve in mesh.table.curves
+        )
     return tuple(PowerLaw(r**2 / k.si) for k in _each(mesh.stiffness))
 
 
 def _shaft(name: str, shaft: spec.Shaft) -> Shaft:
-    ends = shaft.ends or ("", "")
-    stiffness = math.inf if isinstance(shaft.stiffness, str) else shaft.stiffness.si
-    return Shaft(name, ends[0], ends[1], stiffness, shaft.clocking.si)
+    return Shaft(name, *shaft.ends, _stiffness(shaft.stiffness), shaft.clocking.si)
 
 
 def _spline(gear: str, spline: spec.Spline) -> Spline:
-    fixed: float | None = None
     per_torque = 0.0
-    if spline.friction_force is not None:
-        fixed = spline.friction_force.si
-    elif spline.friction is not None and spline.normal_force is not None:
-        fixed = spline.friction * spline.normal_force.si
-    elif spline.friction is not None and spline.radius is not None:
+    if spline.friction is not None and spline.radius is not None:
         per_torque = spline.friction / spline.radius.si
     return Spline(
         gear,
         spline.bending_stiffness.si,
         spline.stick_limit.si if spline.stick_limit is not None else None,
         spline.clearance.si,
-        fixed,
+        spline.fixed_bound,
         per_torque,
     )
 
@@ -246,8 +235,8 @@ def _float_range(
 ) -> float:
     """Float that takes up the backlashes of a chain of meshes (formulation, section 6).
 
-    The gear rests on the first mesh of the other chain and rolls on it until the backlash of the whole chain is
-    closed: y with n_closing·ŷ y + r φ = Σ j_n and n_resting·ŷ y + r φ = 0.
+    The gear rests on the first mesh of the other chain and rolls on it until the backlash of the
+    whole chain is closed: y with n_closing·ŷ y + r φ = Σ j_n and n_resting·ŷ y + r φ = 0.
     """
     slopes = []
     for chain in (closing, resting):
@@ -260,7 +249,8 @@ def _float_range(
     turn = abs(slopes[0] - slopes[1])
     if turn < 1e-9:
         raise ValueError(
-            f"a float of gear {gear.name} across its neighbours does not take up the backlash of mesh {closing[0]}"
+            f"a float of gear {gear.name} across its neighbours does not take up the backlash "
+            f"of mesh {closing[0]}"
         )
     return total / turn
 

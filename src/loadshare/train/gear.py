@@ -13,8 +13,8 @@ Vector = NDArray[np.float64]
 def transverse_frame(axis: Vector) -> NDArray[np.float64]:
     """Two unit vectors (2, 3) that span the plane across `axis`, right-handed about it.
 
-    The first is the global x direction projected into the plane; y for a gear whose axis is x itself. For an
-    axis along z the frame is the global x, y.
+    The first is the global x direction projected into the plane; y for a gear whose axis is x
+    itself. For an axis along z the frame is the global x, y.
     """
     seed = np.array([1.0, 0.0, 0.0])
     if abs(axis @ seed) > 1.0 - 1e-9:
@@ -45,7 +45,8 @@ class Gear:
         +1 if the gear runs counter-clockwise seen against its axis, −1 otherwise.
     teeth : int or None
     support : ndarray, shape (2,), or None
-        Stiffness along the frame's directions [N/m]; zeros for a free gear, None for a rigid bearing.
+        Stiffness along the frame's directions [N/m]; zeros for a free gear, None for a rigid
+        bearing.
     ratio : float
         Speed over the input gear's speed, ≥ 0.
     """

@@ -69,7 +69,7 @@ def settle(
         yield replace(gears[other], sense=sense, ratio=ratio)
 
     def shaft_partner(name: str, here: str) -> Iterator[Gear]:
-        """Settle the gear at the other end of a shaft: axes that point against each other reverse the sense."""
+        """Settle the gear at the other end of a shaft; opposed axes reverse the sense."""
         a, b = shafts[name]
         other = b if here == a else a
         turned = -1 if settled[here].axis @ gears[other].axis < -1e-9 else 1
@@ -105,11 +105,12 @@ def _compare(key: str, known: Gear, found: Gear) -> Iterator[Conflict]:
     if known.sense != found.sense:
         yield Conflict(
             key,
-            f"would turn gear {known.name} against the sense in which another path turns it: the train would lock",
+            f"would turn gear {known.name} against the sense in which another path turns it: "
+            "the train would lock",
         )
     if abs(known.ratio - found.ratio) > RATIO_TOLERANCE * known.ratio:
         yield Conflict(
             key,
-            f"would turn gear {known.name} at {found.ratio:.6g} of the input speed, another path at "
-            f"{known.ratio:.6g}: the train would lock",
+            f"would turn gear {known.name} at {found.ratio:.6g} of the input speed, another path "
+            f"at {known.ratio:.6g}: the train would lock",
         )

@@ -1,8 +1,8 @@
 """Compliance laws of a single unilateral contact.
 
-A law gives the compression δ [m] along the line of action of a contact that carries the force F ≥ 0 [N]. It is
-strictly increasing (or zero: a rigid contact), so it has an inverse and two convex potentials. Source:
-formulation, section 3.
+A law gives the compression δ [m] along the line of action of a contact that carries the force F ≥ 0
+[N]. It is strictly increasing (or zero: a rigid contact), so it has an inverse and two convex
+potentials. Source: formulation, section 3.
 """
 
 from __future__ import annotations
@@ -77,8 +77,8 @@ class PowerLaw:
     def force(self, compression: float) -> float:
         """Force [N]: the root of b y³ + c y² = δ, y = F^(1/3).
 
-        Both single-term roots are upper bounds, and the cubic is convex and increasing, so Newton's method
-        descends monotonically from the smaller bound and stops at round-off.
+        Both single-term roots are upper bounds, and the cubic is convex and increasing, so Newton's
+        method descends monotonically from the smaller bound and stops at round-off.
 
         Raises
         ------

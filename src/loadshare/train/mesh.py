@@ -53,8 +53,9 @@ def parallel_contact(
 ) -> Contact:
     """Contact of two gears with parallel axes.
 
-    ĉ points from the driver's centre to the pitch point: towards an external partner, away from the centre of an
-    internal one. A driver that is itself the internal gear pushes its pinion towards its own centre.
+    ĉ points from the driver's centre to the pitch point: towards an external partner, away from the
+    centre of an internal one. A driver that is itself the internal gear pushes its pinion towards
+    its own centre.
 
     Raises
     ------
@@ -69,7 +70,8 @@ def parallel_contact(
     outward = between / distance
     to_pitch = -outward if driven_internal else outward
     tangential = driver_sense * np.cross(driver_axis, to_pitch)
-    # The pitch point lies beyond the pinion's centre in an internal pair, between the centres otherwise.
+    # The pitch point lies beyond the pinion's centre in an internal pair, between the centres
+    # otherwise.
     arm = to_pitch if (driven_internal or driver_internal) else -to_pitch
     sense = 1 if driven_axis @ np.cross(arm, tangential) > 0.0 else -1
     return Contact(-to_pitch if driver_internal else to_pitch, tangential, sense)
@@ -85,8 +87,8 @@ def face_contact(
 ) -> Contact:
     """Contact of a pinion with a face gear.
 
-    The push lies in the pinion's transverse plane with its radial part along the face gear's axis. The pitch
-    point stands at the acting radius of the face gear, on the side where the pinion lies.
+    The push lies in the pinion's transverse plane with its radial part along the face gear's axis.
+    The pitch point stands at the acting radius of the face gear, on the side where the pinion lies.
 
     Raises
     ------
@@ -172,7 +174,8 @@ class Mesh:
     ) -> float:
         r"""Approach of a flank along the line of action [m]; positive when compressed.
 
-        .. math:: \delta = r_{bi}\varphi_i - r_{bj}\varphi_j + n\cdot((p_i + c_i) - (p_j + c_j)) - \text{gap}
+        .. math:: \delta = r_{bi}\varphi_i - r_{bj}\varphi_j + n\cdot((p_i + c_i) - (p_j + c_j)) -
+        \text{gap}
 
         Parameters
         ----------

@@ -1,7 +1,7 @@
 """Geometric errors as centre offsets (formulation, section 1).
 
-An offset acts on approaches exactly as a displacement of the centre does, and costs no energy. An installation
-error is a fixed vector; a manufacturing eccentricity turns with its gear.
+An offset acts on approaches exactly as a displacement of the centre does, and costs no energy. An
+installation error is a fixed vector; a manufacturing eccentricity turns with its gear.
 """
 
 from __future__ import annotations

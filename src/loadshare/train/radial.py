@@ -1,8 +1,8 @@
 """Radial laws: a force along an offset whose size is a monotone graph of the offset's size.
 
-A clearance spline (formulation, section 5) and a round limit ring are both such graphs. A graph is a chain of
-pieces that carry the same force and add their lengths; vertical steps lie between the pieces. Written so, its
-energy is an inf-convolution and every piece is one second-order cone.
+A clearance spline (formulation, section 5) and a round limit ring are both such graphs. A graph is
+a chain of pieces that carry the same force and add their lengths; vertical steps lie between the
+pieces. Written so, its energy is an inf-convolution and every piece is one second-order cone.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class RadialLaw:
         return self.start(len(self.pieces))
 
     def step(self, corner: int) -> tuple[float, float]:
-        """Force interval [N] of the vertical step in front of piece `corner` (after the last: the stop)."""
+        """Force interval [N] of the step before piece `corner`; after the last piece, of the stop."""
         low = self.pieces[corner - 1].end_force if corner > 0 else 0.0
         high = self.pieces[corner].force if corner < len(self.pieces) else math.inf
         return low, high
@@ -83,7 +83,7 @@ class RadialLaw:
         return low, high
 
     def energy(self, radius: float) -> float:
-        """∫F dR [J] up to `radius` [m] (a radius beyond a rigid stop costs what the stop's edge costs)."""
+        """∫F dR [J] up to `radius` [m]; beyond a rigid stop, what its edge costs."""
         total, left = 0.0, radius
         for piece in self.pieces:
             inner = min(left, piece.length)
@@ -142,8 +142,8 @@ def spline_law(
     Raises
     ------
     ValueError
-        If K_w S1 > F_m, so that the law would drop (several equilibria), or if S2 < S1. The message names
-        the numbers.
+        If K_w S1 > F_m, so that the law would drop (several equilibria), or if S2 < S1. The message
+        names the numbers.
     """
     continuous = friction / bending_stiffness
     s1 = continuous if stick_limit is None else stick_limit

@@ -19,8 +19,8 @@ class DrumRing:
     gear : str
     neighbours : tuple of str
     across : ndarray, shape (3,)
-        ŷ, across the line from the first neighbour to the second, a quarter turn counter-clockwise of it (about
-        the limited gear's axis).
+        ŷ, across the line from the first neighbour to the second, a quarter turn counter-clockwise
+        of it (about the limited gear's axis).
     clearances : tuple of float
         c_x towards each neighbour [m].
     up, down : float
@@ -28,8 +28,8 @@ class DrumRing:
     stiffness : float
         Of every contact [N/m]; infinite for a rigid ring.
     with_errors : bool
-        Whether errors of the gears shift the rings (a ring dimensioned on the drawing), or not (a ring set with
-        the errors in place).
+        Whether errors of the gears shift the rings (a ring dimensioned on the drawing), or not (a
+        ring set with the errors in place).
     """
 
     gear: str

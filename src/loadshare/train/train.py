@@ -173,9 +173,10 @@ class Train:
     def situation(self, index: int) -> Situation:
         """Describe position `index` (1-based).
 
-        In a mesh cycle every mesh stands at the same position and the gears turn by the input gear's pitch over
-        the cycle (if its teeth are given). In a march the gears turn through whole revolutions; a mesh whose
-        driver's teeth are given stands at the position that its rotation reaches, others step one by one.
+        In a mesh cycle every mesh stands at the same position and the gears turn by the input
+        gear's pitch over the cycle (if its teeth are given). In a march the gears turn through
+        whole revolutions; a mesh whose driver's teeth are given stands at the position that its
+        rotation reaches, others step one by one.
 
         Raises
         ------
@@ -212,7 +213,8 @@ class Train:
         if self.march is None or driver.teeth is None:
             return step % self.positions
         cycles = rotation[driver.name] * driver.teeth / (2.0 * math.pi)
-        # A step that falls on a cycle's start up to round-off belongs to it, not to the end of the one before.
+        # A step that falls on a cycle's start up to round-off belongs to it, not to the end of the
+        # one before.
         return math.floor((cycles % 1.0) * self.positions + 1e-9) % self.positions
 
     def arc(self, ring: DrumRing, side: int, situation: Situation) -> Arc:

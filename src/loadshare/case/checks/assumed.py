@@ -20,7 +20,7 @@ def check_assumed_patterns(draft: Draft) -> Iterator[Problem]:
         try:
             wanted = parse(pattern)
         except ValueError:
-            yield draft.problem(path, "is not a key path", 'such as "gears.*.base_radius"')
+            yield draft.problem(path, "is not a key path", 'a text such as "gears.*.base_radius"')
             continue
         if not any(covers(wanted, key) for key in known):
             names = [dotted(key) for key in known]

@@ -1,0 +1,1 @@
+"""`loadshare batch`: many cases, of which none can stop the others."""

@@ -1,0 +1,136 @@
+"""One case of a batch: whatever happens to it becomes an outcome."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from loadshare._version import __version__
+from loadshare.errors import CaseError, LoadshareError, Refused
+
+if TYPE_CHECKING:
+    from loadshare.case import Case
+    from loadshare.results import Result
+
+GOOD = ("certified", "kept")
+"""Outcomes after which a certified result stands on disk."""
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """What is to be done with a case.
+
+    Attributes
+    ----------
+    case : Path
+    name : str
+        Of the case within the batch.
+    target : Path
+        Result file.
+    solver, method : str
+    tolerance : float
+    force : bool
+        Solve even if the result is there already.
+    """
+
+    case: Path
+    name: str
+    target: Path
+    solver: str
+    method: str
+    tolerance: float
+    force: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What became of a case.
+
+    Attributes
+    ----------
+    name, case : str
+    outcome : str
+        "certified", "kept", "refused", "invalid" or "crashed".
+    seconds : float
+    positions : int
+        Certified ones.
+    omega : float or None
+        Largest Ω of the system.
+    worst : float or None
+        Largest scaled residual.
+    messages : tuple of str
+        What went wrong.
+    """
+
+    name: str
+    case: str
+    outcome: str
+    seconds: float
+    positions: int = 0
+    omega: float | None = None
+    worst: float | None = None
+    messages: tuple[str, ...] = ()
+
+
+def work(task: Task) -> Outcome:
+    """Solve a case, or keep its result, and write what was found.
+
+    Nothing but an interruption is raised.
+    """
+    begun = time.perf_counter()
+    outcome, result = "crashed", None
+    messages: tuple[str, ...] = ()
+    try:
+        outcome, result, messages = _attempt(task)
+    except Exception as error:  # noqa: BLE001 -- a bug met in one case must not cost the others theirs
+        messages = (f"{type(error).__name__}: {error}",)
+    return Outcome(
+        name=task.name,
+        case=str(task.case),
+        outcome=outcome,
+        seconds=time.perf_counter() - begun,
+        positions=len(result.positions) if result else 0,
+        omega=result.omega["system"] if result else None,
+        worst=result.certificate.worst if result else None,
+        messages=messages,
+    )
+
+
+def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
+    from loadshare.case import load_case
+    from loadshare.cli.files import write_document
+    from loadshare.cli.refusal import refused_document, told
+    from loadshare.job import solve
+    from loadshare.train import build_train
+
+    try:
+        case = load_case(task.case)
+        count = build_train(case).count
+        if not task.force and (kept := _kept(task, case, count)):
+            return "kept", kept, ()
+        result = solve(case, solver=task.solver, method=task.method, tolerance=task.tolerance)
+    except CaseError as error:
+        return "invalid", None, tuple(map(str, error.problems))
+    except Refused as refusal:
+        write_document(task.target, refused_document(refusal, task.case.stem))
+        return "refused", refusal.partial, tuple(told(refusal))
+    result.to_json(task.target)
+    return "certified", result, ()
+
+
+def _kept(task: Task, case: Case, count: int) -> Result | None:
+    """Return the result on disk if it answers the same question in full."""
+    from loadshare.results import load_result
+
+    try:
+        result = load_result(task.target)
+    except LoadshareError:
+        return None
+    stamp = result.stamp
+    found = (stamp.case_hash, stamp.version, stamp.solver, stamp.method, stamp.tolerance)
+    asked = (case.hash, __version__, task.solver, task.method, task.tolerance)
+    # A refused case leaves fewer positions than it has.
+    whole = len(result.positions) == count and result.passed and stamp.reduce
+    return result if whole and found == asked else None

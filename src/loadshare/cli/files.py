@@ -1,0 +1,31 @@
+"""Texts on disk."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file, whole or not at all.
+
+    Parameters
+    ----------
+    path : Path
+        Its folder is made.
+    text : str
+    """
+    # Imported late: results bring numpy with them, which --help does not need.
+    from loadshare.results.files import write_atomically
+
+    def write(file: Path) -> None:
+        file.write_text(text, encoding="utf-8")
+
+    write_atomically(path, write)
+
+
+def write_document(path: Path, document: dict[str, Any]) -> None:
+    """Write plain data as a JSON file, whole or not at all."""
+    text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
+    write_text(path, text + "\n")

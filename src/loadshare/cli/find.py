@@ -1,0 +1,55 @@
+"""Which case files are meant by files, folders and patterns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import typer
+
+from loadshare.cli.exits import UNUSABLE, fail
+
+
+def find_cases(given: Iterable[Path]) -> list[Path]:
+    """Return the case files that are meant, each once, in the order given.
+
+    Parameters
+    ----------
+    given : iterable of Path
+        Files; folders, searched with their subfolders for ``*.toml``; patterns, for shells that
+        leave them alone.
+
+    Returns
+    -------
+    list of Path
+        A file that does not exist is among them, so that it is reported like any other bad case.
+
+    Raises
+    ------
+    typer.Exit
+        If there is no case at all.
+    """
+    found: dict[Path, Path] = {}
+    for path in given:
+        here = _meant_by(path)
+        if not here:
+            typer.echo(f"{path}: no case file there", err=True)
+        for file in here:
+            found.setdefault(file.resolve(), file)
+    if not found:
+        fail(["No case found. A case is a .toml file."], UNUSABLE)
+    return list(found.values())
+
+
+def _meant_by(path: Path) -> list[Path]:
+    if path.is_dir():
+        return [file for file in sorted(path.rglob("*.toml")) if not _hidden(file, path)]
+    if not path.exists() and any(sign in str(path) for sign in "*?["):
+        matches = sorted(Path(path.anchor).glob(str(path.relative_to(path.anchor))))
+        return [file for match in matches for file in _meant_by(match)]
+    return [path]
+
+
+def _hidden(file: Path, folder: Path) -> bool:
+    """Whether a file lies in what starts with a dot, such as a virtual environment."""
+    return any(part.startswith(".") for part in file.relative_to(folder).parts)

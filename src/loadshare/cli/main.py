@@ -1,0 +1,79 @@
+"""The command `loadshare`.
+
+What it needs to print its help is imported here; everything else is imported by the command that
+needs it, so that the help comes at once and a run does not wait for what it does not use.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from io import TextIOWrapper
+from typing import Annotated
+
+import typer
+
+from loadshare._version import __version__
+from loadshare.cli.batch.command import batch
+from loadshare.cli.check import check
+from loadshare.cli.new import new
+from loadshare.cli.run import run
+from loadshare.cli.schema import schema
+
+app = typer.Typer(
+    name="loadshare",
+    # Plain words survive a pipe, a log and a narrow terminal; boxes do not.
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+    add_completion=False,
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+for command in (run, batch, check, schema, new):
+    app.command()(command)
+
+
+def _tell_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"loadshare {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def root(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", is_eager=True, callback=_tell_version, help="Show the version and exit."
+        ),
+    ] = False,
+) -> None:
+    """Certified load sharing in multi-branch gear transmissions."""
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command and leave with its exit code.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Words after ``loadshare``; those of the process by default.
+
+    Raises
+    ------
+    SystemExit
+        Always: 0 for success, 1 for an answer that is refused, 2 for an invalid case or wrong
+        usage, 130 for an interruption.
+    """
+    # The matrices are far too small to share among threads, and a batch has its own processes.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):
+            # A stream that cannot show Ω shall show a question mark and go on.
+            stream.reconfigure(errors="replace")
+    app(arguments, prog_name="loadshare")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,36 @@
+"""`loadshare new`: a case file to start from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from shlex import quote
+from typing import Annotated
+
+import typer
+
+from loadshare.cli.exits import UNUSABLE, fail, writing
+from loadshare.cli.files import write_text
+from loadshare.cli.options import output
+
+
+def new(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the case.")],
+    file: Annotated[
+        Path | None, output("-o", "--output", what="File to write; NAME.toml by default.")
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Overwrite the file if it exists.")
+    ] = False,
+) -> None:
+    """Write a commented case file that runs, to change into your own."""
+    from loadshare.case import starter_case
+
+    title = Path(name.removesuffix(".toml")).name
+    if not title:
+        raise typer.BadParameter("a case needs a name", param_hint="NAME")
+    target = file or Path(name).with_name(f"{title}.toml")
+    if target.exists() and not force:
+        fail([f"{target}: exists already; --force overwrites it"], UNUSABLE)
+    with writing(target):
+        write_text(target, starter_case(title))
+    typer.echo(f"Wrote {target}. Solve it with: loadshare run {quote(str(target))}")

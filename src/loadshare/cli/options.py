@@ -1,0 +1,46 @@
+"""Options that several commands share."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated, Literal, TypeAlias
+
+import typer
+
+# The words are repeated here because asking the solver room for them would import it for every
+# --help; a test compares them.
+SolverName: TypeAlias = Literal["clarabel", "osqp", "cvxpy"]
+MethodName: TypeAlias = Literal["newton", "picard", "power"]
+
+
+def _positive(value: float) -> float:
+    if not 0.0 < value < math.inf:
+        raise typer.BadParameter("must be a positive number")
+    return value
+
+
+Solver = Annotated[
+    SolverName, typer.Option(metavar="NAME", help="Back-end: clarabel, osqp or cvxpy.")
+]
+Method = Annotated[
+    MethodName,
+    typer.Option(metavar="NAME", help="Loop for nonlinear mesh laws: newton, picard or power."),
+]
+Tolerance = Annotated[
+    float,
+    typer.Option(
+        metavar="X", callback=_positive, help="Largest scaled residual of a certified answer."
+    ),
+]
+CasePaths = Annotated[
+    list[Path],
+    typer.Argument(
+        metavar="CASES", help="Case files, folders of them, or patterns.", show_default=False
+    ),
+]
+
+
+def output(*names: str, what: str) -> object:
+    """Return the option for a file to write."""
+    return typer.Option(*names, metavar="FILE", dir_okay=False, writable=True, help=what)

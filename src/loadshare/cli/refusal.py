@@ -1,0 +1,56 @@
+"""What is said and written when an answer is refused."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any
+
+from loadshare._version import __version__
+from loadshare.errors import Refused
+
+_PLACED = re.compile(r"position (\d+): (.*)")
+
+
+def told(refusal: Refused) -> list[str]:
+    """Return the lines of a refusal, positions that were refused for the same reason together."""
+    positions: dict[str, list[int]] = {}
+    for line in str(refusal).splitlines():
+        placed = _PLACED.fullmatch(line)
+        reason = placed[2] if placed else line
+        positions.setdefault(reason, []).extend([int(placed[1])] if placed else [])
+    return [f"{_named(places)}{reason}" for reason, places in positions.items()]
+
+
+def _named(positions: list[int]) -> str:
+    if not positions:
+        return ""
+    noun = "position" if len(positions) == 1 else "positions"
+    return f"{noun} {ranges(positions)}: "
+
+
+def ranges(numbers: list[int]) -> str:
+    """Return whole numbers in short: ``1-3, 7``."""
+    runs: list[list[int]] = []
+    for number in sorted(set(numbers)):
+        if runs and number == runs[-1][-1] + 1:
+            runs[-1].append(number)
+        else:
+            runs.append([number])
+    return ", ".join(str(r[0]) if len(r) == 1 else f"{r[0]}-{r[-1]}" for r in runs)
+
+
+def refused_document(refusal: Refused, case: str) -> dict[str, Any]:
+    """Return the JSON form of a refusal: the certified positions, and what was refused and why.
+
+    Parameters
+    ----------
+    refusal : Refused
+    case : str
+        Name of the case, for a refusal without any certified position.
+    """
+    none: dict[str, Any] = {"case": case, "version": __version__, "positions": [], "omega": {}}
+    document = none if refusal.partial is None else refusal.partial.to_dict()
+    # JSON knows no infinity; a figure that is none is told as null.
+    figures = {n: v if math.isfinite(v) else None for n, v in refusal.figures.items()}
+    return document | {"refused": {"message": str(refusal), "figures": figures}}

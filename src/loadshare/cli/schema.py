@@ -1,0 +1,30 @@
+"""`loadshare schema`: the JSON Schema of a case file."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from loadshare.cli.exits import writing
+from loadshare.cli.files import write_text
+from loadshare.cli.options import output
+
+
+def schema(
+    file: Annotated[
+        Path | None, output("-o", "--output", what="Write it to a file instead of stdout.")
+    ] = None,
+) -> None:
+    """Print the JSON Schema of a case file, for editors."""
+    from loadshare.case import case_schema
+
+    text = json.dumps(case_schema(), indent=2, ensure_ascii=False)
+    if file is None:
+        typer.echo(text)
+        return
+    with writing(file):
+        write_text(file, text + "\n")
+    typer.echo(f"Wrote {file}", err=True)

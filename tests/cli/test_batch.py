@@ -1,0 +1,259 @@
+"""`loadshare batch`: no case stops the others, what is certified is kept, files are whole."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import loadshare as ls
+from loadshare.cli.batch import pool
+from loadshare.cli.batch.names import result_names
+
+
+@pytest.fixture
+def star(cases):
+    return cases / "star"
+
+
+def summary(folder):
+    return json.loads((folder / "summary.json").read_text(encoding="utf-8"))
+
+
+def outcomes(folder):
+    return {case["name"]: case["outcome"] for case in summary(folder)["cases"]}
+
+
+def test_a_folder_of_cases_gives_a_result_each(command, star, tmp_path):
+    out = tmp_path / "out"
+    result = command("batch", star, "-o", out, "--jobs", "1")
+    assert result.exit_code == 0
+    assert "4 cases: 4 certified" in result.stdout
+    files = {file.name for file in out.iterdir()}
+    assert files == {f"floating_sun_{n}.json" for n in (3, 4, 5, 6)} | {"summary.json"}
+    for case in summary(out)["cases"]:
+        kept = ls.load_result(out / f"{case['name']}.json")
+        assert kept.to_dict() == ls.solve(case["case"]).to_dict()
+        assert case["omega"] == kept.omega["system"]
+        assert case["worst"] == kept.certificate.worst
+    assert summary(out)["passed"] is True
+    assert summary(out)["counts"] == {"certified": 4}
+
+
+def test_processes_give_the_same_results(process, command, star, tmp_path):
+    one, two = tmp_path / "one", tmp_path / "two"
+    assert command("batch", star, "-o", one, "--jobs", "1").exit_code == 0
+    done = process("batch", star, "-o", two, "--jobs", "2")
+    assert (done.returncode, done.stderr) == (0, "")
+    for file in one.glob("floating*.json"):
+        assert file.read_bytes() == (two / file.name).read_bytes()
+
+
+def test_failing_cases_do_not_stop_the_others(command, star, unheld, half_held, broken, tmp_path):
+    out = tmp_path / "out"
+    words = ("batch", unheld, broken, tmp_path / "none.toml", half_held, star, "-o", out, "-j", "1")
+    result = command(*words)
+    assert result.exit_code == 1
+    found = outcomes(out)
+    assert [found[n] for n in ("unheld", "broken", "none", "half_held")] == [
+        *("refused", "invalid", "invalid", "refused")
+    ]
+    assert list(found.values()).count("certified") == 4
+    assert result.stdout.count("broken: invalid: ") == 3
+    assert "no such file" in result.stdout
+    partial = json.loads((out / "half_held.json").read_text(encoding="utf-8"))
+    assert [p["position"] for p in partial["positions"]] == [1]
+    assert "refused" in partial
+    assert not (out / "broken.json").exists()
+
+
+def test_a_bug_met_in_one_case_is_an_outcome(command, star, tmp_path, monkeypatch):
+    solve = ls.solve
+
+    def buggy(case, **options):
+        if case.name == "floating_sun_4":
+            raise ZeroDivisionError("a bug")
+        return solve(case, **options)
+
+    monkeypatch.setattr("loadshare.job.solve", buggy)
+    result = command("batch", star, "-o", tmp_path, "--jobs", "1")
+    assert result.exit_code == 1
+    assert "floating_sun_4: crashed: ZeroDivisionError: a bug" in result.stdout
+    assert list(outcomes(tmp_path).values()).count("certified") == 3
+
+
+def test_what_is_certified_is_kept(command, star, tmp_path):
+    words = ("batch", star, "-o", tmp_path, "--jobs", "1")
+    command(*words)
+    before = {f: f.stat().st_mtime_ns for f in tmp_path.glob("floating*")}
+    result = command(*words)
+    assert result.exit_code == 0
+    assert set(outcomes(tmp_path).values()) == {"kept"}
+    assert {f: f.stat().st_mtime_ns for f in tmp_path.glob("floating*")} == before
+
+
+@pytest.mark.parametrize(
+    "words", [("--force",), ("--solver", "osqp"), ("--method", "picard"), ("--tolerance", "1e-8")]
+)
+def test_another_question_is_answered_anew(command, star, tmp_path, words):
+    case = star / "floating_sun_3.toml"
+    command("batch", case, "-o", tmp_path, "--jobs", "1")
+    command("batch", case, "-o", tmp_path, "--jobs", "1", *words)
+    assert outcomes(tmp_path) == {"floating_sun_3": "certified"}
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda text: text[: len(text) // 2],
+        lambda text: "[]",
+        lambda text: text.replace('"version": "', '"version": "0'),
+        lambda text: json.dumps(json.loads(text) | {"positions": []}),
+    ],
+)
+def test_a_file_that_is_not_the_answer_is_replaced(command, star, tmp_path, damage):
+    case, file = star / "floating_sun_3.toml", tmp_path / "floating_sun_3.json"
+    command("batch", case, "-o", tmp_path, "--jobs", "1")
+    good = file.read_text(encoding="utf-8")
+    file.write_text(damage(good), encoding="utf-8")
+    command("batch", case, "-o", tmp_path, "--jobs", "1")
+    assert outcomes(tmp_path) == {"floating_sun_3": "certified"}
+    assert file.read_text(encoding="utf-8") == good
+
+
+def test_a_changed_case_and_a_refused_one_are_tried_again(command, star, half_held, tmp_path):
+    case = tmp_path / "case.toml"
+    text = (star / "floating_sun_3.toml").read_text(encoding="utf-8")
+    case.write_text(text, encoding="utf-8")
+    out = tmp_path / "out"
+    command("batch", case, half_held, "-o", out, "--jobs", "1")
+    case.write_text(text.replace("1000 N*m", "1100 N*m"), encoding="utf-8")
+    command("batch", case, half_held, "-o", out, "--jobs", "1")
+    assert outcomes(out) == {"case": "certified", "half_held": "refused"}
+
+
+def test_an_interrupted_batch_leaves_whole_files_and_goes_on(command, star, tmp_path, monkeypatch):
+    work, seen = pool.work, []
+
+    def interrupted(task):
+        seen.append(task.name)
+        if len(seen) == 3:
+            raise KeyboardInterrupt
+        return work(task)
+
+    words = ("batch", star, "-o", tmp_path, "--jobs", "1")
+    with monkeypatch.context() as patch:
+        patch.setattr(pool, "work", interrupted)
+        result = command(*words)
+    assert result.exit_code == 130
+    assert "Interrupted: 2 of 4 cases done." in result.stderr
+    assert len(summary(tmp_path)["not_done"]) == 2
+    assert summary(tmp_path)["passed"] is False
+    assert len(list(tmp_path.iterdir())) == 3
+    assert command(*words).exit_code == 0
+    assert sorted(outcomes(tmp_path).values()) == ["certified", "certified", "kept", "kept"]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_an_interrupt_from_the_keyboard_stops_a_batch_in_processes(cases, tmp_path, environment):
+    base = cases / "fgfbstts/eccentricity.toml"
+    for number in range(6):
+        text = f"extends = '{base.as_posix()}'\nmarch.steps = {600 + number}\n"
+        (tmp_path / f"case{number}.toml").write_text(text, encoding="utf-8")
+    out = tmp_path / "out"
+    start = "from loadshare.cli.main import main; main()"
+    batch = subprocess.Popen(
+        [sys.executable, "-c", start, "batch", tmp_path, "-o", out, "--jobs", "2"],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=environment,
+        start_new_session=True,
+    )
+    while not list(out.glob("case*.json")):
+        assert batch.poll() is None
+        time.sleep(0.02)
+    # As a terminal does: to the command and to all its processes.
+    os.killpg(batch.pid, signal.SIGINT)
+    _, stderr = batch.communicate(timeout=60)
+    assert batch.returncode == 130
+    assert "The same command goes on" in stderr
+    assert "Traceback" not in stderr
+    assert summary(out)["not_done"]
+    for file in out.glob("case*.json"):
+        assert ls.load_result(file).passed
+    assert not list(out.glob(".*"))
+
+
+def test_a_process_that_dies_costs_only_its_own_case(star, tmp_path, environment):
+    script = tmp_path / "script.py"
+    script.write_text(
+        """
+import os
+from loadshare.cli.batch import pool
+from loadshare.cli.batch.work import work
+
+def dying(task):
+    if task.name == "floating_sun_5":
+        os._exit(3)
+    return work(task)
+
+if __name__ == "__main__":
+    pool.work = dying
+    from loadshare.cli.main import main
+    main()
+""",
+        encoding="utf-8",
+    )
+    out = tmp_path / "out"
+    done = subprocess.run(
+        [sys.executable, script, "batch", star, "-o", out, "--jobs", "2"],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=environment,
+    )
+    assert done.returncode == 1, done.stderr
+    found = outcomes(out)
+    assert found.pop("floating_sun_5") == "crashed"
+    assert set(found.values()) <= {"certified", "kept"}
+    assert len(found) == 3
+
+
+def test_patterns_are_understood_where_the_shell_leaves_them(command, star, tmp_path):
+    result = command("batch", star / "*_[34].toml", "-o", tmp_path, "--jobs", "1")
+    assert result.exit_code == 0
+    assert set(outcomes(tmp_path)) == {"floating_sun_3", "floating_sun_4"}
+
+
+def test_a_case_named_twice_is_solved_once(command, star, tmp_path):
+    words = (star / "floating_sun_3.toml", star / "../star/floating_sun_3.toml")
+    command("batch", *words, "-o", tmp_path, "--jobs", "1")
+    assert len(outcomes(tmp_path)) == 1
+
+
+def test_no_case_is_wrong_usage(command, tmp_path):
+    result = command("batch", tmp_path, "-o", tmp_path / "out")
+    assert result.exit_code == 2
+    assert "No case found" in result.stderr
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("cases", "names"),
+    [
+        (["a/x.toml", "b/y.toml"], ["x", "y"]),
+        (["a/x.toml", "b/x.toml", "b/y.toml"], ["a/x", "b/x", "y"]),
+        (["a/X.toml", "b/x.toml"], ["a/X", "b/x"]),
+        (["x.toml", "b/x.toml"], ["x", "b/x"]),
+        (["summary.toml"], ["summary_"]),
+        (["x.toml", "x.txt"], ["x", "x_"]),
+    ],
+)
+def test_names_of_results_are_unique(cases, names):
+    assert result_names([Path(case) for case in cases]) == names

@@ -1,0 +1,89 @@
+"""The command as the user runs it: what it imports, and what reaches a pipe."""
+
+import subprocess
+import sys
+
+import pytest
+
+HEAVY = ("numpy", "scipy", "pint", "clarabel", "osqp", "cvxpy", "xarray", "pandas")
+
+
+def imported(words, environment):
+    """Return which heavy packages a command has imported by its end."""
+    script = f"""
+import sys
+from loadshare.cli.main import main
+try:
+    main({[str(word) for word in words]!r})
+finally:
+    print("IMPORTED", *[name for name in {HEAVY!r} if name in sys.modules])
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        capture_output=True,
+        text=True,
+        encoding="utf-8",
+        check=True,
+        env=environment,
+    )
+    return set(done.stdout.splitlines()[-1].split()[1:])
+
+
+@pytest.mark.parametrize("words", [["--help"], ["run", "--help"], ["batch", "-h"], ["--version"]])
+def test_the_help_imports_nothing_heavy(environment, words):
+    assert imported(words, environment) == set()
+
+
+def test_a_run_imports_only_what_it_uses(environment, cases):
+    found = imported(["run", cases / "fgfbstts/limit_ring.toml"], environment)
+    assert found & {"osqp", "cvxpy", "xarray", "pandas", "matplotlib"} == set()
+    assert "numpy" in found
+
+
+def test_a_pipe_gets_plain_text(process, cases):
+    done = process("run", cases / "fgfbstts/all_elements.toml", "--explain")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "\x1b" not in done.stdout
+    assert "Ω stage" in done.stdout
+
+
+def test_a_stream_that_knows_no_omega_goes_on(process, cases):
+    settings = {"PYTHONUTF8": "0", "PYTHONIOENCODING": "ascii"}
+    done = process("run", cases / "fgfbstts/base.toml", **settings)
+    assert done.returncode == 0
+    assert "? stage" in done.stdout
+    assert "PASSED" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "code"),
+    [(("run", "none.toml"), 2), (("run",), 2), ((), 2), (("--version",), 0)],
+)
+def test_exit_codes_reach_the_shell(process, words, code):
+    done = process(*words)
+    assert done.returncode == code
+    assert "Traceback" not in done.stderr
+
+
+def test_a_refusal_reaches_the_shell(process, half_held):
+    done = process("run", half_held)
+    assert done.returncode == 1
+    assert "REFUSED  1 of 2 positions certified" in done.stdout
+    assert done.stderr.startswith("REFUSED  position 2")
+
+
+def test_a_bug_shows_a_plain_traceback(environment, cases):
+    script = f"""
+import loadshare.job
+def buggy(*_, **__):
+    raise ZeroDivisionError("a bug")
+loadshare.job.solve = buggy
+from loadshare.cli.main import main
+main(["run", {str(cases / "fgfbstts/base.toml")!r}])
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, check=False, env=environment
+    )
+    assert done.returncode == 1
+    assert done.stderr.startswith("Traceback")
+    assert done.stderr.endswith("ZeroDivisionError: a bug\n")

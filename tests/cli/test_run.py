@@ -1,0 +1,228 @@
+"""`loadshare run`: what is printed, what is written, and the exit code."""
+
+import json
+import math
+
+import pytest
+
+import loadshare as ls
+from loadshare.cli.options import MethodName, SolverName
+from loadshare.solver.backend import SOLVERS
+from loadshare.solver.record import METHODS
+
+
+def test_a_certified_case_prints_everything_an_engineer_asks_for(command, cases):
+    result = command("run", cases / "fgfbstts/limit_ring.toml")
+    assert result.exit_code == 0
+    assert result.stderr == ""
+    for told in (
+        "Limit rings on the floating pinions",
+        "limit_ring.toml",
+        "Input torque 2175.238 N·m on gear 1, output gear 10; 5 positions",
+        "Ω stage",
+        "9-10",
+        "upper stop + arc 6",
+        "Undetermined: gear 1 x, gear 1 y",
+        "energy gap",
+        "PASSED  5 of 5 positions certified",
+    ):
+        assert told in result.stdout
+
+
+def test_the_figures_printed_are_those_of_the_result(command, cases):
+    path = cases / "fgfbstts/installation_error.toml"
+    solved = ls.solve(path)
+    stdout = command("run", path).stdout
+    for mesh, torque in solved.positions[0].torque.items():
+        row = next(line for line in stdout.splitlines() if f" {mesh} " in line)
+        assert f"{torque:.1f}" in row.split()
+    for stage, omega in solved.omega.items():
+        row = next(
+            line for line in stdout.splitlines() if line.split()[:2] == [stage, f"{omega:.4f}"]
+        )
+        assert f"{solved.pair_omega[stage]:.4f}" in row
+
+
+def test_few_positions_stand_side_by_side_and_many_are_summed_up(command, cases):
+    case = cases / "fgfbstts/all_elements.toml"
+    few = command("run", case, "--set", "march.steps=4").stdout
+    assert all(f"at {k}" in few for k in (1, 2, 3, 4))
+    many = command("run", case, "--set", "march.steps=8").stdout
+    assert "least" in many
+    assert "at 1" not in many
+    assert "on upper stop" in many
+    assert "displacement  " in many
+
+
+def test_no_line_of_the_report_is_wider_than_the_terminal(command, cases):
+    for case in ("fgfbstts/all_elements.toml", "star/floating_sun_6.toml"):
+        stdout = command("run", cases / case, "--explain").stdout
+        lines = [line for line in stdout.splitlines() if "/" not in line]
+        assert max(map(len, lines)) <= 80
+        assert "…" not in stdout.replace(" … ", "")
+
+
+def test_json_is_the_documented_form(command, cases, tmp_path):
+    target = tmp_path / "made" / "result.json"
+    case = cases / "fgfbstts/limit_ring.toml"
+    assert command("run", case, "--json", target).exit_code == 0
+    document = json.loads(target.read_text(encoding="utf-8"))
+    assert document == json.loads(ls.solve(case).to_json())
+    assert {"case", "version", "positions", "omega"} <= set(document)
+    assert "refused" not in document
+    position = document["positions"][0]
+    assert {
+        *("position", "torque", "share", "pair_share"),
+        *("displacement", "floats", "certificate"),
+    } <= set(position)
+    assert position["certificate"]["passed"] is True
+    assert set(document["omega"]) == {"I", "II", "system"}
+
+
+def test_csv_and_netcdf_hold_the_result(command, cases, tmp_path):
+    case = cases / "fgfbstts/base.toml"
+    table, arrays = tmp_path / "t.csv", tmp_path / "r.nc"
+    assert command("run", case, "--csv", table, "--netcdf", arrays).exit_code == 0
+    rows = table.read_text(encoding="utf-8").splitlines()
+    assert rows[0].startswith("position,mesh,torque")
+    assert len(rows) == 1 + 5 * 10
+    assert ls.load_result(arrays).to_dict() == ls.solve(case).to_dict()
+
+
+def test_positions_are_chosen_and_each_solved_once(command, cases, tmp_path):
+    target = tmp_path / "r.json"
+    words = ("--position", "3", "--position", "2", "--position", "3", "--json", target)
+    result = command("run", cases / "fgfbstts/base.toml", *words)
+    assert result.exit_code == 0
+    assert "2-3 of 5 positions" in result.stdout
+    found = json.loads(target.read_text(encoding="utf-8"))["positions"]
+    assert [p["position"] for p in found] == [3, 2]
+
+
+def test_a_change_is_told_and_made(command, cases):
+    words = ("--set", "operating.power=", "--set", "operating.torque=100 N*m")
+    result = command("run", cases / "fgfbstts/base.toml", *words, "--set", "operating.speed=")
+    assert result.exit_code == 0
+    assert "changed: operating.torque=100 N*m" in result.stdout
+    assert "Input torque 100 N·m" in result.stdout
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
+@pytest.mark.parametrize("method", METHODS)
+def test_every_solver_and_method_prints_the_same_shares(command, cases, solver, method):
+    case = cases / "fgfbstts/limit_ring.toml"
+    words = ("--position", "1", "--no-reduce")
+    result = command("run", case, "--solver", solver, "--method", method, *words)
+    assert result.exit_code == 0
+    assert "7582.0" in result.stdout
+
+
+def test_the_words_of_the_options_are_those_of_the_solver_room():
+    assert SolverName.__args__ == SOLVERS
+    assert MethodName.__args__ == METHODS
+
+
+def test_explain_tells_how_the_first_position_was_solved(command, cases):
+    result = command("run", cases / "fgfbstts/limit_ring.toml", "--explain")
+    assert result.stdout.count("How position") == 1
+    for told in (
+        *("How position 1 was solved", "as asked", "QP, 15 coordinates", "gear 4 x"),
+        *("ring 4: arc 6", "clarabel + exact", "active set kept", "its bearing is rigid"),
+    ):
+        assert told in result.stdout
+
+
+def test_explain_follows_the_positions_and_options_asked_for(command, cases):
+    words = ("--position", "2", "--position", "4", "--solver", "osqp", "--explain")
+    stdout = command("run", cases / "fgfbstts/limit_ring.toml", *words).stdout
+    assert "How position 2 was solved" in stdout
+    assert "How position 4 was solved" in stdout
+    assert "osqp + exact" in stdout
+
+
+def test_a_refusal_leaves_with_1_and_names_what_nothing_holds(command, unheld):
+    result = command("run", unheld)
+    assert result.exit_code == 1
+    assert result.stderr.startswith("REFUSED  position 1: ")
+    assert "gears sun float" in result.stderr
+    assert "PASSED" not in result.stdout
+
+
+def test_certified_positions_are_kept_when_others_are_refused(command, half_held, tmp_path):
+    target = tmp_path / "partial.json"
+    words = ("--json", target, "--csv", tmp_path / "t.csv", "--explain")
+    result = command("run", half_held, *words, "--position", "2", "--position", "1")
+    assert result.exit_code == 1
+    assert "certified positions only: 1" in result.stdout
+    assert "REFUSED  1 of 2 positions certified" in result.stdout
+    assert "no rung of the ladder" in result.stdout
+    assert "REFUSED  position 2: " in result.stderr
+    assert "t.csv: not written" in result.stderr
+    assert not (tmp_path / "t.csv").exists()
+    document = json.loads(target.read_text(encoding="utf-8"))
+    assert [p["position"] for p in document["positions"]] == [1]
+    assert document["refused"]["message"].startswith("position 2: ")
+    assert document["refused"]["figures"] == {}
+
+
+def test_the_failing_figures_are_told_and_written(command, cases, tmp_path):
+    target = tmp_path / "r.json"
+    case = cases / "fgfbstts/limit_ring.toml"
+    result = command("run", case, "--tolerance", "1e-30", "--json", target)
+    assert result.exit_code == 1
+    assert result.stderr.startswith("REFUSED  positions 1-5: ")
+    assert "force balance" in result.stderr
+    document = json.loads(target.read_text(encoding="utf-8"))
+    assert document["case"] == "limit_ring"
+    assert document["positions"] == []
+    assert math.isfinite(document["refused"]["figures"]["force_balance"])
+
+
+def test_a_solver_that_cannot_solve_the_class_is_refused(command, cases):
+    result = command("run", cases / "fgfbstts/spline_clearance.toml", "--solver", "osqp")
+    assert result.exit_code == 1
+    assert "osqp does not solve programmes of class SOCP" in result.stderr
+
+
+def test_all_problems_of_a_case_are_listed_one_per_line(command, broken):
+    result = command("run", broken)
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    lines = result.stderr.splitlines()
+    assert len(lines) == 4
+    assert all("broken.toml" in line for line in lines[:3])
+    assert lines[-1] == "3 problems; nothing was solved."
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--solver", "x"), "'clarabel', 'osqp', 'cvxpy'"),
+        (("--method", "x"), "'newton', 'picard', 'power'"),
+        (("--position", "6"), "this case has positions 1 to 5"),
+        (("--tolerance", "nan"), "must be a positive number"),
+        (("--tolerance", "0"), "must be a positive number"),
+        (("--set", "operating.torque"), "KEY=VALUE"),
+        (("--set", "gears.11.base_radius=1 mm"), "leads nowhere"),
+        (("--colour",), "No such option"),
+    ],
+)
+def test_wrong_usage_leaves_with_2_and_says_what_is_allowed(command, cases, words, told):
+    result = command("run", cases / "fgfbstts/base.toml", *words)
+    assert result.exit_code == 2
+    assert told in result.stderr
+    assert result.stdout == ""
+
+
+def test_a_missing_case_is_a_problem(command, tmp_path):
+    result = command("run", tmp_path / "none.toml")
+    assert result.exit_code == 2
+    assert "no such file" in result.stderr
+
+
+def test_a_file_that_cannot_be_written_is_told(command, cases, tmp_path):
+    (tmp_path / "taken").write_text("")
+    result = command("run", cases / "fgfbstts/base.toml", "--json", tmp_path / "taken" / "r.json")
+    assert result.exit_code == 2
+    assert "cannot be written" in result.stderr
+    assert "PASSED" in result.stdout

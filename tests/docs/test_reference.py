@@ -1,0 +1,116 @@
+"""The reference pages say what the code says."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import re
+from pathlib import Path
+
+import pytest
+
+from loadshare.case.schema import case_schema
+
+ROOT = Path(__file__).parents[2]
+_spec = importlib.util.spec_from_file_location("docs_hooks", ROOT / "docs" / "hooks.py")
+hooks = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(hooks)
+
+
+def _tables(schema):
+    return [schema, *schema["$defs"].values()]
+
+
+def test_every_key_of_a_case_is_in_the_reference():
+    schema = case_schema()
+    page = hooks.case_reference(schema)
+    sections = dict(re.findall(r"^## (.*?)\n(.*?)(?=^## |\Z)", page, re.MULTILINE | re.DOTALL))
+    for heading, name, _ in hooks.TABLES:
+        table = schema["$defs"][name] if name else schema
+        rows = re.findall(r"^\| `(\w+)` \|", sections[heading], re.MULTILINE)
+        assert rows == list(table["properties"])
+    keys = {key for table in _tables(schema) for key in table["properties"]}
+    assert all(f"| `{key}` |" in page for key in keys)
+
+
+def test_every_row_has_a_form_and_a_description():
+    for row in re.findall(r"^\| `.*$", hooks.case_reference(case_schema()), re.MULTILINE):
+        cells = [cell.strip() for cell in row.strip("|").split(" | ")]
+        assert len(cells) == 4
+        assert all(cells)
+
+
+def test_a_new_definition_is_not_forgotten():
+    schema = case_schema()
+    schema["$defs"]["Novelty"] = {"description": "New.", "properties": {}}
+    with pytest.raises(KeyError, match="Novelty"):
+        hooks.case_reference(schema)
+
+
+def test_links_within_the_reference_lead_somewhere():
+    page = hooks.case_reference(case_schema())
+    headings = {
+        re.sub(r"[^\w]+", "-", heading.lower()).strip("-")
+        for heading in re.findall(r"^## (.*)$", page, re.MULTILINE)
+    }
+    assert set(re.findall(r"\(#([\w-]+)\)", page)) <= headings
+
+
+def test_every_option_is_in_the_reference():
+    from typer.main import get_command
+
+    from loadshare.cli.main import app
+
+    page = hooks.command_reference()
+    for name, command in get_command(app).commands.items():
+        assert f"## {name}\n" in page
+        for parameter in command.params:
+            for flag in (*parameter.opts, *parameter.secondary_opts):
+                if flag.startswith("-"):
+                    assert f"`{flag}`" in page
+
+
+@pytest.mark.parametrize(
+    "name",
+    sorted(
+        set(
+            re.findall(
+                r"`((?:train|scene|solver|certify|results)\.[\w.]+)`",
+                (ROOT / "docs/theory.md").read_text("utf-8"),
+            )
+        )
+    ),
+)
+def test_functions_that_the_theory_names_exist(name: str):
+    parts = ["loadshare", *name.split(".")]
+    for cut in range(len(parts), 0, -1):
+        try:
+            found = importlib.import_module(".".join(parts[:cut]))
+        except ModuleNotFoundError:
+            continue
+        for part in parts[cut:]:
+            found = getattr(found, part)
+        return
+    raise AssertionError(name)
+
+
+def test_every_case_is_listed():
+    listed = set(re.findall(r"`([\w/]+\.toml)`", (ROOT / "cases/README.md").read_text("utf-8")))
+    there = {str(f.relative_to(ROOT / "cases")) for f in (ROOT / "cases").rglob("*.toml")}
+    assert listed == there
+
+
+def test_what_the_list_of_cases_says_was_measured():
+    import loadshare as ls
+
+    rows = re.findall(
+        r"^\| `([\w/]+\.toml)` \|.*\| ([\d.]+) \| ([\d.]+) \| ([\d.]+) \|$",
+        (ROOT / "cases/README.md").read_text("utf-8"),
+        re.MULTILINE,
+    )
+    assert rows
+    for file, first, second, pair in rows:
+        result = ls.solve(ROOT / "cases" / file)
+        measured = (result.omega["I"], result.omega["II"], result.pair_omega["II"])
+        # Printed with four decimals.
+        assert [f"{v:.4f}" for v in measured] == [first, second, pair], file

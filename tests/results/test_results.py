@@ -1,0 +1,110 @@
+"""Results: coefficients, labels, and files that give back every bit.
+
+Source: formulation, section 10.
+"""
+
+import json
+from dataclasses import asdict
+
+import numpy as np
+import pytest
+from tests.support import shipped
+
+import loadshare as ls
+from loadshare.results.share import coefficients
+
+NAMES = ("fgfbstts/all_elements", "fgfbstts/limit_ring", "star/floating_sun_4")
+
+
+@pytest.fixture(scope="module", params=NAMES)
+def result(request):
+    return ls.solve(shipped(request.param), positions=None)
+
+
+@pytest.mark.parametrize("ending", ["json", "nc"])
+def test_a_result_survives_its_file_bit_for_bit(result, ending, tmp_path):
+    path = tmp_path / "deep" / f"result.{ending}"
+    (result.to_json if ending == "json" else result.to_netcdf)(path)
+    again = ls.load_result(path)
+    assert again == result
+    assert again.to_json() == result.to_json()
+    assert [asdict(p) for p in again.positions] == [asdict(p) for p in result.positions]
+    assert list(path.parent.iterdir()) == [path]
+
+
+def test_a_result_is_stamped(result):
+    stamp = result.stamp
+    assert stamp.version == ls.__version__
+    assert len(stamp.case_hash) == 64
+    assert (stamp.solver, stamp.method, stamp.reduce) == ("clarabel", "newton", True)
+    assert stamp.tolerance == 1e-9
+    attributes = result.dataset.attrs
+    assert attributes["case_hash"] == stamp.case_hash
+    assert attributes["loadshare_version"] == ls.__version__
+
+
+def test_the_stamp_tells_cases_apart():
+    case = shipped("fgfbstts/base")
+    other = case.replace({'meshes."4-6".stiffness': "4.2750001e6 N*m/rad"})
+    hashes = {ls.solve(c, positions=[1]).stamp.case_hash for c in (case, other)}
+    assert len(hashes) == 2
+
+
+def test_labelled_arrays_hold_the_same_figures(result):
+    data = result.dataset
+    for position in result.positions:
+        here = data.sel(position=position.position)
+        for mesh, torque in position.torque.items():
+            assert float(here["torque"].sel(mesh=mesh)) == torque
+        for gear, moved in position.displacement.items():
+            assert tuple(here["displacement"].sel(gear=gear).values) == moved
+        for gear, state in position.floats.items():
+            on_boundary = bool(here["on_boundary"].sel(float=gear))
+            assert on_boundary == (state.state == "on boundary")
+    assert all(v.attrs["units"] and v.attrs["long_name"] for v in data.data_vars.values())
+
+
+def test_a_table_has_one_row_per_position_and_mesh(result):
+    table = result.to_frame()
+    assert len(table) == len(result.positions) * len(result.positions[0].torque)
+    row = table.iloc[-1]
+    assert row["torque"] == result.positions[-1].torque[row["mesh"]]
+    assert table["worst_residual"].max() == result.certificate.worst
+
+
+def test_json_is_plain_and_self_contained(result):
+    document = json.loads(result.to_json())
+    assert document["positions"][0]["certificate"]["passed"] is True
+    assert document["stamp"]["version"] == ls.__version__
+    assert document == json.loads(json.dumps(result.to_dict()))
+
+
+def test_a_file_that_holds_no_result_is_refused(tmp_path):
+    for name, text in (("a.json", "{}"), ("b.json", "not json"), ("c.nc", "not netCDF")):
+        (tmp_path / name).write_text(text)
+        with pytest.raises(ls.LoadshareError, match=f"{name}: holds no result"):
+            ls.load_result(tmp_path / name)
+    with pytest.raises(ls.LoadshareError, match="missing"):
+        ls.load_result(tmp_path / "missing.json")
+
+
+def test_coefficients():
+    """Ω is the torque over the mean of its group; a group that carries nothing has none."""
+    found = coefficients({"a": 1.0, "b": 3.0, "c": 0.0, "d": 0.0}, [("a", "b"), ("c", "d")])
+    assert found == {"a": 0.5, "b": 1.5, "c": None, "d": None}
+
+
+def test_an_unloaded_train_has_no_coefficients(tmp_path):
+    case = shipped("fgfbstts/load").replace(
+        {"operating.torque": "0 N*m", "errors": None, "assumed": None}
+    )
+    result = ls.solve(case, positions=[1])
+    assert result.omega == {"I": None, "II": None, "system": None}
+    assert np.isnan(result.share.values).any()
+    result.to_json(tmp_path / "still.json")
+    assert ls.load_result(tmp_path / "still.json") == result
+
+
+def test_the_worst_certificate_speaks_for_the_result(result):
+    assert result.passed
+    assert result.certificate.worst == max(p.certificate.worst for p in result.positions) <= 1e-9
