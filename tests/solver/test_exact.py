@@ -21,6 +21,7 @@ def problem(seed: int, rigid: bool, size: int = 5, contacts: int = 7) -> Program
     rows = rng.normal(size=(contacts, size))
     rows /= np.linalg.norm(rows, axis=1)[:, None]
     return Programme(
+        coordinates=tuple(f"coordinate {k}" for k in range(size)),
         stiffness=root @ root.T + 0.1 * np.eye(size),
         load=rng.normal(size=size),
         names=tuple(f"contact {e}" for e in range(contacts)),

@@ -87,7 +87,7 @@ def test_a_spline_that_would_drop_under_its_torque_is_refused():
 def test_a_train_that_nothing_holds_is_refused_by_name():
     """Idlers that all float freely between pinions and output are pushed out sideways."""
     case = shipped("fgfbstts/base").replace({f"gears.{g}.support": "free" for g in "6789"})
-    with pytest.raises(ls.Refused, match=r"position 1: .*gears 6, 7, 8, 9 float"):
+    with pytest.raises(ls.Refused, match=r"position 1: .*limits the float of gear 6, 7, 8, 9"):
         ls.solve(case, positions=[1])
 
 

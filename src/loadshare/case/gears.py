@@ -62,7 +62,7 @@ class Gear(Element):
     """Outer radius of a face gear's teeth [length]."""
 
     teeth: Annotated[int, Strict(), Field(ge=5)] | None = None
-    """Number of teeth [-]; sets nothing but the mesh frequency."""
+    """Number of teeth [-]; sets how far gears turn in a cycle and what position they reach."""
 
     support: (
         Annotated[
@@ -132,7 +132,7 @@ class Eccentricity(Element):
     """Direction of the offset on the gear [angle]."""
 
     phase: Angle = Quantity("0 deg", 0.0)
-    """Rotation of the gear at the first position [angle]."""
+    """Further angle of the eccentricity at the first position, beside its direction [angle]."""
 
 
 class Errors(Element):

@@ -121,7 +121,7 @@ class Ring(Element):
     model_config = ConfigDict(validate_by_name=False, validate_by_alias=True)
 
     neighbours: tuple[str, str] | None = None
-    """Drum: the two gears whose rings it rolls on, the first to the right of outwards."""
+    """Drum: the two gears whose rings it rolls on; up is left of the way from first to second."""
 
     clearance: Annotated[
         Annotated[Clearance, Tag(VALUE)] | Annotated[tuple[Clearance, Clearance], Tag(LIST)],

@@ -7,7 +7,7 @@ programme and no row enters it: a slip in any of them shows here.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from loadshare.certify import residuals
@@ -100,24 +100,32 @@ def certify(train: Train, answer: Equilibrium, tolerance: float = TOLERANCE) -> 
     load, deflection = state.force_scale, state.length_scale
     work = load * deflection
 
-    def scaled(found: tuple[float, str], unit: str, scale: float) -> Residual:
-        value, where = found
+    judged: dict[str, tuple[Callable[[], tuple[float, str]], str, float]] = {
+        "force_balance": (lambda: residuals.force_balance(state), "N", load),
+        "moment_balance": (lambda: residuals.moment_balance(state), "N", load),
+        "penetration": (lambda: residuals.penetration(state), "m", deflection),
+        "complementarity": (lambda: residuals.complementarity(state), "J", work),
+        "deformation_law": (
+            lambda: residuals.deformation_law(state, BAND * load),
+            "m",
+            deflection,
+        ),
+        "cone_membership": (
+            lambda: residuals.cone_membership(state, BAND * deflection),
+            "N",
+            load,
+        ),
+        "energy_gap": (lambda: residuals.energy_gap(state), "J", work),
+    }
+
+    def figure(judge: Callable[[], tuple[float, str]], unit: str, scale: float) -> Residual:
+        value, where = judge() if state.finite else (math.inf, "a figure that is not a number")
         ratio = value / scale
         return Residual(value, unit, math.inf if math.isnan(ratio) else ratio, where)
 
     return Certificate(
-        residuals={
-            "force_balance": scaled(residuals.force_balance(state), "N", load),
-            "moment_balance": scaled(residuals.moment_balance(state), "N", load),
-            "penetration": scaled(residuals.penetration(state), "m", deflection),
-            "complementarity": scaled(residuals.complementarity(state), "J", work),
-            "deformation_law": scaled(residuals.deformation_law(state), "m", deflection),
-            "cone_membership": scaled(
-                residuals.cone_membership(state, BAND * deflection), "N", load
-            ),
-            "energy_gap": scaled(residuals.energy_gap(state), "J", work),
-        },
-        floats=float_states(state, BAND),
+        residuals={name: figure(*how) for name, how in judged.items()},
+        floats=float_states(state, BAND) if state.finite else {},
         tolerance=tolerance,
         load=load,
         deflection=deflection,

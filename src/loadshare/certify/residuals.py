@@ -82,10 +82,17 @@ def complementarity(state: State) -> tuple[float, str]:
     )
 
 
-def deformation_law(state: State) -> tuple[float, str]:
-    """Largest misfit [m] of a compressed contact or rigid shaft with its law, and the element."""
+def deformation_law(state: State, band: float) -> tuple[float, str]:
+    """Largest misfit [m] of a compressed contact or rigid shaft with its law, and the element.
+
+    Parameters
+    ----------
+    state : State
+    band : float
+        Force [N] below which a contact counts as open; complementarity judges it then.
+    """
     misfits = {
-        p.name: abs(p.approach - p.law.compression(p.force)) for p in state.pushes if p.force > 0.0
+        p.name: abs(p.approach - p.law.compression(p.force)) for p in state.pushes if p.force > band
     }
     for name, wind in state.winds():
         shaft = state.train.shafts[name]

@@ -193,18 +193,33 @@ class State:
         return total
 
     @cached_property
+    def finite(self) -> bool:
+        """Whether every claimed figure is a number."""
+        a = self.answer
+        figures = [*a.rotation.values(), *a.flank_force.values(), *a.ring_force.values()]
+        vectors = [*a.displacement.values(), *a.radial_reaction.values()]
+        return bool(np.isfinite(figures).all() and all(np.isfinite(v).all() for v in vectors))
+
+    @cached_property
     def force_scale(self) -> float:
-        """Largest force [N] among flanks, reactions, external pushes; 1 N when nothing acts."""
+        """Load of the case [N]: largest flank force or external push; 1 N when nothing acts.
+
+        Reactions of rigid limits do not count: any preload of two opposite stops would be in
+        balance and would hide what is not.
+        """
         gears = self.train.gears
-        forces = [abs(p.force) for p in self.pushes]
-        forces += [float(np.linalg.norm(p.reaction)) for p in self.pulls]
+        forces = [abs(f) for f in self.answer.flank_force.values()]
         forces += [abs(t) / gears[g].base_radius for g, t in self.situation.torque.items()]
         return max(forces, default=0.0) or 1.0
 
     @cached_property
     def length_scale(self) -> float:
-        """Largest compression, displacement or error [m]; 1 µm when there is none."""
-        lengths = [max(p.law.compression(abs(p.force)), 0.0) for p in self.pushes]
-        lengths += [float(np.linalg.norm(self.moved(g))) for g in self.train.gears]
+        """Deflection of the case [m]: largest compression, gap taken up, or error; 1 µm when none.
+
+        Displacements do not count: a free one could be claimed as large as one likes.
+        """
+        closed = [p for p in self._flanks() if p.force > 0.0]
+        lengths = [p.law.compression(p.force) for p in closed]
+        lengths += [abs(p.at_rest) for p in closed]
         lengths += [float(np.linalg.norm(c)) for c in self.situation.offset.values()]
         return max(lengths, default=0.0) or 1e-6

@@ -16,7 +16,18 @@ from loadshare.train.train import Train
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Answer:
-    """A certified equilibrium, and which rung gave it."""
+    """A certified equilibrium, and how it was found.
+
+    Attributes
+    ----------
+    scene : Scene
+    equilibrium : Equilibrium
+    certificate : Certificate
+    record : Record
+        Plan, passes of the outer loop, and what was left out.
+    rung : str
+        Rung of the ladder that answered.
+    """
 
     scene: Scene
     equilibrium: Equilibrium

@@ -56,6 +56,7 @@ def solve(
     Returns
     -------
     Result
+        Torques, coefficients, floats and certificates of every position.
 
     Raises
     ------
@@ -87,14 +88,37 @@ def solve(
             progress(done, len(wanted))
     result = _result(case, train, answers, options, tolerance) if answers else None
     if refusals:
-        figures = {name: value for r in refusals for name, value in r.figures.items()}
-        raise Refused("\n".join(str(r) for r in refusals), figures, partial=result)
+        figures: dict[str, float] = {}
+        for refused in refusals:
+            for name, value in refused.figures.items():
+                figures[name] = max(value, figures.get(name, 0.0))
+        raise Refused("\n".join(map(str, refusals)), figures, partial=result)
     assert result is not None
     return result
 
 
-def explain(case: Case | str | Path, position: int = 1, *, method: str = "newton") -> Answer:
+def explain(
+    case: Case | str | Path,
+    position: int = 1,
+    *,
+    solver: str = "clarabel",
+    method: str = "newton",
+    reduce: bool = True,
+    tolerance: float = TOLERANCE,
+) -> Answer:
     """Solve one position and return everything that is known of how it was solved.
+
+    Parameters
+    ----------
+    case, solver, method, reduce, tolerance
+        As for :func:`solve`.
+    position : int
+        1-based.
+
+    Returns
+    -------
+    Answer
+        Scene, equilibrium, certificate, and the record of plans, passes and what was left out.
 
     Raises
     ------
@@ -103,7 +127,7 @@ def explain(case: Case | str | Path, position: int = 1, *, method: str = "newton
     """
     case, train = _prepare(case)
     (index,) = _wanted(train, [position])
-    return climb(train, index, Options(method=method), TOLERANCE)
+    return climb(train, index, Options(solver=solver, method=method, reduce=reduce), tolerance)
 
 
 def _prepare(case: Case | str | Path) -> tuple[Case, Train]:

@@ -32,7 +32,7 @@ def _position(p: Position) -> dict[str, Any]:
         "share": dict(p.share),
         "pair_share": dict(p.pair_share),
         "displacement": {g: list(d) for g, d in p.displacement.items()},
-        "floats": {g: asdict(f) for g, f in p.floats.items()},
+        "floats": {g: _plain(f) for g, f in p.floats.items()},
         "certificate": verdict,
         "coast_torque": dict(p.coast_torque),
         "rotation": dict(p.rotation),
@@ -45,6 +45,15 @@ def _position(p: Position) -> dict[str, Any]:
         "undetermined": list(p.undetermined),
         "effort": asdict(p.effort),
     }
+
+
+def _plain(rest: FloatState) -> dict[str, Any]:
+    """Return a float's state with lists where JSON has lists."""
+    state = asdict(rest)
+    for key in ("normal", "reaction"):
+        state[key] = None if state[key] is None else list(state[key])
+    state["boundaries"] = [b | {"normal": list(b["normal"])} for b in state["boundaries"]]
+    return state
 
 
 def from_document(document: dict[str, Any]) -> Result:

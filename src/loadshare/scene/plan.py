@@ -143,6 +143,7 @@ def programme(
         gaps[e] = (row.gap + offset) / (length * norm)
     return (
         Programme(
+            coordinates=scene.coordinates,
             stiffness=stiffness * length / force,
             load=load / force,
             names=tuple(r.name for r in rows),

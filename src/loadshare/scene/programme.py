@@ -17,7 +17,7 @@ The multiplier of a row is its force. Source: formulation, sections 4 to 6.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,6 +48,8 @@ class Programme:
 
     Attributes
     ----------
+    coordinates : tuple of str
+        Names of the x.
     stiffness : ndarray, shape (n, n)
         H.
     load : ndarray, shape (n,)
@@ -67,6 +69,7 @@ class Programme:
     cones : tuple of Cone
     """
 
+    coordinates: tuple[str, ...]
     stiffness: Array
     load: Array
     names: tuple[str, ...]
@@ -98,11 +101,8 @@ class Point:
         Multipliers of the rows.
     cone_forces : ndarray, shape (k, 2)
         Force that each cone exerts against its offset.
-    moves : ndarray, shape (n, f)
-        Directions in which the equilibrium leaves the coordinates undetermined.
     """
 
     x: Array
     forces: Array
     cone_forces: Array
-    moves: Array = field(default_factory=lambda: np.zeros((0, 0)))

@@ -166,10 +166,17 @@ class Scene:
         return max(pushes, default=0.0) or 1.0
 
     def length_unit(self) -> float:
-        """Length that the scene is measured by [m]: a flank's median compression under the unit."""
+        """Length that the scene is measured by [m]: what flanks yield, or 1/1000 of their gaps.
+
+        Under a light load the gaps are far larger than the compressions; measured by the latter,
+        their size would overflow what a solver resolves.
+        """
         force = self.force_unit()
-        compressions = [r.law.compression(force) for r in self.rows if r.kind == "drive flank"]
-        return float(np.median(compressions)) if compressions else 1e-6
+        flanks = [r for r in self.rows if r.kind == "drive flank"]
+        if not flanks:
+            return 1e-6
+        yielded = float(np.median([r.law.compression(force) for r in flanks]))
+        return max(yielded, 1e-3 * max(abs(r.gap) for r in flanks))
 
     def shaft_torque(self, gear: str, x: Array) -> float:
         """Torque [N·m] that `gear` takes from its elastic shafts at the coordinates x."""

@@ -35,6 +35,18 @@ class ActiveSet:
     closed: tuple[bool, ...]
     places: tuple[Place, ...]
 
+    def fits(self, programme: Programme) -> bool:
+        """Whether the set speaks of the rows and graphs of this programme."""
+        graphs = [len(cone.law.pieces) for cone in programme.cones]
+        return (
+            len(self.closed) == len(programme.gaps)
+            and len(self.places) == len(graphs)
+            and all(
+                place.piece < size + place.corner
+                for place, size in zip(self.places, graphs, strict=True)
+            )
+        )
+
 
 def first_guess(programme: Programme) -> ActiveSet:
     """Assumed rows closed, everything else open and on its first piece."""
@@ -82,6 +94,9 @@ def solve_exact(
 ) -> tuple[Point, ActiveSet] | None:
     """Solve on an active set and exchange until every sign is right.
 
+    All wrong signs are exchanged at once; when a set comes back, one at a time by least index,
+    which ends for a positive definite programme.
+
     Parameters
     ----------
     programme : Programme
@@ -96,41 +111,31 @@ def solve_exact(
     (Point, ActiveSet) or None
         None if the exchange finds no consistent set.
     """
-    size = programme.stiffness.shape[0]
-    if start is None:
-        start = Point(
-            np.zeros(size), np.zeros(len(programme.gaps)), np.zeros((len(programme.cones), 2))
-        )
+    start = start or at_rest(programme)
     limit = rounds or 20 + 6 * (len(programme.gaps) + len(programme.cones))
-    active, seen = guess, {guess}
+    active, seen, one_only = guess, {guess}, False
     for _ in range(limit):
         point = _solve_fixed(programme, active, start)
         if point is None:
-            thinner = _without_weakest(programme, active, start)
-            if thinner is None or thinner in seen:
-                return None
-            seen.add(thinner)
-            active = thinner
-            continue
-        better = _exchange(programme, active, point, one_only=False)
+            return None
+        better = _exchange(programme, active, point, one_only)
         if better == active:
             return point, active
-        if better in seen:
-            better = _exchange(programme, active, point, one_only=True)
+        if better in seen and not one_only:
+            one_only = True
+            better = _exchange(programme, active, point, one_only)
         seen.add(better)
         active, start = better, point
     return None
 
 
-def _without_weakest(programme: Programme, active: ActiveSet, start: Point) -> ActiveSet | None:
-    """Open the closed row with the smallest force: too many rigid rows contradict each other."""
-    closed = [e for e, c in enumerate(active.closed) if c and not programme.assumed_closed[e]]
-    if not closed:
-        return None
-    weakest = min(closed, key=lambda e: float(start.forces[e]))
-    rows = list(active.closed)
-    rows[weakest] = False
-    return replace(active, closed=tuple(rows))
+def at_rest(programme: Programme) -> Point:
+    """Return the point where nothing has moved and nothing pushes."""
+    return Point(
+        np.zeros(programme.stiffness.shape[0]),
+        np.zeros(len(programme.gaps)),
+        np.zeros((len(programme.cones), 2)),
+    )
 
 
 def _solve_fixed(programme: Programme, active: ActiveSet, start: Point) -> Point | None:
@@ -195,7 +200,7 @@ def _newton_system(programme: Programme, active: ActiveSet, at: Point) -> Point 
         width = len(directions)
         cone_forces[j] = solved.values[at_multiplier : at_multiplier + width] @ directions
         at_multiplier += width
-    return Point(x, forces, cone_forces, solved.moves)
+    return Point(x, forces, cone_forces)
 
 
 def _row_tangents(programme: Programme, forces: Array) -> tuple[Array, Array]:
@@ -275,7 +280,7 @@ def _exchange(programme: Programme, active: ActiveSet, point: Point, one_only: b
             wrong.append((excess, count + j))
             moves[count + j] = moved
     if one_only and wrong:
-        wrong = [max(wrong)]
+        wrong = [min(wrong, key=lambda w: w[1])]
     rows, places = list(active.closed), list(active.places)
     for _, k in wrong:
         if k < count:

@@ -7,10 +7,8 @@ from dataclasses import dataclass
 from loadshare.scene.programme import Point, Programme
 from loadshare.solver.backend import Backend, BackendFailure
 from loadshare.solver.exact import ActiveSet, first_guess, identify, solve_exact
-
-
-class Unsolved(RuntimeError):  # noqa: N818 -- a finding, not a fault
-    """A programme has no answer, or none was found; the message says which."""
+from loadshare.solver.findings import Unsolved
+from loadshare.solver.proximal import solve_proximal
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,12 +40,12 @@ def solve_programme(
         If the programme contradicts itself or no consistent active set is found.
     """
     kind = programme.kind
-    if kind == "linear" and polish:
+    if polish and kind == "linear":
         exact = solve_exact(programme, first_guess(programme))
         if exact is None:
-            raise Unsolved("nothing holds the train: the linear system contradicts itself")
+            raise Unsolved("the linear system contradicts itself")
         return Inner(*exact, "linear solve")
-    if polish and warm is not None and warm.active is not None:
+    if polish and warm is not None and warm.active is not None and warm.active.fits(programme):
         exact = solve_exact(programme, warm.active, warm.point, rounds=3)
         if exact is not None:
             return Inner(*exact, "active set kept")
@@ -56,10 +54,17 @@ def solve_programme(
     try:
         rough = backend.solve(programme)
     except BackendFailure as failure:
-        raise Unsolved(str(failure)) from failure
+        if not polish:
+            raise Unsolved(str(failure)) from failure
+        return _without_guess(programme, None, "")
     if not polish:
         return Inner(rough, None, backend.name)
     exact = solve_exact(programme, identify(programme, rough), rough)
     if exact is None:
-        raise Unsolved(f"no consistent active set was found from the answer of {backend.name}")
+        return _without_guess(programme, rough, f"{backend.name} + ")
     return Inner(*exact, f"{backend.name} + exact")
+
+
+def _without_guess(programme: Programme, start: Point | None, via: str) -> Inner:
+    """Solve where no active set could be read from a back-end's answer, or there is none."""
+    return Inner(*solve_proximal(programme, start), f"{via}proximal + exact")

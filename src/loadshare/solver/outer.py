@@ -22,7 +22,8 @@ from loadshare.scene.programme import Array, Point
 from loadshare.scene.scene import Scene
 from loadshare.solver.backend import Backend
 from loadshare.solver.energy import potential
-from loadshare.solver.inner import Inner, Unsolved, solve_programme
+from loadshare.solver.findings import Unsolved
+from loadshare.solver.inner import Inner, solve_programme
 from loadshare.solver.record import Iteration, Options
 from loadshare.train.radial import RadialLaw
 
@@ -46,8 +47,6 @@ class Settled:
         Force along its offset [N], of the radials in play.
     laws : dict of radial name to RadialLaw
         At the settled torques.
-    moves : ndarray, shape (n, f)
-        Directions that the equilibrium leaves undetermined.
     kind : str
     iterations : tuple of Iteration
     """
@@ -56,7 +55,6 @@ class Settled:
     forces: dict[str, float]
     radial_forces: dict[str, Array]
     laws: dict[str, RadialLaw]
-    moves: Array
     kind: str
     iterations: tuple[Iteration, ...]
 
@@ -108,7 +106,6 @@ def settle(scene: Scene, plan: Plan, backend: Backend, options: Options, method:
                     for c, f in zip(written.cones, warm.point.cone_forces, strict=True)
                 },
                 {r.name: r.law(torques[r.gear]) for r in scene.radials},
-                warm.point.moves,
                 written.kind,
                 tuple(history),
             )

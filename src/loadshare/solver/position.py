@@ -9,7 +9,8 @@ from loadshare.scene.plan import Plan, Role
 from loadshare.scene.programme import Array
 from loadshare.scene.scene import Scene
 from loadshare.solver.backend import Backend, backend
-from loadshare.solver.inner import Unsolved
+from loadshare.solver.findings import Unbalanced, Unsolved
+from loadshare.solver.least_norm import least_norm
 from loadshare.solver.outer import Settled, settle
 from loadshare.solver.record import Options, Record
 from loadshare.train.equilibrium import Equilibrium
@@ -47,7 +48,7 @@ def solve_scene(scene: Scene, options: Options) -> tuple[Equilibrium, Record]:
         except Unsolved as failure:
             wider = _wider(scene, plan)
             if wider is None:
-                raise Refused(_refusal(scene, str(failure)), {}) from failure
+                raise Refused(_told(scene, failure)) from failure
             plan = wider
             continue
         margins = _margins(scene, plan, settled)
@@ -66,7 +67,7 @@ def solve_scene(scene: Scene, options: Options) -> tuple[Equilibrium, Record]:
         removed,
         scene.coordinates,
     )
-    return _equilibrium(scene, plan, settled), record
+    return _equilibrium(scene, settled), record
 
 
 def _settle(scene: Scene, plan: Plan, solver: Backend, options: Options) -> tuple[Settled, str]:
@@ -75,11 +76,21 @@ def _settle(scene: Scene, plan: Plan, solver: Backend, options: Options) -> tupl
     try:
         return settle(scene, plan, solver, options, options.method), options.method
     except ValueError as error:
-        raise Refused(str(error), {}) from error
+        raise Refused(_told(scene, error)) from error
     except Unsolved:
         if other is None or all(r.law.is_linear for r in scene.rows):
             raise
     return settle(scene, plan, solver, options, other), other
+
+
+def _told(scene: Scene, failure: Exception) -> str:
+    """Say why there is no answer, and which floats nothing limits if the load found no balance."""
+    told = f"position {scene.situation.index}: {failure}"
+    limited = {*scene.train.splines, *scene.train.rings}
+    loose = [g for g in scene.train.floating if g not in limited]
+    if isinstance(failure, Unbalanced) and loose:
+        told += f"; nothing limits the float of gear {', '.join(loose)}"
+    return told
 
 
 def _wider(scene: Scene, plan: Plan) -> Plan | None:
@@ -120,18 +131,14 @@ def _margins(scene: Scene, plan: Plan, settled: Settled) -> dict[str, tuple[bool
     return found
 
 
-def _equilibrium(scene: Scene, plan: Plan, settled: Settled) -> Equilibrium:
-    """Turn an answer into physical terms."""
-    train, x = scene.train, settled.x
+def _equilibrium(scene: Scene, settled: Settled) -> Equilibrium:
+    """Turn an answer into physical terms, least-norm where it leaves displacements undetermined."""
+    train = scene.train
+    pulls = _radial_forces(scene, settled)
+    x, undetermined = least_norm(scene, settled.x, settled.forces, pulls, settled.laws)
     flanks = {r.name for r in scene.rows if r.kind.endswith("flank")}
     contacts = [r.name for r in scene.rows if r.kind == "stop"] + [a.name for a in scene.arcs]
-    reactions: dict[str, Array] = {}
-    for radial in scene.radials:
-        force = settled.radial_forces.get(radial.name)
-        if force is None:
-            first = settled.laws[radial.name].pieces[0]
-            force = first.stiffness * (radial.matrix @ x - radial.centre)
-        reactions[radial.name] = -force @ train.gears[radial.gear].frame
+    reactions = {r.name: -pulls[r.name] @ train.gears[r.gear].frame for r in scene.radials}
     return Equilibrium(
         index=scene.situation.index,
         rotation={g: scene.angle(g, x) for g in train.gears},
@@ -139,22 +146,15 @@ def _equilibrium(scene: Scene, plan: Plan, settled: Settled) -> Equilibrium:
         flank_force={n: max(settled.forces.get(n, 0.0), 0.0) for n in sorted(flanks)},
         ring_force={n: max(settled.forces.get(n, 0.0), 0.0) for n in contacts},
         radial_reaction=reactions,
-        undetermined=tuple(
-            name
-            for name, move in zip(scene.coordinates, settled.moves, strict=False)
-            if np.abs(move).max(initial=0.0) > 1e-6
-        ),
+        undetermined=undetermined,
     )
 
 
-def _refusal(scene: Scene, why: str) -> str:
-    """Say what an engineer can look at when nothing holds."""
-    train = scene.train
-    loose = [g for g in train.floating if g not in train.splines and g not in train.rings]
-    hint = ""
-    if loose:
-        hint = (
-            f"; gears {', '.join(loose)} float without a spline or ring that could hold them: "
-            "check their supports"
-        )
-    return f"position {scene.situation.index}: {why}{hint}"
+def _radial_forces(scene: Scene, settled: Settled) -> dict[str, Array]:
+    """Force of every radial element along its offset [N], whether it was in play or not."""
+    forces = dict(settled.radial_forces)
+    for radial in scene.radials:
+        if radial.name not in forces:
+            first = settled.laws[radial.name].pieces[0]
+            forces[radial.name] = first.stiffness * (radial.matrix @ settled.x - radial.centre)
+    return forces

@@ -139,7 +139,7 @@ def _mesh(name: str, mesh: spec.Mesh, gears: Mapping[str, Gear], contact: Contac
     else:
         backlash = math.inf
     r = driver.base_radius
-    gap = mesh.law.a if mesh.law is not None else mesh.gap
+    gap = mesh.law.a if mesh.gap is None and mesh.law is not None else mesh.gap
     return Mesh(
         name=name,
         driver=driver.name,

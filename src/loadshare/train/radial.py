@@ -57,7 +57,7 @@ class RadialLaw:
         return self.start(len(self.pieces))
 
     def step(self, corner: int) -> tuple[float, float]:
-        """Force interval [N] of the step before piece `corner`; after the last piece, of the stop."""
+        """Force interval [N] of the step before piece `corner`; after the last, of the stop."""
         low = self.pieces[corner - 1].end_force if corner > 0 else 0.0
         high = self.pieces[corner].force if corner < len(self.pieces) else math.inf
         return low, high
@@ -123,6 +123,10 @@ class RadialLaw:
         )
 
 
+ROUNDING = 1e-6
+"""Relative excess of K_w S1 over F_m that the digits of a written S1 explain."""
+
+
 def spline_law(
     bending_stiffness: float, stick_limit: float | None, clearance: float, friction: float
 ) -> RadialLaw:
@@ -147,12 +151,13 @@ def spline_law(
     """
     continuous = friction / bending_stiffness
     s1 = continuous if stick_limit is None else stick_limit
-    if bending_stiffness * s1 > friction * (1.0 + 1e-12):
+    if bending_stiffness * s1 > friction * (1.0 + ROUNDING):
         raise ValueError(
             f"the spline's force would drop from K_w S1 = {bending_stiffness * s1:.6g} N to "
             f"F_m = {friction:.6g} N where it starts to slip (K_w = {bending_stiffness:.6g} N/m, "
             f"S1 = {s1:.6g} m): several equilibria would be possible"
         )
+    s1 = min(s1, continuous)
     if clearance < s1:
         if stick_limit is not None:
             raise ValueError(

@@ -27,8 +27,6 @@ def check_spline_law(draft: Draft) -> Iterator[Problem]:
     for name, spline in draft.splines.items():
         bound, stiffness = spline.fixed_bound, spline.bending_stiffness.si
         stick = None if spline.stick_limit is None else spline.stick_limit.si
-        if stick is None and bound is not None:
-            stick = bound / stiffness
         # F_m / K_w, written with a few digits, must not fail for its last one.
         if bound is not None and stick is not None and stiffness * stick > bound * (1 + 1e-6):
             message = (

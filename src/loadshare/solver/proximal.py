@@ -1,0 +1,94 @@
+r"""The proximal method of multipliers: for programmes whose active set cannot be read off.
+
+Rigid contacts that oppose each other, contacts on the verge, and coordinates that only contacts
+hold make the exact active-set equations singular. Here every pass adds a small stiffness and a
+small compliance that pull towards the pass before,
+
+.. math:: \tfrac{\varepsilon}{2}\lVert x - x_k\rVert^2, \qquad
+          a_e\cdot x - b_e F_e - \varepsilon (F_e - F_{e,k}) \le g_e ,
+
+so that each pass is positive definite and its active set is found by exchange. The passes converge
+to an answer of the original programme; as soon as the active set stays, the exact solve on it is
+tried.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from loadshare.scene.programme import Array, Point, Programme
+from loadshare.solver.exact import ActiveSet, at_rest, first_guess, solve_exact
+from loadshare.solver.findings import Unbalanced
+
+PULLS = (*[1e-5] * 8, *(10.0**-k for k in range(6, 12)), *[1e-11] * 6)
+"""ε of every pass, in the programme's units (where a flank's compliance is about 1).
+
+A pass moves a coordinate by load/ε at most, so a wide gap under a light load wants a weak pull.
+"""
+ARRIVED = 1e-14
+"""Change of a pass, relative to the largest value, below which the passes have arrived."""
+
+
+def solve_proximal(programme: Programme, start: Point | None = None) -> tuple[Point, ActiveSet]:
+    """Solve a programme without a guess of its active set.
+
+    Parameters
+    ----------
+    programme : Programme
+    start : Point, optional
+        Where the passes begin; at rest by default.
+
+    Raises
+    ------
+    Unbalanced
+        If the passes run away or find no active set.
+    """
+    at = start or at_rest(programme)
+    active = first_guess(programme)
+    drift = at
+    for pull in PULLS:
+        found = solve_exact(_pulled(programme, at, pull), active, at)
+        if found is None:
+            raise Unbalanced("no consistent active set was found")
+        point, now = found
+        if now == active:
+            exact = solve_exact(programme, now, point, rounds=1)
+            if exact is not None:
+                return exact
+            if _change(point, at) <= ARRIVED:
+                return point, now
+        drift = Point(point.x - at.x, point.forces - at.forces, point.cone_forces)
+        at, active = point, now
+    raise Unbalanced(_what_gives_way(programme, drift))
+
+
+def _pulled(programme: Programme, at: Point, pull: float) -> Programme:
+    return replace(
+        programme,
+        stiffness=programme.stiffness + pull * np.eye(len(at.x)),
+        load=programme.load + pull * at.x,
+        linear=programme.linear + pull,
+        gaps=programme.gaps - pull * at.forces,
+    )
+
+
+def _change(point: Point, before: Point) -> float:
+    def relative(new: Array, old: Array) -> float:
+        size = max(1.0, float(np.abs(new).max(initial=0.0)))
+        return float(np.abs(new - old).max(initial=0.0)) / size
+
+    return max(relative(point.x, before.x), relative(point.forces, before.forces))
+
+
+def _what_gives_way(programme: Programme, drift: Point) -> str:
+    """Name the coordinate that runs away, or the contacts whose forces grow without end."""
+    run, growth = np.abs(drift.x), np.abs(drift.forces)
+    if run.max(initial=0.0) > 1.0:
+        name = programme.coordinates[int(run.argmax())]
+        return f"nothing balances the load on {name}: no contact, support or limit holds it"
+    if growth.max(initial=0.0) > 1e-3:
+        names = [programme.names[k] for k in np.argsort(-growth)[:2] if growth[k] > 1e-3]
+        return f"the constraints contradict each other: {' and '.join(names)} cannot both hold"
+    return "the passes of the proximal method did not settle"
