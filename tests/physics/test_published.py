@@ -22,15 +22,12 @@ from tests.support import shipped
 import loadshare as ls
 from loadshare.certify import FloatState
 
-SOLVER = "osqp"
-"""Back-end of the sweeps; the figures do not depend on it."""
-
 
 def in_rings(four: float, five: float) -> ls.Result:
     """The transmission of Fig. 13 with the float ranges [µm] of pinions 4 and 5."""
     case = shipped("fgfbstts/limit_ring")
     changes = {"rings.4.float": f"{four!r} um", "rings.5.float": f"{five!r} um"}
-    return ls.solve(case.replace(changes), positions=[1], solver=SOLVER)
+    return ls.solve(case.replace(changes), positions=[1])
 
 
 def stop_force(state: FloatState) -> float:

@@ -9,8 +9,6 @@ what was certified.
 The examples are the same in every run (derandomised), so that a failure can be repeated.
 """
 
-import warnings
-
 import pytest
 from hypothesis import HealthCheck, given, note, settings
 from hypothesis import strategies as st
@@ -40,7 +38,7 @@ def scaled(value: float, unit: str) -> str:
 sizes = st.sampled_from([0.0, 0.01, 0.1, 0.3, 1.0, 3.0, 10.0])
 """A length in deflections: nothing, something, ten times as much."""
 factors = st.sampled_from([0.3, 0.5, 0.8, 1.0, 1.3, 2.0, 3.0])
-loads = st.sampled_from([0.1, 0.3, 0.5, 1.0, 1.6])
+loads = st.sampled_from([1e-4, 1e-3, 0.01, 0.1, 0.3, 0.5, 1.0, 1.6])
 angles = st.integers(0, 359)
 
 
@@ -164,7 +162,9 @@ def split_torques(draw: st.DrawFn) -> ls.Case:
         if held.startswith("elastic"):
             data["gears"][name]["support"] = scaled(1e7 * draw(factors), "N/m")
         else:
-            data["splines"][name] = draw(splines(("continuous", "jump")))
+            data["splines"][name] = draw(
+                splines(("continuous", "jump", "no friction", "follows the torque"))
+            )
         if held.endswith("drum"):
             data["rings"][name] = draw(drums([f"idler{number}b", f"idler{number}a"]))
     for name in some(draw, [g for g in data["gears"] if g.startswith("idler")], st.none()):
@@ -189,10 +189,7 @@ def is_solved_and_agreed(case: ls.Case) -> None:
         others.append({"solver": "osqp"})
     for options in others:
         try:
-            with warnings.catch_warnings():
-                # CVXPY has its own opinion of its answer; here the certificate judges it.
-                warnings.filterwarnings("ignore", "Solution may be inaccurate", UserWarning)
-                found, _ = answer(train, **options)
+            found, _ = answer(train, **options)
         except ls.Refused:
             continue  # the ladder does not depend on every rung
         if certify(train, found).passed:
@@ -211,9 +208,9 @@ def test_a_random_train_is_solved(family):
 
 
 @pytest.mark.slow
-def test_many_split_torque_trains_are_solved():
+def test_many_random_trains_are_solved():
     @settings(PROFILE, max_examples=300)
-    @given(split_torques())
+    @given(st.one_of(split_torques(), stars()))
     def run(case: ls.Case) -> None:
         is_solved_and_agreed(case)
 

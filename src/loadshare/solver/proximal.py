@@ -28,7 +28,7 @@ PULLS = (*[1e-5] * 8, *(10.0**-k for k in range(6, 12)), *[1e-11] * 6)
 A pass moves a coordinate by load/ε at most, so a wide gap under a light load wants a weak pull.
 """
 ARRIVED = 1e-14
-"""Change of a pass, relative to the largest value, below which the passes have arrived."""
+"""Residual of a pass (ε times its change), relative to the largest value, that is round-off."""
 
 
 def solve_proximal(programme: Programme, start: Point | None = None) -> tuple[Point, ActiveSet]:
@@ -45,7 +45,8 @@ def solve_proximal(programme: Programme, start: Point | None = None) -> tuple[Po
     Unbalanced
         If the passes run away or find no active set.
     """
-    at = start or at_rest(programme)
+    # Where forces are not unique, passes that begin without any end near the smallest ones.
+    at = at_rest(programme) if start is None else replace(at_rest(programme), x=start.x)
     active = first_guess(programme)
     drift = at
     for pull in PULLS:
@@ -57,8 +58,8 @@ def solve_proximal(programme: Programme, start: Point | None = None) -> tuple[Po
             exact = solve_exact(programme, now, point, rounds=1)
             if exact is not None:
                 return exact
-            if _change(point, at) <= ARRIVED:
-                return point, now
+        if pull * _change(point, at) <= ARRIVED and now == active:
+            return point, now
         drift = Point(point.x - at.x, point.forces - at.forces, point.cone_forces)
         at, active = point, now
     raise Unbalanced(_what_gives_way(programme, drift))
