@@ -250,13 +250,14 @@ def test_a_wrong_answer_is_refused_and_the_right_residual_says_so(slip, scenario
             assert verdict.residuals[wrong.residual].where == wrong.where, wrong.what
 
 
+@pytest.mark.parametrize("wrong", [math.nan, math.inf, -math.inf])
 @pytest.mark.parametrize("scenario", SCENARIOS)
-def test_what_is_not_a_number_is_refused_wherever_it_stands(scenario):
+def test_what_is_not_a_number_is_refused_wherever_it_stands(scenario, wrong):
     train, found = solved(scenario)
     fields = ("rotation", "flank_force", "ring_force", "displacement", "radial_reaction")
     for field in fields:
         for name, old in getattr(found, field).items():
-            nan = np.full(3, math.nan) if isinstance(old, np.ndarray) else math.nan
+            nan = np.full(3, wrong) if isinstance(old, np.ndarray) else wrong
             verdict = certify(train, spoilt(found, field, {name: nan}))
             assert not verdict.passed, (field, name)
             assert verdict.failing, (field, name)
@@ -295,3 +296,23 @@ def test_the_tolerance_is_the_callers(tolerance):
     verdict = certify(train, spoiled, tolerance)
     assert verdict.tolerance == tolerance
     assert verdict.passed == (tolerance == 1e-6)
+
+
+def test_a_free_displacement_does_not_blind_the_certificate():
+    """Pinion 1 may lie anywhere along its free direction; lying far away must not excuse the rest."""
+    train = build_train(shipped("fgfbstts/limit_ring"))
+    other = {"errors.6.installation": ["0 um", "100.4 um"], "rings.4.float": "8.3 um"}
+    found, _ = answer(build_train(shipped("fgfbstts/limit_ring").replace(other)))
+    free = np.cross(train.gears["1"].axis, train.meshes["1-2"].drive_normal)
+    far = found.displacement["1"] + 1e3 * free / np.linalg.norm(free)
+    assert not certify(train, spoilt(found, "displacement", {"1": far})).passed
+
+
+def test_a_preload_between_rigid_stops_does_not_blind_the_certificate():
+    """Two opposite stops may press each other as hard as they like; that must not excuse the rest."""
+    case = shipped("fgfbstts/limit_ring").replace({"rings.4.float": "0 um"})
+    train = build_train(case)
+    found, _ = answer(build_train(case.replace({"operating.power": "1998 kW"})))
+    up, down = train.rings["4"].stop_names
+    pressed = {up: found.ring_force[up] + 1e13, down: found.ring_force[down] + 1e13}
+    assert not certify(train, spoilt(found, "ring_force", pressed)).passed

@@ -16,7 +16,9 @@ from loadshare.scene.programme import Array, Cone, Point, Programme
 from loadshare.solver.kkt import solve_symmetric
 
 SIGN = 1e-11
-"""Violation of a sign that counts as round-off, relative to the largest quantity of its sort."""
+"""Violation of a sign, in units of the programme, that counts as round-off."""
+ROUNDING = 1e-14
+"""The same, relative to the largest quantity of its sort."""
 NEWTON_STEPS = 40
 
 
@@ -262,8 +264,8 @@ def _direction(force: Array) -> Array:
 
 def _exchange(programme: Programme, active: ActiveSet, point: Point, one_only: bool) -> ActiveSet:
     """Flip rows with the wrong sign and move radial elements off places they have left."""
-    force_band = SIGN * max(1.0, float(np.abs(point.forces).max(initial=0.0)))
-    length_band = SIGN * max(1.0, float(np.abs(point.x).max(initial=0.0)))
+    force_band = SIGN + ROUNDING * float(np.abs(point.forces).max(initial=0.0))
+    length_band = SIGN + ROUNDING * float(np.abs(point.x).max(initial=0.0))
     wrong: list[tuple[float, int]] = []
     approach = programme.rows @ point.x - programme.gaps
     for e, closed in enumerate(active.closed):

@@ -9,6 +9,7 @@ from loadshare.scene.plan import Plan, Role
 from loadshare.scene.programme import Array
 from loadshare.scene.scene import Scene
 from loadshare.solver.backend import Backend, backend
+from loadshare.solver.exact import ROUNDING
 from loadshare.solver.findings import Unbalanced, Unsolved
 from loadshare.solver.least_norm import least_norm
 from loadshare.solver.outer import Settled, settle
@@ -106,10 +107,10 @@ def _wider(scene: Scene, plan: Plan) -> Plan | None:
 
 def _margins(scene: Scene, plan: Plan, settled: Settled) -> dict[str, tuple[bool, str]]:
     """For everything left out: whether leaving it out was right, and the figure that says so."""
-    length, force = scene.length_unit(), scene.force_unit()
-    length *= VERIFIED * max(1.0, float(np.abs(settled.x).max(initial=0.0)) / length)
     largest = max((abs(f) for f in settled.forces.values()), default=0.0)
-    force = VERIFIED * max(force, largest)
+    force = VERIFIED * scene.force_unit() + ROUNDING * largest
+    furthest = float(np.abs(settled.x).max(initial=0.0))
+    length = VERIFIED * scene.length_unit() + ROUNDING * furthest
     found: dict[str, tuple[bool, str]] = {}
     for row in scene.rows_at(settled.x):
         role = plan.rows[row.name]
