@@ -6,6 +6,7 @@ CASE   ?= cases/fgfbstts/limit_ring.toml
 WORKERS ?= 2
 # BLAS gains nothing on matrices of this size, and its threads fight with the test workers.
 export OPENBLAS_NUM_THREADS = 1
+export NO_MKDOCS_2_WARNING = 1
 
 .DEFAULT_GOAL := help
 .PHONY: help run test test-all lint format types layers docs docs-serve cases clean

@@ -299,7 +299,7 @@ def test_the_tolerance_is_the_callers(tolerance):
 
 
 def test_a_free_displacement_does_not_blind_the_certificate():
-    """Pinion 1 may lie anywhere along its free direction; lying far away must not excuse the rest."""
+    """Pinion 1 may lie anywhere along its free direction; that must not excuse the rest."""
     train = build_train(shipped("fgfbstts/limit_ring"))
     other = {"errors.6.installation": ["0 um", "100.4 um"], "rings.4.float": "8.3 um"}
     found, _ = answer(build_train(shipped("fgfbstts/limit_ring").replace(other)))
@@ -309,7 +309,7 @@ def test_a_free_displacement_does_not_blind_the_certificate():
 
 
 def test_a_preload_between_rigid_stops_does_not_blind_the_certificate():
-    """Two opposite stops may press each other as hard as they like; that must not excuse the rest."""
+    """Two opposite stops may press each other at will; that must not excuse the rest."""
     case = shipped("fgfbstts/limit_ring").replace({"rings.4.float": "0 um"})
     train = build_train(case)
     found, _ = answer(build_train(case.replace({"operating.power": "1998 kW"})))
