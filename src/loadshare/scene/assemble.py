@@ -37,6 +37,11 @@ def assemble(train: Train, index: int) -> Scene:
         for mesh in train.meshes.values()
         if math.isinf(mesh.backlash)
     ]
+    removed += [
+        (f"{spline.name} friction", "its bound is zero")
+        for spline in train.splines.values()
+        if spline.friction_force == 0.0
+    ]
     scene_rows = (*_flanks(train, situation, rotation, moved, none, size), *rows)
     radials += [
         Radial(s.name, g, np.eye(size)[displacement[g]], np.zeros(2), s)

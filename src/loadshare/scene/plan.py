@@ -13,6 +13,7 @@ from enum import Enum
 
 import numpy as np
 
+from loadshare.scene.condense import Condensation, nothing_condensed
 from loadshare.scene.programme import Array, Cone, Programme
 from loadshare.scene.scene import Row, Scene
 from loadshare.train.law import PowerLaw
@@ -29,7 +30,7 @@ class Role(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Roles of all rows (arcs included) and radial elements, by name.
+    """Roles of all rows (arcs included) and radial elements, by name; condensed or not.
 
     A radial element that is not in play stays on its first piece: a linear spring (CLOSED), or
     nothing (OPEN).
@@ -37,6 +38,7 @@ class Plan:
 
     rows: Mapping[str, Role]
     radials: Mapping[str, Role]
+    condensed: bool = False
 
     @classmethod
     def full(cls, scene: Scene) -> Plan:
@@ -52,7 +54,7 @@ class Plan:
         """Take drive flanks as closed and everything else as idle."""
         rows = {r.name: Role.CLOSED if r.kind == "drive flank" else Role.OPEN for r in scene.rows}
         rows |= {a.name: Role.OPEN for a in scene.arcs}
-        return cls(rows, {r.name: Role.CLOSED for r in scene.radials})
+        return cls(rows, {r.name: Role.CLOSED for r in scene.radials}, condensed=True)
 
     def with_in_play(self, names: set[str]) -> Plan:
         """Put the named rows and radial elements in play as well."""
@@ -92,11 +94,14 @@ class Units:
         [N], [m].
     row_norms : ndarray, shape (m,)
         Norms of the SI rows: a row's force is F̂ · force / norm.
+    condensation : Condensation
+        All coordinates from those of the programme.
     """
 
     force: float
     length: float
     row_norms: Array
+    condensation: Condensation
 
 
 def programme(
@@ -122,19 +127,23 @@ def programme(
     stiffness = scene.stiffness.copy()
     load = scene.load.copy()
     cones = []
+    condensed = scene.condensation if plan.condensed else nothing_condensed(scene.size)
     for radial in scene.radials:
         law = at.radial_laws[radial.name]
         first = law.pieces[0]
         unbounded = len(law.pieces) == 1 and first.force == 0.0 and np.isinf(first.length)
         if plan.radials[radial.name] is Role.IN_PLAY and not unbounded:
             scaled = law.scaled(force, length)
-            cones.append(Cone(radial.name, radial.matrix, radial.centre / length, scaled))
+            kept = radial.matrix[:, condensed.kept]
+            cones.append(Cone(radial.name, kept, radial.centre / length, scaled))
         elif first.force == 0.0:
             stiffness += first.stiffness * radial.matrix.T @ radial.matrix
             load += first.stiffness * radial.matrix.T @ radial.centre
-    rows = [r for r in scene.rows_at(at.x) if plan.rows[r.name] is not Role.OPEN]
+    rows = [r for r in scene.rows_at(at.x) if plan.rows[r.name] is not Role.OPEN and r.vector.any()]
     norms = np.array([float(np.linalg.norm(r.vector)) for r in rows])
     vectors = np.array([r.vector for r in rows]).reshape(len(rows), scene.size)
+    expansion = condensed.expansion
+    load -= stiffness @ condensed.constant
     linear, hertz, gaps = np.zeros(len(rows)), np.zeros(len(rows)), np.zeros(len(rows))
     for e, (row, norm) in enumerate(zip(rows, norms, strict=True)):
         b, c, offset = _compliance(row, at, exact_hertz)
@@ -143,18 +152,18 @@ def programme(
         gaps[e] = (row.gap + offset) / (length * norm)
     return (
         Programme(
-            coordinates=scene.coordinates,
-            stiffness=stiffness * length / force,
-            load=load / force,
+            coordinates=tuple(scene.coordinates[k] for k in condensed.kept),
+            stiffness=expansion.T @ stiffness @ expansion * length / force,
+            load=expansion.T @ load / force,
             names=tuple(r.name for r in rows),
-            rows=vectors / norms[:, None],
+            rows=vectors[:, condensed.kept] / norms[:, None],
             gaps=gaps,
             linear=linear,
             hertz=hertz,
             assumed_closed=np.array([plan.rows[r.name] is Role.CLOSED for r in rows], dtype=bool),
             cones=tuple(cones),
         ),
-        Units(force, length, norms),
+        Units(force, length, norms, condensed),
     )
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.scene.condense import Condensation, condense
 from loadshare.train.law import Law
 from loadshare.train.radial import RadialLaw
 from loadshare.train.ring import Arc
@@ -113,7 +115,7 @@ class Radial:
         return self.source.law(torque) if isinstance(self.source, Spline) else self.source
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Scene:
     """The whole contact problem of a position: minimise ½xᵀHx − fᵀx + Σ U(a·x − g) + Σ W(|Px − m|).
 
@@ -153,6 +155,16 @@ class Scene:
     def size(self) -> int:
         """Number of coordinates."""
         return len(self.coordinates)
+
+    @cached_property
+    def condensation(self) -> Condensation:
+        """Coordinates that no contact touches, as linear functions of the others."""
+        touched = np.zeros(self.size, dtype=bool)
+        for row in self.rows:
+            touched |= row.vector != 0.0
+        for matrix in (*(a.relative for a in self.arcs), *(r.matrix for r in self.radials)):
+            touched |= (matrix != 0.0).any(axis=0)
+        return condense(self.stiffness, self.load, touched)
 
     def rows_at(self, x: Array) -> tuple[Row, ...]:
         """All rows, arcs replaced by their faces at x."""

@@ -25,6 +25,7 @@ from loadshare.solver.energy import potential
 from loadshare.solver.findings import Unsolved
 from loadshare.solver.inner import Inner, solve_programme
 from loadshare.solver.record import Iteration, Options
+from loadshare.train.law import PowerLaw
 from loadshare.train.radial import RadialLaw
 
 STALLED = 1e-9
@@ -86,7 +87,7 @@ def settle(scene: Scene, plan: Plan, backend: Backend, options: Options, method:
         at = Linearisation(state.x, _compliances(scene, state.forces, method), laws)
         written, units = programme(scene, plan, at, exact_hertz=method == "power")
         warm = solve_programme(written, backend, warm, options.polish)
-        x = warm.point.x * units.length
+        x = units.condensation.expand(warm.point.x * units.length)
         forces = _forces(written.names, warm.point, units)
         torques = {r.gear: scene.shaft_torque(r.gear, x) for r in scene.radials}
         law_misfit = _law_misfit(scene, at, forces, method)
@@ -150,7 +151,8 @@ def _law_misfit(scene: Scene, at: Linearisation, forces: dict[str, float], metho
     worst = 0.0
     for row in scene.rows:
         force = abs(forces.get(row.name, 0.0))
-        if force == 0.0 or row.law.is_linear or method == "power":
+        exact = method == "power" and isinstance(row.law, PowerLaw)
+        if force == 0.0 or row.law.is_linear or exact:
             continue
         b, offset = at.compliance[row.name]
         worst = max(worst, abs(row.law.compression(force) - b * force - offset))

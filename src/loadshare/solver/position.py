@@ -57,7 +57,13 @@ def solve_scene(scene: Scene, options: Options) -> tuple[Equilibrium, Record]:
         if not wrong:
             break
         plan = plan.with_in_play(wrong)
-    removed = scene.removed + tuple((name, why) for name, (_, why) in margins.items())
+    coordinates = scene.coordinates
+    removed = scene.removed
+    if plan.condensed:
+        kept = {coordinates[k] for k in scene.condensation.kept}
+        removed += tuple((c, "only springs hold it") for c in coordinates if c not in kept)
+        coordinates = tuple(c for c in coordinates if c in kept)
+    removed += tuple((name, why) for name, (_, why) in margins.items())
     record = Record(
         options.solver,
         method,
@@ -66,7 +72,7 @@ def solve_scene(scene: Scene, options: Options) -> tuple[Equilibrium, Record]:
         plan,
         rounds,
         removed,
-        scene.coordinates,
+        coordinates,
     )
     return _equilibrium(scene, settled), record
 

@@ -50,7 +50,7 @@ def _rest(position: Position, gear: str, places: int) -> tuple[str, ...]:
 
 
 def _state(rest: FloatState) -> str:
-    return f"on {rest.boundary}" if rest.boundary else rest.state
+    return f"{rest.state}: {rest.boundary}" if rest.boundary else rest.state
 
 
 def _by_position(
