@@ -133,14 +133,14 @@ def same_line(shown: str, real: str) -> bool:
             return False
         other = found[number]
         if _round_off(word) and _round_off(other):
-            return True
+            return True  # where round-off is largest is up to the machine, too
         if not _same_word(word, other):
             return False
     return len(wanted) == len(found)
 
 
 def _round_off(word: str) -> bool:
-    value = _value(word)
+    value = _value(word.rstrip(","))
     return value is not None and abs(value) < ROUND_OFF and ("e" in word.lower() or word == "0")
 
 

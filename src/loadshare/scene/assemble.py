@@ -185,7 +185,9 @@ def _rings(
         for side, neighbour in enumerate(ring.neighbours):
             relative = moved[ring.gear] - moved.get(neighbour, none)
             arc = train.arc(ring, side, situation)
-            arcs.append(ArcRow(ring.arc_name(neighbour), arc, relative, _wall(ring.stiffness)))
+            sagitta = max(ring.up, ring.down) ** 2 / (2.0 * arc.distance)
+            wall = _wall(ring.stiffness)
+            arcs.append(ArcRow(ring.arc_name(neighbour), arc, relative, wall, sagitta))
         stops += _stops(ring, ring.across @ moved[ring.gear])
     return arcs, stops, radials
 

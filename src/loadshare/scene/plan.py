@@ -77,11 +77,14 @@ class Linearisation:
         Linear compliance [m/N] and offset [m] that stand for a nonlinear law.
     radial_laws : mapping of radial name to RadialLaw
         Laws at the current torques.
+    wide : bool
+        Let the faces of arcs stand off by their sagitta, as long as x is no iterate yet.
     """
 
     x: Array
     compliance: Mapping[str, tuple[float, float]]
     radial_laws: Mapping[str, RadialLaw]
+    wide: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -139,7 +142,11 @@ def programme(
         elif first.force == 0.0:
             stiffness += first.stiffness * radial.matrix.T @ radial.matrix
             load += first.stiffness * radial.matrix.T @ radial.centre
-    rows = [r for r in scene.rows_at(at.x) if plan.rows[r.name] is not Role.OPEN and r.vector.any()]
+    rows = [
+        r
+        for r in scene.rows_at(at.x, at.wide)
+        if plan.rows[r.name] is not Role.OPEN and r.vector.any()
+    ]
     norms = np.array([float(np.linalg.norm(r.vector)) for r in rows])
     vectors = np.array([r.vector for r in rows]).reshape(len(rows), scene.size)
     expansion = condensed.expansion

@@ -71,16 +71,24 @@ class ArcRow:
     relative : ndarray, shape (3, n)
         Relative displacement of the two centres from the coordinates.
     law : Law
+    sagitta : float
+        Room [m] that the arc leaves beyond its face at rest, at the end of the float.
     """
 
     name: str
     arc: Arc
     relative: Array
     law: Law
+    sagitta: float
 
-    def row(self, x: Array) -> Row:
-        """Tangent face at the coordinates x [m]: −n·Δ ≤ g."""
+    def row(self, x: Array, wide: bool = False) -> Row:
+        """Tangent face at the coordinates x [m]: −n·Δ ≤ g.
+
+        A wide face stands off by the sagitta, so that all of the float lies inside. Faces at rest
+        of two opposite arcs can wedge a float in that the arcs themselves let pass.
+        """
         normal, bound = self.arc.face(self.relative @ x)
+        bound += self.sagitta if wide else 0.0
         return Row(self.name, "arc", -(normal @ self.relative), bound, self.law)
 
 
@@ -166,9 +174,9 @@ class Scene:
             touched |= (matrix != 0.0).any(axis=0)
         return condense(self.stiffness, self.load, touched)
 
-    def rows_at(self, x: Array) -> tuple[Row, ...]:
-        """All rows, arcs replaced by their faces at x."""
-        return self.rows + tuple(a.row(x) for a in self.arcs)
+    def rows_at(self, x: Array, wide: bool = False) -> tuple[Row, ...]:
+        """All rows, arcs replaced by their faces at x, wide or tangent."""
+        return self.rows + tuple(a.row(x, wide) for a in self.arcs)
 
     def force_unit(self) -> float:
         """Force that the scene is measured by [N]: the largest external push, or 1 N at rest."""

@@ -117,12 +117,13 @@ def solve_exact(
     limit = rounds or 20 + 6 * (len(programme.gaps) + len(programme.cones))
     active, seen, one_only = guess, {guess}, False
     for _ in range(limit):
-        point = _solve_fixed(programme, active, start)
-        if point is None:
+        solved = _solve_fixed(programme, active, start)
+        if solved is None:
             return None
+        point, settled = solved
         better = _exchange(programme, active, point, one_only)
         if better == active:
-            return point, active
+            return (point, active) if settled else None
         if better in seen and not one_only:
             one_only = True
             better = _exchange(programme, active, point, one_only)
@@ -140,8 +141,14 @@ def at_rest(programme: Programme) -> Point:
     )
 
 
-def _solve_fixed(programme: Programme, active: ActiveSet, start: Point) -> Point | None:
-    """Newton's method on the smooth equations of an active set."""
+def _solve_fixed(
+    programme: Programme, active: ActiveSet, start: Point
+) -> tuple[Point, bool] | None:
+    """Newton's method on the smooth equations of an active set; a point, and whether it settled.
+
+    On a wrong active set the equations may have no solution; where the steps lead still tells what
+    to exchange.
+    """
     x, forces, cone_forces = start.x, start.forces, start.cone_forces
     curved = bool(programme.cones) or bool(programme.hertz.any())
     previous = np.inf
@@ -155,9 +162,9 @@ def _solve_fixed(programme: Programme, active: ActiveSet, start: Point) -> Point
         x, forces, cone_forces = point.x, point.forces, point.cone_forces
         size = 1.0 + float(np.abs(x).max(initial=0.0))
         if not curved or step <= 1e-15 * size or (step <= 1e-11 * size and step >= 0.5 * previous):
-            return point
+            return point, True
         previous = step
-    return None if previous > 1e-10 else point
+    return point, previous <= 1e-10
 
 
 def _newton_system(programme: Programme, active: ActiveSet, at: Point) -> Point | None:
@@ -253,7 +260,9 @@ def _cone_tangent(
     along = offset / radius
     size = piece.force + piece.stiffness * (radius - begin)
     tangent = piece.stiffness * np.outer(along, along)
-    tangent = tangent + max(size, 0.0) / radius * (np.eye(2) - np.outer(along, along))
+    # Beyond the piece the true tangent across the radius is too soft to find the way back.
+    near = min(radius, begin + piece.length)
+    tangent = tangent + max(size, 0.0) / near * (np.eye(2) - np.outer(along, along))
     return tangent, size * along, none, np.zeros(0)
 
 

@@ -10,7 +10,7 @@ from loadshare.scene.programme import Array
 
 RANK = 1e-13
 """Eigenvalues of the equilibrated matrix below this, relative to the largest, count as zero."""
-CONSISTENT = 1e-9
+CONSISTENT = 1e-12
 """Relative residual above which a rank-deficient system has no solution."""
 
 

@@ -14,9 +14,9 @@ from loadshare.scene.programme import Array
 from loadshare.scene.scene import Scene
 from loadshare.train.radial import RadialLaw
 
-CARRIES = 1e-9
+CARRIES = 1e-12
 """Force, over the largest of the scene, from which on a contact ties displacements."""
-RANK = 1e-9
+RANK = 1e-13
 """Singular values below this, relative to the largest, count as zero."""
 
 

@@ -84,14 +84,15 @@ def settle(scene: Scene, plan: Plan, backend: Backend, options: Options, method:
     history: list[Iteration] = []
     for _ in range(options.max_iterations):
         laws = {r.name: r.law(state.torques[r.gear]) for r in scene.radials}
-        at = Linearisation(state.x, _compliances(scene, state.forces, method), laws)
+        compliances = _compliances(scene, state.forces, method)
+        at = Linearisation(state.x, compliances, laws, wide=not history)
         written, units = programme(scene, plan, at, exact_hertz=method == "power")
         warm = solve_programme(written, backend, warm, options.polish)
         x = units.condensation.expand(warm.point.x * units.length)
         forces = _forces(written.names, warm.point, units)
         torques = {r.gear: scene.shaft_torque(r.gear, x) for r in scene.radials}
         law_misfit = _law_misfit(scene, at, forces, method)
-        face_misfit = _face_misfit(scene, plan, state.x, x, forces)
+        face_misfit = _face_misfit(scene, plan, at, x, forces)
         friction_misfit = _friction_misfit(scene, state.torques, torques)
         step = 1.0
         if method == "newton" and history and law_misfit > history[-1].law > options.stop:
@@ -160,7 +161,7 @@ def _law_misfit(scene: Scene, at: Linearisation, forces: dict[str, float], metho
 
 
 def _face_misfit(
-    scene: Scene, plan: Plan, before: Array, x: Array, forces: dict[str, float]
+    scene: Scene, plan: Plan, at: Linearisation, x: Array, forces: dict[str, float]
 ) -> float:
     """Largest difference between arcs and the faces that stood for them [deflections, loads]."""
     worst = 0.0
@@ -172,7 +173,8 @@ def _face_misfit(
         force = forces[arc.name]
         if force == 0.0 and margin >= 0.0:
             continue
-        normal, bound = arc.arc.face(arc.relative @ before)
+        normal, bound = arc.arc.face(arc.relative @ at.x)
+        bound += arc.sagitta if at.wide else 0.0
         worst = max(worst, abs(margin - bound - float(normal @ relative)) / scene.length_unit())
         turned = float(np.linalg.norm(arc.arc.normal(relative) - normal))
         worst = max(worst, turned * abs(force) / scene.force_unit())

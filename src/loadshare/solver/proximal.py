@@ -27,8 +27,8 @@ PULLS = (*[1e-5] * 8, *(10.0**-k for k in range(6, 12)), *[1e-11] * 6)
 
 A pass moves a coordinate by load/ε at most, so a wide gap under a light load wants a weak pull.
 """
-ARRIVED = 1e-14
-"""Residual of a pass (ε times its change), relative to the largest value, that is round-off."""
+ARRIVED = 1e-13
+"""Residual of a pass, relative to the largest force or displacement, that is round-off."""
 
 
 def solve_proximal(programme: Programme, start: Point | None = None) -> tuple[Point, ActiveSet]:
@@ -48,9 +48,13 @@ def solve_proximal(programme: Programme, start: Point | None = None) -> tuple[Po
     # Where forces are not unique, passes that begin without any end near the smallest ones.
     at = at_rest(programme) if start is None else replace(at_rest(programme), x=start.x)
     active = first_guess(programme)
-    drift = at
+    drift, run, stretch = at, np.inf, 0.0
     for pull in PULLS:
         found = solve_exact(_pulled(programme, at, pull), active, at)
+        if found is None and stretch:
+            # The last stride went too far: take it back.
+            at, stretch, run = replace(at, x=at.x - stretch * drift.x), 0.0, np.inf
+            continue
         if found is None:
             raise Unbalanced("no consistent active set was found")
         point, now = found
@@ -58,10 +62,13 @@ def solve_proximal(programme: Programme, start: Point | None = None) -> tuple[Po
             exact = solve_exact(programme, now, point, rounds=1)
             if exact is not None:
                 return exact
-        if pull * _change(point, at) <= ARRIVED and now == active:
-            return point, now
+            if _arrived(point, at, pull):
+                return point, now
         drift = Point(point.x - at.x, point.forces - at.forces, point.cone_forces)
-        at, active = point, now
+        # What only a small load drives runs at a constant pace: longer and longer strides.
+        pace = float(np.abs(drift.x).max(initial=0.0))
+        stretch = 4.0 * stretch + 1.0 if now == active and pace > 0.5 * run else 0.0
+        at, active, run = replace(point, x=point.x + stretch * drift.x), now, pace
     raise Unbalanced(_what_gives_way(programme, drift))
 
 
@@ -75,12 +82,18 @@ def _pulled(programme: Programme, at: Point, pull: float) -> Programme:
     )
 
 
-def _change(point: Point, before: Point) -> float:
-    def relative(new: Array, old: Array) -> float:
-        size = max(1.0, float(np.abs(new).max(initial=0.0)))
-        return float(np.abs(new - old).max(initial=0.0)) / size
+def _arrived(point: Point, before: Point, pull: float) -> bool:
+    """Whether what the pull adds to balances and gaps is round-off."""
 
-    return max(relative(point.x, before.x), relative(point.forces, before.forces))
+    def largest(values: Array) -> float:
+        return float(np.abs(values).max(initial=0.0))
+
+    unbalanced = pull * largest(point.x - before.x)
+    misplaced = pull * largest(point.forces - before.forces)
+    return bool(
+        unbalanced <= ARRIVED * max(1.0, largest(point.forces))
+        and misplaced <= ARRIVED * max(1.0, largest(point.x))
+    )
 
 
 def _what_gives_way(programme: Programme, drift: Point) -> str:
