@@ -5,6 +5,8 @@ import pytest
 from loadshare.case import load_case
 from loadshare.errors import CaseError
 
+ROOT = Path(__file__).parents[2]
+
 
 def write(folder: Path, **files: str) -> Path:
     """Write files by stem; return the path of the last one."""
@@ -140,3 +142,18 @@ def test_an_empty_file_lacks_the_sections_that_every_case_has(tmp_path):
         "empty.toml: meshes: is missing. The meshes; one named a-b joins the driver a to the "
         "driven gear b.",
     ]
+
+
+def test_a_bad_value_does_not_hide_an_unknown_name_beside_it(tmp_path):
+    """The ring's clearance is wrong, and so is its neighbour; both are told at once."""
+    text = (ROOT / "cases/fgfbstts/limit_ring.toml").read_text(encoding="utf-8")
+    base = ROOT / "cases/fgfbstts/base.toml"
+    text = text.replace('"base.toml"', f'"{base}"').replace('["9", "8"]', '["9", "88"]')
+    file = tmp_path / "two.toml"
+    file.write_text(
+        text.replace('"0 um"\nfloat = "2.74', '"-1 um"\nfloat = "2.74'), encoding="utf-8"
+    )
+    with pytest.raises(CaseError) as told:
+        load_case(file)
+    keys = [p.key for p in told.value.problems]
+    assert keys == ["rings.5.clearance", "rings.5.neighbours[1]"]

@@ -6,10 +6,26 @@ from collections.abc import Iterator
 
 from loadshare.case.draft import Draft
 from loadshare.case.gears import Polar
-from loadshare.case.keys import Path
+from loadshare.case.keys import Path, look_up
 from loadshare.case.links import Backlashes
 from loadshare.case.words import choices, did_you_mean
 from loadshare.errors import Problem
+
+GEAR_KEYS: tuple[Path, ...] = (
+    ("gears", "centre", "about"),
+    ("meshes", "driver"),
+    ("meshes", "driven"),
+    ("shafts", "ends"),
+    ("rings", "neighbours"),
+    ("operating", "input"),
+    ("operating", "output"),
+    ("march", "gear"),
+)
+MESH_KEYS: tuple[Path, ...] = (
+    ("rings", "float", "upward"),
+    ("rings", "float", "downward"),
+    ("stages", "meshes"),
+)
 
 
 def check_gear_names(draft: Draft) -> Iterator[Problem]:
@@ -88,6 +104,8 @@ def _gears_named(draft: Draft) -> Iterator[tuple[Path, str]]:
             yield ("operating", "external", name), name
     if draft.march is not None:
         yield ("march", "gear"), draft.march.gear
+    for path in _unread(draft, GEAR_KEYS):
+        yield from _texts(draft, path)
 
 
 def _told(draft: Draft, path: Path, key: str) -> Path:
@@ -104,3 +122,28 @@ def _meshes_named(draft: Draft) -> Iterator[tuple[Path, str]]:
     for name, stage in draft.stages.items():
         for number, mesh in enumerate(stage.meshes):
             yield ("stages", name, "meshes", number), mesh
+    for path in _unread(draft, MESH_KEYS):
+        yield from _texts(draft, path)
+
+
+def _unread(draft: Draft, keys: tuple[Path, ...]) -> Iterator[Path]:
+    """Yield the keys that name others in elements with a problem, which must not hide theirs."""
+    for section, *rest in keys:
+        section = str(section)
+        valid = getattr(draft, section)
+        if section in ("operating", "march"):
+            if valid is None and section in draft.data:
+                yield (section, *rest)
+            continue
+        for name in draft.names(section):
+            if name not in valid:
+                yield (section, name, *rest)
+
+
+def _texts(draft: Draft, path: Path) -> Iterator[tuple[Path, str]]:
+    """Yield a text, or the texts of a list, with their places; nothing for what is neither."""
+    value = look_up(draft.data, path)
+    if isinstance(value, str):
+        yield path, value
+    elif isinstance(value, list):
+        yield from (((*path, k), v) for k, v in enumerate(value) if isinstance(v, str))
