@@ -126,7 +126,7 @@ def _float_state(state: State, gear: str, band: float) -> FloatState:
         boundaries=tuple(touches),
         spline=_stage(spline, near, pressed) if spline else None,
         spline_force=float(np.linalg.norm(spline.reaction)) if spline else 0.0,
-        friction=state.train.splines[gear].bound(state.shaft_torque(gear)) if spline else None,
+        friction=state.train.splines[gear].bound(state.transmitted(gear)) if spline else None,
     )
 
 

@@ -165,7 +165,7 @@ class State:
         """All radial elements: splines and round rings."""
         found = []
         for gear, spline in self.train.splines.items():
-            law = spline.law(self.shaft_torque(gear))
+            law = spline.law(self.transmitted(gear))
             reaction = np.asarray(self.answer.radial_reaction[spline.name])
             moved = self.moved(gear)
             found.append(Pull(spline.name, gear, law, moved, np.zeros(3), reaction, False))
@@ -183,14 +183,9 @@ class State:
         for name, shaft in self.train.shafts.items():
             yield name, phi[shaft.first] - phi[shaft.second] - shaft.clocking
 
-    def shaft_torque(self, gear: str) -> float:
-        """Torque [N·m] that a gear takes from its elastic shafts."""
-        total = 0.0
-        for name, wind in self.winds():
-            shaft = self.train.shafts[name]
-            if not math.isinf(shaft.stiffness):
-                total += shaft.stiffness * wind * ((gear == shaft.second) - (gear == shaft.first))
-        return total
+    def transmitted(self, gear: str) -> float:
+        """Torque [N·m] that a gear takes over its shaft or spline."""
+        return self.train.transmitted(gear, self.answer.flank_force)
 
     @cached_property
     def finite(self) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -197,16 +196,6 @@ class Scene:
             return 1e-6
         yielded = float(np.median([r.law.compression(force) for r in flanks]))
         return max(yielded, 1e-3 * max(abs(r.gap) for r in flanks))
-
-    def shaft_torque(self, gear: str, x: Array) -> float:
-        """Torque [N·m] that `gear` takes from its elastic shafts at the coordinates x."""
-        total = 0.0
-        for shaft in self.train.shafts.values():
-            if gear not in (shaft.first, shaft.second) or math.isinf(shaft.stiffness):
-                continue
-            wind = self.angle(shaft.first, x) - self.angle(shaft.second, x) - shaft.clocking
-            total += shaft.stiffness * wind * (1.0 if gear == shaft.second else -1.0)
-        return total
 
     def angle(self, gear: str, x: Array) -> float:
         """Rotation φ [rad] of a gear at the coordinates x."""

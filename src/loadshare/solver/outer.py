@@ -90,7 +90,7 @@ def settle(scene: Scene, plan: Plan, backend: Backend, options: Options, method:
         warm = solve_programme(written, backend, warm, options.polish)
         x = units.condensation.expand(warm.point.x * units.length)
         forces = _forces(written.names, warm.point, units)
-        torques = {r.gear: scene.shaft_torque(r.gear, x) for r in scene.radials}
+        torques = {r.gear: scene.train.transmitted(r.gear, forces) for r in scene.radials}
         law_misfit = _law_misfit(scene, at, forces, method)
         face_misfit = _face_misfit(scene, plan, at, x, forces)
         friction_misfit = _friction_misfit(scene, state.torques, torques)

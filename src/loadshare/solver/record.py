@@ -53,7 +53,8 @@ class Iteration:
     kind : str
         Class of the programme.
     via : str
-        How it was solved: "linear solve", "active set kept", or "<solver> + exact".
+        How it was solved: "linear solve", "active set kept", "<solver> + exact", or with
+        "proximal" where no active set could be read.
     law, face, friction : float
         Misfits after the pass: compliance laws and ring faces [deflections], friction bounds
         [loads].

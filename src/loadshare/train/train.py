@@ -52,7 +52,7 @@ class Spline:
     friction_force : float or None
         F_m [N] where it is fixed (given, or τ F_N with F_N given).
     friction_per_torque : float
-        τ/radius [1/m] where F_m follows the torque the gear takes from its shafts.
+        τ/radius [1/m] where F_m follows the torque that the spline transmits to its gear.
     """
 
     gear: str
@@ -216,6 +216,24 @@ class Train:
         # A step that falls on a cycle's start up to round-off belongs to it, not to the end of the
         # one before.
         return math.floor((cycles % 1.0) * self.positions + 1e-9) % self.positions
+
+    def transmitted(self, gear: str, flank_force: Mapping[str, float]) -> float:
+        """Torque [N·m] that reaches a gear other than through its meshes: over its shaft or spline.
+
+        Parameters
+        ----------
+        gear : str
+        flank_force : mapping of flank to float
+            [N]; a flank that is not named carries nothing.
+        """
+        total = 0.0
+        for mesh in self.meshes.values():
+            for drive in mesh.flanks:
+                force = flank_force.get(mesh.flank_name(drive), 0.0)
+                on_driver, on_driven, _ = mesh.direction(drive)
+                total += force * on_driver if gear == mesh.driver else 0.0
+                total += force * on_driven if gear == mesh.driven else 0.0
+        return total
 
     def arc(self, ring: DrumRing, side: int, situation: Situation) -> Arc:
         """Exclusion arc of a drum ring towards its neighbour number `side` (0 or 1)."""
