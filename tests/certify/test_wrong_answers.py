@@ -316,3 +316,20 @@ def test_a_preload_between_rigid_stops_does_not_blind_the_certificate():
     up, down = train.rings["4"].stop_names
     pressed = {up: found.ring_force[up] + 1e13, down: found.ring_force[down] + 1e13}
     assert not certify(train, spoilt(found, "ring_force", pressed)).passed
+
+
+def test_a_torque_at_which_a_spline_has_no_law_is_refused():
+    """With S1 given and F_m from the torque, a claim of no torque lets the spline's law drop."""
+    spline = {
+        "bending_stiffness": "1.78e7 N/m",
+        "clearance": "100 um",
+        "stick_limit": "5 um",
+        "friction": 0.1,
+        "radius": "5 m",
+    }
+    train = build_train(shipped("fgfbstts/both_errors").replace({"splines": {"4": spline}}))
+    found, _ = answer(train)
+    assert certify(train, found).passed
+    verdict = certify(train, spoilt(found, "flank_force", {"4-6": 0.0, "4-7": 0.0}))
+    assert not verdict.passed
+    assert "spline 4" in verdict.failing["cone_membership"].where

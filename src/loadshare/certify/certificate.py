@@ -97,7 +97,7 @@ def certify(train: Train, answer: Equilibrium, tolerance: float = TOLERANCE) -> 
         Passed or not; nothing is raised for a wrong answer.
     """
     state = State(train, answer)
-    load, deflection = (state.force_scale, state.length_scale) if state.finite else (1.0, 1.0)
+    load, deflection = (state.force_scale, state.length_scale) if not state.fault else (1.0, 1.0)
     work = load * deflection
 
     judged: dict[str, tuple[Callable[[], tuple[float, str]], str, float]] = {
@@ -119,13 +119,13 @@ def certify(train: Train, answer: Equilibrium, tolerance: float = TOLERANCE) -> 
     }
 
     def figure(judge: Callable[[], tuple[float, str]], unit: str, scale: float) -> Residual:
-        value, where = judge() if state.finite else (math.inf, "a figure that is not a number")
+        value, where = (math.inf, state.fault) if state.fault else judge()
         ratio = value / scale
         return Residual(value, unit, math.inf if math.isnan(ratio) else ratio, where)
 
     return Certificate(
         residuals={name: figure(*how) for name, how in judged.items()},
-        floats=float_states(state, BAND) if state.finite else {},
+        floats={} if state.fault else float_states(state, BAND),
         tolerance=tolerance,
         load=load,
         deflection=deflection,

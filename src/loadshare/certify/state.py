@@ -196,6 +196,17 @@ class State:
         return bool(np.isfinite(figures).all() and all(np.isfinite(v).all() for v in vectors))
 
     @cached_property
+    def fault(self) -> str:
+        """Why the claim cannot be judged: not a number, or a spline without a law; else empty."""
+        if not self.finite:
+            return "a figure that is not a number"
+        try:
+            _ = self.pulls
+        except ValueError as error:
+            return str(error)
+        return ""
+
+    @cached_property
     def force_scale(self) -> float:
         """Load of the case [N]: largest flank force or external push; 1 N when nothing acts.
 

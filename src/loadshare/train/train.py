@@ -81,9 +81,11 @@ class Spline:
         ValueError
             If the law would drop at this torque; the message names the numbers.
         """
-        return spline_law(
-            self.bending_stiffness, self.stick_limit, self.clearance, self.bound(torque)
-        )
+        bound = self.bound(torque)
+        try:
+            return spline_law(self.bending_stiffness, self.stick_limit, self.clearance, bound)
+        except ValueError as error:
+            raise ValueError(f"{self.name}: {error}") from error
 
 
 @dataclass(frozen=True, slots=True)
