@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS = 1
 export NO_MKDOCS_2_WARNING = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-all lint format types layers docs docs-serve cases clean
+.PHONY: help run test test-all lint format types layers docs docs-serve cases bench stress clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  %-12s %s\n", $$1, $$2}'
@@ -25,6 +25,10 @@ $(VENV)/.dev: $(VENV)/.run
 
 run: $(VENV)/.run ## run the main job (CASE=cases/… for another case)
 	$(BIN)/loadshare run $(CASE)
+
+$(VENV)/.bench: $(VENV)/.run
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
+	@touch $@
 
 test: lint types layers docs ## check and test everything that is not slow
 	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow"
@@ -54,6 +58,12 @@ docs-serve: $(VENV)/.dev ## serve the documentation while writing
 
 cases: $(VENV)/.run ## write the generated cases again
 	$(BIN)/python -m loadshare.case.families cases
+
+bench: $(VENV)/.bench ## measure speed against accuracy (docs/evidence)
+	$(BIN)/loadshare chart
+
+stress: $(VENV)/.bench ## try every method on every family (docs/evidence)
+	$(BIN)/loadshare stress
 
 clean: ## remove what was built
 	rm -rf $(VENV) site dist build .pytest_cache .mypy_cache .ruff_cache

@@ -43,6 +43,10 @@ TABLES = (
     ("Installation error by size and direction", "Offset", "installation = { … }"),
     ("Eccentricity", "Eccentricity", "eccentricity = { … }"),
     ("Stages", "Stage", "[stages.NAME]"),
+    ("Measurements", "Measurement", "[measured.NAME]"),
+    ("Studies", "Study", "[study.NAME]"),
+    ("Scatter of an input", "Spread", "[study.NAME.inputs.KEY]"),
+    ("Correlated inputs", "Group", "groups = [{ … }]"),
 )
 
 

@@ -19,7 +19,11 @@ from loadshare.train.equilibrium import Equilibrium
 
 CASES = Path(__file__).parents[1] / "cases"
 SHIPPED = tuple(
-    sorted(p.relative_to(CASES).with_suffix("").as_posix() for p in CASES.rglob("*.toml"))
+    sorted(
+        p.relative_to(CASES).with_suffix("").as_posix()
+        for p in CASES.rglob("*.toml")
+        if p.parent.name != "pairs"
+    )
 )
 """Every shipped case, as "folder/name"."""
 
@@ -142,7 +146,7 @@ def potential(train: Train, found: Equilibrium) -> float:
     energy = [-t * found.rotation[g] for g, t in state.situation.torque.items()]
     energy += [push.law.energy(push.approach) for push in state.pushes]
     energy += [pull.law.energy(float(np.linalg.norm(pull.offset))) for pull in state.pulls]
-    for name, wind in state.winds():
+    for name, wind, _ in state.winds():
         if np.isfinite(train.shafts[name].stiffness):
             energy.append(0.5 * train.shafts[name].stiffness * wind**2)
     for name, gear in train.gears.items():

@@ -19,16 +19,34 @@ if TYPE_CHECKING:
     from loadshare.case import Case, load_case
     from loadshare.case.schema import case_schema
     from loadshare.job import explain, solve
+    from loadshare.job.many import solve_many
     from loadshare.results import Result, load_result
+    from loadshare.study.compare import compare
+    from loadshare.study.critical import critical
+    from loadshare.study.fit import fit
+    from loadshare.study.march import march
+    from loadshare.study.named import run_study
+    from loadshare.study.sensitivity import sensitivity
+    from loadshare.study.sweep import sweep
+    from loadshare.study.tolerance.study import tolerance
 
 _LAZY = {
     "Case": "loadshare.case",
     "Result": "loadshare.results",
     "case_schema": "loadshare.case.schema",
+    "compare": "loadshare.study.compare",
+    "critical": "loadshare.study.critical",
     "explain": "loadshare.job",
+    "fit": "loadshare.study.fit",
     "load_case": "loadshare.case",
     "load_result": "loadshare.results",
+    "march": "loadshare.study.march",
+    "run_study": "loadshare.study.named",
+    "sensitivity": "loadshare.study.sensitivity",
     "solve": "loadshare.job",
+    "solve_many": "loadshare.job.many",
+    "sweep": "loadshare.study.sweep",
+    "tolerance": "loadshare.study.tolerance.study",
 }
 
 __all__ = [
@@ -40,10 +58,19 @@ __all__ = [
     "Result",
     "__version__",
     "case_schema",
+    "compare",
+    "critical",
     "explain",
+    "fit",
     "load_case",
     "load_result",
+    "march",
+    "run_study",
+    "sensitivity",
     "solve",
+    "solve_many",
+    "sweep",
+    "tolerance",
 ]
 
 

@@ -23,3 +23,9 @@ def drive() -> Case:
 def cases() -> Path:
     """The folder of shipped cases."""
     return CASES
+
+
+@pytest.fixture
+def case_files() -> list[Path]:
+    """The shipped cases, without the pair files that some of them name."""
+    return sorted(file for file in CASES.rglob("*.toml") if file.parent.name != "pairs")

@@ -119,16 +119,27 @@ def test_every_solver_and_method_prints_the_same_shares(command, cases, solver, 
 
 
 def test_the_words_of_the_options_are_those_of_the_solver_room():
-    assert SolverName.__args__ == SOLVERS
+    assert SolverName.__args__ == ("auto", *SOLVERS)
     assert MethodName.__args__ == METHODS
 
 
 def test_explain_tells_how_the_first_position_was_solved(command, cases):
-    result = command("run", cases / "fgfbstts/limit_ring.toml", "--explain")
+    """A back-end asked for by name answers on its own rung."""
+    options = ("--explain", "--solver", "clarabel")
+    result = command("run", cases / "fgfbstts/limit_ring.toml", *options)
     assert result.stdout.count("How position") == 1
     for told in (
-        *("How position 1 was solved", "as asked", "QP, 15 coordinates", "gear 4 x"),
+        *("How position 1 was solved", "clarabel + exact", "QP, 15 coordinates", "gear 4 x"),
         *("ring 4: arc 6", "clarabel + ", " + exact", "active set kept", "its bearing is rigid"),
+    ):
+        assert told in result.stdout
+
+
+def test_explain_tells_what_acts_on_the_hot_path(command, cases):
+    result = command("run", cases / "fgfbstts/limit_ring.toml", "--explain")
+    for told in (
+        *("hot path", "force method, 2 redundants, 15 coordinates", "sets tried"),
+        *("Acting", "ring 4: arc 6", "open by", "its bearing is rigid"),
     ):
         assert told in result.stdout
 

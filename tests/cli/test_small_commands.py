@@ -12,7 +12,7 @@ def test_check_tells_ok_for_every_good_case(command, cases):
     assert result.exit_code == 0
     assert result.stderr == ""
     lines = result.stdout.splitlines()
-    assert len(lines) == len(list(cases.rglob("*.toml")))
+    assert len(lines) == len([f for f in cases.rglob("*.toml") if f.parent.name != "pairs"])
     assert all(line.startswith("OK  ") for line in lines)
 
 

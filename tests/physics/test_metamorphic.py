@@ -316,8 +316,11 @@ def test_positions_do_not_know_of_each_other(name):
     for index, position in zip(order_, together.positions, strict=True):
         (alone,) = ls.solve(case, positions=[index]).positions
         assert position.position == index
-        assert position.torque == alone.torque
-        assert position.displacement == alone.displacement
+        # Positions share matrix products, whose round-off depends on how many there are.
+        for mesh, torque in position.torque.items():
+            assert torque == pytest.approx(alone.torque[mesh], rel=1e-12, abs=1e-9)
+        for gear, moved in position.displacement.items():
+            assert moved == pytest.approx(alone.displacement[gear], rel=1e-11, abs=1e-18)
 
 
 @every_case

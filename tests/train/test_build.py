@@ -111,33 +111,30 @@ def exact_margin(arc: Arc, relative: np.ndarray) -> Decimal:
             Decimal(float(s)) + Decimal(float(r)) for s, r in zip(arc.start, relative, strict=True)
         ]
         size = sum(x * x for x in d).sqrt()
-        return size - Decimal(arc.distance) + Decimal(arc.clearance)
+        nominal = sum(Decimal(float(s)) ** 2 for s in arc.nominal).sqrt()
+        return size - nominal + Decimal(arc.clearance)
 
 
 @pytest.mark.parametrize("size", [1e-3, 1e-5, 1e-8, 1e-12])
 @pytest.mark.parametrize("clearance", [0.0, 5e-6])
 def test_the_margin_of_an_arc_is_free_of_cancellation(size, clearance):
-    """Against fifty digits: the error is round-off of the movement, not of the centre distance.
-
-    What is left of the distance is the round-off of its square, ε a²/2a, 1e-17 m at 0.16 m; the
-    plain difference |d| − a makes twice that at least.
-    """
+    """Against fifty digits: the error is round-off of the movement, not of the centre distance."""
     rng = np.random.default_rng(7)
     plain = []
     for _ in range(50):
         start = np.append(rng.normal(size=2), 0.0)
         start *= 0.1605 / np.linalg.norm(start)
-        arc = Arc(start, float(np.linalg.norm(start)), clearance)
+        arc = Arc(start, np.zeros(3), clearance)
         relative = np.append(size * rng.normal(size=2), 0.0)
         exact = float(exact_margin(arc, relative))
-        assert abs(arc.margin(relative) - exact) <= 8e-16 * (size + clearance) + 2e-17
+        assert abs(arc.margin(relative) - exact) <= 8e-16 * (size + clearance) + 1e-30
         plain.append(abs(np.linalg.norm(start + relative) - arc.distance + clearance - exact))
     assert max(plain) > 2e-17
 
 
 def test_the_sagitta_of_an_arc():
     """y²/2a at a = 0.16 m: 0.3 nm for y = 10 µm and 0.4 µm for 0.35 mm (formulation, section 6)."""
-    arc = Arc(np.array([0.16, 0.0, 0.0]), 0.16, 0.0)
+    arc = Arc(np.array([0.16, 0.0, 0.0]), np.zeros(3), 0.0)
     for y, sagitta in ((1e-5, 0.3e-9), (3.5e-4, 0.4e-6)):
         relative = np.array([0.0, y, 0.0])
         assert arc.margin(relative) == pytest.approx(y**2 / 0.32, rel=1e-5)

@@ -3,6 +3,7 @@
 from loadshare.case.content import Content
 from loadshare.case.gears import Eccentricity, Errors, Gear, Offset, Polar
 from loadshare.case.links import Backlashes, Range, Ring, Shaft, Spline
+from loadshare.case.measured import Measurement
 from loadshare.case.meshes import Law, Mesh, Table
 from loadshare.case.model import Case
 from loadshare.case.operation import March, Operating, Stage
@@ -10,6 +11,7 @@ from loadshare.case.quantity import Quantity
 from loadshare.case.reader import load_case
 from loadshare.case.schema import case_schema
 from loadshare.case.starter import starter_case
+from loadshare.case.study import Study
 
 __all__ = [
     "Backlashes",
@@ -20,6 +22,7 @@ __all__ = [
     "Gear",
     "Law",
     "March",
+    "Measurement",
     "Mesh",
     "Offset",
     "Operating",
@@ -30,6 +33,7 @@ __all__ = [
     "Shaft",
     "Spline",
     "Stage",
+    "Study",
     "Table",
     "case_schema",
     "load_case",

@@ -7,10 +7,12 @@ from pydantic import Field
 from loadshare.case.element import Element
 from loadshare.case.gears import Errors, Gear
 from loadshare.case.links import Ring, Shaft, Spline
+from loadshare.case.measured import Measurement
 from loadshare.case.meshes import Mesh
 from loadshare.case.operation import March, Operating, Stage
+from loadshare.case.study import Study
 
-ABOUT = ("title", "source", "notes", "assumed")
+ABOUT = ("title", "source", "notes", "assumed", "measured", "study")
 """The keys that say something about a case and nothing about the machine."""
 
 
@@ -55,3 +57,9 @@ class Content(Element):
 
     stages: dict[str, Stage] = Field(default_factory=dict)
     """The stages in which load sharing is counted, by name."""
+
+    measured: dict[str, Measurement] = Field(default_factory=dict)
+    """What was measured on the machine, by name."""
+
+    study: dict[str, Study] = Field(default_factory=dict)
+    """Studies of the case, by name."""

@@ -15,10 +15,12 @@ from loadshare.case.element import Element, written
 from loadshare.case.gears import Errors, Gear
 from loadshare.case.keys import Path, look_up
 from loadshare.case.links import Ring, Shaft, Spline
+from loadshare.case.measured import Measurement
 from loadshare.case.meshes import Mesh
 from loadshare.case.operation import March, Operating, Stage
 from loadshare.case.origin import Origin
 from loadshare.case.quantity import as_text
+from loadshare.case.study import Study
 from loadshare.case.translate import translate
 from loadshare.case.words import choices, did_you_mean
 from loadshare.errors import Problem
@@ -44,6 +46,8 @@ class Draft:
     rings: dict[str, Ring] = field(default_factory=dict)
     errors: dict[str, Errors] = field(default_factory=dict)
     stages: dict[str, Stage] = field(default_factory=dict)
+    measured: dict[str, Measurement] = field(default_factory=dict)
+    study: dict[str, Study] = field(default_factory=dict)
 
     def problem(self, path: Path, message: str, allowed: str = "", hint: str = "") -> Problem:
         """Return a problem with a key, with its file and what was given."""

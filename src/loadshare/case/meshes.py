@@ -32,7 +32,7 @@ from loadshare.case.quantity import (
 from loadshare.case.words import count
 
 STEEPEST = Quantity("45 deg", math.radians(45))
-LAWS = ("stiffness", "law", "table")
+LAWS = ("stiffness", "law", "table", "law_file", "geometry")
 
 Play = Annotated[Quantity, LENGTH.bounded(at_least=0)]
 MeshStiffness = Annotated[Quantity, TORSIONAL_STIFFNESS.bounded(above=0)]
@@ -40,6 +40,7 @@ Bending = Annotated[Quantity, TORSIONAL_COMPLIANCE.bounded(at_least=0)]
 Hertz = Annotated[Quantity, HERTZ_COMPLIANCE.bounded(at_least=0)]
 TableTorque = Annotated[Quantity, TORQUE.bounded(above=0)]
 TableAngle = Annotated[Quantity, ANGLE.bounded(above=0)]
+FileName = Annotated[str, Field(min_length=1)]
 
 
 class Law(Element):
@@ -124,6 +125,12 @@ class Mesh(Element):
     table: Table | None = None
     """Deformation at the driver [angle] as a table over the torque [torque]."""
 
+    law_file: FileName | None = None
+    """Law file, as `loadshare ltca` writes it, relative to this file."""
+
+    geometry: FileName | None = None
+    """Pair file from whose teeth the law is computed, relative to this file."""
+
     gap: PerPosition[Angle] | None = None
     """Unloaded gap at the driver that opens the mesh [angle], one value or one per position."""
 
@@ -143,6 +150,10 @@ class Mesh(Element):
             yield Rule(f"has {len(laws)} deformation laws: {', '.join(laws)}", hint=hint)
         if self.gap is not None and self.law is not None and any(values(self.law.a)):
             yield Rule("stands beside law.a: give one or the other", ("gap",))
+        if self.gap is not None and (self.law_file or self.geometry):
+            source = "geometry" if self.geometry else "law_file"
+            hint = "Leave it out; errors of the gears open the mesh besides."
+            yield Rule(f"stands beside {source}, which gives the gap", ("gap",), hint=hint)
         if self.backlash is not None and self.normal_backlash is not None:
             yield Rule("stands beside backlash: give one or the other", ("normal_backlash",))
         if abs(self.helix_angle.si) >= math.pi / 2:

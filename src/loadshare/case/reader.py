@@ -8,10 +8,12 @@ from collections.abc import Mapping
 from pathlib import Path as FilePath
 from typing import Any
 
+from loadshare.case.checks import check
+from loadshare.case.draft import Draft, plain, read_draft
 from loadshare.case.keys import Path, parse, walk
 from loadshare.case.model import Case
 from loadshare.case.origin import Origin
-from loadshare.case.revise import drop
+from loadshare.case.revise import drop, revise
 from loadshare.case.words import as_given
 from loadshare.errors import CaseError, Problem
 
@@ -47,11 +49,39 @@ def load_case(path: str | FilePath) -> Case:
     return case
 
 
+def load_draft(path: str | FilePath, changes: Mapping[str, Any] | None = None) -> Draft:
+    """Read what can be read of a case file, for a picture of a case that is not right yet.
+
+    Parameters
+    ----------
+    path : str or pathlib.Path
+        The file.
+    changes : mapping of str to object, optional
+        New values by dotted key path, as `Case.replace` takes them.
+
+    Returns
+    -------
+    Draft
+        The valid elements, and all problems.
+
+    Raises
+    ------
+    CaseError
+        If the file, or one that it extends, cannot be read at all, or a change leads nowhere.
+    """
+    path = FilePath(path)
+    data, files, problems = _read(path, ())
+    data, origin = revise(plain(data), Origin(str(path), files), changes or {})
+    draft = read_draft(data, origin)
+    draft.problems = [*problems, *draft.problems, *check(draft)]
+    return draft
+
+
 def _read(
     path: FilePath, chain: tuple[FilePath, ...]
 ) -> tuple[dict[str, Any], dict[Path, str], list[Problem]]:
     """Return the merged data of a file, the file of each key, and problems that can be outlived."""
-    own = _parse(path)
+    own = read_toml(path)
     base, removals = own.pop("extends", None), own.pop("remove", [])
     data: dict[str, Any] = {}
     files: dict[Path, str] = {}
@@ -127,8 +157,19 @@ def _base_of(path: FilePath, base: object, chain: tuple[FilePath, ...]) -> FileP
     return target
 
 
-def _parse(path: FilePath) -> dict[str, Any]:
-    """Return what a file itself says."""
+def read_toml(path: FilePath) -> dict[str, Any]:
+    """Return what a file itself says.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        A TOML file.
+
+    Raises
+    ------
+    CaseError
+        If it cannot be read or is not TOML.
+    """
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except tomllib.TOMLDecodeError as error:

@@ -68,7 +68,8 @@ def change(data: dict[str, Any], path: Path, value: Any) -> str | None:
     data : dict
         A case as plain data.
     path : tuple of str or int
-        The key; the table that holds it must exist, or be a section of a case file.
+        The key; the table that holds it must exist, or be a section of a case file or the table of
+        a gear's errors.
     value : object
         The new value.
 
@@ -79,6 +80,9 @@ def change(data: dict[str, Any], path: Path, value: Any) -> str | None:
     """
     if len(path) > 1 and path[0] in Content.model_fields and path[0] not in data:
         data[str(path[0])] = {}
+    if path[0] == "errors" and len(path) > 2:
+        # A gear without errors has no table of them; every key of one is optional.
+        data["errors"].setdefault(path[1], {})
     holder = look_up(data, path[:-1])
     step = path[-1]
     if isinstance(holder, dict) and isinstance(step, str):

@@ -7,8 +7,10 @@ programme and no row enters it: a slip in any of them shows here.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property, partial
+from typing import TypeVar
 
 from loadshare.certify import residuals
 from loadshare.certify.floats import FloatState, float_states
@@ -81,6 +83,61 @@ class Certificate:
         return {n: r for n, r in self.residuals.items() if not r.scaled <= self.tolerance}
 
 
+Value = TypeVar("Value")
+
+
+@dataclass(frozen=True, eq=False)
+class _Later(Mapping[str, Value]):
+    """A mapping that is made when it is first looked into."""
+
+    make: Callable[[], Mapping[str, Value]]
+
+    @cached_property
+    def _made(self) -> Mapping[str, Value]:
+        return self.make()
+
+    def __getitem__(self, key: str) -> Value:
+        return self._made[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._made)
+
+    def __len__(self) -> int:
+        return len(self._made)
+
+
+def certify_later(
+    train: Train, answer: Equilibrium, tolerance: float, load: float, deflection: float
+) -> Certificate:
+    """Return the certificate of an answer that was judged with many others.
+
+    Its figures are computed, as `certify` computes them, when they are first asked for.
+
+    Parameters
+    ----------
+    train, answer, tolerance
+        As for `certify`.
+    load, deflection : float
+        Scales [N], [m], as `Verdicts` has them.
+    """
+    return Certificate(
+        residuals=_Later(partial(_residuals, train, answer, tolerance)),
+        floats=_Later(partial(_floats, train, answer)),
+        tolerance=tolerance,
+        load=load,
+        deflection=deflection,
+    )
+
+
+def _residuals(train: Train, answer: Equilibrium, tolerance: float) -> Mapping[str, Residual]:
+    return certify(train, answer, tolerance).residuals
+
+
+def _floats(train: Train, answer: Equilibrium) -> Mapping[str, FloatState]:
+    state = State(train, answer)
+    return {} if state.fault else float_states(state, BAND)
+
+
 def certify(train: Train, answer: Equilibrium, tolerance: float = TOLERANCE) -> Certificate:
     """Judge a claimed equilibrium.
 
@@ -125,7 +182,7 @@ def certify(train: Train, answer: Equilibrium, tolerance: float = TOLERANCE) -> 
 
     return Certificate(
         residuals={name: figure(*how) for name, how in judged.items()},
-        floats={} if state.fault else float_states(state, BAND),
+        floats=_floats(train, answer),
         tolerance=tolerance,
         load=load,
         deflection=deflection,

@@ -97,12 +97,12 @@ def _float_state(state: State, gear: str, band: float) -> FloatState:
         normal = -(frame @ push.normal)
         touching = margin <= near or push.force > pressed
         touches.append(Touch(push.name, margin, push.force, _pair(normal), touching))
-    spline: Pull | None = None
+    spline: list[Pull] = []
     for pull in state.pulls:
         if pull.gear != gear:
             continue
         if not pull.is_ring:
-            spline = pull
+            spline.append(pull)
             continue
         radius = float(np.linalg.norm(pull.offset))
         force = frame @ pull.reaction
@@ -125,7 +125,7 @@ def _float_state(state: State, gear: str, band: float) -> FloatState:
         reaction=_pair(reaction),
         boundaries=tuple(touches),
         spline=_stage(spline, near, pressed) if spline else None,
-        spline_force=float(np.linalg.norm(spline.reaction)) if spline else 0.0,
+        spline_force=float(np.linalg.norm(sum(p.reaction for p in spline))) if spline else 0.0,
         friction=state.train.splines[gear].bound(state.transmitted(gear)) if spline else None,
     )
 
@@ -134,8 +134,20 @@ def _pair(vector: np.ndarray) -> tuple[float, float]:
     return float(vector[0]), float(vector[1])
 
 
-def _stage(pull: Pull, near: float, pressed: float) -> str:
-    """Stage of a spline: the last piece that its radius has entered and its force has reached."""
+def _stage(parts: list[Pull], near: float, pressed: float) -> str:
+    """Stage of a spline: the last piece that its radius has entered and its force has reached.
+
+    With memory its parts are friction and clearance. Where both hold the slip, how they share the
+    force is open; it sticks if friction could do it alone.
+    """
+    if len(parts) > 1:
+        friction, stop = parts
+        held = float(np.linalg.norm(friction.offset)) <= near
+        total = float(np.linalg.norm(friction.reaction + stop.reaction))
+        if held and total <= friction.law.strength + pressed:
+            return "stick"
+        return "stop" if float(np.linalg.norm(stop.reaction)) > pressed else "slip"
+    (pull,) = parts
     radius, force = float(np.linalg.norm(pull.offset)), float(np.linalg.norm(pull.reaction))
     stage = pull.law.pieces[0].name
     for k, piece in enumerate(pull.law.pieces):

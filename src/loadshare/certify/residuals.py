@@ -12,11 +12,7 @@ from loadshare.certify.state import State
 def force_balance(state: State) -> tuple[float, str]:
     """Largest unbalanced force [N] on a gear that can be displaced, and the gear."""
     train = state.train
-    total = {
-        name: -np.asarray(gear.support) * (gear.frame @ state.moved(name)) @ gear.frame
-        for name, gear in train.gears.items()
-        if gear.support is not None
-    }
+    total = {name: -force @ train.gears[name].frame for name, _, _, force in state.bearings()}
     for push in state.pushes:
         for gear, sign in ((push.pushed, 1.0), (push.pushing, -1.0)):
             if gear in total:
@@ -38,11 +34,10 @@ def moment_balance(state: State) -> tuple[float, str]:
             along = 1.0 if drive else -1.0
             moment[mesh.driver] -= along * mesh.radii[0] * force
             moment[mesh.driven] += along * mesh.radii[1] * force
-    for name, wind in state.winds():
+    for name, _, torque in state.winds():
         shaft = train.shafts[name]
-        if not math.isinf(shaft.stiffness):
-            moment[shaft.first] -= shaft.stiffness * wind
-            moment[shaft.second] += shaft.stiffness * wind
+        moment[shaft.first] -= torque
+        moment[shaft.second] += torque
     unbalanced = {}
     for group in _turning_as_one(state):
         if train.output not in group:
@@ -83,7 +78,7 @@ def complementarity(state: State) -> tuple[float, str]:
 
 
 def deformation_law(state: State, band: float) -> tuple[float, str]:
-    """Largest misfit [m] of a compressed contact or rigid shaft with its law, and the element.
+    """Largest misfit [m] of a compressed contact, shaft or bearing with its law, and the element.
 
     Parameters
     ----------
@@ -94,18 +89,22 @@ def deformation_law(state: State, band: float) -> tuple[float, str]:
     misfits = {
         p.name: abs(p.approach - p.law.compression(p.force)) for p in state.pushes if p.force > band
     }
-    for name, wind in state.winds():
+    for name, wind, torque in state.winds():
         shaft = state.train.shafts[name]
-        if math.isinf(shaft.stiffness):
-            misfits[name] = abs(wind) * state.train.gears[shaft.first].base_radius
+        lag = abs(wind - torque / shaft.stiffness)
+        misfits[name] = lag * state.train.gears[shaft.first].base_radius
+    for name, moved, stiffness, force in state.bearings():
+        held = stiffness > 0.0
+        off = (moved - force / np.where(held, stiffness, 1.0))[held]
+        misfits[f"bearing {name}"] = float(np.linalg.norm(off))
     for name, gear in state.train.gears.items():
         allowed = np.zeros(3)
         if gear.support is not None:
             allowed = (gear.frame @ state.moved(name)) @ gear.frame
         misfits[f"gear {name}"] = float(np.linalg.norm(state.moved(name) - allowed))
     output = state.train.output
-    held = state.answer.rotation[output] * state.train.gears[output].base_radius
-    misfits[f"gear {output} rotation"] = abs(held)
+    turned = state.answer.rotation[output] * state.train.gears[output].base_radius
+    misfits[f"gear {output} rotation"] = abs(turned)
     return _worst(misfits)
 
 
@@ -119,6 +118,9 @@ def cone_membership(state: State, band: float) -> tuple[float, str]:
         Radius [m] within which a graph's corner admits its whole step.
     """
     excess = {p.name: -p.force for p in state.pushes}
+    for name, _, stiffness, force in state.bearings():
+        excess[f"bearing {name}"] = float(np.linalg.norm(force[stiffness == 0.0]))
+    excess |= state.squeezes(band)
     for pull in state.pulls:
         radius = float(np.linalg.norm(pull.offset))
         size = float(np.linalg.norm(pull.reaction))
@@ -141,19 +143,23 @@ def energy_gap(state: State) -> tuple[float, str]:
     for push in state.pushes:
         primal.append(push.law.energy(push.approach))
         dual += [-push.law.complementary(max(push.force, 0.0)), push.force * push.at_rest]
-    for name, wind in state.winds():
+    for name, wind, torque in state.winds():
         shaft = state.train.shafts[name]
         if not math.isinf(shaft.stiffness):
-            energy = 0.5 * shaft.stiffness * wind**2
-            primal.append(energy)
-            dual += [-energy, -shaft.stiffness * wind * shaft.clocking]
-    for name, body in state.train.gears.items():
-        if body.support is not None:
-            energy = 0.5 * float(body.support @ (body.frame @ state.moved(name)) ** 2)
-            primal.append(energy)
-            dual.append(-energy)
+            primal.append(0.5 * shaft.stiffness * wind**2)
+            dual += [-0.5 * torque**2 / shaft.stiffness, -torque * shaft.clocking]
+    for _, moved, stiffness, force in state.bearings():
+        primal.append(0.5 * float(stiffness @ moved**2))
+        held = stiffness > 0.0
+        dual.append(-0.5 * float((force[held] ** 2 / stiffness[held]).sum()))
+    for spline in state.train.splines.values() if state.train.slip is not None else ():
+        bent = float(np.linalg.norm(state.bending(spline)))
+        energy = 0.5 * spline.bending_stiffness * bent**2
+        primal.append(energy)
+        dual.append(-energy)
     for pull in state.pulls:
-        size = float(np.linalg.norm(pull.reaction))
+        # What exceeds a graph's strength is for cone membership to judge.
+        size = min(float(np.linalg.norm(pull.reaction)), pull.law.strength)
         primal.append(pull.law.energy(float(np.linalg.norm(pull.offset))))
         dual += [-pull.law.complementary(size), float(pull.reaction @ pull.centre)]
     return abs(math.fsum(primal) - math.fsum(dual)), "the whole train"

@@ -10,15 +10,36 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
 from loadshare.train.law import RIGID, Law, PowerLaw
+from loadshare.train.memory import SlipFriction, SlipStop
 from loadshare.train.radial import RadialLaw, round_ring_law
 from loadshare.train.ring import DrumRing, RoundRing
-from loadshare.train.train import Situation, Train
+from loadshare.train.train import Situation, Spline, Train
+
+Scalars = TypeVar("Scalars", float, NDArray[np.float64])
+
+
+def turned(wedge: Scalars, band: Scalars, distance: float) -> Scalars:
+    """Angle [rad] within which a band [m] leaves the direction between two arcs (see `squeezes`).
+
+    Parameters
+    ----------
+    wedge : float or ndarray
+        ε [rad].
+    band : float or ndarray
+        [m].
+    distance : float
+        a [m].
+    """
+    across = 2.0 * band / distance
+    return across / (wedge + (wedge * wedge + across) ** 0.5)  # type: ignore[no-any-return]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -160,11 +181,37 @@ class State:
                     pushing=None,
                 )
 
+    def squeezes(self, band: float) -> dict[str, float]:
+        """Force [N] across the two rigid arcs of a ring that a squeeze between them leaves open.
+
+        A centre in touch with both, up to the band [m], lies anywhere within y across them, where
+        ε y + y²/2a = band and ε is the angle of the wedge; the directions of the two forces are
+        known no better than y/a. Between opposed arcs (ε = 0) a large squeeze could seem to hold a
+        float that would roll away. Neighbours that give way follow the float instead.
+        """
+        forces = self.answer.ring_force
+        found = {}
+        for ring in self.train.rings.values():
+            if not isinstance(ring, DrumRing) or not math.isinf(ring.stiffness):
+                continue
+            if any(self.train.gears[n].moves for n in ring.neighbours):
+                continue
+            arcs = [self.train.arc(ring, side, self.situation) for side in (0, 1)]
+            wedge = float(np.linalg.norm(sum(a.normal(np.zeros(3)) for a in arcs)))
+            squeeze = min(forces[ring.arc_name(n)] for n in ring.neighbours)
+            distance = min(a.distance for a in arcs)
+            found[f"ring {ring.gear}: arcs"] = squeeze * turned(wedge, band, distance)
+        return found
+
     @cached_property
     def pulls(self) -> tuple[Pull, ...]:
         """All radial elements: splines and round rings."""
         found = []
+        before = self.train.slip
         for gear, spline in self.train.splines.items():
+            if before is not None:
+                found += self._slipping(spline, np.asarray(before[gear]))
+                continue
             law = spline.law(self.transmitted(gear))
             reaction = np.asarray(self.answer.radial_reaction[spline.name])
             moved = self.moved(gear)
@@ -177,11 +224,51 @@ class State:
                 found.append(Pull(ring.name, gear, law, offset, ring.offset, reaction, True))
         return tuple(found)
 
-    def winds(self) -> Iterator[tuple[str, float]]:
-        """Every shaft with its wind-up φ_a − φ_b − clocking [rad]."""
+    def _slipping(self, spline: Spline, before: Vector) -> list[Pull]:
+        """Friction and clearance of a spline that remembers its slip."""
+        gear, torque = spline.gear, self.transmitted(spline.gear)
+        slip = self.slip(spline)
+        friction, stop = (
+            np.asarray(self.answer.radial_reaction[name])
+            for name in (spline.name, spline.stop_name)
+        )
+        resisted, room = SlipFriction(spline).law(torque), SlipStop(spline).law(torque)
+        return [
+            Pull(spline.name, gear, resisted, slip - before, before, friction, False),
+            Pull(spline.stop_name, gear, room, slip, np.zeros(3), stop, False),
+        ]
+
+    def slip(self, spline: Spline) -> Vector:
+        """Slip s (3,) [m] of a spline with memory: what the bending of its shaft leaves of p."""
+        return np.asarray(self.moved(spline.gear) - self.bending(spline))
+
+    def bending(self, spline: Spline) -> Vector:
+        """Bending p − s (3,) [m] of a spline's shaft under its claimed force, with memory."""
+        names = (spline.name, spline.stop_name)
+        force = sum(np.asarray(self.answer.radial_reaction[name]) for name in names)
+        return np.asarray(-force / spline.bending_stiffness)
+
+    def winds(self) -> Iterator[tuple[str, float, float]]:
+        """Every shaft with its wind-up φ_a − φ_b − clocking [rad] and its torque [N·m].
+
+        The torque of a rigid shaft is nobody's claim: it is 0 here.
+        """
         phi = self.answer.rotation
         for name, shaft in self.train.shafts.items():
-            yield name, phi[shaft.first] - phi[shaft.second] - shaft.clocking
+            wind = phi[shaft.first] - phi[shaft.second] - shaft.clocking
+            if math.isinf(shaft.stiffness):
+                yield name, wind, 0.0
+            else:
+                claimed = self.answer.shaft_torque
+                yield name, wind, claimed.get(name, shaft.stiffness * wind)
+
+    def bearings(self) -> Iterator[tuple[str, Vector, Vector, Vector]]:
+        """Every gear that can be displaced: p [m], stiffness [N/m] and bearing force [N], (2,)."""
+        for name, gear in self.train.gears.items():
+            if gear.support is not None:
+                moved = gear.frame @ self.moved(name)
+                force = self.answer.support_force.get(name, gear.support * moved)
+                yield name, moved, gear.support, np.asarray(force)
 
     def transmitted(self, gear: str) -> float:
         """Torque [N·m] that a gear takes over its shaft or spline."""
@@ -192,7 +279,12 @@ class State:
         """Whether every claimed figure is a number."""
         a = self.answer
         figures = [*a.rotation.values(), *a.flank_force.values(), *a.ring_force.values()]
-        vectors = [*a.displacement.values(), *a.radial_reaction.values()]
+        figures += a.shaft_torque.values()
+        vectors = [
+            *a.displacement.values(),
+            *a.radial_reaction.values(),
+            *a.support_force.values(),
+        ]
         return bool(np.isfinite(figures).all() and all(np.isfinite(v).all() for v in vectors))
 
     @cached_property

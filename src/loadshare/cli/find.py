@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from pathlib import Path
 
 import typer
 
 from loadshare.cli.exits import UNUSABLE, fail
+
+_KIND = re.compile(r"""^kind\s*=\s*["'](helicoid|face-gear|law)["']""", re.MULTILINE)
 
 
 def find_cases(given: Iterable[Path]) -> list[Path]:
@@ -16,8 +19,8 @@ def find_cases(given: Iterable[Path]) -> list[Path]:
     Parameters
     ----------
     given : iterable of Path
-        Files; folders, searched with their subfolders for ``*.toml``; patterns, for shells that
-        leave them alone.
+        Files; folders, searched with their subfolders for ``*.toml`` but for pair and law files;
+        patterns, for shells that leave them alone.
 
     Returns
     -------
@@ -43,11 +46,20 @@ def find_cases(given: Iterable[Path]) -> list[Path]:
 
 def _meant_by(path: Path) -> list[Path]:
     if path.is_dir():
-        return [file for file in sorted(path.rglob("*.toml")) if not _hidden(file, path)]
+        files = (file for file in sorted(path.rglob("*.toml")) if not _hidden(file, path))
+        return [file for file in files if not _of_another_kind(file)]
     if not path.exists() and any(sign in str(path) for sign in "*?["):
         matches = sorted(Path(path.anchor).glob(str(path.relative_to(path.anchor))))
         return [file for match in matches for file in _meant_by(match)]
     return [path]
+
+
+def _of_another_kind(file: Path) -> bool:
+    """Whether a file says that it is a pair or a law, which cases name and which are no cases."""
+    try:
+        return _KIND.search(file.read_text(encoding="utf-8")) is not None
+    except (OSError, UnicodeDecodeError):
+        return False  # to be reported like any other bad case
 
 
 def _hidden(file: Path, folder: Path) -> bool:

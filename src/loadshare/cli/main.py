@@ -17,9 +17,22 @@ import typer
 from loadshare._version import __version__
 from loadshare.cli.batch.command import batch
 from loadshare.cli.check import check
+from loadshare.cli.draw import draw
+from loadshare.cli.evidence.chart import chart
+from loadshare.cli.evidence.stress import stress
+from loadshare.cli.ltca import ltca
 from loadshare.cli.new import new
+from loadshare.cli.page import report
 from loadshare.cli.run import run
 from loadshare.cli.schema import schema
+from loadshare.cli.study.compare import compare
+from loadshare.cli.study.critical import critical
+from loadshare.cli.study.fit import fit
+from loadshare.cli.study.march import march
+from loadshare.cli.study.sensitivity import sensitivity
+from loadshare.cli.study.study import study
+from loadshare.cli.study.sweep import sweep
+from loadshare.cli.study.tolerance import tolerance
 
 app = typer.Typer(
     name="loadshare",
@@ -30,7 +43,9 @@ app = typer.Typer(
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (run, batch, check, schema, new):
+STUDIES = (sweep, critical, sensitivity, tolerance, march, compare, fit, study)
+EVIDENCE = (chart, stress)
+for command in (run, batch, report, draw, check, schema, new, ltca, *STUDIES, *EVIDENCE):
     app.command()(command)
 
 

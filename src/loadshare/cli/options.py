@@ -10,7 +10,7 @@ import typer
 
 # The words are repeated here because asking the solver room for them would import it for every
 # --help; a test compares them.
-SolverName: TypeAlias = Literal["clarabel", "osqp", "cvxpy"]
+SolverName: TypeAlias = Literal["auto", "clarabel", "osqp", "cvxpy"]
 MethodName: TypeAlias = Literal["newton", "picard", "power"]
 
 
@@ -21,7 +21,8 @@ def _positive(value: float) -> float:
 
 
 Solver = Annotated[
-    SolverName, typer.Option(metavar="NAME", help="Back-end: clarabel, osqp or cvxpy.")
+    SolverName,
+    typer.Option(metavar="NAME", help="auto (hot path first), clarabel, osqp or cvxpy."),
 ]
 Method = Annotated[
     MethodName,

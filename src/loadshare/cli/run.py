@@ -25,7 +25,7 @@ def run(
     json: Annotated[Path | None, output("--json", what="Write the result as JSON.")] = None,
     netcdf: Annotated[Path | None, output("--netcdf", what="Write labelled arrays.")] = None,
     csv: Annotated[Path | None, output("--csv", what="Write torques and Ω as a table.")] = None,
-    solver: Solver = "clarabel",
+    solver: Solver = "auto",
     method: Method = "newton",
     tolerance: Tolerance = 1e-9,
     position: Annotated[
@@ -53,7 +53,7 @@ def run(
 ) -> None:
     """Solve a case and print load sharing, floats and certificate."""
     from loadshare.case import load_case
-    from loadshare.cli.report import print_heading, print_result
+    from loadshare.cli.tables import print_heading, print_result
     from loadshare.job import solve
     from loadshare.train import build_train
 
@@ -84,12 +84,22 @@ def run(
     if result is not None:
         print_result(screen, result, len(wanted))
     if explain:
-        from loadshare.cli.report.explanation import print_explanation
-        from loadshare.solver import Options
+        from loadshare.cli.tables.explanation import print_explanation
+        from loadshare.job import explain as explained
 
-        options = Options(solver=solver, method=method, reduce=not no_reduce)
         for index in wanted if position else wanted[:1]:
-            print_explanation(screen, train, index, options, tolerance)
+            try:
+                answer = explained(
+                    loaded,
+                    index,
+                    solver=solver,
+                    method=method,
+                    reduce=not no_reduce,
+                    tolerance=tolerance,
+                )
+            except Refused:
+                answer = None
+            print_explanation(screen, index, answer)
     if refusal is None:
         assert result is not None
         _write(json, result.to_json)

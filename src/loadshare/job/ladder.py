@@ -1,17 +1,34 @@
-"""The ladder: what is tried, in order, until an answer is certified."""
+"""The ladder: what is tried, in order, until an answer is certified.
+
+The hot path comes first. What it does not solve, or what its certificate refuses, goes to a
+back-end with an exact pass on the identified active set, then to the other forms of the loop, down
+to the exact power-cone programme; then it is refused with figures.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from loadshare.certify import Certificate, certify
+from loadshare.certify.certificate import certify_later
 from loadshare.errors import Refused
+from loadshare.job.machine import Answers, Machine
 from loadshare.scene import assemble
+from loadshare.scene.plan import Plan, Role
 from loadshare.scene.scene import Scene
 from loadshare.solver import Options, Record, solve_scene
+from loadshare.solver.contradiction import contradiction
+from loadshare.solver.hot import vectorised
+from loadshare.solver.position import coordinates_of, of_least_norm
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.train import Train
+
+HOT = "hot path"
+AUTO = "auto"
+"""Instead of a back-end's name: the hot path, and Clarabel for what it leaves."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -20,7 +37,7 @@ class Answer:
 
     Attributes
     ----------
-    scene : Scene
+    train : Train
     equilibrium : Equilibrium
     certificate : Certificate
     record : Record
@@ -29,21 +46,128 @@ class Answer:
         Rung of the ladder that answered.
     """
 
-    scene: Scene
+    train: Train
     equilibrium: Equilibrium
     certificate: Certificate
     record: Record
     rung: str
 
+    @property
+    def scene(self) -> Scene:
+        """The contact problem, assembled anew."""
+        return assemble(self.train, self.equilibrium.index)
+
 
 def rungs(options: Options) -> Iterator[tuple[str, Options]]:
     """Yield what was asked for, then the whole scene, then the other forms of the loop."""
-    yield "as asked", options
+    yield f"{options.solver} + exact", options
     if options.reduce:
         yield "whole scene", replace(options, reduce=False)
     for method in ("newton", "picard", "power"):
         if method != options.method:
             yield f"whole scene, {method}", replace(options, reduce=False, method=method)
+
+
+def climb_all(
+    machine: Machine, indices: Sequence[int], options: Options, tolerance: float, hot: bool = True
+) -> Iterator[Answer | Refused]:
+    """Answer positions, all of them on the hot path first.
+
+    Parameters
+    ----------
+    machine : Machine
+    indices : sequence of int
+        1-based positions.
+    options : Options
+        For what the hot path leaves.
+    tolerance : float
+    hot : bool
+        Whether to take the hot path at all.
+
+    Yields
+    ------
+    Answer or Refused
+        In the order of the positions; a refusal where no rung gives a certified answer.
+    """
+    quick: dict[int, Answer] = {}
+    if hot and machine.train.slip is None:
+        quick = hot_answers(machine, indices, tolerance)
+    for index in indices:
+        if index in quick:
+            yield quick[index]
+            continue
+        try:
+            yield climb(machine.train, index, options, tolerance)
+        except Refused as refusal:
+            yield refusal
+
+
+def hot_answers(machine: Machine, indices: Sequence[int], tolerance: float) -> dict[int, Answer]:
+    """Answer what the hot path can, by position."""
+    train = machine.train
+    found = machine.answer(machine.situations(indices), tolerance, vectorised.settle)
+    answers = {}
+    for row in np.flatnonzero(found.passed).tolist():
+        index = indices[row]
+        scales = float(found.verdicts.load[row]), float(found.verdicts.deflection[row])
+        if found.tied[row]:
+            equilibrium = found.equilibria.one(row, index, machine.loose(found.code[row]))
+            certificate = certify_later(train, equilibrium, tolerance, *scales)
+        else:
+            claimed = found.equilibria.one(row, index)
+            equilibrium = of_least_norm(assemble(train, index), claimed)
+            certificate = certify(train, equilibrium, tolerance)
+            if not certificate.passed:
+                equilibrium = replace(claimed, undetermined=equilibrium.undetermined)
+                certificate = certify(train, equilibrium, tolerance)
+        if found.tied[row] or certificate.passed:
+            record = _hot_record(machine, found, row)
+            answers[index] = Answer(train, equilibrium, certificate, record, HOT)
+    return answers
+
+
+def _hot_record(machine: Machine, found: Answers, row: int) -> Record:
+    """How the hot path answered."""
+    elements, code = machine.elements, found.code[row]
+    basis = elements.basis(code)
+    acting = code[: elements.rows] != 0
+    rows = {
+        name: Role.IN_PLAY if acts else Role.OPEN
+        for name, acts in zip(elements.row_names, acting, strict=True)
+    }
+    radials = {
+        r.name: Role.IN_PLAY if place else Role.OPEN
+        for r, place in zip(elements.scene.radials, code[elements.rows :], strict=True)
+    }
+    redundants = basis.redundant.shape[1]
+    return Record(
+        solver=HOT,
+        method="force",
+        kind=f"force method, {redundants} redundant{'' if redundants == 1 else 's'}",
+        iterations=(),
+        plan=Plan(rows, radials),
+        rounds=int(found.turns[row]),
+        removed=elements.scene.removed,
+        coordinates=elements.scene.coordinates,
+    )
+
+
+def left_out(answer: Answer) -> tuple[tuple[str, str], ...]:
+    """What did not act in an answer of the hot path, and the figure that says so."""
+    scene, found = answer.scene, answer.equilibrium
+    plan = answer.record.plan
+    x = coordinates_of(scene, found)
+    idle = [
+        (row.name, f"open by {(row.gap - float(row.vector @ x)) * 1e6:.4g} µm")
+        for row in scene.rows_at(x)
+        if plan.rows[row.name] is Role.OPEN
+    ]
+    idle += [
+        (r.name, f"moves freely, {float(np.linalg.norm(r.matrix @ x - r.centre)) * 1e6:.4g} µm out")
+        for r in scene.radials
+        if plan.radials[r.name] is Role.OPEN
+    ]
+    return scene.removed + tuple(idle)
 
 
 def climb(train: Train, index: int, options: Options, tolerance: float) -> Answer:
@@ -65,10 +189,16 @@ def climb(train: Train, index: int, options: Options, tolerance: float) -> Answe
             continue
         certificate = certify(train, equilibrium, tolerance)
         if certificate.passed:
-            return Answer(scene, equilibrium, certificate, record, rung)
+            return Answer(train, equilibrium, certificate, record, rung)
         first = first or _uncertified(index, certificate)
         if not options.polish:
             break
+    against = contradiction(scene)
+    if against:
+        raise Refused(
+            f"position {index}: rigid limits contradict one another: {', '.join(against)}; "
+            "give one of them more clearance or float, or a stiffness"
+        )
     raise first or Refused(f"position {index}: nothing was tried")
 
 

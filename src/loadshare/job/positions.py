@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Protocol
 
@@ -10,10 +12,12 @@ from loadshare._version import __version__
 from loadshare.case import Case, load_case
 from loadshare.certify.certificate import TOLERANCE
 from loadshare.errors import Refused
-from loadshare.job.ladder import Answer, climb
+from loadshare.job.ladder import AUTO, HOT, Answer, climb_all, left_out
+from loadshare.job.machine import Machine
 from loadshare.results.result import Effort, Position, Result, Stamp
 from loadshare.results.share import largest, pair_shares, stage_shares
 from loadshare.solver import Options
+from loadshare.tooth import resolve
 from loadshare.train import Train, build_train
 
 
@@ -27,7 +31,7 @@ class Progress(Protocol):
 def solve(
     case: Case | str | Path,
     *,
-    solver: str = "clarabel",
+    solver: str = AUTO,
     method: str = "newton",
     reduce: bool = True,
     tolerance: float = TOLERANCE,
@@ -40,8 +44,8 @@ def solve(
     ----------
     case : Case or path
         A case, or the path of a case file.
-    solver : {"clarabel", "osqp", "cvxpy"}
-        Back-end of the first rung.
+    solver : {"auto", "clarabel", "osqp", "cvxpy"}
+        "auto" tries the hot path first and then Clarabel; otherwise the back-end of the first rung.
     method : {"newton", "picard", "power"}
         Form of the outer loop for nonlinear mesh laws.
     reduce : bool
@@ -74,19 +78,20 @@ def solve(
     >>> result.passed
     True
     """
-    case, train = _prepare(case)
-    options = Options(solver=solver, method=method, reduce=reduce)
-    wanted = _wanted(train, positions)
+    case, machine = prepared(case)
+    options, hot = _options(solver, method, reduce)
+    wanted = wanted_positions(machine.train, positions)
     answers: list[Answer] = []
     refusals: list[Refused] = []
-    for done, index in enumerate(wanted, start=1):
-        try:
-            answers.append(climb(train, index, options, tolerance))
-        except Refused as refusal:
-            refusals.append(refusal)
+    for done, found in enumerate(climb_all(machine, wanted, options, tolerance, hot), start=1):
+        if isinstance(found, Refused):
+            refusals.append(found)
+        else:
+            answers.append(found)
         if progress is not None:
             progress(done, len(wanted))
-    result = _result(case, train, answers, options, tolerance) if answers else None
+    asked = replace(options, solver=solver)
+    result = result_of(case, machine.train, answers, asked, tolerance) if answers else None
     if refusals:
         figures: dict[str, float] = {}
         for refused in refusals:
@@ -101,7 +106,7 @@ def explain(
     case: Case | str | Path,
     position: int = 1,
     *,
-    solver: str = "clarabel",
+    solver: str = AUTO,
     method: str = "newton",
     reduce: bool = True,
     tolerance: float = TOLERANCE,
@@ -125,18 +130,48 @@ def explain(
     CaseError, Refused, ValueError
         As :func:`solve`.
     """
-    case, train = _prepare(case)
-    (index,) = _wanted(train, [position])
-    return climb(train, index, Options(solver=solver, method=method, reduce=reduce), tolerance)
+    case, machine = prepared(case)
+    options, hot = _options(solver, method, reduce)
+    wanted = wanted_positions(machine.train, [position])
+    (found,) = climb_all(machine, wanted, options, tolerance, hot)
+    if isinstance(found, Refused):
+        raise found
+    if found.rung == HOT:
+        return replace(found, record=replace(found.record, removed=left_out(found)))
+    return found
 
 
-def _prepare(case: Case | str | Path) -> tuple[Case, Train]:
+def _options(solver: str, method: str, reduce: bool) -> tuple[Options, bool]:
+    """Options of the rungs, and whether the hot path comes first.
+
+    What only a back-end can do, another form of the loop or the whole scene, is not asked of it.
+    """
+    if solver != AUTO:
+        return Options(solver=solver, method=method, reduce=reduce), False
+    return Options(method=method, reduce=reduce), method == "newton" and reduce
+
+
+_recent: OrderedDict[int, tuple[Case, Case, Machine]] = OrderedDict()
+RECENT = 16
+"""Cases whose reduced machines are kept, for those who solve one again and again."""
+
+
+def prepared(case: Case | str | Path) -> tuple[Case, Machine]:
+    """Return a case, its mesh laws computed where it asks for them, and its machine; built once."""
     if not isinstance(case, Case):
         case = load_case(case)
-    return case, build_train(case)
+    known = _recent.get(id(case))
+    if known is None:
+        # The case is kept with its machine, so that its id is not given to another.
+        solved = resolve(case)
+        known = _recent[id(case)] = (case, solved, Machine(build_train(solved)))
+        if len(_recent) > RECENT:
+            _recent.popitem(last=False)
+    return known[1:]
 
 
-def _wanted(train: Train, positions: Iterable[int] | None) -> list[int]:
+def wanted_positions(train: Train, positions: Iterable[int] | None) -> list[int]:
+    """Return the positions to solve, checked; all of them by default."""
     wanted = list(range(1, train.count + 1)) if positions is None else list(positions)
     wrong = [k for k in wanted if not 1 <= k <= train.count]
     if wrong or not wanted:
@@ -145,9 +180,10 @@ def _wanted(train: Train, positions: Iterable[int] | None) -> list[int]:
     return wanted
 
 
-def _result(
+def result_of(
     case: Case, train: Train, answers: list[Answer], options: Options, tolerance: float
 ) -> Result:
+    """Put answers together as a result."""
     positions = tuple(_position(train, a) for a in answers)
     stages = train.stages
     return Result(
@@ -170,6 +206,7 @@ def _result(
         positions=positions,
         omega=largest([p.share for p in positions], stages),
         pair_omega=largest([p.pair_share for p in positions], stages),
+        case=case,
     )
 
 

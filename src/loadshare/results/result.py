@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,6 +13,9 @@ from loadshare.certify import Certificate, FloatState
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
+
+    from loadshare.case import Case
+    from loadshare.report.plots import Plots
 
 Pair = tuple[float, float]
 
@@ -122,6 +125,9 @@ class Result:
     positions : tuple of Position
     omega, pair_omega : mapping of stage to float or None
         Largest Ω of each stage and of the system, by stage mean and by group mean.
+    case : Case or None
+        What was solved; None for a result that was loaded from a file. Two results are compared
+        without it: the stamp holds its hash.
     """
 
     stamp: Stamp
@@ -130,6 +136,7 @@ class Result:
     positions: tuple[Position, ...]
     omega: Mapping[str, float | None]
     pair_omega: Mapping[str, float | None]
+    case: Case | None = field(default=None, compare=False, repr=False)
 
     @property
     def passed(self) -> bool:
@@ -172,6 +179,17 @@ class Result:
     def displacement(self) -> xr.DataArray:
         """Displacement of the centres [m], position × gear × component."""
         return self.dataset["displacement"]
+
+    @property
+    def plot(self) -> Plots:
+        """Pictures: ``torque()``, ``share()``, ``floats()``, ``law()`` and ``train()``.
+
+        Each returns a `Figure`; ``.save("floats.svg")`` writes it.
+        """
+        # The one place where a room asks what stands above it: pictures are asked for by results.
+        from loadshare.report.plots import Plots
+
+        return Plots(self)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as the JSON file holds it."""

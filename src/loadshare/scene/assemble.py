@@ -8,6 +8,7 @@ import numpy as np
 
 from loadshare.scene.scene import ArcRow, Array, Radial, Rotation, Row, Scene
 from loadshare.train.law import RIGID, Law, PowerLaw
+from loadshare.train.memory import SlipFriction, SlipStop
 from loadshare.train.radial import round_ring_law
 from loadshare.train.ring import DrumRing, RoundRing
 from loadshare.train.train import Situation, Train
@@ -27,6 +28,7 @@ def assemble(train: Train, index: int) -> Scene:
             coordinates += [f"gear {name} x", f"gear {name} y"]
         else:
             removed.append((f"gear {name} x, y", "its bearing is rigid"))
+    slip = _slips(train, coordinates)
     size = len(coordinates)
     stiffness, load = _linear_part(train, situation, rotation, displacement, size)
     moved = {n: train.gears[n].frame.T @ np.eye(size)[w] for n, w in displacement.items()}
@@ -43,10 +45,7 @@ def assemble(train: Train, index: int) -> Scene:
         if spline.friction_force == 0.0
     ]
     scene_rows = (*_flanks(train, situation, rotation, moved, none, size), *rows)
-    radials += [
-        Radial(s.name, g, np.eye(size)[displacement[g]], np.zeros(2), s)
-        for g, s in train.splines.items()
-    ]
+    radials += _splines(train, displacement, slip, stiffness, size)
     return Scene(
         train=train,
         situation=situation,
@@ -60,6 +59,38 @@ def assemble(train: Train, index: int) -> Scene:
         displacement=displacement,
         removed=tuple(removed),
     )
+
+
+def _slips(train: Train, coordinates: list[str]) -> dict[str, slice]:
+    """Two coordinates for the slip of every spline that remembers it."""
+    found = {}
+    for gear in train.splines if train.slip is not None else ():
+        found[gear] = slice(len(coordinates), len(coordinates) + 2)
+        coordinates += [f"spline {gear} slip x", f"spline {gear} slip y"]
+    return found
+
+
+def _splines(
+    train: Train,
+    displacement: dict[str, slice],
+    slip: dict[str, slice],
+    stiffness: Array,
+    size: int,
+) -> list[Radial]:
+    """Radial elements of the splines; with memory the shaft's bending goes into H, in place."""
+    found = []
+    for gear, spline in train.splines.items():
+        moved = np.eye(size)[displacement[gear]]
+        if train.slip is None:
+            found.append(Radial(spline.name, gear, moved, np.zeros(2), spline))
+            continue
+        slipped = np.eye(size)[slip[gear]]
+        bent = moved - slipped
+        stiffness += spline.bending_stiffness * bent.T @ bent
+        before = train.gears[gear].frame @ train.slip[gear]
+        found.append(Radial(spline.name, gear, slipped, before, SlipFriction(spline)))
+        found.append(Radial(spline.stop_name, gear, slipped, np.zeros(2), SlipStop(spline)))
+    return found
 
 
 def _rotations(

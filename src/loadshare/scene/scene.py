@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from loadshare.scene.condense import Condensation, condense
 from loadshare.train.law import Law
+from loadshare.train.memory import SlipFriction, SlipStop
 from loadshare.train.radial import RadialLaw
 from loadshare.train.ring import Arc
 from loadshare.train.train import Situation, Spline, Train
@@ -102,24 +103,24 @@ class Radial:
         P.
     centre : ndarray, shape (2,)
         m [m].
-    source : RadialLaw or Spline
-        A fixed law, or a spline whose friction may follow the torque.
+    source : RadialLaw, Spline, SlipFriction or SlipStop
+        A fixed law, or a spline, as a whole or in its parts, whose friction may follow the torque.
     """
 
     name: str
     gear: str
     matrix: Array
     centre: Array
-    source: RadialLaw | Spline
+    source: RadialLaw | Spline | SlipFriction | SlipStop
 
     @property
     def follows_torque(self) -> bool:
         """Whether the law must be settled in the outer loop."""
-        return isinstance(self.source, Spline) and self.source.friction_force is None
+        return not isinstance(self.source, RadialLaw) and self.source.friction_force is None
 
     def law(self, torque: float) -> RadialLaw:
         """Law when the gear takes `torque` [N·m] from its shafts."""
-        return self.source.law(torque) if isinstance(self.source, Spline) else self.source
+        return self.source if isinstance(self.source, RadialLaw) else self.source.law(torque)
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,6 +16,8 @@ from loadshare.train.radial import RadialLaw
 
 CARRIES = 1e-12
 """Force, over the largest of the scene, from which on a contact ties displacements."""
+ROOM = 1e-12
+"""Overlap, relative to the largest gap, that counts as round-off."""
 RANK = 1e-13
 """Singular values below this, relative to the largest, count as zero."""
 
@@ -79,20 +81,28 @@ def least_norm(
     limits = np.array(open_rows).reshape(len(room), scene.size) @ free
     move = -start
     if len(room) and (limits @ move > room).any():
-        move = _nearest_in(limits, room + limits @ start) - start
+        nearest = _nearest_in(limits, room + limits @ start)
+        move = np.zeros_like(start) if nearest is None else nearest - start
     return _inside_discs(scene, x, free @ move * length, laws), undetermined
 
 
-def _nearest_in(limits: Array, bounds: Array) -> Array:
-    """Least-norm u with `limits` u ≤ `bounds`, by non-negative least squares (Lawson, Hanson)."""
+def _nearest_in(limits: Array, bounds: Array) -> Array | None:
+    """Least-norm u with `limits` u ≤ `bounds`, by non-negative least squares (Lawson, Hanson).
+
+    None if round-off leaves no such u.
+    """
     from scipy.optimize import nnls
 
-    columns = np.vstack([-limits.T, -bounds[None, :]])
+    scale = float(np.abs(bounds).max()) or 1.0
+    columns = np.vstack([-limits.T, -bounds[None, :] / scale])
     target = np.zeros(len(columns))
     target[-1] = 1.0
     weights, _ = nnls(columns, target)
     residual = columns @ weights - target
-    return np.asarray(-residual[:-1] / residual[-1])
+    if residual[-1] == 0.0:
+        return None
+    nearest = -scale * residual[:-1] / residual[-1]
+    return nearest if (limits @ nearest <= bounds + ROOM * scale).all() else None
 
 
 def _inside_discs(scene: Scene, x: Array, move: Array, laws: dict[str, RadialLaw]) -> Array:

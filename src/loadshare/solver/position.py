@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from loadshare.errors import Refused
@@ -16,6 +18,8 @@ from loadshare.solver.outer import Settled, settle
 from loadshare.solver.record import Options, Record
 from loadshare.train.equilibrium import Equilibrium
 
+NOISE = 1e-12
+"""Force, over what a gap would cost if it were pressed shut, that counts as round-off."""
 VERIFIED = 1e-11
 """Violation of a removed inequality that counts as round-off, in deflections and loads."""
 
@@ -141,6 +145,7 @@ def _margins(scene: Scene, plan: Plan, settled: Settled) -> dict[str, tuple[bool
 def _equilibrium(scene: Scene, settled: Settled) -> Equilibrium:
     """Turn an answer into physical terms, least-norm where it leaves displacements undetermined."""
     train = scene.train
+    settled = _without_noise(scene, settled)
     pulls = _radial_forces(scene, settled)
     x, undetermined = least_norm(scene, settled.x, settled.forces, pulls, settled.laws)
     flanks = {r.name for r in scene.rows if r.kind.endswith("flank")}
@@ -153,6 +158,59 @@ def _equilibrium(scene: Scene, settled: Settled) -> Equilibrium:
         flank_force={n: max(settled.forces.get(n, 0.0), 0.0) for n in sorted(flanks)},
         ring_force={n: max(settled.forces.get(n, 0.0), 0.0) for n in contacts},
         radial_reaction=reactions,
+        undetermined=undetermined,
+    )
+
+
+def coordinates_of(scene: Scene, found: Equilibrium) -> Array:
+    """Coordinates (n,) [m] of an equilibrium without memory of slip."""
+    x = np.zeros(scene.size)
+    for name, r in scene.rotation.items():
+        if r.index is not None:
+            x[r.index] = (found.rotation[name] - r.constant) / r.rate
+    for name, where in scene.displacement.items():
+        x[where] = scene.train.gears[name].frame @ found.displacement[name]
+    return x
+
+
+def _without_noise(scene: Scene, settled: Settled) -> Settled:
+    """Without a load, take forces for none that round-off of the gaps explains.
+
+    They would be the largest of the case otherwise, and everything would be measured by them.
+    """
+    if any(scene.situation.torque.values()):
+        return settled
+    stiffest = [abs(r.gap) / b for r in scene.rows if (b := r.law.secant(1.0)) > 0.0]
+    noise = NOISE * max(stiffest, default=0.0)
+    every = [
+        *settled.forces.values(),
+        *(float(np.linalg.norm(f)) for f in settled.radial_forces.values()),
+    ]
+    if max(map(abs, every), default=0.0) > noise:
+        return settled
+    return replace(
+        settled,
+        forces=dict.fromkeys(settled.forces, 0.0),
+        radial_forces={n: np.zeros(2) for n in settled.radial_forces},
+    )
+
+
+def of_least_norm(scene: Scene, found: Equilibrium) -> Equilibrium:
+    """Return the same equilibrium at its displacement of least norm, what is undetermined named.
+
+    Torques and forces stay as they are.
+    """
+    gears, x = scene.train.gears, coordinates_of(scene, found)
+    forces = {**found.flank_force, **found.ring_force}
+    pulls = {r.name: -gears[r.gear].frame @ found.radial_reaction[r.name] for r in scene.radials}
+    laws = {
+        r.name: r.law(scene.train.transmitted(r.gear, found.flank_force)) for r in scene.radials
+    }
+    x, undetermined = least_norm(scene, x, forces, pulls, laws)
+    return replace(
+        found,
+        rotation={g: scene.angle(g, x) for g in gears},
+        displacement={g: scene.moved(g, x) for g in gears},
         undetermined=undetermined,
     )
 

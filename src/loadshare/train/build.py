@@ -36,6 +36,10 @@ def build_train(case: spec.Case) -> Train:
         If gears turn against each other or the train would lock, or a ring's float cannot be
         derived; all problems are listed.
     """
+    if any(mesh.geometry or mesh.law_file for mesh in case.meshes.values()):
+        from loadshare.tooth import resolve
+
+        case = resolve(case)
     kinematics = _kinematics(case)
     problems = [case.problem(c.key, c.message) for c in kinematics.conflicts]
     if problems:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from loadshare.train.gear import Vector
 
@@ -26,6 +26,13 @@ class Equilibrium:
         Force [N] of every arc and stop, ≥ 0.
     radial_reaction : mapping of element to ndarray, shape (3,)
         Force [N] of every spline and round ring on its gear.
+    shaft_torque : mapping of shaft to float
+        Torque [N·m] of elastic shafts from the first gear to the second; that of a shaft which is
+        not named follows from its wind-up. Claimed torques are exact where a stiff shaft's wind-up
+        is lost in the digits of the rotations.
+    support_force : mapping of gear to ndarray, shape (2,)
+        Force [N] on elastic bearings, in the gear's transverse frame; otherwise from the
+        displacement.
     undetermined : tuple of str
         Coordinates that the equilibrium does not determine; the least-norm displacement is given.
     """
@@ -37,3 +44,5 @@ class Equilibrium:
     ring_force: Mapping[str, float]
     radial_reaction: Mapping[str, Vector]
     undetermined: tuple[str, ...] = ()
+    shaft_torque: Mapping[str, float] = field(default_factory=dict)
+    support_force: Mapping[str, Vector] = field(default_factory=dict)

@@ -56,6 +56,12 @@ class RadialLaw:
         """Largest admissible radius [m]; infinite without a rigid stop."""
         return self.start(len(self.pieces))
 
+    @property
+    def strength(self) -> float:
+        """Largest force [N] that the graph admits; finite only where it ends in a level piece."""
+        last = self.pieces[-1]
+        return last.force if last.stiffness == 0.0 and math.isinf(last.length) else math.inf
+
     def step(self, corner: int) -> tuple[float, float]:
         """Force interval [N] of the step before piece `corner`; after the last, of the stop."""
         low = self.pieces[corner - 1].end_force if corner > 0 else 0.0

@@ -86,17 +86,27 @@ class Arc:
 
     Attributes
     ----------
-    start : ndarray, shape (3,)
-        d₀, from the neighbour's centre to the limited gear's [m].
-    distance : float
-        a, the nominal centre distance [m].
+    nominal : ndarray, shape (3,)
+        From the neighbour's nominal centre to the limited gear's [m]; its length is a.
+    shift : ndarray, shape (3,)
+        What errors add to it [m]: d₀ = nominal + shift.
     clearance : float
         c_x [m].
     """
 
-    start: Vector
-    distance: float
+    nominal: Vector
+    shift: Vector
     clearance: float
+
+    @property
+    def distance(self) -> float:
+        """a, the nominal centre distance [m]."""
+        return math.sqrt(float(self.nominal @ self.nominal))
+
+    @property
+    def start(self) -> Vector:
+        """d₀ [m]."""
+        return np.asarray(self.nominal + self.shift)
 
     def normal(self, relative: Vector) -> Vector:
         """Unit outward push on the limited gear at the relative displacement Δ (3,) [m]."""
@@ -104,12 +114,15 @@ class Arc:
         return d / math.sqrt(float(d @ d))
 
     def margin(self, relative: Vector) -> float:
-        """Distance beyond the arc [m], |d₀ + Δ| − a + c_x, free of cancellation for small Δ."""
-        d = self.start + relative
+        """Distance beyond the arc [m], |d₀ + Δ| − a + c_x, free of cancellation for small Δ.
+
+        At rest and without errors it is the clearance, to the last digit.
+        """
+        moved = self.shift + relative
+        d = self.nominal + moved
         here = math.sqrt(float(d @ d))
-        nominal = float(self.start @ self.start) - self.distance**2
-        grown = 2.0 * float(self.start @ relative) + float(relative @ relative)
-        return (nominal + grown) / (here + self.distance) + self.clearance
+        grown = 2.0 * float(self.nominal @ moved) + float(moved @ moved)
+        return grown / (here + self.distance) + self.clearance
 
     def face(self, relative: Vector) -> tuple[Vector, float]:
         """Tangent half-plane at Δ: unit normal n (3,) and bound g [m] of n·Δ ≥ −g."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -66,6 +66,11 @@ class Spline:
     def name(self) -> str:
         """Name of the element."""
         return f"spline {self.gear}"
+
+    @property
+    def stop_name(self) -> str:
+        """Name of the stop at the end of its clearance, an element of its own with memory."""
+        return f"{self.name} clearance"
 
     def bound(self, torque: float) -> float:
         """Friction bound F_m [N] when the spline transmits `torque` [N·m]."""
@@ -143,6 +148,9 @@ class Train:
         Positions of a mesh cycle.
     march : tuple of (str, float, int) or None
         Reference gear, its revolutions and the number of steps.
+    slip : mapping of gear to ndarray (3,), or None
+        Slip s₀ [m] of every spline at the position before, for friction with memory; None where
+        friction has none.
     """
 
     name: str
@@ -159,6 +167,11 @@ class Train:
     external: Mapping[str, float]
     positions: int
     march: tuple[str, float, int] | None
+    slip: Mapping[str, Vector] | None = None
+
+    def remembering(self, slip: Mapping[str, Vector]) -> Train:
+        """Return the train with spline friction that starts from a slip [m] of every spline."""
+        return replace(self, slip=dict(slip))
 
     @property
     def count(self) -> int:
@@ -241,8 +254,8 @@ class Train:
         """Exclusion arc of a drum ring towards its neighbour number `side` (0 or 1)."""
         gear, neighbour = self.gears[ring.gear], self.gears[ring.neighbours[side]]
         nominal = transverse(gear.centre - neighbour.centre, gear.axis)
-        start = nominal
+        shift = np.zeros(3)
         if ring.with_errors:
-            shift = situation.offset[gear.name] - situation.offset[neighbour.name]
-            start = nominal + transverse(shift, gear.axis)
-        return Arc(start, float(np.linalg.norm(nominal)), ring.clearances[side])
+            apart = situation.offset[gear.name] - situation.offset[neighbour.name]
+            shift = transverse(apart, gear.axis)
+        return Arc(nominal, shift, ring.clearances[side])

@@ -13,6 +13,7 @@ from loadshare.case.checks.floats import (
     check_support,
 )
 from loadshare.case.checks.flow import check_loaded_meshes, check_output_reached, check_taken_part
+from loadshare.case.checks.measured import check_measured_names, check_measured_positions
 from loadshare.case.checks.names import (
     check_about_circles,
     check_gear_names,
@@ -37,6 +38,8 @@ CHECKS = (
     check_ring_neighbours,
     check_float_backlashes,
     check_stage_groups,
+    check_measured_names,
+    check_measured_positions,
     check_taken_part,
     check_output_reached,
     check_loaded_meshes,

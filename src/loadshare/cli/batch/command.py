@@ -31,7 +31,7 @@ def batch(
             "-j", "--jobs", metavar="N", min=1, help="Processes; by default one per processor."
         ),
     ] = None,
-    solver: Solver = "clarabel",
+    solver: Solver = "auto",
     method: Method = "newton",
     tolerance: Tolerance = 1e-9,
     force: Annotated[

@@ -20,8 +20,8 @@ def print_summary(console: Console, outcomes: Sequence[Outcome]) -> None:
     """Print one row per case, and below what went wrong."""
     from rich.text import Text
 
-    from loadshare.cli.report.numbers import NONE, omega, small
-    from loadshare.cli.report.tables import show, table
+    from loadshare.cli.tables.table import show, table
+    from loadshare.report.numbers import NONE, omega, small
 
     made = table(
         ("case", "outcome", "positions", "Ω system", "worst residual", "seconds"),

@@ -103,10 +103,11 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
     from loadshare.cli.files import write_document
     from loadshare.cli.refusal import refused_document, told
     from loadshare.job import solve
+    from loadshare.tooth import resolve
     from loadshare.train import build_train
 
     try:
-        case = load_case(task.case)
+        case = resolve(load_case(task.case))
         count = build_train(case).count
         if not task.force and (kept := _kept(task, case, count)):
             return "kept", kept, ()

@@ -1,0 +1,238 @@
+"""Loaded tooth contact analysis against published figures and its own refinement, as Markdown.
+
+Run with ``python benchmarks/ltca_evidence.py`` in the repository. It measures what the page on
+loaded tooth contact states: ISO/TR 6336-30, example 1; refinement of elements and of contact
+points; the stiffness ranges of the seed paper; time and error of both models of the teeth.
+"""
+
+from __future__ import annotations
+
+import math
+import resource
+import sys
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+
+from loadshare.tooth.compliance.block import Divisions
+from loadshare.tooth.compliance.finite import FiniteElements
+from loadshare.tooth.contact_programme import solve_contact
+from loadshare.tooth.helicoid import HelicoidGear
+from loadshare.tooth.helicoid_pair import HelicoidPair
+from loadshare.tooth.iso6336 import formula_stiffness
+from loadshare.tooth.law_fit import FIT_LOADS
+from loadshare.tooth.ltca import PairCompliance, contact_problem, ltca, pair_compliance
+from loadshare.tooth.pairfile import PairFile, load_pair
+
+T = TypeVar("T")
+PAIRS = Path(__file__).parents[1] / "cases/pairs"
+PAPER = {"p12": (7.46e5, 9.27e5), "p46": (3.77e6, 4.78e6), "p610": (6.17e6, 6.68e6)}
+"""Ranges of the seed's Fig. 7 [N·m/rad at the driver]."""
+HELIX = math.radians(15.8)
+LINE_LOAD = 300e3
+"""Load per face width at which the standard states its stiffness [N/m]."""
+
+
+def say(text: str = "") -> None:
+    """Print a line at once."""
+    sys.stdout.write(text + "\n")
+    sys.stdout.flush()
+
+
+def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> None:
+    """Print a Markdown table."""
+    lines = [list(head), *map(list, rows)]
+    lines.insert(1, ["---"] * len(lines[0]))
+    say("\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n")
+
+
+def timed(action: Callable[[], T], repeat: int = 1) -> tuple[T, float]:
+    """Answer of an action, and the least of its times [s]."""
+    best = math.inf
+    for _ in range(repeat):
+        start = time.perf_counter()
+        answer = action()
+        best = min(best, time.perf_counter() - start)
+    return answer, best
+
+
+def iso_pair(bore: float | None = None) -> HelicoidPair:
+    """ISO/TR 6336-30, example 1, its wheel solid to a bore radius [m]."""
+    common = {"module": 8e-3, "face_width": 0.1, "dedendum": 1.4}
+    pinion = HelicoidGear(teeth=17, helix_angle=HELIX, profile_shift=0.145, **common)
+    wheel = HelicoidGear(teeth=103, helix_angle=-HELIX, rim=bore, **common)
+    return HelicoidPair(pinion, wheel, 0.5)
+
+
+def mean_stiffness(gears: HelicoidPair, model: str) -> float:
+    """Mean over the cycle at 300 N/mm, per face width [N/(mm·µm)]."""
+    torque = LINE_LOAD * 0.1 * gears.driver_gear.radius
+    found = ltca(gears, torque, 8, FIT_LOADS, model, 32).secant(0.9)
+    return float(found.mean()) / gears.driver_gear.base_radius**2 / 0.1 * 1e-9
+
+
+def single_stiffness(model: str, bore: float | None) -> float:
+    """Largest stiffness of one pair alone, virtual spur pair times cos β [N/(mm·µm)]."""
+    common = {"module": 8e-3, "face_width": 0.1, "dedendum": 1.4}
+    pinion = HelicoidGear(teeth=19, profile_shift=0.145, **common)
+    wheel = HelicoidGear(teeth=115, rim=bore, **common)
+    gears = HelicoidPair(pinion, wheel, 134 * 4e-3 + 0.14 * 8e-3)
+    compliance, load, found = pair_compliance(gears, model), LINE_LOAD * 0.1, []
+    for phase in np.arange(10) / 10.0:
+        position = gears.position(float(phase), 32)
+        for line in position.lines:
+            alone = contact_problem(gears, replace(position, lines=(line,)), compliance)
+            found.append(load / solve_contact(alone, load).approach / 0.1 * 1e-9)
+    return max(found) * math.cos(HELIX)
+
+
+def standard() -> None:
+    """ISO/TR 6336-30, example 1."""
+    formula = formula_stiffness(
+        (17, 103), profile_shift=(0.145, 0.0), dedendum=(1.4, 1.4), contact_ratio=1.5491,
+        helix_angle=HELIX,
+    )  # fmt: skip
+    single, mesh = formula.single * 1e-9, formula.mesh * 1e-9
+    rows = [["standard, by formula", f"{single:.2f}", "–", f"{mesh:.2f}", "–"]]
+    for name, model, bore in (
+        ("finite elements, wheel solid to 0.72 of its root radius", "finite elements", 0.30),
+        ("finite elements, rim of 1.5 tooth heights, clamped", "finite elements", None),
+        ("slices", "slices", None),
+    ):
+        # The virtual spur wheel is solid to the same part of its root.
+        spur = bore and bore * (115 * 4e-3 - 1.4 * 8e-3) / (iso_pair().driven_gear.root)
+        c = single_stiffness(model, spur), mean_stiffness(iso_pair(bore), model)
+        said = [
+            (f"{v:.2f}", f"{100 * (v / w - 1):+.1f} %")
+            for v, w in zip(c, (single, mesh), strict=True)
+        ]
+        rows.append([name, *said[0], *said[1]])
+    table(("ISO/TR 6336-30, example 1", "c'", "difference", "c_γα", "difference"), rows)
+
+
+def refined(level: int, layers: int) -> Divisions:
+    """Elements `level` times as fine as at level 1."""
+    return Divisions(2 * level, 2 * level, math.ceil(level / 2), level, level + 1, layers * level)
+
+
+def convergence(name: str, layers: int, levels: Iterable[int]) -> None:
+    """Stiffness of a shipped pair over refinement of elements and of contact points."""
+    pair = load_pair(PAIRS / f"{name}.toml")
+    gears, default = pair.geometry, pair_compliance(pair.geometry)
+    reference = stiffness(pair, default, 32)
+    found, rows = {}, []
+    for level in levels:
+        sides = [
+            FiniteElements(body, side, teeth=3, divisions=refined(level, layers))
+            for body, side in ((gears.driver, 1), (gears.driven, gears.driven_side))
+        ]
+        found[level] = stiffness(pair, PairCompliance(*sides, "finite elements"), 32)
+        size = f"{sides[0].size} + {sides[1].size}"
+        rows.append([str(level), size, f"{found[level]:.5g}", percent(reference, found[level])])
+    table((f"{name}: elements", "unknowns", "mean K [N·m/rad]", "default against it"), rows)
+    say_order(found)
+    found, rows = {}, []
+    for points in (8, 16, 32, 64, 128):
+        found[points] = stiffness(pair, default, points)
+        rows.append([str(points), f"{found[points]:.5g}", percent(reference, found[points])])
+    table((f"{name}: points on a line", "mean K [N·m/rad]", "default against it"), rows)
+    say_order(found)
+
+
+def stiffness(pair: PairFile, compliance: PairCompliance, points: int) -> float:
+    """Mean secant stiffness at the rated torque over five positions [N·m/rad]."""
+    found = ltca(pair.geometry, pair.torque, 5, (1.0,), compliance, points)
+    return float(found.secant(1.0).mean())
+
+
+def percent(one: float, other: float) -> str:
+    """Difference of one from the other."""
+    return f"{100 * (one / other - 1):+.2f} %"
+
+
+def say_order(found: dict[int, float]) -> None:
+    """Observed order from refinements by two."""
+    for n in found:
+        if 2 * n in found and 4 * n in found:
+            first, second = found[n] - found[2 * n], found[2 * n] - found[4 * n]
+            if first * second > 0.0:
+                order = math.log2(first / second)
+                say(f"{n}, {2 * n}, {4 * n}: observed order {order:.2f}.\n")
+
+
+def seed() -> None:
+    """Ranges of the seed's Fig. 7."""
+    rows = []
+    for name, (low, high) in PAPER.items():
+        pair = load_pair(PAIRS / f"{name}.toml")
+        found = pair.analyse().secant(1.0)
+        ends = (float(found.min()), float(found.max()))
+        finer = pair.revised(positions=20).analyse().secant(1.0)
+        rows.append(
+            [
+                name,
+                f"{low:.3g}–{high:.3g}",
+                f"{ends[0]:.3g}–{ends[1]:.3g}",
+                f"{percent(ends[0], low)}, {percent(ends[1], high)}",
+                f"{high / low:.3f}",
+                f"{ends[1] / ends[0]:.3f}",
+                percent(ends[1] / ends[0], high / low),
+                f"{finer.max() / finer.min():.3f}",
+            ]
+        )
+    table(
+        ("pair", "paper", "ours", "difference", "max/min, paper", "ours", "difference",
+         "ours, 20 positions"),
+        rows,
+    )  # fmt: skip
+
+
+def models() -> None:
+    """Time and error of the slices against finite elements, five positions and three loads."""
+    cases = {name: load_pair(PAIRS / f"{name}.toml") for name in PAPER}
+    gears = {name: (pair.geometry, pair.torque) for name, pair in cases.items()}
+    rows = []
+    for name, (geometry, torque) in gears.items():
+        ltca(geometry, torque, 1, compliance="slices", points=8)  # tables and imports
+        exact, build = timed(lambda g=geometry: pair_compliance(g))
+        fast, short = timed(lambda g=geometry: pair_compliance(g, "slices"), 5)
+        results = {}
+        for key, compliance, repeat in (("exact", exact, 1), ("fast", fast, 3)):
+            results[key] = timed(
+                lambda g=geometry, t=torque, c=compliance: ltca(g, t, 5, FIT_LOADS, c), repeat
+            )
+        k, whole = results["exact"][0].secant(0.9), build + results["exact"][1]
+        q, quick = results["fast"][0].secant(0.9), short + results["fast"][1]
+        error = q / k
+        rows.append(
+            [
+                name, f"{build:.2f}", f"{1e3 * short:.0f}", f"{build / short:.0f}",
+                f"{whole:.2f}", f"{quick:.2f}", f"{whole / quick:.0f}",
+                f"{100 * (error.mean() - 1):+.1f} %",
+                f"{100 * np.abs(error / error.mean() - 1).max():.1f} %",
+            ]
+        )  # fmt: skip
+    table(
+        ("pair", "elements [s]", "slices [ms]", "times faster", "analysis, elements [s]",
+         "analysis, slices [s]", "times faster", "error of mean K", "error of its shape"),
+        rows,
+    )  # fmt: skip
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    say(f"Largest memory of the process so far: {peak:.0f} MiB.\n")
+
+
+def main() -> None:
+    """Print all tables."""
+    models()
+    seed()
+    standard()
+    convergence("p12", 3, (1, 2, 3, 4))
+    convergence("p46", 4, (1, 2, 3))
+
+
+if __name__ == "__main__":
+    main()

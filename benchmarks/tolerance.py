@@ -1,0 +1,172 @@
+"""Tolerance study of the seed's transmission: time, rate, memory, and the peer way beside it.
+
+Run with ``python benchmarks/tolerance.py [--samples N] [--workers K] [--peers N]``. The peer way is
+a loop over CVXPY with parameters, compiled once and solved again for every sample and position; it
+is given the first samples of the study, and its answers are compared with the study's. Neither
+building its data nor compiling it is in its time; all is in the study's.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import resource
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+
+import loadshare as ls
+from loadshare.evidence.machine_facts import facts
+from loadshare.evidence.peers import PEERS
+from loadshare.evidence.peers.form import form_of
+from loadshare.evidence.peers.loop import Failure
+from loadshare.results.share import largest, stage_shares
+from loadshare.scene import assemble
+from loadshare.study.tolerance.result import Tolerance
+from loadshare.train import build_train
+
+CASE = Path(__file__).parents[1] / "cases/fgfbstts/tolerance.toml"
+STUDY = "errors"
+
+
+def main() -> None:
+    """Run the study, then the peer way, and print a Markdown table."""
+    parser = argparse.ArgumentParser(description="Time, rate and memory of a tolerance study.")
+    parser.add_argument("--samples", type=int, default=1_000_000)
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--sampling", choices=("random", "sobol"), default="random")
+    parser.add_argument("--peers", type=int, default=20, help="samples for the peer way")
+    asked = parser.parse_args()
+    case = ls.load_case(CASE)
+    with tempfile.TemporaryDirectory() as folder:
+        watch = Watch()
+        begun = time.perf_counter()
+        ends: list[float] = []
+        found = ls.tolerance(
+            case,
+            study=STUDY,
+            samples=asked.samples,
+            sampling=asked.sampling,
+            indices=0,
+            worst=False,
+            out=Path(folder) / "study",
+            workers=asked.workers,
+            engine="compiled",
+            progress=lambda done, total: ends.append(time.perf_counter()),
+        )
+        whole = time.perf_counter() - begun
+        own = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+        worker = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
+        together = watch.stop()
+        disk = sum(file.stat().st_size for file in found.parts)
+        positions = len(found.settings["positions"])
+        equilibria = asked.samples * positions
+        rows = [
+            ("samples × positions", f"{asked.samples:,} × {positions}"),
+            ("inputs", str(len(found.inputs.every))),
+            ("worker processes", str(asked.workers)),
+            ("time, all included [s]", f"{whole:.1f}"),
+            ("of it, sampling and solving [s]", f"{ends[-1] - ends[0]:.1f}"),
+            ("equilibria per second", f"{equilibria / whole:,.0f}"),
+            ("peak memory: study [MiB]", f"{own / 1024:.0f}"),
+            ("peak memory: a worker [MiB]", f"{worker / 1024:.0f}"),
+            ("peak memory: all together [MiB]", f"{together / 1024:.0f}"),
+            ("Parquet [MB]", f"{disk / 1e6:.0f}"),
+            ("certified samples", f"{found.samples - found.refused:,}"),
+            ("largest residual", f"{found.residual:.1e}"),
+        ]
+        rows += peer_way(case, found, asked.peers, whole / equilibria)
+    rows += [(name, value) for name, value in facts().items()]
+    print("| | |\n|---|---|")  # noqa: T201
+    print("\n".join(f"| {name} | {value} |" for name, value in rows))  # noqa: T201
+
+
+class Watch(threading.Thread):
+    """Largest resident memory of this process and its workers together [KiB] (Linux)."""
+
+    def __init__(self) -> None:
+        super().__init__(daemon=True)
+        self.peak = 0
+        self._done = threading.Event()
+        self.start()
+
+    def run(self) -> None:
+        """Look five times a second."""
+        while not self._done.wait(0.2):
+            self.peak = max(self.peak, sum(map(_resident, self._processes())))
+
+    def stop(self) -> int:
+        """End, and return the peak."""
+        self._done.set()
+        self.join()
+        return self.peak
+
+    def _processes(self) -> list[str]:
+        tasks = Path(f"/proc/{os.getpid()}/task").glob("*/children")
+        return [str(os.getpid()), *(pid for task in tasks for pid in task.read_text().split())]
+
+
+def _resident(process: str) -> int:
+    try:
+        lines = Path(f"/proc/{process}/status").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return 0
+    return sum(int(line.split()[1]) for line in lines if line.startswith("VmRSS"))
+
+
+def peer_way(case: ls.Case, found: Tolerance, count: int, ours: float) -> list[tuple[str, str]]:
+    """Solve the first samples by CVXPY with parameters; `ours` is the study's time each [s]."""
+    entry = PEERS["CVXPY, parameters"]
+    tolerance = min(entry.tolerances)
+    peer = entry.make(tolerance)
+    columns = [one.column for one in found.inputs.every]
+    inputs = found.to_frame(columns).head(count).to_numpy()
+    omega = found.to_frame(["omega.system"])["omega.system"].to_numpy()
+    like, spent, apart, failed = None, 0.0, 0.0, 0
+    positions = found.settings["positions"]
+    for sample, values in enumerate(inputs):
+        train = build_train(case.replace(found.inputs.changes(values.tolist())))
+        shares = []
+        for index in positions:
+            form = form_of(assemble(train, index), like)
+            if like is None:
+                like = form
+                peer.prepare(form)
+                peer.solve(form)
+            begun = time.perf_counter()
+            try:
+                claim = peer.solve(form)
+            except Failure:
+                failed += 1
+                continue
+            finally:
+                spent += time.perf_counter() - begun
+            equilibrium = form.equilibrium(claim.x, claim.forces, claim.pulls)
+            torque = {
+                name: mesh.radii[0]
+                * sum(
+                    (1.0 if drive else -1.0) * equilibrium.flank_force[mesh.flank_name(drive)]
+                    for drive in mesh.flanks
+                )
+                for name, mesh in train.meshes.items()
+            }
+            shares.append(stage_shares(torque, train.stages))
+        if len(shares) == len(positions):
+            top = largest(shares, train.stages)["system"]
+            apart = max(apart, abs(float(np.subtract(top, omega[sample]))))
+    each = spent / (count * len(positions))
+    return [
+        ("peer: CVXPY with parameters, samples", f"{count} at tolerance {tolerance:g}"),
+        ("peer: time per equilibrium [µs]", f"{1e6 * each:,.0f}"),
+        ("study: time per equilibrium, all included [µs]", f"{1e6 * ours:.2f}"),
+        ("ratio", f"{each / ours:,.0f}"),
+        ("peer: equilibria not solved", str(failed)),
+        ("largest difference of Ω", f"{apart:.1e}"),
+    ]
+
+
+if __name__ == "__main__":
+    main()

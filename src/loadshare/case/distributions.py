@@ -1,0 +1,69 @@
+"""How inputs scatter in a tolerance study, as a case file may say it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import Field, Strict, Tag
+
+from loadshare.case.element import NESTED, VALUE, Element, Rule, shaped
+
+Given: TypeAlias = str | Annotated[float, Strict(), Field(allow_inf_nan=False)]
+Coefficient = Annotated[float, Strict(), Field(ge=-1, le=1)]
+
+# Which numbers each distribution takes.
+NUMBERS: dict[str, tuple[str, ...]] = {
+    "normal": ("mean", "deviation"),
+    "truncated normal": ("mean", "deviation", "low", "high"),
+    "uniform": ("low", "high"),
+    "rayleigh": ("scale",),
+    "uniform phase": (),
+}
+
+
+class Spread(Element):
+    """How an input scatters; a star in its key gives each key a draw of its own."""
+
+    distribution: Literal["normal", "truncated normal", "uniform", "rayleigh", "uniform phase"]
+    """Kind: a Rayleigh amount goes with a uniform phase, which is an angle over a whole turn."""
+
+    mean: Given | None = None
+    """Normal: mean; truncated normal: mean before it is cut off."""
+
+    deviation: Given | None = None
+    """Normal: standard deviation; truncated normal: the one before it is cut off."""
+
+    low: Given | None = None
+    """Uniform, truncated normal: lowest value."""
+
+    high: Given | None = None
+    """Uniform, truncated normal: highest value."""
+
+    scale: Given | None = None
+    """Rayleigh: scale σ, the most frequent value; the mean is 1.2533 σ."""
+
+    def rules(self) -> Iterator[Rule]:
+        """Yield numbers that the distribution lacks, or does not know."""
+        needed = NUMBERS[self.distribution]
+        for key in needed:
+            if getattr(self, key) is None:
+                yield Rule("is missing", (key,), hint=f"A {self.distribution} input needs it.")
+        for key in self.given("mean", "deviation", "low", "high", "scale"):
+            if key not in needed:
+                allowed = ", ".join(("distribution", *needed))
+                yield Rule(f"says nothing to a {self.distribution} input", (key,), allowed)
+
+
+class Group(Element):
+    """Inputs that are correlated, by a Gaussian copula."""
+
+    inputs: Annotated[tuple[str, ...], Field(min_length=1)]
+    """Keys of the inputs, as they stand under `inputs`; a star stands for any name."""
+
+    correlation: Annotated[
+        Annotated[Coefficient, Tag(VALUE)]
+        | Annotated[tuple[tuple[Coefficient, ...], ...], Tag(NESTED)],
+        shaped("a number between -1 and 1, or a matrix of them as a list of rows"),
+    ]
+    """Correlation of the normal scores [-]: one for all pairs, or a matrix."""

@@ -1,0 +1,59 @@
+"""What was measured on the machine: shares or torques, and how surely."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated
+
+from pydantic import Field, Strict
+
+from loadshare.case.element import Element, Rule
+from loadshare.case.operation import Count
+from loadshare.case.quantity import TORQUE, Quantity, Torque
+
+Coefficient = Annotated[float, Strict(), Field(allow_inf_nan=False)]
+COEFFICIENTS = ("share", "pair_share", "omega", "pair_omega")
+
+
+class Measurement(Element):
+    """Figures that were measured, to be compared with what is computed."""
+
+    position: Count | None = None
+    """Position that they belong to [-]; left out: the mean of all, for omega the largest."""
+
+    torque: dict[str, Torque] | None = None
+    """Torques on the drivers, by mesh [torque]."""
+
+    torque_uncertainty: Annotated[Quantity, TORQUE.bounded(above=0)] | None = None
+    """Standard deviation of each torque [torque]."""
+
+    share: dict[str, Coefficient] | None = None
+    """Load-sharing coefficients over the mean of the stage, by mesh [-]."""
+
+    pair_share: dict[str, Coefficient] | None = None
+    """Load-sharing coefficients over the mean of the group, by mesh [-]."""
+
+    omega: dict[str, Coefficient] | None = None
+    """Largest share of a stage, by stage, or of the system [-]."""
+
+    pair_omega: dict[str, Coefficient] | None = None
+    """Largest pair share of a stage, by stage, or of the system [-]."""
+
+    uncertainty: Annotated[float, Strict(), Field(gt=0, allow_inf_nan=False)] | None = None
+    """Standard deviation of each coefficient [-]."""
+
+    source: str = ""
+    """Where the figures come from."""
+
+    def rules(self) -> Iterator[Rule]:
+        """Yield what is missing of figures and uncertainties."""
+        given = [key for key in COEFFICIENTS if getattr(self, key)]
+        if not given and not self.torque:
+            yield Rule("holds no figure", allowed=", ".join(("torque", *COEFFICIENTS)))
+        if self.torque and self.torque_uncertainty is None:
+            yield Rule(
+                "is missing", ("torque_uncertainty",), TORQUE.allowed, "It goes with torque."
+            )
+        if given and self.uncertainty is None:
+            hint = f"It goes with {given[0]}."
+            yield Rule("is missing", ("uncertainty",), "a number above 0", hint)

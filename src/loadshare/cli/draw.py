@@ -1,0 +1,79 @@
+"""`loadshare draw`: a drawing of a case's train."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from loadshare.cli.changes import read_changes
+from loadshare.cli.exits import UNUSABLE, counted, fail, problems_told, writing
+from loadshare.cli.options import output
+from loadshare.errors import CaseError, LoadshareError, Problem
+
+if TYPE_CHECKING:
+    from loadshare.report.figure import Figure
+
+
+def draw(
+    case: Annotated[Path, typer.Argument(metavar="CASE", help="Case file.")],
+    file: Annotated[
+        Path,
+        output("-o", "--output", what="Drawing to write: .svg, .png, .pdf, .html or .json."),
+    ] = Path("drawing.svg"),
+    change: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--set",
+            metavar="KEY=VALUE",
+            help="Change the case, as in gears.6.centre.angle='41 deg'; may be repeated. "
+            "No value removes the key.",
+        ),
+    ] = None,
+) -> None:
+    """Draw the train of a case to scale, with what does not fit marked.
+
+    A case that cannot be used is drawn as far as it can be read.
+    """
+    changes = read_changes(change or ())
+    with problems_told():
+        figure, problems = _drawn(case, changes)
+    with writing(file):
+        try:
+            figure.save(file)
+        except LoadshareError as error:
+            raise typer.BadParameter(str(error), param_hint="--output") from None
+    typer.echo(f"Wrote {file}.")
+    if problems:
+        told = f"{counted(len(problems), 'problem')}; the drawing shows what could be read."
+        fail([*map(str, problems), told], UNUSABLE)
+
+
+def _drawn(file: Path, changes: dict[str, object]) -> tuple[Figure, list[Problem]]:
+    """Return the drawing of a case, and what is wrong with the case.
+
+    Raises
+    ------
+    CaseError
+        If nothing of it can be drawn.
+    """
+    from loadshare.case import load_case
+    from loadshare.case.reader import load_draft
+    from loadshare.report.figures.train import train
+    from loadshare.train import build_train
+
+    try:
+        case = load_case(file)
+        case = case.replace(changes) if changes else case
+    except CaseError as error:
+        draft = load_draft(file, changes)
+        if not draft.gears:
+            raise
+        return train(draft), list(error.problems)
+    problems: list[Problem] = []
+    try:
+        build_train(case)
+    except CaseError as error:
+        problems = list(error.problems)
+    return train(case), problems

@@ -1,0 +1,1 @@
+"""`loadshare chart` and `loadshare stress`: the evidence, measured again."""

@@ -1,0 +1,209 @@
+"""`loadshare ltca`: the loaded contact of one pair of gears."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import typer
+
+from loadshare.cli.console import console, progress
+from loadshare.cli.exits import REFUSED, fail, problems_told, writing
+from loadshare.cli.files import write_text
+from loadshare.cli.refusal import told
+from loadshare.errors import Refused
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from loadshare.report.figure import Figure
+    from loadshare.tooth.lawfile import MeshLaw
+    from loadshare.tooth.ltca_result import Ltca
+    from loadshare.tooth.pairfile import PairFile
+
+PICTURES = (".svg", ".png", ".html")
+
+
+def ltca(
+    pair: Annotated[Path, typer.Argument(metavar="PAIR", help="Pair file.")],
+    positions: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N", min=1, help="Positions of the mesh cycle, instead of the file's."
+        ),
+    ] = None,
+    torque: Annotated[
+        str | None,
+        typer.Option(metavar="T", help="Rated torque on the driver, such as '900 N*m'."),
+    ] = None,
+    compliance: Annotated[
+        Literal["finite elements", "slices"] | None,
+        typer.Option(metavar="MODEL", help="finite elements, or slices: much faster, less exact."),
+    ] = None,
+    folder: Annotated[
+        Path | None,
+        typer.Option(
+            "-o",
+            "--output",
+            metavar="DIR",
+            file_okay=False,
+            help="Folder for tables, pictures and law file; a new one named after the pair "
+            "when left out.",
+        ),
+    ] = None,
+) -> None:
+    """Analyse the loaded tooth contact of a pair and write its mesh law.
+
+    The folder receives law.toml, which a mesh of a case can name as its law_file, table.csv,
+    lines.csv, and pictures as SVG, PNG and HTML.
+    """
+    from loadshare.tooth.lawcache import kept_law
+    from loadshare.tooth.pairfile import load_pair
+
+    load = _torque(torque)
+    with problems_told():
+        asked = load_pair(pair).revised(torque=load, positions=positions, compliance=compliance)
+    screen = console()
+    _print_heading(screen, asked, pair)
+    try:
+        with progress("positions", asked.analysis.positions) as tick:
+            found = asked.analyse(tick)
+    except Refused as refusal:
+        fail([f"REFUSED  {line}" for line in told(refusal)], REFUSED)
+    law = kept_law(asked, found)
+    _print_positions(screen, found, law)
+    _print_summary(screen, asked, found)
+    wrote = list(_written(folder or Path(asked.name), asked, found, law))
+    typer.echo(f"Wrote {', '.join(file.name for file in wrote)} to {wrote[0].parent}")
+
+
+def _torque(text: str | None) -> float | None:
+    """Torque [N·m] of the option."""
+    if text is None:
+        return None
+    from pydantic import TypeAdapter, ValidationError
+
+    from loadshare.tooth.pairfile_model import Load
+
+    try:
+        return float(TypeAdapter(Load).validate_python(text))
+    except ValidationError as error:
+        said = error.errors(include_url=False)[0]["msg"].rstrip()
+        raise typer.BadParameter(f"{text!r} {said}", param_hint="--torque") from None
+
+
+def _print_heading(screen: Console, pair: PairFile, file: Path) -> None:
+    from loadshare.tooth.findings import findings
+
+    geometry, chosen = pair.geometry, pair.analysis
+    screen.print(pair.title, style="bold")
+    screen.print(str(file), soft_wrap=True)
+    screen.print(
+        f"T = {pair.torque:.7g} N·m on the driver; contact ratio {geometry.contact_ratio:.3f}, "
+        f"overlap ratio {geometry.overlap_ratio:.3f}; {chosen.compliance}, "
+        f"{chosen.points} points on a line"
+    )
+    for finding in findings(geometry):
+        screen.print(f"Note: {finding}", soft_wrap=True)
+
+
+def _print_positions(screen: Console, found: Ltca, law: MeshLaw) -> None:
+    """Print law and stiffness by position, in units that keep the figures short."""
+    from loadshare.cli.tables.table import show, table
+    from loadshare.report.figures.ltca_cycle import stiffness_unit
+    from loadshare.report.numbers import decimals, fixed
+    from loadshare.tooth.ltca_tables import STIFFNESS_LOADS
+
+    made = table(("position", "phase", "a", "b", "c", "misfit", "unloaded lead"))
+    for k, phase in enumerate(found.phase):
+        made.add_row(
+            str(k + 1),
+            fixed(phase, 3),
+            fixed(1e6 * law.a[k].si, 2),
+            fixed(1e9 * law.b[k].si, 2),
+            fixed(1e9 * law.c[k].si, 1),
+            f"{fixed(100 * law.misfit[k], 2)} %",
+            fixed(1e6 * found.unloaded_error[k], 3),
+        )
+    show(screen, "Law: a and lead [µrad], b [nrad/(N·m)], c [nrad/(N·m)^(2/3)]", made)
+    secants = [found.secant(part) for part in STIFFNESS_LOADS]
+    columns = (*secants, found.increment(0.9, 1.0), found.tangent(1.0))
+    unit = stiffness_unit(secants[0])
+    places = decimals(unit.of(value) for values in columns for value in values)
+    names = ["T", *(f"{part:g} T" for part in STIFFNESS_LOADS[1:])]
+    made = table(("position", *names, "0.9 T to T", "tangent at T"))
+    for k in range(len(found.phase)):
+        made.add_row(str(k + 1), *(fixed(unit.of(values[k]), places) for values in columns))
+    show(screen, f"Mesh stiffness [{unit.name} at the driver]", made)
+
+
+def _print_summary(screen: Console, pair: PairFile, found: Ltca) -> None:
+    rated = found.secant(1.0)
+    load = len(found.torque) - 1
+    screen.print()
+    screen.print(
+        f"Stiffness at T: max/min {rated.max() / rated.min():.3f}, mean {rated.mean():.4g} "
+        f"N·m/rad. Contact ratio under load {found.contact_ratio[load]:.2f}."
+    )
+    if found.law.bounded.any():
+        where = ", ".join(str(k + 1) for k in range(len(rated)) if found.law.bounded[k])
+        screen.print(f"b or c is held at 0 at position {where}: the angles ask for a negative one.")
+    if pair.offset:
+        screen.print(
+            f"The misalignment turns the driver by {1e6 * pair.offset:.3f} µrad as a whole; the "
+            "law leaves that out."
+        )
+    edges: dict[str, list[int]] = {}
+    for edge in found.edges:
+        if edge.load == load:
+            edges.setdefault(edge.edge, []).append(edge.position + 1)
+    for name, positions in sorted(edges.items()):
+        places = ", ".join(map(str, sorted(set(positions))))
+        screen.print(f"Load reaches the {name} at position {places}.")
+
+
+def _written(folder: Path, pair: PairFile, found: Ltca, law: MeshLaw) -> Iterator[Path]:
+    """Write everything, and tell each file."""
+    from loadshare.tooth.lawfile import law_text
+    from loadshare.tooth.ltca_tables import line_rows, position_rows
+
+    texts = {
+        "law.toml": law_text(law),
+        "table.csv": _csv(position_rows(found, law)),
+        "lines.csv": _csv(line_rows(found)),
+    }
+    for name, text in texts.items():
+        file = folder / name
+        with writing(file):
+            write_text(file, text)
+        yield file
+    for figure in _figures(pair, found):
+        for ending in PICTURES:
+            file = folder / f"{figure.name}{ending}"
+            with writing(file):
+                figure.save(file)
+            yield file
+
+
+def _figures(pair: PairFile, found: Ltca) -> Iterator[Figure]:
+    from loadshare.report.figures.ltca_cycle import stiffness, transmission_error
+    from loadshare.report.figures.ltca_flank import contact_pattern, load_map, plane_of
+
+    geometry = pair.geometry
+    planes = plane_of(geometry.driver, 1), plane_of(geometry.driven, geometry.driven_side)
+    yield stiffness(found, pair.title)
+    yield transmission_error(found, pair.title)
+    yield load_map(found, planes, pair.title)
+    yield contact_pattern(found, planes, pair.title)
+
+
+def _csv(rows: Iterable[dict[str, Any]]) -> str:
+    rows = list(rows)
+    text = io.StringIO()
+    writer = csv.DictWriter(text, rows[0], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return text.getvalue()

@@ -1,0 +1,1 @@
+"""Commands that ask more than one equilibrium of a case."""

@@ -1,0 +1,93 @@
+"""`loadshare critical`: the exact values at which contacts, floats and splines change."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from loadshare.cli.console import console, progress
+from loadshare.cli.exits import REFUSED, fail
+from loadshare.cli.study.common import (
+    CaseFile,
+    Changes,
+    CsvFile,
+    Positions,
+    answered,
+    check_ending,
+    open_case,
+    write_table,
+)
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from rich.console import Console
+
+    from loadshare.study.critical import Critical
+
+
+def critical(
+    case: CaseFile,
+    key: Annotated[
+        list[str],
+        typer.Argument(metavar="KEY", help="Input to vary; several take the same value."),
+    ],
+    start: Annotated[str, typer.Option("--from", metavar="VALUE", help="Where it starts.")],
+    stop: Annotated[str, typer.Option("--to", metavar="VALUE", help="Where it stops.")],
+    file: CsvFile = None,
+    position: Positions = None,
+    change: Changes = None,
+) -> None:
+    """Find where contacts, floats and splines change along an input, exactly."""
+    from loadshare.study.critical import critical as found_along
+
+    check_ending(file, ".csv")
+    with answered():
+        loaded = open_case(case, change)
+        with progress("positions", 1) as tick:
+            found = found_along(loaded, key, start, stop, positions=position, progress=tick)
+    show_critical(console(), found)
+    if file is not None:
+        write_table(file, events_frame(found))
+    if not all(event.confirmed for event in found.events):
+        fail(["Some events could not be confirmed on both sides."], REFUSED)
+
+
+def events_frame(found: Critical) -> pd.DataFrame:
+    """Return the events as a table."""
+    import pandas as pd
+
+    from loadshare.study.event import Event
+
+    columns = Event.__slots__
+    return pd.DataFrame([[getattr(e, c) for c in columns] for e in found.events], columns=columns)
+
+
+def show_critical(screen: Console, found: Critical) -> None:
+    """Print every event, and the positions at which it is found alike."""
+    from loadshare.cli.refusal import ranges
+    from loadshare.cli.tables.table import show, table
+
+    unit = f" [{found.parameter.unit}]" if found.parameter.unit else ""
+    alike: dict[tuple[str, ...], list[int]] = {}
+    for e in found.events:
+        row = (
+            f"{e.value:.9g}",
+            e.element,
+            e.kind,
+            e.before,
+            e.after,
+            "yes" if e.confirmed else "NO",
+        )
+        alike.setdefault(row, []).append(e.position)
+    made = table(
+        (f"{found.parameter.name}{unit}", "element", "event", "below", "above", "confirmed", "at"),
+        words=("element", "event", "below", "above", "confirmed", "at"),
+    )
+    for shown, positions in sorted(alike.items(), key=lambda item: float(item[0][0])):
+        made.add_row(*shown, ranges(positions))
+    title = f"Events from {found.start:g} to {found.stop:g}{unit}"
+    if not alike:
+        screen.print(f"\n{title}: none")
+        return
+    show(screen, title, made)

@@ -1,0 +1,68 @@
+"""`loadshare march`: revolutions with spline friction that remembers its slip."""
+
+from __future__ import annotations
+
+from collections import Counter
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from loadshare.cli.console import console, progress
+from loadshare.cli.study.common import (
+    CaseFile,
+    Changes,
+    TableFile,
+    answered,
+    check_ending,
+    open_case,
+    write_table,
+)
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from loadshare.study.march import March
+
+
+def march(
+    case: CaseFile,
+    gear: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Gear whose revolutions are counted.")
+    ] = None,
+    revolutions: Annotated[
+        float | None, typer.Option(metavar="X", min=0.0, help="How far to march.")
+    ] = None,
+    steps: Annotated[int | None, typer.Option(metavar="N", min=1, help="Number of steps.")] = None,
+    file: TableFile = None,
+    change: Changes = None,
+) -> None:
+    """March through revolutions with spline friction that remembers its slip."""
+    from loadshare.study.march import march as marched
+
+    check_ending(file, ".csv", ".nc")
+    with answered():
+        loaded = open_case(case, change)
+        with progress("steps", 1) as tick:
+            found = marched(loaded, gear=gear, revolutions=revolutions, steps=steps, progress=tick)
+    show_march(console(), found)
+    if file is not None:
+        write_table(file, found.result.to_frame(), found.dataset)
+
+
+def show_march(screen: Console, found: March) -> None:
+    """Print load sharing over the march, and what every spline did."""
+    from loadshare.cli.tables import print_result
+    from loadshare.cli.tables.table import show, table
+
+    print_result(screen, found.result, len(found.slips))
+    if not found.slips or not found.slips[0]:
+        screen.print("\nNo spline holds a gear: there is nothing to remember.")
+        return
+    made = table(("spline", "stages", "slip [um]", "dissipated [J]"), words=("spline", "stages"))
+    for gear in found.slips[0]:
+        steps = [step[gear] for step in found.slips]
+        stages = ", ".join(f"{s} {n}×" for s, n in Counter(s.stage for s in steps).most_common())
+        sizes = [float((s.slip @ s.slip) ** 0.5) * 1e6 for s in steps]
+        total = sum(s.dissipated for s in steps)
+        made.add_row(gear, stages, f"{min(sizes):.3f} … {max(sizes):.3f}", f"{total:.4g}")
+    show(screen, "Splines", made)

@@ -1,0 +1,164 @@
+"""What acts in a train, in any arithmetic: contacts, arcs, radial graphs.
+
+Everything is dimensionless: lengths over a length unit, forces over a force unit, both doubles, so
+that nothing is lost in 50 digits.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+Gradient = dict[int, Any]
+Curvature = dict[tuple[int, int], Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Yield:
+    """Compression of a contact under a force, b f + c f^(2/3), or straight between points."""
+
+    arithmetic: Any
+    b: Any
+    c: Any
+    points: tuple[tuple[Any, Any], ...] = ()
+
+    def at(self, force: Any) -> tuple[Any, Any]:
+        """Compression and its slope; the slope at no force is that of a trace of force."""
+        if self.points:
+            pairs = zip(self.points[:-1], self.points[1:], strict=True)
+            (f0, d0), (f1, d1) = next(
+                (p for p in pairs if force <= p[1][0]), (self.points[-2], self.points[-1])
+            )
+            slope = (d1 - d0) / (f1 - f0)
+            return d0 + slope * (force - f0), slope
+        if not self.c:
+            return self.b * force, self.b
+        root = self.arithmetic.cbrt(max(force, self.arithmetic.mpf(10) ** -60))
+        return self.b * force + self.c * root**2, self.b + 2 * self.c / (3 * root)
+
+
+class Contact(Protocol):
+    """A unilateral contact: approach, positive when compressed, and a force that pushes."""
+
+    @property
+    def name(self) -> str:
+        """Name of the contact."""
+
+    @property
+    def law(self) -> Yield:
+        """How it yields."""
+
+    def approach(self, x: list[Any]) -> tuple[Any, Gradient, Curvature]:
+        """Approach at the coordinates, its gradient and its second derivatives."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A contact whose approach is linear: a flank or a stop."""
+
+    name: str
+    law: Yield
+    gradient: Gradient
+    constant: Any
+
+    def approach(self, x: list[Any]) -> tuple[Any, Gradient, Curvature]:
+        """See `Contact`."""
+        return self.constant + sum(v * x[i] for i, v in self.gradient.items()), self.gradient, {}
+
+
+@dataclass(frozen=True, slots=True)
+class ExactArc:
+    """The exclusion arc of two rings, exact: |d₀ + Δ(x)| ≥ a − c_x."""
+
+    name: str
+    law: Yield
+    arithmetic: Any
+    start: tuple[Any, Any, Any]
+    allowed: Any
+    moves: dict[int, tuple[Any, Any, Any]]
+
+    def approach(self, x: list[Any]) -> tuple[Any, Gradient, Curvature]:
+        """See `Contact`."""
+        d = [
+            self.start[k] + sum(move[k] * x[i] for i, move in self.moves.items()) for k in range(3)
+        ]
+        distance = self.arithmetic.sqrt(sum(v * v for v in d))
+        n = [v / distance for v in d]
+        along = {i: sum(n[k] * m[k] for k in range(3)) for i, m in self.moves.items()}
+        curvature = {
+            (i, j): -(sum(a * b for a, b in zip(m, o, strict=True)) - along[i] * along[j])
+            / distance
+            for i, m in self.moves.items()
+            for j, o in self.moves.items()
+        }
+        return self.allowed - distance, {i: -v for i, v in along.items()}, curvature
+
+
+@dataclass(frozen=True, slots=True)
+class Graph:
+    """A radial graph: a spline (stick, slip, stop) or a round ring, as places on it.
+
+    Attributes
+    ----------
+    name, gear : str
+    indices : tuple of int
+        Coordinates of the gear's centre.
+    centre : tuple
+    stiffness : number or None
+        Slope where the graph rises; None for a rigid wall.
+    stick : number or None
+        Radius up to which a spline sticks; None takes bound/stiffness. A ring's is 0.
+    reach : number
+        Radius at which the clearance is used up.
+    bound : number
+        Friction bound where it is fixed.
+    per_torque : number
+        Friction bound over the force that the spline transmits; 0 where the bound is fixed.
+    torque_of : dict of contact name to number
+        Transmitted force from contact forces.
+    """
+
+    name: str
+    gear: str
+    indices: tuple[int, int]
+    centre: tuple[Any, Any]
+    stiffness: Any
+    stick: Any
+    reach: Any
+    bound: Any
+    per_torque: Any
+    torque_of: dict[str, Any]
+
+    def stick_end(self, bound: Any) -> Any:
+        """Radius where sticking ends."""
+        continuous = bound / self.stiffness if self.stiffness is not None else bound * 0
+        if self.stick is None:
+            return continuous
+        return min(self.stick, continuous)
+
+    def place(self, radius: Any, force: Any, bound: Any) -> str:
+        """Place on the graph that is nearest to a radius and a force."""
+        if (
+            self.stick is None
+            and self.stiffness is not None
+            and self.reach < bound / self.stiffness
+        ):
+            return "stick"
+        end = self.stick_end(bound)
+        low = self.stiffness * end if self.stiffness is not None else bound * 0
+        options = []
+        if end > 0:
+            inner = min(radius, end)
+            options.append((abs(radius - inner) + abs(force - self.stiffness * inner), "stick"))
+        if bound > low:
+            options.append((abs(radius - end) + abs(force - min(max(force, low), bound)), "step"))
+        if self.reach > end:
+            inner = min(max(radius, end), self.reach)
+            options.append((abs(radius - inner) + abs(force - bound), "slip"))
+        if self.stiffness is None:
+            options.append((abs(radius - self.reach) + max(bound - force, 0), "wall"))
+        else:
+            beyond = max(radius, self.reach)
+            excess = bound + self.stiffness * (beyond - self.reach)
+            options.append((abs(radius - beyond) + abs(force - excess), "stop"))
+        return min(options, key=lambda o: float(o[0]))[1]

@@ -1,0 +1,208 @@
+"""What is known of a problem before any solver sees it: whether there is an equilibrium at all.
+
+The energy is convex, its curved parts grow faster than any linear one, so a minimum exists exactly
+when two linear programmes have an answer: forces that balance the load (no direction in which
+the train runs away) and displacements that all rigid limits admit. Both are written here from the
+train alone and solved by HiGHS, which no method on the map uses. The margin decides: an
+imbalance of round-off (below `NONE`) is none, one above `SOME` is real, and what lies between is
+no problem for a map.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.train.ring import DrumRing, RoundRing
+from loadshare.train.train import Situation, Train
+
+Array = NDArray[np.float64]
+
+NONE, SOME = 1e-12, 1e-5
+"""Imbalance over load, or overlap over clearance, that counts as none and as some."""
+ROUNDING = 1e-3
+"""Overlap over centre distance that `NONE` and `SOME` refer to where clearances are smaller."""
+FACETS = 64
+"""Sides of the polygon that stands for a rigid round ring."""
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """What is known of a problem.
+
+    Attributes
+    ----------
+    solvable : bool
+    elements : tuple of str
+        For a problem without an answer: a refusal must name at least one of these.
+    why : str
+        The figure that decided.
+    """
+
+    solvable: bool
+    elements: tuple[str, ...]
+    why: str
+
+
+def truth_of(train: Train, index: int = 1) -> Truth:
+    """Decide whether a position has an equilibrium.
+
+    Raises
+    ------
+    ValueError
+        If it is a matter of round-off.
+    """
+    situation = train.situation(index)
+    imbalance, gears = _imbalance(train, situation)
+    overlap, rings = _overlap(train, situation)
+    for figure, what in ((imbalance, "imbalance"), (overlap, "overlap")):
+        if NONE < figure < SOME:
+            raise ValueError(f"{train.name}: {what} {figure:.1e} is neither none nor some")
+    if imbalance >= SOME:
+        why = f"no forces balance {imbalance:.2g} of the load on gears {', '.join(gears)}"
+        return Truth(False, gears, why)
+    if overlap >= SOME:
+        return Truth(False, rings, f"the limits of {', '.join(rings)} overlap by {overlap:.2g}")
+    return Truth(True, (), f"imbalance {imbalance:.0e}, overlap {overlap:.0e}")
+
+
+def _imbalance(train: Train, situation: Situation) -> tuple[float, tuple[str, ...]]:
+    """Smallest unbalanced part of the load, and the gears that it pushes away."""
+    rows: dict[tuple[str, int], int] = {}
+    for name, gear in train.gears.items():
+        if name != train.output:
+            rows[name, 2] = len(rows)
+        if gear.moves:
+            rows[name, 0] = len(rows)
+            rows[name, 1] = len(rows)
+    columns: list[Array] = []
+    lower: list[float] = []
+
+    def column(low: float, *entries: tuple[str, int, float]) -> None:
+        values = np.zeros(len(rows))
+        for gear, axis, value in entries:
+            if (gear, axis) in rows:
+                values[rows[gear, axis]] += value
+        columns.append(values)
+        lower.append(low)
+
+    def push(gear: str, direction: Array) -> list[tuple[str, int, float]]:
+        plane = train.gears[gear].frame @ direction
+        return [(gear, 0, float(plane[0])), (gear, 1, float(plane[1]))]
+
+    for mesh in train.meshes.values():
+        for drive in mesh.flanks:
+            on_driver, on_driven, normal = mesh.direction(drive)
+            column(
+                0.0,
+                (mesh.driver, 2, -math.copysign(1.0, on_driver)),
+                (mesh.driven, 2, -math.copysign(1.0, on_driven)),
+                *push(mesh.driver, -normal),
+                *push(mesh.driven, normal),
+            )
+    for shaft in train.shafts.values():
+        ends = (shaft.first, -1.0), (shaft.second, 1.0)
+        size = min(train.gears[g].base_radius for g, _ in ends)
+        column(-math.inf, *((g, 2, s * size / train.gears[g].base_radius) for g, s in ends))
+    for name, gear in train.gears.items():
+        ring = train.rings.get(name)
+        if isinstance(ring, RoundRing) or name in train.splines:
+            held = (True, True)
+        else:
+            held = tuple(gear.support > 0.0) if gear.support is not None else (False, False)
+        for axis in (0, 1):
+            if held[axis]:
+                column(-math.inf, (name, axis, 1.0))
+        if isinstance(ring, DrumRing):
+            for side, neighbour in enumerate(ring.neighbours):
+                normal = train.arc(ring, side, situation).normal(np.zeros(3))
+                column(0.0, *push(name, normal), *push(neighbour, -normal))
+            for sign in (1.0, -1.0):
+                column(0.0, *push(name, -sign * ring.across))
+    load = np.zeros(len(rows))
+    for name, torque in situation.torque.items():
+        if (name, 2) in rows:
+            load[rows[name, 2]] += torque / train.gears[name].base_radius
+    size = float(np.abs(load).max(initial=0.0))
+    if size == 0.0:
+        return 0.0, ()
+    matrix = np.array(columns).T
+    values, ray = _least_gap(matrix, -load / size, np.array(lower))
+    names = {g for (g, axis), k in rows.items() if abs(ray[k]) > 1e-6}
+    return values, tuple(g for g in train.gears if g in names)
+
+
+def _least_gap(matrix: Array, right: Array, lower: Array) -> tuple[float, Array]:
+    """Min ‖A z − r‖₁ over z ≥ lower, and the multipliers of the rows."""
+    from scipy.optimize import linprog
+
+    count, size = matrix.shape
+    eye = np.eye(count)
+    answer = linprog(
+        np.concatenate([np.zeros(size), np.ones(2 * count)]),
+        A_eq=np.hstack([matrix, eye, -eye]),
+        b_eq=right,
+        bounds=[*((low, None) for low in lower), *[(0.0, None)] * (2 * count)],
+        method="highs-ds",
+        options={"primal_feasibility_tolerance": 1e-10, "dual_feasibility_tolerance": 1e-10},
+    )
+    if answer.x is None:
+        raise RuntimeError(f"HiGHS gave no answer: {answer.message}")
+    left = float(np.abs(matrix @ answer.x[:size] - right).sum())
+    return left, np.asarray(answer.eqlin.marginals)
+
+
+def _overlap(train: Train, situation: Situation) -> tuple[float, tuple[str, ...]]:
+    """By how much the rigid limits exclude each other, and the rings that do."""
+    where = {n: 2 * k for k, n in enumerate(n for n, g in train.gears.items() if g.moves)}
+    rows: list[Array] = []
+    bounds: list[float] = []
+    owner: list[str] = []
+    reach = 0.0
+
+    def limit(ring: str, bound: float, *pushes: tuple[str, Array]) -> None:
+        row = np.zeros(2 * len(where))
+        for gear, direction in pushes:
+            if gear in where:
+                row[where[gear] : where[gear] + 2] += train.gears[gear].frame @ direction
+        rows.append(row)
+        bounds.append(bound)
+        owner.append(ring)
+
+    for name, ring in train.rings.items():
+        if not math.isinf(ring.stiffness):
+            continue
+        if isinstance(ring, RoundRing):
+            frame = train.gears[name].frame
+            for angle in np.linspace(0.0, 2.0 * math.pi, FACETS, endpoint=False):
+                along = np.array([math.cos(angle), math.sin(angle)]) @ frame
+                limit(ring.gear, ring.radius + float(along @ ring.offset), (name, along))
+            continue
+        for side, neighbour in enumerate(ring.neighbours):
+            arc = train.arc(ring, side, situation)
+            normal, bound = arc.face(np.zeros(3))
+            reach = max(reach, ROUNDING * arc.distance)
+            limit(ring.gear, bound, (name, -normal), (neighbour, normal))
+        limit(ring.gear, ring.up, (name, ring.across))
+        limit(ring.gear, ring.down, (name, -ring.across))
+    if min(bounds, default=0.0) >= 0.0:
+        return 0.0, ()
+    size = max(max(abs(b) for b in bounds), reach)
+    from scipy.optimize import linprog
+
+    matrix, right = np.array(rows), np.array(bounds) / size
+    count = matrix.shape[1]
+    answer = linprog(
+        np.append(np.zeros(count), 1.0),
+        A_ub=np.hstack([matrix, -np.ones((len(rows), 1))]),
+        b_ub=right,
+        bounds=[*[(None, None)] * count, (0.0, None)],
+        method="highs-ds",
+    )
+    if answer.x is None:
+        raise RuntimeError(f"HiGHS gave no answer: {answer.message}")
+    held = {owner[k] for k in np.flatnonzero(np.abs(answer.ineqlin.marginals) > 1e-9)}
+    return float(answer.x[-1]), tuple(r for r in train.rings if r in held)

@@ -1,0 +1,201 @@
+"""A machine reduced once, and solved for many samples: the first rung of the ladder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.certify.many import Judge, Verdicts
+from loadshare.scene import assemble
+from loadshare.scene.elements import Data, Elements, data_of, elements_of
+from loadshare.solver.hot import vectorised
+from loadshare.solver.hot.answer import equilibria, tied
+from loadshare.solver.hot.exchange import Codes, Engine, Found, exchange, first_sets
+from loadshare.solver.hot.state import State, at_rest, pushes
+from loadshare.train import Train
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.situations import Situations, situation_of, stack
+
+ENGINES = ("auto", "compiled", "vectorised")
+LOOSE = 1e-6
+"""Share of a coordinate in a loose move from which on it counts as undetermined."""
+FEW = 2000
+"""Equilibria up to which compiling, or reading what was compiled, costs more than it saves."""
+
+
+def engine_named(name: str, count: int) -> Engine:
+    """Return an engine by name.
+
+    Parameters
+    ----------
+    name : {"auto", "compiled", "vectorised"}
+        "auto" compiles from a few thousand equilibria on.
+    count : int
+        Equilibria to solve.
+    """
+    if name not in ENGINES:
+        raise ValueError(f"unknown engine {name!r}; allowed: {', '.join(ENGINES)}")
+    if name == "vectorised" or (name == "auto" and count <= FEW):
+        return vectorised.settle
+    from loadshare.solver.hot import compiled
+
+    return compiled.settle
+
+
+Attempt = Callable[[NDArray[np.bool_]], tuple[State, Found]]
+"""Solves some of the samples anew."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Answers:
+    """What the hot path makes of many samples.
+
+    Attributes
+    ----------
+    equilibria : Equilibria
+    verdicts : Verdicts
+    passed : ndarray of bool, shape (S,)
+        Certified.
+    tied : ndarray of bool, shape (S,)
+        Whether every closed contact carries a force. The displacements are then determined, but for
+        the loose moves of the set, and of least norm; otherwise they are one possible choice.
+    held : ndarray of bool, shape (S,)
+        Whether the set has no loose moves.
+    code : ndarray of int8, shape (S, switches)
+        Which elements act.
+    turns : ndarray of int, shape (S,)
+        Sets visited.
+    """
+
+    equilibria: Equilibria
+    verdicts: Verdicts
+    passed: NDArray[np.bool_]
+    tied: NDArray[np.bool_]
+    held: NDArray[np.bool_]
+    code: Codes
+    turns: NDArray[np.intp]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Start:
+    """Where samples begin: contacts and forces as in the machine's own situation.
+
+    Radial elements begin on their first piece all the same: a slip is found from stick more surely
+    than from another sample's slip.
+    """
+
+    code: Codes
+    share: NDArray[np.float64]
+
+
+class Machine:
+    """A train reduced by the force method.
+
+    Parameters
+    ----------
+    train : Train
+    """
+
+    def __init__(self, train: Train) -> None:
+        self.train = train
+        self._starts: dict[int, _Start | None] = {}
+        self._own: tuple[tuple[int, ...], Situations] | None = None
+
+    @cached_property
+    def elements(self) -> Elements:
+        """Statics of the train."""
+        return elements_of(assemble(self.train, 1))
+
+    @cached_property
+    def judge(self) -> Judge:
+        """Its certificate."""
+        return Judge(self.train)
+
+    def situations(self, indices: Sequence[int]) -> Situations:
+        """Return the train's own situations at some positions, kept for the next time."""
+        key = tuple(indices)
+        if self._own is None or self._own[0] != key:
+            self._own = key, stack([situation_of(self.train, k) for k in key])
+        return self._own[1]
+
+    def answer(
+        self, situations: Situations, tolerance: float, engine: Engine, start: int | None = None
+    ) -> Answers:
+        """Solve and certify samples.
+
+        Parameters
+        ----------
+        situations : Situations
+        tolerance : float
+            Largest scaled residual of a certified answer.
+        engine : Engine
+        start : int, optional
+            Begin at what the train itself does at this position (1-based).
+        """
+        data = data_of(self.elements, situations)
+        begin = self._start(start, engine) if start is not None else None
+        state = at_rest(self.elements, data, begin.share if begin else None)
+        code = first_sets(self.elements, data)
+        if begin is not None:
+            code[:, : self.elements.rows] = begin.code
+        found = exchange(self.elements, data, state, engine, code)
+        for again in self._again(data, engine):
+            if found.solved.all():
+                break
+            other, more = again(~found.solved)
+            state = state.completed(other, more.solved & ~found.solved)
+            found = found.completed(more)
+        answers = equilibria(self.elements, state)
+        verdicts = self.judge.judge(situations, answers, tolerance)
+        return Answers(
+            answers,
+            verdicts,
+            found.solved & verdicts.passed,
+            tied(self.elements, state, found.code),
+            found.held,
+            found.code,
+            found.turns,
+        )
+
+    def _again(self, data: Data, engine: Engine) -> Iterator[Attempt]:
+        """Further ways for samples that found no consistent set: from rest, then one at a time."""
+        for singly, flip in ((False, False), (True, False), (True, True)):
+
+            def attempt(
+                only: NDArray[np.bool_], singly: bool = singly, flip: bool = flip
+            ) -> tuple[State, Found]:
+                state = at_rest(self.elements, data)
+                code = first_sets(self.elements, data)
+                if flip:
+                    code[:, : self.elements.rows] ^= self._drives
+                return state, exchange(
+                    self.elements, data, state, engine, code, only=only, singly=singly
+                )
+
+            yield attempt
+
+    @cached_property
+    def _drives(self) -> Codes:
+        kinds = [row.kind == "drive flank" for row in self.elements.scene.rows]
+        return np.array(kinds + [False] * len(self.elements.scene.arcs), dtype=np.int8)
+
+    def loose(self, code: Codes) -> tuple[str, ...]:
+        """Coordinates that a set leaves undetermined."""
+        moves = np.abs(self.elements.basis(code).loose).max(axis=1, initial=0.0)
+        names = self.elements.scene.coordinates
+        return tuple(name for name, move in zip(names, moves, strict=True) if move > LOOSE)
+
+    def _start(self, index: int, engine: Engine) -> _Start | None:
+        """What the train itself does at a position; None if the hot path does not know."""
+        if index not in self._starts:
+            data = data_of(self.elements, situation_of(self.train, index))
+            state = at_rest(self.elements, data)
+            found = exchange(self.elements, data, state, engine)
+            code = found.code[0, : self.elements.rows]
+            start = _Start(code, np.abs(state.force[0]) / pushes(data)[0])
+            self._starts[index] = start if found.solved[0] else None
+        return self._starts[index]

@@ -1,0 +1,365 @@
+"""Solve one case again and again with other inputs: `loadshare.solve_many`.
+
+Samples are taken in blocks of a fixed size, so that an answer depends neither on the number of
+workers nor on how many samples there are. Every block goes down the hot path at once and is
+certified at once; single samples that it leaves climb the ladder.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from loadshare.case import Case, load_case
+from loadshare.certify.certificate import TOLERANCE
+from loadshare.errors import CaseError, Refused
+from loadshare.job.ladder import HOT, climb
+from loadshare.job.machine import Machine, engine_named
+from loadshare.job.positions import Progress, wanted_positions
+from loadshare.solver import Options
+from loadshare.solver.hot.exchange import Engine
+from loadshare.train import build_train
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.samples import Samples, samples_of
+from loadshare.train.train import Stage
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Array = NDArray[np.float64]
+
+BLOCK = 4096
+"""Samples that are solved together."""
+WORKERS = 2
+"""Threads; the compiled passes hold no lock."""
+KEEP = ("torque", "share", "pair_share", "displacement", "contact_force")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Block:
+    """Answers of up to `BLOCK` samples at all positions asked for.
+
+    Attributes
+    ----------
+    rows : ndarray of int, shape (S,)
+        Numbers of the samples.
+    positions : tuple of int
+    equilibria : tuple of Equilibria
+        One per position.
+    certified : ndarray of bool, shape (S, positions)
+    residual : ndarray, shape (S, positions)
+        Largest scaled residual; NaN where there is no answer.
+    determined : ndarray of bool, shape (S, positions)
+        Whether the equilibrium determines every displacement.
+    rung : ndarray of str, shape (S, positions)
+        Rung of the ladder that answered; empty where none did.
+    message : mapping of (row, position) to str
+        Why there is no answer.
+    """
+
+    rows: NDArray[np.intp]
+    positions: tuple[int, ...]
+    equilibria: tuple[Equilibria, ...]
+    certified: NDArray[np.bool_]
+    residual: Array
+    determined: NDArray[np.bool_]
+    rung: NDArray[np.str_]
+    message: Mapping[tuple[int, int], str]
+
+
+def solve_blocks(
+    case: Case | str | Path,
+    samples: Mapping[str, ArrayLike],
+    *,
+    positions: Iterable[int] | None = None,
+    tolerance: float = TOLERANCE,
+    engine: str = "auto",
+    workers: int = WORKERS,
+) -> Iterator[Block]:
+    """Solve samples block by block, in order; memory does not grow with their number.
+
+    Parameters and errors are those of :func:`solve_many`.
+
+    Yields
+    ------
+    Block
+    """
+    if not isinstance(case, Case):
+        case = load_case(case)
+    groups = samples_of(case, samples)
+    total = sum(len(rows) for rows, _ in groups)
+    tasks: list[tuple[Machine, NDArray[np.intp], Samples, slice]] = []
+    for rows, group in groups:
+        machine = Machine(group.train)
+        tasks += [
+            (machine, rows, group, slice(at, at + BLOCK)) for at in range(0, len(rows), BLOCK)
+        ]
+    wanted = tuple(wanted_positions(tasks[0][0].train, positions))
+    solver = engine_named(engine, total * len(wanted))
+
+    def work(task: tuple[Machine, NDArray[np.intp], Samples, slice]) -> Block:
+        machine, rows, group, part = task
+        return _block(machine, rows[part], group.take(part), wanted, tolerance, solver)
+
+    if workers <= 1 or len(tasks) == 1:
+        yield from map(work, tasks)
+        return
+    with ThreadPoolExecutor(workers) as pool:
+        queue = iter(tasks)
+        running = [pool.submit(work, task) for task in islice(queue, workers + 1)]
+        while running:
+            block = running.pop(0).result()
+            running += [pool.submit(work, task) for task in islice(queue, 1)]
+            yield block
+
+
+def solve_many(
+    case: Case | str | Path,
+    samples: Mapping[str, ArrayLike],
+    *,
+    positions: Iterable[int] | None = None,
+    keep: Iterable[str] = KEEP,
+    tolerance: float = TOLERANCE,
+    engine: str = "auto",
+    workers: int = WORKERS,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Find and certify the equilibria of many samples of a case.
+
+    Parameters
+    ----------
+    case : Case or path
+        A case, or the path of a case file; it gives whatever the samples do not.
+    samples : mapping of str to array_like
+        Values by dotted key, all of one length. The unit stands in brackets after the key, as in
+        ``{"rings.4.float [um]": [0, 4, 8]}``; texts with units may stand instead.
+    positions : iterable of int, optional
+        1-based positions to solve; all by default.
+    keep : iterable of str
+        Variables to keep: "torque", "share", "pair_share", "displacement", "contact_force".
+    tolerance : float
+        Largest scaled residual of a certified answer.
+    engine : {"auto", "compiled", "vectorised"}
+        Numba or NumPy; both give the same answers. "auto" compiles from a few thousand equilibria
+        on.
+    workers : int
+        Threads.
+    progress : Progress, optional
+        Called after every block with samples done and in all.
+
+    Returns
+    -------
+    xarray.Dataset
+        Over (sample, position): ``torque`` [N·m] (drive less coast), ``share`` and ``pair_share``
+        [-] over mesh; ``displacement`` [m] over gear and axis, for gears that can be displaced;
+        ``contact_force`` [N] of ring contacts; ``residual``, ``certified``, ``determined`` and
+        ``rung``. Samples without a certified answer are NaN; their messages stand in the attribute
+        ``refused``.
+
+    Raises
+    ------
+    CaseError
+        If a key or a value cannot be used; all problems are listed.
+    ValueError
+        If a position, a variable or an engine does not exist.
+
+    Examples
+    --------
+    >>> import loadshare as ls
+    >>> floats = {"rings.4.float [um]": [0.0, 4.0, 12.0], "rings.5.float [um]": [0.0, 4.0, 12.0]}
+    >>> found = ls.solve_many("cases/fgfbstts/limit_ring.toml", floats, positions=[1])
+    >>> bool(found.certified.all())
+    True
+    """
+    if not isinstance(case, Case):
+        case = load_case(case)
+    keep = tuple(keep)
+    unknown = [name for name in keep if name not in KEEP]
+    if unknown:
+        raise ValueError(f"no variable {', '.join(unknown)}; allowed: {', '.join(KEEP)}")
+    table: _Table | None = None
+    count = len(np.atleast_1d(np.asarray(next(iter(samples.values()), []))))
+    done = 0
+    for block in solve_blocks(
+        case, samples, positions=positions, tolerance=tolerance, engine=engine, workers=workers
+    ):
+        table = table or _Table(block, count, keep)
+        table.write(block)
+        done += len(block.rows)
+        if progress is not None:
+            progress(done, count)
+    assert table is not None
+    return table.dataset(case, tolerance)
+
+
+def _block(
+    machine: Machine,
+    rows: NDArray[np.intp],
+    samples: Samples,
+    positions: tuple[int, ...],
+    tolerance: float,
+    engine: Engine,
+) -> Block:
+    """Solve one block; what the hot path leaves climbs the ladder."""
+    shape = (len(rows), len(positions))
+    certified, determined = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
+    residual = np.full(shape, np.nan)
+    rung = np.full(shape, HOT, dtype="<U24")
+    message: dict[tuple[int, int], str] = {}
+    every = []
+    for p, index in enumerate(positions):
+        found = machine.answer(samples.situations(index), tolerance, engine, start=index)
+        certified[:, p] = found.passed
+        residual[:, p] = found.verdicts.worst
+        determined[:, p] = found.tied & found.held
+        for row in np.flatnonzero(~found.passed).tolist():
+            try:
+                train = build_train(samples.one(row))
+                answer = climb(train, index, Options(), tolerance)
+            except (CaseError, Refused) as refusal:
+                message[int(rows[row]), index] = str(refusal)
+                residual[row, p], rung[row, p] = np.nan, ""
+                found.equilibria.forget(row)
+                continue
+            found.equilibria.put(row, answer.equilibrium)
+            certified[row, p], rung[row, p] = True, answer.rung
+            residual[row, p] = answer.certificate.worst
+            determined[row, p] = not answer.equilibrium.undetermined
+        every.append(found.equilibria)
+    return Block(rows, positions, tuple(every), certified, residual, determined, rung, message)
+
+
+def mesh_torques(answers: Equilibria) -> tuple[Array, tuple[str, ...]]:
+    """Return torques at the drivers [N·m], drive less coast, (S, meshes), and the meshes."""
+    meshes = answers.names.train.meshes
+    torque = np.zeros((len(answers.flank_force), len(meshes)))
+    flank = 0
+    for m, mesh in enumerate(meshes.values()):
+        for drive in mesh.flanks:
+            sign = mesh.radii[0] if drive else -mesh.radii[0]
+            torque[:, m] += sign * answers.flank_force[:, flank]
+            flank += 1
+    return torque, tuple(meshes)
+
+
+def shares(torque: Array, meshes: tuple[str, ...], stages: Iterable[Stage], pairs: bool) -> Array:
+    """Return Ω of every mesh, shape (S, meshes): over its stage's mean, or over its group's.
+
+    NaN for a mesh of no stage, and where a group carries nothing.
+    """
+    found = np.full_like(torque, np.nan)
+    order = {m: k for k, m in enumerate(meshes)}
+    with np.errstate(invalid="ignore", divide="ignore"):
+        for stage in stages:
+            for group in stage.groups if pairs else (stage.meshes,):
+                columns = [order[m] for m in group]
+                mean = torque[:, columns].mean(axis=1)
+                found[:, columns] = (
+                    torque[:, columns] / np.where(mean != 0.0, mean, np.nan)[:, None]
+                )
+    return found
+
+
+class _Table:
+    """Variables of all samples, filled block by block."""
+
+    def __init__(self, first: Block, count: int, keep: tuple[str, ...]) -> None:
+        names = first.equilibria[0].names
+        self.positions, self.keep, self.names = first.positions, keep, names
+        train = names.train
+        self.moving = [k for k, g in enumerate(train.gears.values()) if g.moves]
+        shape = (count, len(first.positions))
+        sizes = {
+            "torque": (len(train.meshes),),
+            "share": (len(train.meshes),),
+            "pair_share": (len(train.meshes),),
+            "displacement": (len(self.moving), 2),
+            "contact_force": (len(names.contacts),),
+        }
+        self.values = {name: np.full((*shape, *sizes[name]), np.nan) for name in keep}
+        self.residual = np.full(shape, np.nan)
+        self.certified = np.zeros(shape, dtype=bool)
+        self.determined = np.zeros(shape, dtype=bool)
+        self.rung = np.full(shape, "", dtype="<U24")
+        self.message: dict[str, str] = {}
+
+    def write(self, block: Block) -> None:
+        """Write a block in its place."""
+        rows = block.rows
+        self.residual[rows] = block.residual
+        self.certified[rows] = block.certified
+        self.determined[rows] = block.determined
+        self.rung[rows] = block.rung
+        for (row, index), why in block.message.items():
+            self.message[f"sample {row}, position {index}"] = why
+        gears = list(self.names.train.gears.values())
+        stages = self.names.train.stages
+        for p, answers in enumerate(block.equilibria):
+            torque, meshes = mesh_torques(answers)
+            values = self.values
+            if "torque" in values:
+                values["torque"][rows, p] = torque
+            for name, pairs in (("share", False), ("pair_share", True)):
+                if name in values:
+                    values[name][rows, p] = shares(torque, meshes, stages, pairs=pairs)
+            if "displacement" in values:
+                for k, g in enumerate(self.moving):
+                    moved = answers.displacement[:, g] @ gears[g].frame.T
+                    values["displacement"][rows, p, k] = moved
+            if "contact_force" in values:
+                values["contact_force"][rows, p] = answers.ring_force
+
+    def dataset(self, case: Case, tolerance: float) -> xr.Dataset:
+        """Return everything with labels."""
+        import xarray as xr
+
+        from loadshare._version import __version__
+
+        axes = {
+            "torque": ("mesh",),
+            "share": ("mesh",),
+            "pair_share": ("mesh",),
+            "displacement": ("gear", "axis"),
+            "contact_force": ("contact",),
+        }
+        units = {"torque": "N*m", "displacement": "m", "contact_force": "N"}
+        every = ("sample", "position")
+        variables = {
+            name: ((*every, *axes[name]), self.values[name], {"units": units.get(name, "1")})
+            for name in self.keep
+        }
+        train = self.names.train
+        gears = list(train.gears)
+        coords = {
+            "sample": np.arange(len(self.residual)),
+            "position": list(self.positions),
+            "mesh": list(train.meshes),
+            "gear": [gears[k] for k in self.moving],
+            "axis": ["x", "y"],
+            "contact": list(self.names.contacts),
+        }
+        used = {axis for name in self.keep for axis in axes[name]} | set(every)
+        return xr.Dataset(
+            {
+                **variables,
+                "residual": (every, self.residual),
+                "certified": (every, self.certified),
+                "determined": (every, self.determined),
+                "rung": (every, self.rung),
+            },
+            coords={k: v for k, v in coords.items() if k in used},
+            attrs={
+                "case": case.name,
+                "case_hash": case.hash,
+                "version": __version__,
+                "tolerance": tolerance,
+                "refused": self.message,
+            },
+        )

@@ -1,0 +1,1 @@
+"""The pictures, one idea a file; each function returns a `Figure`."""

@@ -1,0 +1,293 @@
+"""Where the floats rest: each centre in its region, true to shape and strongly enlarged."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from loadshare.errors import LoadshareError
+from loadshare.report.figure import Figure
+from loadshare.report.figures.journey import Journey
+from loadshare.report.figures.labels import Labels
+from loadshare.report.figures.marks import (
+    Drawing,
+    Point,
+    Row,
+    arrow,
+    chart,
+    circle,
+    heading,
+    path_rows,
+)
+from loadshare.report.figures.region import Region
+from loadshare.report.figures.rest import boundary_name, direction_name, places_told
+from loadshare.report.numbers import significant
+from loadshare.report.palette import FAINT, INK, SOFT, WARNING, Look, palette_of
+from loadshare.report.units import MICROMETRE, engineering
+
+if TYPE_CHECKING:
+    import altair as alt
+
+    from loadshare.certify import Touch
+    from loadshare.results import Result
+    from loadshare.train import Train
+
+SIDE = 284
+"""Side of a panel [px]: 75 mm at 96 px an inch, for which the enlargement is told."""
+SAME = 0.008
+"""Points closer than this part of the panel's side are one point with several numbers."""
+NUMBERED = 8
+"""Points up to which all are numbered; of more, each fifth is."""
+
+
+def floats(result: Result, train: Train) -> Figure:
+    """Each float's centre in its region.
+
+    Parameters
+    ----------
+    result : Result
+    train : Train
+        Of the same case.
+
+    Returns
+    -------
+    Figure
+        One panel for each float, in µm and with equal scales: the region between the exact arcs
+        and stops (formulation, section 6), the circles at which a spline begins to slip and has
+        used up its clearance (section 5), the numbered places at the positions, the ring's
+        reaction where it is largest, and in words where the float rests.
+
+    Raises
+    ------
+    LoadshareError
+        If no gear of the case floats.
+    """
+    import altair as alt
+
+    gears = list(result.positions[0].floats)
+    if not gears:
+        raise LoadshareError(
+            f"{result.stamp.case}: no gear floats, so there is nothing to draw. A gear floats with "
+            'support = "free", or on a spline or in a ring.'
+        )
+    palette = palette_of(result)
+    journeys = [Journey(result, train, gear) for gear in gears]
+    most = max(len(journey.told) for journey in journeys)
+    panels = [_Panel(journey, palette.gear(journey.gear)).chart(most) for journey in journeys]
+    told = [
+        result.stamp.title or result.stamp.case,
+        "grey: where the centre may be; points: where it is, with the numbers of the positions; "
+        "arrow: reaction of the ring on the gear where it is largest",
+    ]
+    grid = alt.concat(*panels, columns=3 if len(panels) != 4 else 2)
+    return Figure("floats", grid.properties(title=heading("Where the floats rest", told)))
+
+
+class _Panel:
+    """The picture of one float; everything it holds is in the panel's unit of length."""
+
+    def __init__(self, journey: Journey, look: Look) -> None:
+        import altair as alt
+
+        self.journey, self.look = journey, look
+        (cx, cy), half = journey.view
+        self.unit = unit = engineering([half], "m")
+        self.half = unit.of(half)
+        self.low = (unit.of(cx) - self.half, unit.of(cy) - self.half)
+        self.high = (unit.of(cx) + self.half, unit.of(cy) + self.half)
+        self.labels = Labels(self.low, self.high, SIDE / (2.0 * self.half))
+        self.places = self._here(journey.path)
+        names = [direction_name(v) for v in journey.result.frames[journey.gear]]
+        axis = alt.Axis(tickCount=5, format="~f")
+
+        def scale(k: int) -> alt.Scale:
+            return alt.Scale(domain=[self.low[k], self.high[k]], nice=False, zero=False)
+
+        self.x = alt.X(
+            "x:Q", scale=scale(0), axis=axis, title=unit.title(f"displacement along {names[0]}")
+        )
+        self.y = alt.Y(
+            "y:Q", scale=scale(1), axis=axis, title=unit.title(f"displacement along {names[1]}")
+        )
+
+    def chart(self, lines: int) -> Drawing:
+        """Return the panel, its words filled up to so many lines: all plots begin at one height."""
+        import altair as alt
+
+        self._feel()
+        layers = [
+            *self._region(),
+            *self._circles(),
+            self._origin(),
+            *self._reaction(),
+            *self._names(),
+            # On top: what lies over a point would keep the pointer from it.
+            *self._path(),
+        ]
+        told = [*self.journey.told, *[" "] * (lines - len(self.journey.told))]
+        title = alt.TitleParams(text=f"Gear {self.journey.gear}", subtitle=told)
+        return alt.layer(*layers).properties(width=SIDE, height=SIDE, title=title)
+
+    def _here(self, points: list[Point]) -> list[Point]:
+        return [(self.unit.of(x), self.unit.of(y)) for x, y in points]
+
+    def _line(self, rows: list[Row], field: str = "", tooltip: Any = None, **style: Any) -> Any:
+        line = chart(rows).mark_line(clip=True, **style).encode(x=self.x, y=self.y, order="order:Q")
+        if field:
+            line = line.encode(detail=f"{field}:N")
+        return line.encode(tooltip=tooltip) if tooltip else line
+
+    def _feel(self) -> None:
+        """Tell the labels what is drawn, before any is placed."""
+        region = self.journey.region
+        for boundary in region.boundaries if region else ():
+            self.labels.avoid(self._here(boundary.path))
+        for radius in self.journey.circles.values():
+            self.labels.avoid(self._here(circle((0.0, 0.0), radius)))
+        self.labels.avoid(self.places)
+        self.labels.avoid(self._shaft())
+
+    def _region(self) -> list[Any]:
+        import altair as alt
+
+        region: Region | None = self.journey.region
+        if region is None:
+            return []
+        outlines: list[Row] = []
+        for number, piece in enumerate(region.pieces):
+            outlines += path_rows(self._here(piece), piece=number)
+        touches = {boundary_name(t.name): t for t in self.journey.hardest_rest.boundaries}
+        lines: list[Row] = []
+        for boundary in region.boundaries:
+            facts = _facts(boundary.name, touches.get(boundary.name))
+            lines += path_rows(self._here(boundary.path), **facts)
+        hover = [
+            alt.Tooltip("boundary:N", title="boundary"),
+            alt.Tooltip("margin:Q", title="margin [µm]", format=".3f"),
+            alt.Tooltip("force:Q", title="force [N]", format=".2f"),
+        ]
+        area = self._line(outlines, "piece", filled=True, color=FAINT, stroke=FAINT)
+        return [area, self._line(lines, "boundary", hover, color=INK, strokeWidth=1.6)]
+
+    def _circles(self) -> list[Any]:
+        rows: list[Row] = []
+        for name, radius in self.journey.circles.items():
+            rows += path_rows(self._here(circle((0.0, 0.0), radius)), circle=name)
+        if not rows:
+            return []
+        return [
+            self._line(rows, "circle", ["circle:N"], color=SOFT, strokeWidth=1.2, strokeDash=[5, 3])
+        ]
+
+    def _origin(self) -> Any:
+        """Cross at the centre's place without displacement."""
+        arm = 0.04 * self.half
+        rows = [
+            *path_rows([(-arm, 0.0), (arm, 0.0)], bar=1),
+            *path_rows([(0.0, -arm), (0.0, arm)], bar=2),
+        ]
+        return self._line(rows, "bar", color=SOFT, strokeWidth=1)
+
+    def _path(self) -> list[Any]:
+        import altair as alt
+
+        journey = self.journey
+        # Of points that fall together, the uppermost speaks for all of them.
+        called = {n: places_told(numbers) for _, numbers in self._spots() for n in numbers}
+        rows = [
+            {
+                "x": x,
+                "y": y,
+                "order": k,
+                "position": p.position,
+                "called": called[p.position],
+                "rests": rest.boundary or rest.state,
+                "margin": None if rest.margin is None else MICROMETRE.of(rest.margin),
+                "reaction": math.hypot(*rest.reaction),
+                "spline": rest.spline,
+            }
+            for k, ((x, y), p, rest) in enumerate(
+                zip(self.places, journey.positions, journey.rests, strict=True)
+            )
+        ]
+        hover = [
+            alt.Tooltip("called:N", title="position"),
+            alt.Tooltip("x:Q", title=self.unit.title("x"), format=".3f"),
+            alt.Tooltip("y:Q", title=self.unit.title("y"), format=".3f"),
+            alt.Tooltip("rests:N", title="rests"),
+            alt.Tooltip("margin:Q", title="margin [µm]", format=".3f"),
+            alt.Tooltip("reaction:Q", title="reaction of the ring [N]", format=".2f"),
+            *([alt.Tooltip("spline:N", title="spline")] if journey.circles else []),
+        ]
+        look = self.look
+        points = chart(rows).mark_point(
+            filled=True, color=look.colour, shape=look.shape, size=55, opacity=1
+        )
+        return [
+            self._line(rows, color=look.colour, strokeWidth=1, opacity=0.6),
+            points.encode(x=self.x, y=self.y, tooltip=hover),
+        ]
+
+    def _shaft(self) -> list[Point]:
+        """Path of the reaction's arrow; empty without a reaction."""
+        reaction = self.journey.hardest_rest.reaction
+        size = math.hypot(*reaction)
+        if size <= 0.0:
+            return []
+        x, y = self.places[self.journey.hardest]
+        length = 0.45 * self.half
+        tip = (x + length * reaction[0] / size, y + length * reaction[1] / size)
+        return arrow((x, y), tip, 0.08 * self.half)
+
+    def _reaction(self) -> list[Any]:
+        shaft = self._shaft()
+        if not shaft:
+            return []
+        return [self._line(path_rows(shaft), color=WARNING, strokeWidth=2, strokeCap="round")]
+
+    def _names(self) -> list[Any]:
+        """Words in the picture, the most telling first: they find the best places."""
+        journey, labels = self.journey, self.labels
+        shaft = self._shaft()
+        if shaft:
+            size = math.hypot(*journey.hardest_rest.reaction)
+            force = engineering([size], "N")
+            labels.place(f"{significant(force.of(size))} {force.name}", [shaft[1]])
+        found = labels.layers(self.x, self.y, WARNING)
+        spots = self._spots() if len(self.places) > 1 else []
+        for place, numbers in spots if len(spots) <= NUMBERED else spots[::5]:
+            labels.place(places_told(numbers), [place], gap=7.0)
+        found += labels.layers(self.x, self.y, INK)
+        for boundary in journey.region.boundaries if journey.region else ():
+            path = self._here(boundary.path)
+            # Anywhere along the boundary, its middle before its ends.
+            parts = [path[round(part * (len(path) - 1))] for part in (0.5, 0.3, 0.7, 0.1, 0.9)]
+            inside = [p for p in parts if self._within(p)] or parts[:1]
+            labels.place(boundary.name, inside, boundary.outward)
+        for name, radius in journey.circles.items():
+            ring = self._here(circle((0.0, 0.0), radius, 12))
+            labels.place(name.split(" beyond")[0].split(" used")[0], ring)
+        return [*found, *labels.layers(self.x, self.y)]
+
+    def _within(self, point: Point) -> bool:
+        return all(a <= v <= b for a, v, b in zip(self.low, point, self.high, strict=True))
+
+    def _spots(self) -> list[tuple[Point, list[int]]]:
+        """Places with the numbers of their positions, places that fall together as one."""
+        spots: list[tuple[Point, list[int]]] = []
+        for place, position in zip(self.places, self.journey.positions, strict=True):
+            for spot, numbers in spots:
+                if math.dist(spot, place) <= SAME * 2.0 * self.half:
+                    numbers.append(position.position)
+                    break
+            else:
+                spots.append((place, [position.position]))
+        return spots
+
+
+def _facts(name: str, touch: Touch | None) -> dict[str, Any]:
+    if touch is None:
+        return {"boundary": name, "margin": None, "force": None}
+    # Round-off of a margin that is none would read as a negative zero.
+    margin = round(MICROMETRE.of(touch.margin), 6) + 0.0
+    return {"boundary": name, "margin": margin, "force": touch.force}

@@ -1,0 +1,130 @@
+"""How the meshes yield: deformation over torque, and where each mesh works."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from loadshare.report.figure import Figure
+from loadshare.report.figures.branches import stages_of
+from loadshare.report.figures.marks import Drawing, Row, channels, chart, heading
+from loadshare.report.palette import SOFT, palette_of
+from loadshare.report.units import Unit, engineering
+
+if TYPE_CHECKING:
+    from loadshare.results import Result
+    from loadshare.train import Train
+    from loadshare.train.mesh import Mesh
+
+POINTS = 60
+"""Points of a curve."""
+
+
+def law(result: Result, train: Train) -> Figure:
+    """Deformation at the driver over torque, with the points at which the meshes work.
+
+    Parameters
+    ----------
+    result : Result
+    train : Train
+        Of the same case.
+
+    Returns
+    -------
+    Figure
+        One panel for each stage: Δφ(T), gap included (formulation, section 3), a grey curve for
+        each law and meshing position, a point for each mesh and position.
+    """
+    working = list(_working(result, train))
+    torque_unit = engineering([row["torque"] for row in working], "N*m")
+    angle_unit = engineering([row["angle"] for row in working], "rad")
+    palette = palette_of(result)
+    panels = []
+    for title, meshes in stages_of(result).items():
+        points = [row for row in working if row["mesh"] in meshes]
+        reach = 1.15 * max((row["torque"] for row in points), default=0.0)
+        if reach <= 0.0:
+            continue
+        curves = [_scaled(r, torque_unit, angle_unit) for r in _curves(train, meshes, reach)]
+        shown = [_scaled(r, torque_unit, angle_unit) for r in points]
+        looks = {mesh: palette.mesh(mesh) for mesh in meshes}
+        panel = _panel(curves, shown, channels("mesh", looks, "mesh"), torque_unit, angle_unit)
+        panels.append(panel.properties(title=heading(title)))
+    import altair as alt
+
+    grid = alt.concat(*panels, columns=2).resolve_scale(color="independent", shape="independent")
+    told = [
+        result.stamp.title or result.stamp.case,
+        "grey: the law of a mesh at each meshing position; points: where it works",
+    ]
+    return Figure("law", grid.properties(title=heading("How the meshes yield", told)))
+
+
+def _working(result: Result, train: Train) -> Iterator[Row]:
+    """Drive-flank torque [N·m] and deformation at the driver [rad] of every mesh and position."""
+    for p in result.positions:
+        at = train.situation(p.position).mesh_position
+        for name, net in p.torque.items():
+            torque = net + p.coast_torque[name]
+            angle = _deformation(train.meshes[name], at[name], torque)
+            yield {
+                "mesh": name,
+                "position": p.position,
+                "cycle": at[name] + 1,
+                "torque": torque,
+                "angle": angle,
+            }
+
+
+def _curves(train: Train, meshes: Sequence[str], reach: float) -> Iterator[Row]:
+    """Every law of the meshes once, over torques [N·m] up to `reach`."""
+    seen: dict[tuple[Any, float, float], int] = {}
+    for name in meshes:
+        mesh = train.meshes[name]
+        for position in range(max(len(mesh.laws), len(mesh.gaps))):
+            key = (mesh.law(position), mesh.gap(position, True), mesh.radii[0])
+            if key in seen:
+                continue
+            curve = seen[key] = len(seen)
+            for k in range(POINTS + 1):
+                # Denser towards zero, where a Hertz law turns.
+                torque = reach * (k / POINTS) ** 2
+                angle = _deformation(mesh, position, torque)
+                yield {"curve": curve, "torque": torque, "angle": angle}
+
+
+def _deformation(mesh: Mesh, position: int, torque: float) -> float:
+    """Δφ(T) = a + bT + cT^(2/3) [rad at the driver], a being the gap."""
+    radius = mesh.radii[0]
+    compression = mesh.law(position).compression(torque / radius)
+    return (mesh.gap(position, True) + compression) / radius
+
+
+def _scaled(row: Row, torque: Unit, angle: Unit) -> Row:
+    return row | {"torque": torque.of(row["torque"]), "angle": angle.of(row["angle"])}
+
+
+def _panel(
+    curves: list[Row], points: list[Row], by_mesh: dict[str, Any], torque: Unit, angle: Unit
+) -> Drawing:
+    import altair as alt
+
+    x = alt.X(
+        "torque:Q",
+        title=torque.title("torque on the driver"),
+        axis=alt.Axis(format="~f", tickCount=6),
+    )
+    y = alt.Y("angle:Q", title=angle.title("deformation at the driver"))
+    lines = chart(curves).mark_line(color=SOFT, strokeWidth=1, opacity=0.7)
+    hover = [
+        alt.Tooltip("mesh:N", title="mesh"),
+        alt.Tooltip("position:Q", title="position"),
+        alt.Tooltip("cycle:Q", title="position in the mesh cycle"),
+        alt.Tooltip("torque:Q", title=torque.title("torque on the drive flank"), format=".2f"),
+        alt.Tooltip("angle:Q", title=angle.title("deformation"), format=".3f"),
+    ]
+    marks = chart(points).mark_point(filled=True, size=44, opacity=0.9)
+    return alt.layer(
+        lines.encode(x=x, y=y, detail="curve:N"),
+        marks.encode(x=x, y=y, color=by_mesh["color"], shape=by_mesh["shape"], tooltip=hover),
+    ).properties(width=300, height=200)

@@ -1,0 +1,215 @@
+"""Where everything stands, ready to be drawn; also of a case that is not right yet."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from loadshare.case import Gear, Mesh
+from loadshare.case.checks.fit import TOLERANCE
+from loadshare.case.content import Content
+from loadshare.case.draft import Draft
+from loadshare.case.place import axis_of, centres_of
+from loadshare.train import Train
+from loadshare.train.gear import Vector, transverse_frame
+
+FLOATS, ELASTIC, FIXED = "floats", "on an elastic bearing", "on a rigid bearing"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Body:
+    """A gear as it is drawn.
+
+    Attributes
+    ----------
+    name, kind : str
+    centre, axis : ndarray, shape (3,)
+        [m]; unit vector.
+    base_radius : float
+        Acting radius of a face gear [m].
+    rims : tuple of float
+        Inner and outer radius of a face gear's teeth [m], if given.
+    sense : int
+        +1 counter-clockwise against the axis, −1 clockwise, 0 where it is not known.
+    held : str
+        What holds the centre.
+    role : str
+        "input", "output" or empty.
+    """
+
+    name: str
+    kind: str
+    centre: Vector
+    axis: Vector
+    base_radius: float
+    rims: tuple[float, ...]
+    sense: int
+    held: str
+    role: str
+
+    def circle(self, radius: float, start: float = 0.0, turn: float = 2.0 * math.pi) -> Vector:
+        """Points (n, 3) [m] on a circle about the axis, from angle `start` on over `turn` [rad]."""
+        angles = np.linspace(start, start + turn, 73)
+        directions = np.column_stack((np.cos(angles), np.sin(angles)))
+        return np.asarray(self.centre + radius * directions @ transverse_frame(self.axis))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pair:
+    """A mesh as it is drawn.
+
+    Attributes
+    ----------
+    name, driver, driven : str
+    angle : float
+        Pressure angle [rad].
+    pitch_radii : tuple of float
+        Working pitch radii r_b/cos α of driver and driven gear, of a face gear its acting radius
+        [m].
+    pitch_point : ndarray, shape (3,)
+        [m].
+    push : ndarray, shape (3,), or None
+        Direction in which the driver pushes the driven gear.
+    distance, needed : float
+        Distance of the centres across the axes, or height of a pinion over its face gear, as it is
+        and as the radii need it [m].
+    """
+
+    name: str
+    driver: str
+    driven: str
+    angle: float
+    pitch_radii: tuple[float, float]
+    pitch_point: Vector
+    push: Vector | None
+    distance: float
+    needed: float
+
+    @property
+    def fits(self) -> bool:
+        """Whether the gears stand where their radii need them, by the rule that checks a case."""
+        return abs(self.distance - self.needed) * math.cos(self.angle) <= TOLERANCE * self.distance
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Layout:
+    """All that a drawing shows.
+
+    Attributes
+    ----------
+    bodies : mapping of gear to Body
+    pairs : tuple of Pair
+    shafts : tuple of (str, str)
+        Gears that a shaft joins.
+    """
+
+    bodies: Mapping[str, Body]
+    pairs: tuple[Pair, ...]
+    shafts: tuple[tuple[str, str], ...]
+
+
+def layout_of(case: Content | Draft, train: Train | None) -> Layout:
+    """Arrange a case for a drawing.
+
+    Parameters
+    ----------
+    case : Case or Draft
+        A draft leaves out what could not be read.
+    train : Train or None
+        Of the case, for running senses and directions of push; None where there is none yet.
+    """
+    centres = centres_of(case.gears)
+    # In the order of the train, by which all pictures colour their gears.
+    order = [*(train.gears if train else ()), *case.gears]
+    bodies = {
+        name: _body(case, name, case.gears[name], np.array(centres[name]), train)
+        for name in dict.fromkeys(order)
+        if name in centres
+    }
+    shafts = tuple(s.ends for s in case.shafts.values() if set(s.ends) <= set(bodies))
+    return Layout(bodies, tuple(_pairs(case.meshes, bodies, train)), shafts)
+
+
+def _body(
+    case: Content | Draft, name: str, gear: Gear, centre: Vector, train: Train | None
+) -> Body:
+    operating = case.operating
+    role = ""
+    if operating is not None:
+        role = {operating.input: "input", operating.output: "output"}.get(name, "")
+    rims = tuple(q.si for q in (gear.inner_radius, gear.outer_radius) if q is not None)
+    support = gear.support
+    if support == "free" or (support is None and (name in case.splines or name in case.rings)):
+        held = FLOATS
+    else:
+        held = FIXED if support in (None, "rigid") else ELASTIC
+    return Body(
+        name=name,
+        kind=gear.type,
+        centre=centre,
+        axis=np.array(axis_of(gear)),
+        base_radius=gear.acting_radius,
+        rims=rims,
+        sense=train.gears[name].sense if train else 0,
+        held=held,
+        role=role,
+    )
+
+
+def _pairs(
+    meshes: Mapping[str, Mesh], bodies: Mapping[str, Body], train: Train | None
+) -> Iterator[Pair]:
+    for name, mesh in meshes.items():
+        if mesh.driver not in bodies or mesh.driven not in bodies or mesh.driver == mesh.driven:
+            continue
+        driver, driven = bodies[mesh.driver], bodies[mesh.driven]
+        place = _face_place if "face" in (driver.kind, driven.kind) else _parallel_place
+        radii, point, distance, needed = place(driver, driven, mesh.pressure_angle.si)
+        yield Pair(
+            name=name,
+            driver=driver.name,
+            driven=driven.name,
+            angle=mesh.pressure_angle.si,
+            pitch_radii=radii,
+            pitch_point=point,
+            push=train.meshes[name].drive_normal if train else None,
+            distance=distance,
+            needed=needed,
+        )
+
+
+Place = tuple[tuple[float, float], Vector, float, float]
+
+
+def _parallel_place(driver: Body, driven: Body, angle: float) -> Place:
+    """Pitch radii, pitch point, distance of the centres across the axis, and the one needed."""
+    radii = driver.base_radius / math.cos(angle), driven.base_radius / math.cos(angle)
+    between = driven.centre - driver.centre
+    between = between - (between @ driver.axis) * driver.axis
+    distance = float(np.linalg.norm(between))
+    towards = between / distance if distance > 0.0 else np.zeros(3)
+    if driven.kind == "internal":
+        point, needed = driver.centre - radii[0] * towards, radii[1] - radii[0]
+    elif driver.kind == "internal":
+        point, needed = driven.centre + radii[1] * towards, radii[0] - radii[1]
+    else:
+        point, needed = driver.centre + radii[0] * towards, radii[0] + radii[1]
+    return radii, point, distance, needed
+
+
+def _face_place(driver: Body, driven: Body, angle: float) -> Place:
+    """The same of a face gear: its acting radius, and the height of the pinion over it."""
+    face, pinion = (driver, driven) if driver.kind == "face" else (driven, driver)
+    pitch = pinion.base_radius / math.cos(angle)
+    towards = pinion.centre - face.centre
+    arm = math.copysign(1.0, towards @ pinion.axis) * pinion.axis
+    radii = (face.base_radius, pitch) if driver is face else (pitch, face.base_radius)
+    return (
+        radii,
+        face.centre + face.base_radius * arm,
+        abs(float(towards @ face.axis)),
+        pitch,
+    )

@@ -1,0 +1,140 @@
+"""Pictures of a pair over its mesh cycle: mesh stiffness and transmission error."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from loadshare.report.figure import Figure
+from loadshare.report.figures.marks import (
+    Drawing,
+    Row,
+    channels,
+    chart,
+    dashed_lines,
+    heading,
+    padded,
+)
+from loadshare.report.numbers import significant
+from loadshare.report.palette import look
+from loadshare.report.units import MICRORADIAN, Unit
+
+if TYPE_CHECKING:
+    from loadshare.tooth.ltca_result import Ltca
+
+WIDTH, HEIGHT = 400, 240
+STIFFNESS_LOADS = (1.0, 0.95, 0.9)
+"""Parts of the rated torque at which the stiffness is shown."""
+ERROR_LOADS = (1.0, 0.5, 0.1)
+"""Parts of the rated torque at which the transmission error is shown."""
+UNLOADED = "no load"
+
+
+def stiffness(found: Ltca, title: str) -> Figure:
+    """Secant mesh stiffness over the mesh cycle at T, 0.95 T and 0.9 T.
+
+    Parameters
+    ----------
+    found : Ltca
+        Analysis with these loads.
+    title : str
+        Of the pair.
+
+    Returns
+    -------
+    Figure
+        One line for each load; the cycle is closed at phase 1.
+    """
+    values = {_name(part): found.secant(part) for part in STIFFNESS_LOADS}
+    rated = values[_name(1.0)]
+    unit = stiffness_unit(rated)
+    panel = _panel(found.phase, values, unit, "mesh stiffness at the driver", "torque")
+    said = [
+        title,
+        f"at T = {significant(found.rated)} N·m from {significant(unit.of(rated.min()))} to "
+        f"{significant(unit.of(rated.max()))} {unit.name}, max/min "
+        f"{rated.max() / rated.min():.3f}",
+    ]
+    return Figure("stiffness", panel.properties(title=heading("Mesh stiffness", said)))
+
+
+def stiffness_unit(values: np.ndarray) -> Unit:
+    """Unit in which stiffnesses [N·m/rad] are read best."""
+    return Unit("MN·m/rad", 1e-6) if values.max() >= 2e6 else Unit("kN·m/rad", 1e-3)
+
+
+def transmission_error(found: Ltca, title: str) -> Figure:
+    """Transmission error over the mesh cycle, without load and loaded.
+
+    Parameters
+    ----------
+    found : Ltca
+        Analysis at 0.1, 0.5 and 1 of the rated torque.
+    title : str
+        Of the pair.
+
+    Returns
+    -------
+    Figure
+        Lead of the driver on the left, its variation about its mean on the right.
+    """
+    import altair as alt
+
+    parts = found.torque / found.rated
+    values = {_name(part): found.angle[:, np.argmin(np.abs(parts - part))] for part in ERROR_LOADS}
+    values[UNLOADED] = found.unloaded_error
+    varying = {name: angles - angles.mean() for name, angles in values.items()}
+    both = alt.hconcat(
+        _panel(found.phase, values, MICRORADIAN, "lead of the driver", "torque"),
+        _panel(found.phase, varying, MICRORADIAN, "the same less its mean", "torque"),
+    )
+    swing = np.ptp(values[_name(1.0)])
+    said = [
+        title,
+        f"peak to peak {MICRORADIAN.of(np.ptp(found.unloaded_error)):.2f} µrad without load, "
+        f"{MICRORADIAN.of(swing):.1f} µrad at T = {significant(found.rated)} N·m",
+    ]
+    return Figure("transmission_error", both.properties(title=heading("Transmission error", said)))
+
+
+def _panel(
+    phase: np.ndarray, values: Mapping[str, np.ndarray], unit: Unit, what: str, by: str
+) -> Drawing:
+    """Lines over the cycle, by name."""
+    import altair as alt
+
+    rows = list(_rows(phase, values, unit))
+    looks = {name: look(k) for k, name in enumerate(values)}
+    use = channels("name", looks, by)
+    every = [row["y"] for row in rows]
+    # What stays within round-off shall not fill the panel.
+    least = max(1e-3 * max(map(abs, every)), 1e-6)
+    y = alt.Y(
+        "y:Q",
+        title=unit.title(what),
+        scale=alt.Scale(domain=padded(min(every), max(every), least), nice=False),
+    )
+    x = alt.X("x:Q", title="phase of the mesh cycle", scale=alt.Scale(domain=[0, 1], nice=False))
+    where = {"x": x, "y": y, "color": use["color"]}
+    hover = [
+        alt.Tooltip("name:N", title=by),
+        alt.Tooltip("x:Q", title="phase", format=".3~f"),
+        alt.Tooltip("y:Q", title=unit.title(what), format=".5~g"),
+    ]
+    lines = [line.encode(**where) for line in dashed_lines(rows, "name", looks, 1.8)]
+    points = chart(rows).mark_point(filled=True, size=26, opacity=1)
+    layers = [*lines, points.encode(**where, shape=use["shape"], tooltip=hover)]
+    return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT)
+
+
+def _rows(phase: np.ndarray, values: Mapping[str, np.ndarray], unit: Unit) -> Iterable[Row]:
+    """Rows of every line, the first position once more at the end of the cycle."""
+    for name, line in values.items():
+        for x, y in zip([*phase, phase[0] + 1.0], [*line, line[0]], strict=True):
+            yield {"name": name, "x": float(x), "y": unit.of(float(y))}
+
+
+def _name(part: float) -> str:
+    return "T" if part == 1.0 else f"{part:g} T"

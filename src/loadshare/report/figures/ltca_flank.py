@@ -1,0 +1,254 @@
+"""Pictures of the loaded flank: load on the contact lines, and the pattern that contact leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from loadshare.report.figure import Figure
+from loadshare.report.figures.marks import Point, Row, chart, heading
+from loadshare.report.numbers import significant
+from loadshare.report.palette import FAINT, SOFT
+from loadshare.report.units import MILLIMETRE
+
+if TYPE_CHECKING:
+    from loadshare.tooth.body import ToothBody
+    from loadshare.tooth.ltca_result import LineLoad, Ltca
+
+WIDTH, HEIGHT = 460, 230
+SHADES: Literal["tealblues"] = "tealblues"
+"""Light to dark in one direction, so that it reads in grey."""
+MOST = 0.99
+"""Part of the loaded length by which the shades are chosen."""
+BELOW = "99 % of the loaded length below"
+STEPS = 65
+"""Points of a profile."""
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """A flank rolled out flat: along the tooth, and along the profile from the fillet's end [m]."""
+
+    foot: float
+    length: float
+    u: np.ndarray
+    height: np.ndarray
+
+    def at(self, uw: np.ndarray) -> np.ndarray:
+        """Places (n, 2) [m] of flank coordinates (n, 2)."""
+        return np.column_stack([self.length * uw[:, 1], np.interp(uw[:, 0], self.u, self.height)])
+
+    @property
+    def size(self) -> Point:
+        """Length of the tooth and of its profile [m]."""
+        return self.length, float(self.height[-1])
+
+
+def plane_of(body: ToothBody, side: int) -> Plane:
+    """Roll a flank of a tooth out flat."""
+    u = np.linspace(body.foot, 1.0, STEPS)
+    profile = body.outline(u, np.full(STEPS, 0.5), side)
+    height = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(profile, axis=0), axis=1))])
+    ends = body.outline(np.full(2, u[STEPS // 2]), np.array([0.0, 1.0]), side)
+    return Plane(body.foot, float(np.linalg.norm(ends[1] - ends[0])), u, height)
+
+
+def load_map(found: Ltca, planes: Sequence[Plane], title: str, part: float = 1.0) -> Figure:
+    """Load per length on every contact line of the cycle, on the driver's flank.
+
+    Parameters
+    ----------
+    found : Ltca
+    planes : sequence of Plane
+        The driver's flank and the driven gear's.
+    title : str
+        Of the pair.
+    part : float
+        Part of the rated torque, one that was computed.
+
+    Returns
+    -------
+    Figure
+        Every line where it stands at its position of the cycle; grey where it carries nothing.
+    """
+    import altair as alt
+
+    lines = _lines(found, part)
+    rows = [row for number, line in lines for row in _ribbon(planes[0], number, line)]
+    top = _top([line.per_length for _, line in lines], lines, 1e-3)
+    where = _axes(planes[0])
+    colour = alt.Color("value:Q", title=["load per length", "[N/mm]"], **_shades(top))
+    bare = chart([row for row in rows if row["value"] == 0.0])
+    loaded = chart([row for row in rows if row["value"] > 0.0])
+    hover = [
+        alt.Tooltip("position:Q", title="position"),
+        alt.Tooltip("pair:Q", title="pair of teeth"),
+        alt.Tooltip("value:Q", title="load [N/mm]", format=".4~g"),
+    ]
+    ends = {**where, "x2": "x2:Q", "y2": "y2:Q"}
+    # Thin enough that the lines of neighbouring positions stand apart.
+    thick = float(np.clip(0.6 * HEIGHT / max(len(lines), 1), 2.0, 6.0))
+    panel = alt.layer(
+        bare.mark_rule(strokeWidth=1, color=SOFT, opacity=0.5).encode(**ends),
+        loaded.mark_rule(strokeWidth=thick).encode(**ends, color=colour, tooltip=hover),
+    ).properties(width=WIDTH, height=HEIGHT)
+    said = [
+        title,
+        f"contact lines of {len(found.positions)} positions on the driver's flank at "
+        f"{significant(part * found.rated)} N·m; {BELOW} {significant(top, 3)} N/mm",
+    ]
+    return Figure("load_map", panel.properties(title=heading("Load on the flank", said)))
+
+
+def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str, part: float = 1.0) -> Figure:
+    """Areas of contact over the cycle on both flanks, by their pressure.
+
+    Parameters
+    ----------
+    found : Ltca
+    planes : sequence of Plane
+        The driver's flank and the driven gear's.
+    title : str
+        Of the pair.
+    part : float
+        Part of the rated torque, one that was computed.
+
+    Returns
+    -------
+    Figure
+        One panel for each flank; the bands are as wide as Hertz makes them.
+    """
+    import altair as alt
+
+    lines = [(number, line) for number, line in _lines(found, part) if line.loaded]
+    top = _top([line.pressure for _, line in lines], lines, 1e-6)
+    hover = [
+        alt.Tooltip("position:Q", title="position"),
+        alt.Tooltip("pair:Q", title="pair of teeth"),
+        alt.Tooltip("value:Q", title="pressure [MPa]", format=".4~g"),
+    ]
+    panels = []
+    for which, (name, plane) in enumerate(zip(("driver", "driven gear"), planes, strict=True)):
+        rows = [row for number, line in lines for row in _band(plane, number, line, which)]
+        areas = chart(rows).mark_line(filled=True, interpolate="linear-closed", clip=True)
+        shown = areas.encode(
+            **_axes(plane),
+            order="order:Q",
+            detail="cell:N",
+            color=alt.Color("value:Q", title=["pressure", "[MPa]"], **_shades(top)),
+            tooltip=hover,
+        )
+        panels.append(
+            shown.properties(width=WIDTH, height=HEIGHT, title=heading(f"flank of the {name}"))
+        )
+    said = [
+        title,
+        f"areas of contact at {len(found.positions)} positions and "
+        f"{significant(part * found.rated)} N·m; {BELOW} {significant(top, 3)} MPa",
+    ]
+    both = alt.vconcat(*panels)
+    return Figure("contact_pattern", both.properties(title=heading("Contact pattern", said)))
+
+
+def _lines(found: Ltca, part: float) -> list[tuple[int, LineLoad]]:
+    """Lines of all positions under a part of the rated torque, with the position, from 1."""
+    load = int(np.argmin(np.abs(found.torque / found.rated - part)))
+    return [(k + 1, line) for k, row in enumerate(found.lines) for line in row[load]]
+
+
+def _axes(plane: Plane) -> dict[str, Any]:
+    """Axes over the whole flank."""
+    import altair as alt
+
+    length, height = (MILLIMETRE.of(size) for size in plane.size)
+    grid = alt.Axis(grid=True, gridColor=FAINT)
+    return {
+        "x": alt.X(
+            "x:Q",
+            title="along the tooth [mm]",
+            scale=alt.Scale(domain=[0.0, length], nice=False),
+            axis=grid,
+        ),
+        "y": alt.Y(
+            "y:Q",
+            title="from the fillet to the tip [mm]",
+            scale=alt.Scale(domain=[0.0, height], nice=False),
+            axis=grid,
+        ),
+    }
+
+
+def _top(
+    values: Sequence[np.ndarray], lines: Sequence[tuple[int, LineLoad]], factor: float
+) -> float:
+    """Value below which most of the loaded length stays.
+
+    A point at an edge of the flank may carry many times what the rest of the line does.
+    """
+    every = np.concatenate(values)
+    length = np.concatenate([line.line.length * (line.force > 0.0) for _, line in lines])
+    order = np.argsort(every)
+    below = np.cumsum(length[order])
+    return factor * float(every[order][np.searchsorted(below, MOST * below[-1])])
+
+
+def _shades(top: float) -> dict[str, Any]:
+    """Scale and legend of a shade from 0 to `top`; what is above has the darkest."""
+    import altair as alt
+
+    return {
+        "scale": alt.Scale(scheme=SHADES, domain=[0.0, top], nice=False, clamp=True),
+        "legend": alt.Legend(type="gradient", gradientLength=160),
+    }
+
+
+def _edges(places: np.ndarray) -> np.ndarray:
+    """Edges (n + 1, 2) of the cells of a line whose middles (n, 2) are given."""
+    middle = 0.5 * (places[1:] + places[:-1])
+    first, last = 2.0 * places[0] - middle[0], 2.0 * places[-1] - middle[-1]
+    return np.vstack([first, middle, last])
+
+
+def _ribbon(plane: Plane, number: int, line: LineLoad) -> Iterator[Row]:
+    """Cells of a line with their load."""
+    edges = MILLIMETRE.factor * _edges(plane.at(line.line.driver_uw))
+    for start, end, load in zip(edges, edges[1:], 1e-3 * line.per_length, strict=False):
+        yield {
+            "x": _short(start[0]),
+            "y": _short(start[1]),
+            "x2": _short(end[0]),
+            "y2": _short(end[1]),
+            "value": _short(load),
+            "position": number,
+            "pair": line.line.pair,
+        }
+
+
+def _band(plane: Plane, number: int, line: LineLoad, which: int) -> Iterator[Row]:
+    """Corners of the cells of the area of contact, with their pressure."""
+    uw = line.line.driven_uw if which else line.line.driver_uw
+    edges = _edges(plane.at(uw))
+    along = np.diff(edges, axis=0)
+    across = np.column_stack([-along[:, 1], along[:, 0]])
+    across *= line.half_width[:, None] / np.linalg.norm(across, axis=1)[:, None]
+    for k, wide in enumerate(across):
+        if line.force[k] <= 0.0:
+            continue
+        corners = (edges[k] - wide, edges[k + 1] - wide, edges[k + 1] + wide, edges[k] + wide)
+        for order, corner in enumerate(corners):
+            yield {
+                "x": _short(MILLIMETRE.of(corner[0])),
+                "y": _short(MILLIMETRE.of(corner[1])),
+                "order": order,
+                "cell": f"{number}/{line.line.pair}/{k}",
+                "value": _short(1e-6 * line.pressure[k]),
+                "position": number,
+                "pair": line.line.pair,
+            }
+
+
+def _short(value: float) -> float:
+    return float(f"{value:.5g}")

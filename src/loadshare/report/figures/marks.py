@@ -1,0 +1,166 @@
+"""What all pictures are drawn with: rows of plain data, looks as scales, arrows as paths."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from loadshare.report.palette import Look
+
+if TYPE_CHECKING:
+    import altair as alt
+
+# Altair's types differ from mark to mark and from call to call; its schema checks a chart when it
+# is turned into a specification.
+Drawing = Any
+Row = dict[str, Any]
+Point = tuple[float, float]
+
+
+def chart(rows: Sequence[Mapping[str, Any]]) -> Drawing:
+    """Return a chart on plain rows."""
+    import altair as alt
+
+    return alt.Chart(alt.InlineData(values=tuple(rows)))
+
+
+def channels(field: str, looks: Mapping[str, Look], title: str) -> dict[str, Any]:
+    """Colour and shape by a field's names, with one legend.
+
+    Parameters
+    ----------
+    field : str
+        Field that holds the names.
+    looks : mapping of name to Look
+    title : str
+        Of the legend.
+
+    Returns
+    -------
+    dict
+        Channels by name; a mark takes those that it knows.
+    """
+    import altair as alt
+
+    names = list(looks)
+    legend = alt.Legend(title=title)
+
+    def scale(values: list[Any]) -> alt.Scale:
+        return alt.Scale(domain=names, range=values)
+
+    found = distinct(looks)
+    return {
+        "color": alt.Color(f"{field}:N", scale=scale([v.colour for v in found]), legend=legend),
+        "shape": alt.Shape(f"{field}:N", scale=scale([v.shape for v in found]), legend=legend),
+    }
+
+
+def dashed_lines(
+    rows: Sequence[Row], field: str, looks: Mapping[str, Look], width: float
+) -> list[Drawing]:
+    """Lines told apart by their dashes, a layer each: a scale of dashes would spoil the legend.
+
+    Parameters
+    ----------
+    rows : sequence of dict
+    field : str
+        Field that holds the names.
+    looks : mapping of name to Look
+    width : float
+        Of the lines [px].
+    """
+    layers = []
+    for name, use in zip(looks, distinct(looks), strict=True):
+        own = [row for row in rows if row[field] == name]
+        if own:
+            layers.append(chart(own).mark_line(strokeWidth=width, strokeDash=list(use.dash)))
+    return layers
+
+
+def distinct(looks: Mapping[str, Look]) -> list[Look]:
+    """Looks in order, those that stood before given another dash and shape."""
+    from loadshare.report.palette import DASHES, SHAPES
+
+    found: list[Look] = []
+    for wanted in looks.values():
+        use, number = wanted, 0
+        while use in found and number < len(SHAPES):
+            number += 1
+            dash = DASHES[(DASHES.index(wanted.dash) + number) % len(DASHES)]
+            shape = SHAPES[(SHAPES.index(wanted.shape) + number) % len(SHAPES)]
+            use = Look(wanted.colour, dash, shape)
+        found.append(use)
+    return found
+
+
+BESIDE_RULE = {
+    "angle": 270,
+    "align": "right",
+    "baseline": "bottom",
+    "dy": -3,
+    "fontSize": 10,
+}
+"""Style of words that run along a rule: neighbouring rules leave no room beside them."""
+
+
+def rimmed(base: Drawing, colour: str, **style: Any) -> list[Drawing]:
+    """Words with a white rim, which keeps them readable where they must cross a line.
+
+    Parameters
+    ----------
+    base : Chart
+        With the channel text.
+    colour : str
+    **style
+        Of the text mark.
+    """
+    rim = base.mark_text(color="white", stroke="white", strokeWidth=3, opacity=0.8, **style)
+    return [rim, base.mark_text(color=colour, **style)]
+
+
+def path_rows(points: Iterable[Point], **fields: Any) -> list[Row]:
+    """Rows of a path: x and y to seven digits, and their order."""
+    return [
+        {"x": float(f"{x:.7g}"), "y": float(f"{y:.7g}"), "order": k, **fields}
+        for k, (x, y) in enumerate(points)
+    ]
+
+
+def arrow(tail: Point, tip: Point, head: float) -> list[Point]:
+    """Path of an arrow with an open head of `head` length; nothing for one without length."""
+    dx, dy = tip[0] - tail[0], tip[1] - tail[1]
+    length = math.hypot(dx, dy)
+    if length == 0.0:
+        return []
+    ux, uy = dx / length, dy / length
+    half = 0.4 * head
+    left = (tip[0] - head * ux - half * uy, tip[1] - head * uy + half * ux)
+    right = (tip[0] - head * ux + half * uy, tip[1] - head * uy - half * ux)
+    return [tail, tip, left, tip, right]
+
+
+def circle(centre: Point, radius: float, count: int = 120) -> list[Point]:
+    """Path of a circle, closed."""
+    return arc(centre, radius, 0.0, 2.0 * math.pi, count)
+
+
+def arc(centre: Point, radius: float, start: float, end: float, count: int = 60) -> list[Point]:
+    """Path of an arc from angle `start` to `end` [rad]."""
+    angles = [start + (end - start) * k / count for k in range(count + 1)]
+    return [(centre[0] + radius * math.cos(a), centre[1] + radius * math.sin(a)) for a in angles]
+
+
+def padded(low: float, high: float, least: float, share: float = 0.08) -> list[float]:
+    """Return a domain around `low` to `high`, at least `least` wide, with a margin."""
+    middle, half = (low + high) / 2, max((high - low) / 2, least / 2)
+    return [middle - half * (1 + 2 * share), middle + half * (1 + 2 * share)]
+
+
+def heading(title: str, subtitle: str | Sequence[str] = "") -> alt.TitleParams:
+    """Return the title of a picture or panel."""
+    import altair as alt
+
+    lines = [subtitle] if isinstance(subtitle, str) else list(subtitle)
+    lines = [line for line in lines if line]
+    return alt.TitleParams(text=title, subtitle=lines) if lines else alt.TitleParams(text=title)

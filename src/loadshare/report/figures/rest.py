@@ -1,0 +1,96 @@
+"""Where a float rests, in words."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+from loadshare.report.numbers import significant
+from loadshare.report.units import engineering
+
+if TYPE_CHECKING:
+    from loadshare.certify import FloatState
+
+ALONG = 1e-9
+"""How far a direction may be from an axis and still be called by its name."""
+
+
+def rest_told(rests: Sequence[FloatState], positions: Sequence[int]) -> list[str]:
+    """Return where a float rests over the positions, its margin or reaction, in a line or two.
+
+    Parameters
+    ----------
+    rests : sequence of FloatState
+    positions : sequence of int
+        Their numbers.
+    """
+    where = Counter(_where(rest) for rest in rests)
+    if len(where) == 1:
+        lines = [next(iter(where))]
+    else:
+        lines = [f"{told} at {count} of {len(rests)}" for told, count in where.most_common(3)]
+        if len(where) > 3:
+            lines.append(f"and {len(where) - 3} other ways")
+    margins = [r.margin for r in rests if r.state == "inside" and r.margin is not None]
+    if margins:
+        least = min(margins)
+        unit = engineering([least], "m")
+        lines.append(f"least margin inside {significant(unit.of(least), 3)} {unit.name}")
+    forces = [math.hypot(*rest.reaction) for rest in rests]
+    most = max(forces)
+    if most > 0.0 and len(rests) > 1 and most - min(forces) > 1e-6 * most:
+        unit = engineering([most], "N")
+        at = positions[forces.index(most)]
+        lines.append(f"reaction up to {significant(unit.of(most))} {unit.name}, at position {at}")
+    return lines
+
+
+def _where(rest: FloatState) -> str:
+    if rest.margin is None:
+        return "inside: no ring bounds it"
+    if rest.state == "inside":
+        nearest = min(rest.boundaries, key=lambda touch: touch.margin)
+        return f"inside, nearest the {boundary_name(nearest.name)}"
+    touched = (touch.name for touch in rest.boundaries if touch.touching)
+    return "on boundary: " + " + ".join(boundary_name(name) for name in touched)
+
+
+def boundary_name(name: str) -> str:
+    """Return the name of a boundary without the name of its ring: ``upper stop``, ``ring``."""
+    return name.rpartition(": ")[2] if ": " in name else "ring"
+
+
+def spline_told(rests: Sequence[FloatState]) -> list[str]:
+    """Return the stage of a float's spline over the positions and its force; none without one."""
+    stages = Counter(rest.spline for rest in rests if rest.spline)
+    if not stages:
+        return []
+    most = max(rest.spline_force for rest in rests)
+    unit = engineering([most], "N")
+    told = ", ".join(
+        stage if len(stages) == 1 else f"{stage} at {count}" for stage, count in stages.items()
+    )
+    return [f"spline: {told}; force up to {significant(unit.of(most))} {unit.name}"]
+
+
+def places_told(numbers: Sequence[int]) -> str:
+    """Return whole numbers in short: ``1–3, 7``; many runs are cut off with an ellipsis."""
+    runs: list[list[int]] = []
+    for number in sorted(set(numbers)):
+        if runs and number == runs[-1][-1] + 1:
+            runs[-1].append(number)
+        else:
+            runs.append([number])
+    told = [f"{run[0]}" if len(run) == 1 else f"{run[0]}–{run[-1]}" for run in runs]
+    return ", ".join(told[:3]) + (" …" if len(told) > 3 else "")
+
+
+def direction_name(vector: Iterable[float]) -> str:
+    """Return a direction by the name of its axis, or by its components."""
+    components = [float(v) for v in vector]
+    for axis, component in zip("xyz", components, strict=True):
+        if abs(abs(component) - 1.0) <= ALONG:
+            return axis if component > 0.0 else f"−{axis}"
+    return "(" + ", ".join(f"{round(v, 2) + 0.0:g}" for v in components) + ")"

@@ -1,0 +1,295 @@
+"""Pictures of a sweep: lines over one parameter, maps over two."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from loadshare.errors import LoadshareError
+from loadshare.report.figure import Figure
+from loadshare.report.figures.marks import (
+    BESIDE_RULE,
+    Drawing,
+    Row,
+    channels,
+    chart,
+    dashed_lines,
+    heading,
+    padded,
+    rimmed,
+)
+from loadshare.report.palette import (
+    INK,
+    SOFT,
+    WARNING,
+    Look,
+    Palette,
+    ends_from_names,
+    look,
+)
+from loadshare.report.units import Unit, engineering
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+Event = tuple[float, str]
+
+NAMED_BY = ("stage", "mesh", "float", "gear")
+"""Dimensions of which each name is a line or a map."""
+WIDTH, HEIGHT = 460, 280
+MAP = 300
+"""Side of a map [px]."""
+
+
+def sweep(
+    data: xr.Dataset,
+    show: str = "omega",
+    *,
+    names: Sequence[str] | None = None,
+    position: int | None = None,
+    events: Sequence[Event] = (),
+) -> Figure:
+    """Picture of a figure over the parameters of a sweep.
+
+    Parameters
+    ----------
+    data : xarray.Dataset
+        As a sweep gives it. The dimensions of ``status`` are the parameters, one or two; their
+        coordinates have the attribute ``units``. The variable shown has these dimensions, and
+        beside them any of ``position``, ``component`` (x, y: the size is shown), and one of
+        ``stage``, ``mesh``, ``float``, ``gear`` with a line or map for each name; its attributes
+        are ``units`` (SI) and ``long_name``. NaN marks what was not certified.
+    show : str
+        Variable: "omega", "pair_omega", "torque", "share", "pair_share", "displacement", "margin",
+        "reaction" or any other of that form.
+    names : sequence of str, optional
+        Stages, meshes or floats to show; all by default.
+    position : int, optional
+        Position to show; by default the largest value over the positions.
+    events : sequence of (float, str)
+        Values of the one parameter at which something happens, and what.
+
+    Returns
+    -------
+    Figure
+        Lines with a rule for each event, or one map for each name.
+
+    Raises
+    ------
+    LoadshareError
+        If the dataset has no such variable or name, or not one or two parameters.
+    """
+    parameters = [str(d) for d in data["status"].dims] if "status" in data else []
+    if len(parameters) not in (1, 2):
+        raise LoadshareError(
+            f"a sweep over {len(parameters)} parameters cannot be drawn. Allowed: 1 or 2, as the "
+            "dimensions of its variable status"
+        )
+    shown = _shown(data, parameters, show, names, position)
+    said = f"{shown.unit.title(shown.title)}"
+    told = [str(data.attrs.get("title") or data.attrs.get("case", "")), _refused(data)]
+    made = _lines(data, shown, parameters[0], events) if len(parameters) == 1 else None
+    if made is None:
+        made = _maps(data, shown, parameters)
+    title = heading(f"{said[:1].upper()}{said[1:]}", told)
+    return Figure(f"sweep_{show}", made.properties(title=title))
+
+
+@dataclass(frozen=True)
+class _Shown:
+    """Values (name, parameters) in `unit`, and how they are named."""
+
+    names: list[str]
+    by: str
+    values: np.ndarray
+    unit: Unit
+    title: str
+    looks: dict[str, Look]
+
+
+def _shown(
+    data: xr.Dataset,
+    parameters: list[str],
+    show: str,
+    names: Sequence[str] | None,
+    position: int | None,
+) -> _Shown:
+    if show not in data:
+        there = ", ".join(str(n) for n, v in data.items() if set(parameters) < set(v.dims))
+        raise LoadshareError(f"the sweep has no variable {show!r}. Allowed: {there}")
+    variable = data[show]
+    told = str(variable.attrs.get("long_name", show))
+    if "component" in variable.dims:
+        variable = (variable**2).sum("component", skipna=False) ** 0.5
+    if "position" in variable.dims:
+        if position is not None:
+            if position not in variable["position"].values:
+                raise LoadshareError(f"the sweep has no position {position}")
+            variable = variable.sel(position=position)
+            told += f" at position {position}"
+        elif variable.sizes["position"] > 1:
+            variable = variable.max("position")
+            told += ", largest over positions"
+        else:
+            variable = variable.isel(position=0)
+    by = next((d for d in NAMED_BY if d in variable.dims), None)
+    if by is None:
+        variable, by = variable.expand_dims("name"), "name"
+        known = [show]
+    else:
+        known = [str(n) for n in variable[by].values]
+    wanted = _telling(variable, by, known) if names is None else list(names)
+    wrong = [name for name in wanted if name not in known]
+    if wrong:
+        raise LoadshareError(f"no {by} {', '.join(wrong)}. Allowed: {', '.join(known)}")
+    values = variable.transpose(by, *parameters).values[[known.index(n) for n in wanted]]
+    keep = [k for k in range(len(wanted)) if np.isfinite(values[k]).any()]
+    unit = engineering(values[np.isfinite(values)], str(data[show].attrs.get("units", "1")))
+    wanted = [wanted[k] for k in keep]
+    looks = _looks(data, by, wanted)
+    return _Shown(wanted, by, values[keep] * unit.factor, unit, told, looks)
+
+
+def _telling(variable: xr.DataArray, by: str, names: list[str]) -> list[str]:
+    """Names to be shown by default: not the system where it only repeats one of its stages."""
+    if by != "stage" or "system" not in names:
+        return names
+    whole = variable.sel(stage="system").values
+    others = [name for name in names if name != "system"]
+    repeated = any(
+        np.array_equal(variable.sel(stage=name).values, whole, equal_nan=True) for name in others
+    )
+    return others if repeated else names
+
+
+def _looks(data: xr.Dataset, by: str, names: list[str]) -> dict[str, Look]:
+    gears = [str(n) for n in data["gear"].values] if "gear" in data.coords else []
+    meshes = [str(n) for n in data["mesh"].values] if "mesh" in data.coords else []
+    palette = Palette(gears, ends_from_names(meshes, gears))
+    if by == "mesh":
+        return {name: palette.mesh(name) for name in names}
+    if by in ("float", "gear"):
+        return {name: palette.gear(name) for name in names}
+    return {name: look(number) for number, name in enumerate(names)}
+
+
+def _refused(data: xr.Dataset) -> str:
+    refused = int((data["status"] != "certified").sum())
+    return f"{refused} of {data['status'].size} points not certified" if refused else ""
+
+
+def _parameter(data: xr.Dataset, name: str) -> tuple[np.ndarray, str]:
+    """Values of a parameter as given, and the title of its axis."""
+    units = str(data[name].attrs.get("units", ""))
+    pretty = re.sub(r"\bum\b", "µm", units).replace("*", "·")
+    return data[name].values, Unit("" if units == "1" else pretty).title(name)
+
+
+def _lines(data: xr.Dataset, shown: _Shown, name: str, events: Sequence[Event]) -> Drawing:
+    import altair as alt
+
+    grid, title = _parameter(data, name)
+    rows: list[Row] = [
+        {"x": float(x), "y": float(y) if np.isfinite(y) else None, "name": line}
+        for line, values in zip(shown.names, shown.values, strict=True)
+        for x, y in zip(grid, values, strict=True)
+    ]
+    finite = shown.values[np.isfinite(shown.values)]
+    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+    size = max(abs(low), abs(high))
+    y_axis = alt.Y(
+        "y:Q",
+        title=shown.unit.title(shown.title),
+        scale=alt.Scale(domain=padded(low, high, 1e-4 * size or 1.0), nice=False),
+    )
+    x_axis = alt.X("x:Q", title=title, scale=alt.Scale(nice=False, zero=False))
+    by_name = channels("name", shown.looks, shown.by)
+    where = {"x": x_axis, "y": y_axis, "color": by_name["color"]}
+    hover = [
+        alt.Tooltip("name:N", title=shown.by),
+        alt.Tooltip("x:Q", title=title),
+        alt.Tooltip("y:Q", title=shown.unit.title(shown.title), format=".6~g"),
+    ]
+    lines = dashed_lines(rows, "name", shown.looks, 1.8)
+    points = chart(rows).mark_point(filled=True, size=22, opacity=1)
+    layers: list[Any] = [
+        *(line.encode(**where) for line in lines),
+        points.encode(**where, shape=by_name["shape"], tooltip=hover),
+    ]
+    if events:
+        marks = [{"x": float(value), "event": text} for value, text in events]
+        rule = chart(marks).encode(x=x_axis, tooltip=["event:N", alt.Tooltip("x:Q", title=title)])
+        layers.append(rule.mark_rule(color=SOFT, strokeDash=[4, 3]))
+        words = rule.encode(y=alt.value(4), text="event:N")
+        layers += rimmed(words, INK, **BESIDE_RULE)
+    return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT)
+
+
+def _maps(data: xr.Dataset, shown: _Shown, parameters: list[str]) -> Drawing:
+    import altair as alt
+
+    (xs, x_title), (ys, y_title) = (_parameter(data, name) for name in parameters)
+    x_edges, y_edges = _edges(xs), _edges(ys)
+    finite = shown.values[np.isfinite(shown.values)]
+    ends = [float(finite.min()), float(finite.max())] if finite.size else [0.0, 1.0]
+    colour = alt.Color(
+        "value:Q",
+        title=shown.unit.title(shown.title).split(",")[0],
+        # Light to dark in one direction, so that it reads in grey.
+        scale=alt.Scale(scheme="tealblues", domain=ends, nice=False),
+        legend=alt.Legend(titleLimit=240, gradientLength=200),
+    )
+    x_scale = alt.Scale(domain=[float(x_edges.min()), float(x_edges.max())], nice=False)
+    y_scale = alt.Scale(domain=[float(y_edges.min()), float(y_edges.max())], nice=False)
+    panels = []
+    for name, values in zip(shown.names, shown.values, strict=True):
+        rows: list[Row] = [
+            {
+                "x": float(x_edges[i]),
+                "x2": float(x_edges[i + 1]),
+                "y": float(y_edges[j]),
+                "y2": float(y_edges[j + 1]),
+                "a": float(xs[i]),
+                "b": float(ys[j]),
+                "value": float(values[i, j]) if np.isfinite(values[i, j]) else None,
+            }
+            for i in range(len(xs))
+            for j in range(len(ys))
+        ]
+        certified = [row for row in rows if row["value"] is not None]
+        refused = [row for row in rows if row["value"] is None]
+        places = {
+            "x": alt.X("x:Q", title=x_title, scale=x_scale, axis=alt.Axis(grid=False)),
+            "y": alt.Y("y:Q", title=y_title, scale=y_scale, axis=alt.Axis(grid=False)),
+            "x2": "x2:Q",
+            "y2": "y2:Q",
+        }
+        hover = [
+            alt.Tooltip("a:Q", title=x_title),
+            alt.Tooltip("b:Q", title=y_title),
+            alt.Tooltip("value:Q", title=shown.unit.title(shown.title), format=".6~g"),
+        ]
+        layers: list[Any] = [
+            chart(certified).mark_rect().encode(**places, color=colour, tooltip=hover)
+        ]
+        if refused:
+            crossed = chart(refused).mark_rect(fillOpacity=0, stroke=WARNING, strokeDash=[2, 2])
+            layers.append(crossed.encode(**places, tooltip=hover))
+        panel = alt.layer(*layers).properties(width=MAP, height=MAP)
+        told = name if name == "system" else f"{shown.by} {name}"
+        panels.append(panel.properties(title=heading(told[:1].upper() + told[1:])))
+    return alt.concat(*panels, columns=2)
+
+
+def _edges(values: np.ndarray) -> np.ndarray:
+    """Edges of the cells about grid values: half way between them, and at the first and last."""
+    values = np.asarray(values, dtype=float)
+    if len(values) == 1:
+        half = 0.5 * abs(values[0]) or 0.5
+        return np.array([values[0] - half, values[0] + half])
+    middle = (values[1:] + values[:-1]) / 2
+    return np.concatenate([values[:1], middle, values[-1:]])

@@ -1,0 +1,387 @@
+"""A drawing of the train, from which a wrong centre is seen at once."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from loadshare.errors import CaseError, LoadshareError
+from loadshare.report.figure import Figure
+from loadshare.report.figures.labels import Labels
+from loadshare.report.figures.layout import ELASTIC, FIXED, FLOATS, Body, Layout, Pair, layout_of
+from loadshare.report.figures.marks import (
+    Drawing,
+    Point,
+    Row,
+    arrow,
+    chart,
+    heading,
+    path_rows,
+)
+from loadshare.report.figures.rest import direction_name
+from loadshare.report.numbers import significant
+from loadshare.report.palette import INK, SOFT, WARNING, Palette
+from loadshare.report.units import MILLIMETRE
+from loadshare.train import build_train
+from loadshare.train.gear import Vector, transverse_frame
+
+if TYPE_CHECKING:
+    from loadshare.case import Case
+    from loadshare.case.draft import Draft
+
+WIDTH, HEIGHT = 620.0, 560.0
+"""Room for a view [px]."""
+FLAT = 1e-9
+"""Heights that differ by less than this part of the train are one height."""
+SENSE = math.radians(75.0)
+"""Extent of the arrow of a running sense."""
+HELD = {FIXED: "circle", ELASTIC: "diamond", FLOATS: "circle"}
+"""Shapes of the centres, floating ones on top: they may be coaxial with others."""
+OUTSIDE = 1.07
+"""Radius of an internal gear's bent arrow over its largest radius: inside it are the pinions."""
+
+
+def train(case: Case | Draft) -> Figure:
+    """Draw the train to scale, in mm.
+
+    Parameters
+    ----------
+    case : Case or Draft
+        A case, or what could be read of one: what does not fit is drawn in red, running senses and
+        lines of action are left out.
+
+    Returns
+    -------
+    Figure
+        The view along the axis of most gears, and one from the side where heights differ. Full
+        circles are pitch circles, which touch where gears mesh as they should; dashed ones are base
+        circles, to which the lines of action are tangent.
+
+    Raises
+    ------
+    LoadshareError
+        If no gear could be placed.
+    """
+    import altair as alt
+
+    layout = layout_of(case, _train_of(case))
+    if not layout.bodies:
+        raise LoadshareError("no gear has a centre that could be read, so nothing can be drawn")
+    ends = {pair.name: (pair.driver, pair.driven) for pair in layout.pairs}
+    palette = Palette(layout.bodies, ends)
+    axis = _common_axis(list(layout.bodies.values()))
+    frame = transverse_frame(axis)
+    views = [_View(layout, palette, frame, plan=True)]
+    if _heights_differ(layout, axis):
+        # Upwards is the common axis; to the right stays to the right.
+        views.append(_View(layout, palette, np.array([frame[0], axis]), plan=False))
+    scale = min(view.scale for view in views)
+    panels = [view.chart(scale) for view in views]
+    told = [
+        case.title,
+        "full circles: pitch circles; dashed: base circles; bent arrows: running sense",
+        "straight arrows: push on the driven gear, along the line of action",
+        "centres: filled on a bearing, diamond on an elastic bearing, ring floating",
+        *(_misfit_told(pair) for pair in layout.pairs if not pair.fits),
+    ]
+    grid = alt.vconcat(*panels).properties(title=heading("The train", told))
+    return Figure("train", grid)
+
+
+def _train_of(case: Case | Draft) -> Any:
+    from loadshare.case import Case
+
+    if not isinstance(case, Case):
+        return None
+    try:
+        return build_train(case)
+    except CaseError:
+        return None
+
+
+def _common_axis(bodies: Sequence[Body]) -> Vector:
+    """Axis along which most gears turn, pointing the way the first of them does."""
+
+    def alike(body: Body) -> int:
+        return sum(abs(float(body.axis @ other.axis)) > 1.0 - 1e-6 for other in bodies)
+
+    return max(bodies, key=alike).axis
+
+
+def _heights_differ(layout: Layout, axis: Vector) -> bool:
+    heights = [float(body.centre @ axis) for body in layout.bodies.values()]
+    size = max(body.base_radius for body in layout.bodies.values())
+    crossed = any(abs(float(b.axis @ axis)) < 1.0 - 1e-6 for b in layout.bodies.values())
+    return crossed or max(heights) - min(heights) > FLAT * size
+
+
+def _misfit_told(pair: Pair) -> str:
+    have, need = (significant(MILLIMETRE.of(v), 6) for v in (pair.distance, pair.needed))
+    return (
+        f"mesh {pair.name} does not fit: the centres are {have} mm apart, the radii need {need} mm"
+    )
+
+
+class _View:
+    """The train seen along one direction; lengths in millimetres."""
+
+    def __init__(self, layout: Layout, palette: Palette, frame: Vector, *, plan: bool) -> None:
+        self.layout, self.palette, self.frame, self.plan = layout, palette, frame, plan
+        # Large gears first, so that small ones lie on top.
+        self.bodies = sorted(layout.bodies.values(), key=lambda b: -self._radius(b))
+        reach = np.vstack([self._flat_array(b.circle(self._radius(b))) for b in self.bodies])
+        low, high = reach.min(axis=0), reach.max(axis=0)
+        room = 0.04 * float(high[0] - low[0])
+        self.low = (float(low[0]) - room, float(low[1]) - room)
+        self.high = (float(high[0]) + room, float(high[1]) + room)
+
+    @property
+    def scale(self) -> float:
+        """Pixels per millimetre at which the view fits."""
+        wide, tall = (b - a for a, b in zip(self.low, self.high, strict=True))
+        return min(WIDTH / wide, HEIGHT / tall)
+
+    def chart(self, scale: float) -> Drawing:
+        """Return the view at so many pixels per millimetre."""
+        import altair as alt
+
+        first, second = (direction_name(v) for v in self.frame)
+        names = (MILLIMETRE.title(first), MILLIMETRE.title(second))
+        axis = alt.Axis(grid=False, tickCount=6 if self.plan else 4, format="~f")
+
+        def channel(kind: Any, name: str, k: int) -> Any:
+            domain = alt.Scale(domain=[self.low[k], self.high[k]], nice=False, zero=False)
+            return kind(f"{name}:Q", scale=domain, axis=axis, title=names[k])
+
+        self.x, self.y = channel(alt.X, "x", 0), channel(alt.Y, "y", 1)
+        self.labels = Labels(self.low, self.high, scale)
+        layers = [
+            *self._circles(),
+            *self._lines(),
+            *(self._actions() if self.plan else []),
+            *self._senses(),
+            *self._names(),
+            # On top: what lies over a centre would keep the pointer from it.
+            *self._centres(),
+        ]
+        wide, tall = (b - a for a, b in zip(self.low, self.high, strict=True))
+        towards = direction_name(np.cross(self.frame[0], self.frame[1]))
+        return alt.layer(*layers).properties(
+            width=scale * wide, height=scale * tall, title=heading(f"Seen against {towards}")
+        )
+
+    def _flat_array(self, points: Vector) -> Vector:
+        return np.asarray(MILLIMETRE.factor * points @ self.frame.T)
+
+    def _flat(self, points: Vector) -> list[Point]:
+        return [(float(x), float(y)) for x, y in np.atleast_2d(self._flat_array(points))]
+
+    def _radius(self, body: Body) -> float:
+        """Largest radius that is drawn of a gear [m]."""
+        pitch = [r for pair in self.layout.pairs for r in _radii_of(pair, body.name)]
+        largest = max([body.base_radius, *body.rims, *pitch])
+        return OUTSIDE * largest if body.kind == "internal" else largest
+
+    def _is_round(self, body: Body) -> bool:
+        """Whether a gear is seen as a circle, not from the side."""
+        return abs(float(np.cross(self.frame[0], self.frame[1]) @ body.axis)) > 1.0 - 1e-6
+
+    def _line(self, rows: list[Row], *, by: str = "part", tooltip: Any = None, **style: Any) -> Any:
+        line = chart(rows).mark_line(**style)
+        line = line.encode(x=self.x, y=self.y, order="order:Q", detail=f"{by}:N")
+        return line.encode(tooltip=tooltip) if tooltip else line
+
+    def _circles(self) -> list[Any]:
+        import altair as alt
+
+        hover = alt.Tooltip("circle:N", title="circle")
+        layers: list[Any] = []
+        for body in self.bodies:
+            colour = self.palette.gear(body.name).colour
+            full, dashed = self._radii(body)
+            for radii, style in ((full, {}), (dashed, {"strokeDash": [4, 3]})):
+                rows: list[Row] = []
+                for what, radius in radii.items():
+                    points = self._flat(body.circle(radius))
+                    told = f"gear {body.name}, {what}: radius {MILLIMETRE.of(radius):.4f} mm"
+                    rows += path_rows(points, circle=told)
+                    self.labels.avoid(points)
+                if rows:
+                    area = {"filled": True, "fillOpacity": 0.05, "fill": colour}
+                    fill = area if radii is full and body.kind != "internal" else {}
+                    layers.append(
+                        self._line(
+                            rows,
+                            by="circle",
+                            tooltip=hover,
+                            stroke=colour,
+                            strokeWidth=1.3,
+                            **style,
+                            **fill,
+                        )
+                    )
+        return layers
+
+    def _radii(self, body: Body) -> tuple[dict[str, float], dict[str, float]]:
+        """Radii [m] of the full and of the dashed circles of a gear, by what they are."""
+        if body.kind == "face":
+            rims = dict(zip(("inner", "outer"), body.rims, strict=False))
+            acting = {"acting radius": body.base_radius}
+            return (rims, acting) if rims else (acting, {})
+        found: dict[str, float] = {}
+        for pair in self.layout.pairs:
+            for radius in _radii_of(pair, body.name):
+                same = any(math.isclose(radius, known, rel_tol=1e-6) for known in found.values())
+                if not same:
+                    found[f"pitch circle with {_other(pair, body.name)}"] = radius
+        return found, {"base circle": body.base_radius}
+
+    def _lines(self) -> list[Any]:
+        """Centre lines, shafts between gears that are not coaxial, axes of crossed gears."""
+        import altair as alt
+
+        good: list[Row] = []
+        bad: list[Row] = []
+        for pair in self.layout.pairs:
+            ends = [self.layout.bodies[name].centre for name in (pair.driver, pair.driven)]
+            points = self._flat(np.array(ends))
+            facts = {
+                "mesh": pair.name,
+                "angle": math.degrees(pair.angle),
+                "distance": MILLIMETRE.of(pair.distance),
+                "needed": MILLIMETRE.of(pair.needed),
+            }
+            (good if pair.fits else bad).extend(path_rows(points, part=pair.name, **facts))
+            self.labels.avoid(points)
+        hover = [
+            alt.Tooltip("mesh:N", title="mesh"),
+            alt.Tooltip("angle:Q", title="pressure angle [deg]", format=".4f"),
+            alt.Tooltip("distance:Q", title="distance [mm]", format=".4f"),
+            alt.Tooltip("needed:Q", title="distance needed [mm]", format=".4f"),
+        ]
+        shafts: list[Row] = []
+        for first, second in self.layout.shafts:
+            ends = [self.layout.bodies[name].centre for name in (first, second)]
+            shafts += path_rows(self._flat(np.array(ends)), part=f"{first} {second}")
+        layers = [self._line(shafts, color=SOFT, strokeWidth=3, opacity=0.35)] if shafts else []
+        if good:
+            dashes = [10, 3, 2, 3]
+            layers.append(
+                self._line(good, tooltip=hover, color=SOFT, strokeWidth=0.9, strokeDash=dashes)
+            )
+        if bad:
+            layers.append(self._line(bad, tooltip=hover, color=WARNING, strokeWidth=3))
+        return layers
+
+    def _actions(self) -> list[Any]:
+        """Lines of action between their points of contact with the base circles."""
+        rows: list[Row] = []
+        head = 0.012 * (self.high[0] - self.low[0])
+        for pair in self.layout.pairs:
+            if pair.push is None:
+                continue
+            parts = [r * math.sin(pair.angle) for r in pair.pitch_radii]
+            kinds = {self.layout.bodies[name].kind for name in (pair.driver, pair.driven)}
+            if kinds != {"external"}:
+                # A face gear has no base circle, and an internal one touches the line on the same
+                # side as the pinion: the pinion's part is drawn both ways.
+                parts = [min(parts)] * 2
+            ends = np.array(
+                [pair.pitch_point - parts[0] * pair.push, pair.pitch_point + parts[1] * pair.push]
+            )
+            tail, tip = self._flat(ends)
+            shaft = arrow(tail, tip, head)
+            rows += path_rows(shaft, part=pair.name)
+            self.labels.avoid(shaft)
+        return [self._line(rows, color=INK, strokeWidth=1.5)] if rows else []
+
+    def _senses(self) -> list[Any]:
+        layers: list[Any] = []
+        head = 0.014 * (self.high[0] - self.low[0])
+        for body in self.bodies:
+            if body.sense == 0 or not self._is_round(body):
+                continue
+            internal = body.kind == "internal"
+            radius = self._radius(body) if internal else 0.72 * body.base_radius
+            turn = body.sense * SENSE * (0.4 if internal else 1.0)
+            bent = body.circle(radius, math.radians(100.0), turn)
+            points = self._flat(bent)
+            shown = [*points, *arrow(points[-9], points[-1], head)[1:]]
+            self.labels.avoid(shown)
+            colour = self.palette.gear(body.name).colour
+            layers.append(self._line(path_rows(shown, part=1), color=colour, strokeWidth=1.8))
+        return layers
+
+    def _centres(self) -> list[Any]:
+        import altair as alt
+
+        layers: list[Any] = []
+        for held, shape in HELD.items():
+            rows = []
+            for body in self.bodies:
+                if body.held == held:
+                    (x, y), *_ = self._flat(body.centre)
+                    centre = ", ".join(f"{MILLIMETRE.of(v):.4f}" for v in body.centre)
+                    turns = {1: "counter-clockwise", -1: "clockwise", 0: "unknown"}[body.sense]
+                    rows.append(
+                        {
+                            "x": x,
+                            "y": y,
+                            "gear": body.name,
+                            "kind": f"{body.kind} {body.role}".strip(),
+                            "centre": centre,
+                            "turns": f"{turns} against {direction_name(body.axis)}",
+                            "held": held,
+                        }
+                    )
+            if rows:
+                hover = [
+                    alt.Tooltip("gear:N"),
+                    alt.Tooltip("kind:N"),
+                    alt.Tooltip("centre:N", title="centre [mm]"),
+                    alt.Tooltip("turns:N"),
+                    alt.Tooltip("held:N"),
+                ]
+                # A floating centre is a ring; white inside, so that hovering finds it.
+                fill = "white" if held == FLOATS else INK
+                points = chart(rows).mark_point(
+                    shape=shape, size=60, fill=fill, stroke=INK, strokeWidth=1.4, opacity=1
+                )
+                layers.append(points.encode(x=self.x, y=self.y, tooltip=hover))
+        return layers
+
+    def _names(self) -> list[Any]:
+        for body in self.bodies[::-1]:
+            (place, *_) = self._flat(body.centre)
+            self.labels.avoid([place])
+        spots: dict[Point, list[str]] = {}
+        for name, body in self.layout.bodies.items():
+            (place, *_) = self._flat(body.centre)
+            # Coaxial gears share one label.
+            key = next((k for k in spots if math.dist(k, place) < 1e-6), place)
+            spots.setdefault(key, []).append(f"{name} ({body.role})" if body.role else name)
+        for place, names in spots.items():
+            self.labels.place(", ".join(names), [place], gap=7.0)
+        layers = list(self.labels.layers(self.x, self.y, INK, fontWeight="bold"))
+        if self.plan:
+            for pair in self.layout.pairs:
+                if not pair.fits:
+                    (place, *_) = self._flat(pair.pitch_point)
+                    apart = MILLIMETRE.of(pair.distance - pair.needed)
+                    more = "too far apart" if apart > 0.0 else "too close"
+                    self.labels.place(f"{significant(abs(apart), 3)} mm {more}", [place])
+            layers += self.labels.layers(self.x, self.y, WARNING, fontWeight="bold")
+        return layers
+
+
+def _radii_of(pair: Pair, gear: str) -> list[float]:
+    """Pitch radius of a gear in a mesh [m], if it is one of its gears."""
+    ends = (pair.driver, pair.driven)
+    return [radius for end, radius in zip(ends, pair.pitch_radii, strict=True) if end == gear]
+
+
+def _other(pair: Pair, gear: str) -> str:
+    return pair.driven if pair.driver == gear else pair.driver

@@ -1,0 +1,48 @@
+"""Numbers as text."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+NONE = "–"
+"""What stands where there is no figure."""
+
+
+def decimals(values: Iterable[float], significant: int = 5) -> int:
+    """Return how many decimals, at least one, show the largest value to so many digits."""
+    largest = max((abs(v) for v in values if math.isfinite(v)), default=0.0)
+    if largest == 0.0:
+        return 1
+    return min(max(significant - 1 - math.floor(math.log10(largest)), 1), 9)
+
+
+def fixed(value: float | None, places: int) -> str:
+    """Return a value with so many decimals; no minus sign before a zero."""
+    if value is None:
+        return NONE
+    return f"{round(value, places) + 0.0:.{places}f}"
+
+
+def omega(value: float | None) -> str:
+    """Return a load-sharing coefficient."""
+    return fixed(value, 4)
+
+
+def micrometres(value: float | None) -> str:
+    """Return a length [m] in µm."""
+    return fixed(None if value is None else value * 1e6, 3)
+
+
+def small(value: float) -> str:
+    """Return a figure of which only the size matters, such as a residual."""
+    return "0" if value == 0.0 else f"{value:.1e}"
+
+
+def significant(value: float, digits: int = 4) -> str:
+    """Return a value with so many significant digits, without an exponent and trailing zeros."""
+    if value == 0.0 or not math.isfinite(value):
+        return f"{value:g}"
+    places = digits - 1 - math.floor(math.log10(abs(value)))
+    text = f"{round(value, places):.{max(places, 0)}f}"
+    return text.rstrip("0").rstrip(".") if "." in text else text

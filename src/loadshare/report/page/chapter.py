@@ -1,0 +1,215 @@
+"""One case of a page: solved, drawn and put into tables."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from loadshare.case import Case, load_case
+from loadshare.case.reader import load_draft
+from loadshare.errors import CaseError, LoadshareError, Refused
+from loadshare.job import Progress, solve
+from loadshare.report.figure import Figure
+from loadshare.report.figures.train import train as draw
+from loadshare.report.numbers import NONE, omega, small
+from loadshare.report.page import answers
+from loadshare.report.page.inputs import input_tables
+from loadshare.report.page.table import Cell, Table, columns
+from loadshare.results import Result
+
+CERTIFIED, PARTLY, REFUSED, UNUSABLE = "certified", "partly refused", "refused", "cannot be used"
+
+
+@dataclass(frozen=True)
+class Chapter:
+    """Everything that a page tells of one case.
+
+    Attributes
+    ----------
+    file : str
+        As the user named it; empty for a case that was made in Python.
+    title : str
+    outcome : str
+        "certified", "partly refused", "refused" or "cannot be used".
+    verdict : str
+        The outcome in a sentence.
+    problems : list of str
+        What is wrong with the case, or why positions were refused.
+    case : Case or None
+    result : Result or None
+        Of the certified positions.
+    drawing : Figure or None
+    figures : list of Figure
+    tables, inputs : list of Table
+    """
+
+    file: str
+    title: str
+    outcome: str
+    verdict: str
+    problems: list[str]
+    case: Case | None
+    result: Result | None
+    drawing: Figure | None
+    figures: list[Figure] = field(default_factory=list)
+    tables: list[Table] = field(default_factory=list)
+    inputs: list[Table] = field(default_factory=list)
+
+    @property
+    def load(self) -> str:
+        """Load and positions in a sentence."""
+        if self.case is None:
+            return ""
+        operating = self.case.operating
+        torques = operating.input_torque
+        low, high = min(torques), max(torques)
+        load = f"{high:.7g}" if low == high else f"{low:.7g} to {high:.7g}"
+        return f"Input torque {load} N·m on gear {operating.input}, output gear {operating.output}."
+
+    @property
+    def commands(self) -> list[str]:
+        """Commands that reproduce what is shown."""
+        if not self.file:
+            return []
+        name = shlex.quote(self.file)
+        return [f"loadshare run {name}", f"loadshare report {name} -o report.html"]
+
+
+def chapter_of_file(file: str | Path, progress: Progress | None = None) -> Chapter:
+    """Solve a case file and put together its chapter; what is wrong with it becomes part of it.
+
+    Parameters
+    ----------
+    file : path-like
+    progress : Progress, optional
+        Called after every position.
+    """
+    try:
+        case = load_case(file)
+        return chapter(case, str(file), progress)
+    except CaseError as error:
+        return _unusable(str(file), error)
+
+
+def chapter(case: Case, file: str = "", progress: Progress | None = None) -> Chapter:
+    """Solve a case and put together its chapter.
+
+    Parameters
+    ----------
+    case : Case
+    file : str
+        Where it comes from.
+    progress : Progress, optional
+        Called after every position.
+
+    Raises
+    ------
+    CaseError
+        If the case cannot be solved at all.
+    """
+    problems: list[str] = []
+    result: Result | None
+    try:
+        result = solve(case, progress=progress)
+        outcome = CERTIFIED
+    except Refused as refusal:
+        result = refusal.partial
+        problems = str(refusal).splitlines()
+        outcome = REFUSED if result is None else PARTLY
+    return Chapter(
+        file=file,
+        title=case.title or case.name,
+        outcome=outcome,
+        verdict=_verdict(result, len(problems)),
+        problems=problems,
+        case=case,
+        result=result,
+        drawing=draw(case),
+        figures=list(_figures(result)) if result else [],
+        tables=list(_tables(result)) if result else [],
+        inputs=list(input_tables(case)),
+    )
+
+
+def _unusable(file: str, error: CaseError) -> Chapter:
+    drawing: Figure | None = None
+    title = Path(file).stem
+    try:
+        draft = load_draft(file)
+        title = draft.title or title
+        drawing = draw(draft)
+    except LoadshareError:
+        # A file that cannot be read at all, or places no gear: its problems say so.
+        pass
+    return Chapter(
+        file=file,
+        title=title,
+        outcome=UNUSABLE,
+        verdict="This case cannot be used; nothing was solved.",
+        problems=[str(problem) for problem in error.problems],
+        case=None,
+        result=None,
+        drawing=drawing,
+    )
+
+
+def _verdict(result: Result | None, refused: int) -> str:
+    if result is None:
+        return "No position has a certified answer."
+    done = len(result.positions)
+    worst = result.certificate.worst
+    return (
+        f"{done} of {done + refused} positions certified; worst scaled residual {small(worst)}, "
+        f"allowed {result.stamp.tolerance:.0e}."
+    )
+
+
+def _figures(result: Result) -> Iterator[Figure]:
+    plots, positions = result.plot, result.positions
+    if any(s is not None for p in positions for s in p.share.values()):
+        yield plots.share()
+        if any(omega(p.share[m]) != omega(p.pair_share[m]) for p in positions for m in p.share):
+            yield plots.share(over="group")
+    if positions[0].floats:
+        yield plots.floats()
+    yield plots.torque()
+    if any(t > 0.0 for p in positions for t in p.torque.values()):
+        yield plots.law()
+
+
+def _tables(result: Result) -> Iterator[Table]:
+    if result.stages:
+        yield answers.omega_table(result)
+    yield answers.torque_table(result)
+    if not answers.alike(result):
+        yield answers.position_table(result)
+    if result.positions[0].floats:
+        yield answers.float_table(result)
+    yield answers.certificate_table(result)
+
+
+def overview(chapters: list[Chapter]) -> Table:
+    """Table of all cases of a page."""
+
+    def figure(value: float | None) -> Cell:
+        return Cell(omega(value), value)
+
+    rows = []
+    for number, one in enumerate(chapters, start=1):
+        result = one.result
+        rows.append(
+            [
+                Cell(f"{number}", number),
+                Cell(one.title, link=f"#case-{number}"),
+                Cell(one.outcome),
+                figure(result.omega["system"] if result else None),
+                figure(result.pair_omega["system"] if result else None),
+                Cell(small(result.certificate.worst), result.certificate.worst)
+                if result
+                else Cell(NONE),
+            ]
+        )
+    figures = ("Ω over stage mean", "Ω over group mean", "worst residual")
+    return Table("All cases", columns(("number", "case", "outcome"), figures), rows)

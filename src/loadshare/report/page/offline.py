@@ -1,0 +1,52 @@
+"""What makes a page work without a network: scripts and templates that are written into it."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+from loadshare.report.save import Spec, vega_lite_version
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+
+EXPOSED = "window.vegaEmbed = vegaEmbed;"
+"""What the page's own script needs of the bundle."""
+
+
+@cache
+def scripts() -> str:
+    """JavaScript that draws Vega-Lite specifications, for a script element."""
+    import vl_convert
+
+    bundle = str(vl_convert.javascript_bundle(EXPOSED, vl_version=vega_lite_version()))
+    # A closing tag within a text of the bundle would end the element.
+    return bundle.replace("</script", "<\\/script")
+
+
+@cache
+def templates() -> Environment:
+    """Templates of this room; what they insert is escaped."""
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    made = Environment(
+        loader=PackageLoader("loadshare.report.page", "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    # JSON knows no NaN; a browser would refuse the whole figure.
+    made.policies["json.dumps_kwargs"] = {"allow_nan": False, "ensure_ascii": True}
+    return made
+
+
+def render(template: str, **values: Any) -> str:
+    """Fill in a template."""
+    return templates().get_template(template).render(scripts=scripts(), **values)
+
+
+def figure_page(spec: Spec, title: str) -> str:
+    """Return a page that shows one figure with hover read-out."""
+    return render("figure.html", title=title, spec=spec)

@@ -1,0 +1,93 @@
+"""The page as a whole."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Iterable
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from loadshare._version import __version__
+from loadshare.case import Case
+from loadshare.report.page.answers import effort_told
+from loadshare.report.page.chapter import Chapter, chapter, chapter_of_file, overview
+from loadshare.report.page.offline import render
+from loadshare.results.files import write_atomically
+
+PACKAGES = ("numpy", "scipy", "clarabel", "altair", "vl-convert-python")
+"""Packages on which figures and pictures depend."""
+
+
+def report_page(chapters: Iterable[Chapter], made: datetime | None = None) -> str:
+    """Return the page of some chapters as HTML.
+
+    Parameters
+    ----------
+    chapters : iterable of Chapter
+        As `chapter` and `chapter_of_file` make them.
+    made : datetime, optional
+        When the page was made; now by default.
+    """
+    found = list(chapters)
+    made = made or datetime.now(UTC)
+    return render(
+        "report.html",
+        title=f"{found[0].title if len(found) == 1 else f'{len(found)} cases'} – load sharing",
+        chapters=found,
+        overview=overview(found) if len(found) > 1 else None,
+        made=made.astimezone(UTC).strftime("%Y-%m-%d %H:%M UTC"),
+        versions=versions(),
+        effort_told=effort_told,
+    )
+
+
+def write_report(cases: Iterable[Case | str | Path], path: str | Path) -> list[Chapter]:
+    """Solve cases and write them, with figures and certificates, into one page that works offline.
+
+    Parameters
+    ----------
+    cases : iterable of Case or path
+        Cases, or paths of case files.
+    path : path-like
+        The page to write.
+
+    Returns
+    -------
+    list of Chapter
+        What the page tells of each case, such as its outcome. A case file that cannot be used and a
+        refused position are part of the page.
+
+    Raises
+    ------
+    CaseError
+        If a `Case` cannot be solved at all.
+    OSError
+        If the page cannot be written.
+    """
+    chapters = [
+        chapter(case) if isinstance(case, Case) else chapter_of_file(case) for case in cases
+    ]
+    save_report(chapters, path)
+    return chapters
+
+
+def save_report(chapters: Iterable[Chapter], path: str | Path) -> None:
+    """Write the page of some chapters, whole or not at all."""
+    text = report_page(chapters)
+
+    def write(file: Path) -> None:
+        file.write_text(text, encoding="utf-8")
+
+    write_atomically(Path(path), write)
+
+
+def versions() -> dict[str, str]:
+    """Versions of what the figures and pictures were made with."""
+    found = {"loadshare": __version__, "Python": platform.python_version()}
+    for package in PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            continue
+    return found | {"machine": f"{platform.system()} {platform.machine()}"}

@@ -1,0 +1,134 @@
+"""The look of gears and meshes: the same gear looks the same in every picture.
+
+A look is a colour, a dash and a shape. The colours are told apart with the common colour-vision
+deficiencies and alternate between dark and light; dash and shape carry the distinction in grey.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from loadshare.results import Result
+
+INK = "#1f2933"
+"""Lines and words."""
+SOFT = "#7b8794"
+"""What is beside the point: axes, references, notes."""
+FAINT = "#e4e7eb"
+"""Grids and areas."""
+WARNING = "#b3261e"
+"""What is wrong."""
+
+COLOURS = (
+    "#1b4f8f",
+    "#d98c00",
+    "#0b7a63",
+    "#c94f9b",
+    "#7a2e12",
+    "#3fa0d8",
+    "#5b3a9e",
+    "#8a9a1b",
+    "#c0392b",
+    "#4d5b6a",
+)
+DASHES = ((1, 0), (7, 3), (2, 2), (9, 3, 2, 3), (4, 2), (12, 3), (9, 3, 2, 3, 2, 3))
+SHAPES = ("circle", "square", "triangle-up", "diamond", "triangle-down", "cross", "triangle-right")
+
+Ends = Mapping[str, tuple[str, str]]
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """How a gear is drawn.
+
+    Attributes
+    ----------
+    colour : str
+        Hexadecimal.
+    dash : tuple of int
+        Lengths of strokes and gaps; (1, 0) is a full line.
+    shape : str
+        Of its points, by the name that Vega gives it.
+    """
+
+    colour: str
+    dash: tuple[int, ...]
+    shape: str
+
+
+class Palette:
+    """Looks by the order in which the gears stand in a result or a train.
+
+    Parameters
+    ----------
+    gears : iterable of str
+        In the order in which the power reaches them.
+    ends : mapping of mesh to (driver, driven)
+    """
+
+    def __init__(self, gears: Iterable[str], ends: Ends) -> None:
+        self._number = {gear: number for number, gear in enumerate(gears)}
+        self._ends = ends
+        self._driving = Counter(driver for driver, _ in ends.values())
+        self._driven = Counter(driven for _, driven in ends.values())
+
+    def gear(self, name: str) -> Look:
+        """Look of a gear."""
+        return look(self._number.get(name, len(self._number)))
+
+    def mesh(self, name: str) -> Look:
+        """Look of a mesh: that of the gear by which its branch is told apart."""
+        gear = self.branch(name)
+        return self.gear(gear) if gear else look(len(self._number) + len(name))
+
+    def branch(self, mesh: str) -> str | None:
+        """Gear that tells a mesh from its neighbours; None for a mesh without known gears.
+
+        Where the torque gathers (idlers on an output gear) it is the driver, where the torque
+        divides, or runs on, the driven gear.
+        """
+        if mesh not in self._ends:
+            return None
+        driver, driven = self._ends[mesh]
+        return driver if self._driving[driver] < self._driven[driven] else driven
+
+
+def look(number: int) -> Look:
+    """Look number `number`; 70 differ, neighbours in everything."""
+    return Look(
+        COLOURS[number % len(COLOURS)],
+        DASHES[number % len(DASHES)],
+        SHAPES[number % len(SHAPES)],
+    )
+
+
+def palette_of(result: Result) -> Palette:
+    """Looks of a result's gears and meshes.
+
+    Parameters
+    ----------
+    result : Result
+        Of a case that it carries; without one, the meshes' names tell their gears.
+    """
+    meshes = list(result.positions[0].torque)
+    gears = list(result.frames)
+    if result.case is not None:
+        known = result.case.meshes
+        return Palette(gears, {m: (known[m].driver, known[m].driven) for m in meshes})
+    return Palette(gears, ends_from_names(meshes, gears))
+
+
+def ends_from_names(meshes: Iterable[str], gears: Iterable[str]) -> dict[str, tuple[str, str]]:
+    """Driver and driven gear of the meshes whose names, a-b, tell them."""
+    known = set(gears)
+    ends = {}
+    for mesh in meshes:
+        splits = [(mesh[:k], mesh[k + 1 :]) for k, letter in enumerate(mesh) if letter == "-"]
+        found = [split for split in splits if set(split) <= known]
+        if len(found) == 1:
+            ends[mesh] = found[0]
+    return ends

@@ -1,0 +1,13 @@
+"""The hot path: the force method on an identified set of acting elements, for many samples at once.
+
+One sample is solved like this. A set of acting elements is assumed. On it the redundant forces
+follow from compatibility by Newton's method in displacement form: every nonlinear law is replaced
+by its tangent at the force that belongs to the last *compression* (a closed form), so the tangent
+stays finite when a force vanishes; ring arcs, friction circles and friction bounds that follow the
+torque are renewed in the same passes, and there is no outer loop. Then the signs are checked. What
+has the wrong sign is exchanged, all at once first and one at a time when that goes on too long; a
+sample that finds no consistent set is left to the next rung of the ladder.
+
+`vectorised` does this with NumPy for all samples of a set together, `compiled` with Numba for one
+after another; `exchange` leads either of them from set to set.
+"""

@@ -1,0 +1,67 @@
+"""Where the samples of a batch stand between sets."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.scene.elements import Data, Elements
+from loadshare.scene.scene import Array
+from loadshare.solver.hot.places import FLOOR
+
+
+@dataclass(slots=True, eq=False)
+class State:
+    """Coordinates and forces of every sample, renewed in place.
+
+    Attributes
+    ----------
+    x : ndarray, shape (S, n)
+        Coordinates.
+    force : ndarray, shape (S, m)
+        Forces of all elements, 0 for those that do not act.
+    root : ndarray, shape (S, m)
+        Cube root of the force at which a nonlinear law is replaced by its tangent next.
+    floor : ndarray, shape (S,)
+        Smallest root that a tangent is taken at.
+    """
+
+    x: Array
+    force: Array
+    root: Array
+    floor: Array
+
+    def completed(self, other: State, rows: NDArray[np.bool_]) -> State:
+        """Return this state with some samples as they stand in the other."""
+        for name in ("x", "force", "root", "floor"):
+            getattr(self, name)[rows] = getattr(other, name)[rows]
+        return self
+
+
+def at_rest(elements: Elements, data: Data, share: Array | None = None) -> State:
+    """Return the state before anything has moved.
+
+    Parameters
+    ----------
+    elements : Elements
+    data : Data
+    share : ndarray, shape (m,), optional
+        Force of every element over the load at which laws are first taken; a half by default.
+    """
+    push = pushes(data)
+    count, width = data.count, len(elements.kinds)
+    share = np.full(width, 0.5) if share is None else np.maximum(share, 1e-6)
+    return State(
+        x=np.zeros((count, elements.scene.size)),
+        force=np.zeros((count, width)),
+        root=np.cbrt(push)[:, None] * np.cbrt(share),
+        floor=FLOOR * np.cbrt(push),
+    )
+
+
+def pushes(data: Data) -> Array:
+    """Largest load of every sample, shape (S,); 1 where there is none."""
+    push = np.abs(data.load).max(axis=1, initial=0.0)
+    return np.broadcast_to(np.where(push > 0.0, push, 1.0), (data.count,))

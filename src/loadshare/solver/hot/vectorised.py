@@ -1,0 +1,592 @@
+"""All samples of one set together, with NumPy."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.scene.elements import Basis, Data, Elements
+from loadshare.scene.scene import Array
+from loadshare.solver.hot import places as at
+from loadshare.solver.hot.state import State
+
+Rows = NDArray[np.intp]
+Codes = NDArray[np.int8]
+Flags = NDArray[np.bool_]
+
+
+def settle(
+    elements: Elements,
+    data: Data,
+    basis: Basis,
+    code: Codes,
+    rows: Rows,
+    state: State,
+    one_only: Flags,
+) -> tuple[Codes, Codes]:
+    """Solve samples on one set and say what has the wrong sign.
+
+    Parameters
+    ----------
+    elements : Elements
+    data : Data
+    basis : Basis
+        Of the set.
+    code : ndarray of int8, shape (switches,)
+        The set.
+    rows : ndarray of int, shape (k,)
+        Samples to solve.
+    state : State
+        Where each sample stands; renewed in place.
+    one_only : ndarray of bool, shape (S,)
+        Exchange only one element of these samples.
+
+    Returns
+    -------
+    verdict : ndarray of int8, shape (k,)
+        DONE, OTHER or FAILED.
+    proposal : ndarray of int8, shape (k, switches)
+        Set to try next.
+    """
+    with np.errstate(all="ignore"):
+        passes = _Passes(elements, data, basis, code, rows, state)
+        drifting = passes.drifting()
+        passes.run(one_only[rows] | drifting)
+        wrong, moved = passes.wrong(at.SIGN)
+        hurried = passes.hurried.any(axis=1)
+        wrong[hurried] = passes.hurried[hurried]
+        moved[hurried] = passes.hurried_to[hurried]
+        if drifting.any():
+            # Only what stops the drift is of interest.
+            stopping, places = passes.stopped_by()
+            wrong[drifting], moved[drifting] = stopping[drifting], places[drifting]
+            passes.settled &= ~drifting
+            passes.refused &= ~drifting
+    passes.store(state)
+    single = one_only[rows]
+    first = np.zeros_like(wrong)
+    first[np.arange(len(rows)), wrong.argmax(axis=1)] = True
+    wrong &= first | ~single[:, None]
+    verdict = np.where(passes.settled, at.DONE, at.FAILED)
+    verdict[wrong.any(axis=1)] = at.OTHER
+    verdict[passes.refused] = at.FAILED
+    return verdict.astype(np.int8), np.where(wrong, moved, code).astype(np.int8)
+
+
+@dataclass(slots=True)
+class _Block:
+    """Tangent of a radial element of the set: compression = offset + compliance · force.
+
+    On the level piece the force along `along` is `bound` and the compression that way is free.
+    """
+
+    columns: slice
+    compliance: Array
+    offset: Array
+    along: Array
+    bound: Array | None
+
+
+class _Passes:
+    """Newton passes of some samples on one set.
+
+    Attributes
+    ----------
+    settled, refused, burst : ndarray of bool, shape (k,)
+        Whether the passes arrived; whether a law has no meaning or a number overflowed; whether
+        rigid contacts contradict one another, so that their forces grow without bound.
+    hurried, hurried_to : ndarray, shape (k, switches)
+        What was clearly wrong before the passes had settled, and the set that mends it.
+    loose : ndarray of int, shape (k, flanks with a power law)
+        How many passes in a row a flank was not compressed.
+    outside : ndarray of int, shape (k, radial elements)
+        How many passes in a row an element was beyond its level piece.
+    """
+
+    def __init__(
+        self,
+        elements: Elements,
+        data: Data,
+        basis: Basis,
+        code: Codes,
+        rows: Rows,
+        state: State,
+    ) -> None:
+        self.elements, self.data, self.basis = elements, data, basis
+        self.code, self.rows = code, rows
+        columns, count = basis.columns, len(rows)
+        shape = (count, len(columns))
+        self.load = np.broadcast_to(pick(data.load, rows), (count, elements.scene.size))
+        self.gap = np.array(np.broadcast_to(pick(data.gap, rows)[:, columns], shape))
+        self.bending = np.broadcast_to(pick(data.bending, rows)[:, columns], shape)
+        self.hertz = np.broadcast_to(pick(data.hertz, rows)[:, columns], shape)
+        self.power = np.flatnonzero((data.hertz[:, columns] > 0.0).any(axis=0))
+        self.table = np.flatnonzero(data.tabulated[columns] >= 0).tolist()
+        self.x, self.floor = state.x[rows], state.floor[rows]
+        self.force, self.root = state.force[rows][:, columns], state.root[rows][:, columns]
+        self.z = self.force @ basis.redundant
+        self.compression, self.misfit = np.zeros(shape), np.zeros(count)
+        first_arc = elements.springs + len(elements.scene.rows)
+        arcs = columns - first_arc
+        self.arc_at = np.flatnonzero((arcs >= 0) & (arcs < len(elements.scene.arcs)))
+        self.arc = arcs[self.arc_at]
+        self.radial = [
+            (j, int(place), int(np.searchsorted(columns, elements.radial_column(j))))
+            for j, place in enumerate(code[elements.rows :])
+            if place != at.OPEN
+        ]
+        self.scalar = np.flatnonzero(columns < elements.springs + elements.rows)
+        self.contact = self.scalar[columns[self.scalar] >= elements.springs]
+        n = basis.redundant
+        self.products = (n[:, :, None] * n[:, None, :]).reshape(len(columns), n.shape[1] ** 2)
+        self.push = np.abs(self.load).max(axis=1, initial=0.0)
+        self.unit = np.where(self.push > 0.0, self.push, 1.0)
+        self.settled, self.burst = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
+        self.refused = np.zeros(count, dtype=bool)
+        self.hurried = np.zeros((count, elements.switches), dtype=bool)
+        self.hurried_to = np.repeat(code[None, :], count, axis=0)
+        self.loose = np.zeros((count, len(self.power)), dtype=int)
+        self.outside = np.zeros((count, elements.switches - elements.rows), dtype=int)
+
+    def run(self, patient: Flags) -> None:
+        """Pass until every sample is settled, refused, or asks for another set.
+
+        Parameters
+        ----------
+        patient : ndarray of bool, shape (k,)
+            Samples whose signs are looked at only when they are settled.
+        """
+        straight = (at.STICK, at.PINNED)
+        bent = [place for _, place, _ in self.radial if place not in straight]
+        curved = len(self.arc) + len(bent) + len(self.table) > 0
+        previous = np.full(len(self.rows), np.inf)
+        for number in range(at.PASSES):
+            x, force = self.x, self.force
+            self._pass(self._blocks())
+            laws = self._renew_laws()
+            if curved and number < 2:
+                self._hurry((laws <= at.NEARLY) & ~patient)
+            yielded = np.abs(self.compression[:, self.contact]).max(axis=1, initial=0.0)
+            closing = self.misfit / np.where(yielded > 0.0, yielded, np.inf)
+            misfit = np.maximum(closing, laws * (at.SETTLED / at.LAW))
+            if curved:
+                step = np.maximum(change(self.force, force), change(self.x, x))
+                misfit = np.maximum(misfit, step)
+            # A law's tangent leaves a misfit of second order, so a small one need not be repeated.
+            stalled = (number > 2) & (misfit <= at.STALLED) & (misfit >= 0.5 * previous)
+            self.settled = (misfit <= at.SETTLED) | stalled
+            self.refused |= ~np.isfinite(self.x).all(axis=1)
+            previous = misfit
+            self.burst = np.abs(self.force).max(axis=1, initial=0.0) > at.BURST * self.unit
+            hopeless = (self.loose >= at.PATIENCE).any(axis=1) | self._slipped_out() | self.burst
+            hopeless |= self.hurried.any(axis=1)
+            if (self.settled | self.refused | hopeless).all():
+                break
+        # What creeps on without end is left to the certificate.
+        self.settled |= previous <= at.CREEP
+        self.settled &= ~self.burst
+        self.settled &= ~self.refused
+
+    def _pass(self, blocks: list[_Block]) -> None:
+        """One Newton pass: redundants, forces, compressions, coordinates."""
+        particular, n = self.basis.particular, self.basis.redundant
+        tangent, shift = self._tangents()
+        load, gap = self._at_arcs()
+        statics = load @ particular.T + self.z @ n.T
+        stretch = gap + shift + tangent * statics
+        size, count = n.shape[1], len(self.rows)
+        borders = [b for b in blocks if b.bound is not None]
+        matrix = np.zeros((count, size + len(borders), size + len(borders)))
+        sides = np.zeros((count, size + len(borders)))
+        matrix[:, :size, :size] = (tangent @ self.products).reshape(count, size, size)
+        for b in blocks:
+            stretch[:, b.columns] += b.offset + times(b.compliance, statics[:, b.columns])
+            part = n[b.columns]
+            matrix[:, :size, :size] += part.T @ b.compliance @ part
+        for e, b in enumerate(borders, start=size):
+            matrix[:, e, :size] = matrix[:, :size, e] = b.along @ n[b.columns]
+            sides[:, e] = b.bound - (b.along * statics[:, b.columns]).sum(axis=1)
+        sides[:, :size] = -stretch @ n
+        solved = solve(matrix, sides, size)
+        self.z = self.z + solved[:, :size]
+        self.force = statics + solved[:, :size] @ n.T
+        self.compression = shift + tangent * self.force
+        for b in blocks:
+            moved = b.offset + times(b.compliance, self.force[:, b.columns])
+            self.compression[:, b.columns] = moved
+        for e, b in enumerate(borders, start=size):
+            self.compression[:, b.columns] += solved[:, e, None] * b.along
+        self.x = (gap + self.compression) @ particular
+        self.misfit = np.abs((gap + self.compression) @ n).max(axis=1, initial=0.0)
+
+    def _tangents(self) -> tuple[Array, Array]:
+        """Tangent compliance of every scalar element, and what its tangent leaves at no force."""
+        tangent, shift = np.array(self.bending), np.zeros_like(self.gap)
+        if len(self.power):
+            root, c = self.root[:, self.power], self.hertz[:, self.power]
+            tangent[:, self.power] += 2.0 / 3.0 * c / root
+            shift[:, self.power] = c * root**2 / 3.0
+        for k in self.table:
+            forces, compressions = self._points(k)
+            force, start, slope = piece(forces, compressions, forces, self.root[:, k] ** 3)
+            tangent[:, k], shift[:, k] = slope, start - slope * force
+        return tangent, shift
+
+    def _points(self, k: int) -> tuple[Array, Array]:
+        """Points of a tabulated law, (S or 1, points) each."""
+        mesh = self.data.tabulated[self.basis.columns[k]]
+        table = pick(self.data.tables, self.rows)[:, mesh]
+        return table[:, 0], table[:, 1]
+
+    def _renew_laws(self) -> Array:
+        """Take the next tangents at the compressions; return the laws' misfit, relative."""
+        misfit = np.zeros(len(self.rows))
+        if len(self.power):
+            b, c = self.bending[:, self.power], self.hertz[:, self.power]
+            force, compression = self.force[:, self.power], self.compression[:, self.power]
+            root, floor = self.root[:, self.power], self.floor[:, None]
+            touching = (force > 0.0) & (compression > 0.0)
+            self.loose = np.where(touching, 0, self.loose + 1)
+            true = b * force + c * np.cbrt(np.maximum(force, 0.0)) ** 2
+            off = np.where(touching, np.abs(true - compression), 0.0)
+            # At the floor a flank that carries nothing has arrived.
+            waiting = ~touching & (root > floor)
+            largest = np.abs(self.compression[:, self.scalar]).max(axis=1)
+            misfit = off.max(axis=1) / largest
+            misfit[waiting.any(axis=1)] = 1.0
+            self.loose[touching | (np.abs(force) <= at.SIGN * self.push[:, None])] = 0
+            following = root_of(b, c, np.where(touching, compression, 1.0))
+            self.root[:, self.power] = np.maximum(
+                np.where(touching, following, at.SHRINK * root), floor
+            )
+        for k in self.table:
+            forces, compressions = self._points(k)
+            compression = self.compression[:, k]
+            force, start, slope = piece(compressions, forces, compressions, compression)
+            self.root[:, k] = np.cbrt(np.maximum(start + slope * (compression - force), 0.0))
+        return misfit
+
+    def _at_arcs(self) -> tuple[Array, Array]:
+        """Loads and gaps with the arcs' faces turned to where they are now."""
+        if not len(self.arc):
+            return self.load, self.gap
+        load, gap = np.array(self.load), self.gap
+        for k, a in zip(self.arc_at, self.arc, strict=True):
+            normal, margin = arc_at(self.data, a, self.rows, self.x)
+            base = self.basis.directions[k]
+            load -= self.force[:, k, None] * (-normal @ self.data.relative[a] - base)
+            gap[:, k] = margin + self.x @ base
+        return load, gap
+
+    def _blocks(self) -> list[_Block]:
+        """Tangents of the radial elements where they are now."""
+        blocks = []
+        for j, place, k in self.radial:
+            law = self._graph(j)
+            self.refused |= ~law.valid
+            columns = slice(k, k + 2)
+            offset = self._offset(j)
+            size = np.maximum(self.push, 1e-300)
+            blocks.append(block(columns, place, law, offset, self.force[:, columns], size))
+        return blocks
+
+    def _slipped_out(self) -> Flags:
+        """Samples with a radial element that stays far beyond the end of its level piece."""
+        for j, place, _ in self.radial:
+            if place == at.SLIP:
+                radius = np.sqrt((self._offset(j) ** 2).sum(axis=1))
+                beyond = radius > at.BEYOND * self._graph(j).reach
+                self.outside[:, j] = np.where(beyond, self.outside[:, j] + 1, 0)
+        return np.asarray((self.outside >= at.OUTSIDE).any(axis=1))
+
+    def _graph(self, j: int) -> at.Graph:
+        carried = self.force @ self.data.carried[j, self.basis.columns]
+        return at.graph(pick(self.data.radial, self.rows)[:, j], carried)
+
+    def _offset(self, j: int) -> Array:
+        column = self.elements.radial_column(j)
+        matrix = self.elements.vectors[column : column + 2]
+        centre = pick(self.data.gap, self.rows)[:, column : column + 2]
+        return np.asarray(self.x @ matrix.T - centre)
+
+    def _hurry(self, these: Flags) -> None:
+        """Give up sets that are clearly wrong before they are settled."""
+        these = these & ~self.hurried.any(axis=1)
+        if not these.any():
+            return
+        before, self.settled = self.settled, these
+        wrong, moved = self.wrong(at.HURRY)
+        self.settled = before
+        wrong &= these[:, None]
+        self.hurried |= wrong
+        self.hurried_to[these] = moved[these]
+
+    def wrong(self, sign: float) -> tuple[Flags, Codes]:
+        """Which elements have the wrong sign, and where they should stand instead."""
+        elements, data = self.elements, self.data
+        wrong = np.zeros((len(self.rows), elements.switches), dtype=bool)
+        moved = np.repeat(self.code[None, :], len(self.rows), axis=0)
+        largest_force = np.maximum(np.abs(self.force).max(axis=1, initial=0.0), self.push)
+        furthest = np.abs(self.x).max(axis=1, initial=0.0)
+        yielded = np.abs(self.compression[:, self.scalar]).max(axis=1, initial=0.0)
+        force_band = sign * largest_force
+        length_band = sign * np.maximum(yielded, 1e-3 * furthest)
+        rows = slice(elements.springs, elements.springs + elements.rows)
+        approach = self.x @ elements.vectors[rows].T - pick(data.gap, self.rows)[:, rows]
+        for a in range(len(elements.scene.arcs)):
+            approach[:, len(elements.scene.rows) + a] = -arc_at(data, a, self.rows, self.x)[1]
+        closed = self.code[: elements.rows] == at.CLOSED
+        wrong[:, : elements.rows] = approach > length_band[:, None]
+        place = np.flatnonzero(
+            (self.basis.columns >= rows.start) & (self.basis.columns < rows.stop)
+        )
+        switch = self.basis.columns[place] - rows.start
+        wrong[:, switch] = self.force[:, place] < -force_band[:, None]
+        moved[:, : elements.rows] = np.where(closed, at.OPEN, at.CLOSED)
+        acting = {j: k for j, _, k in self.radial}
+        for j in range(elements.switches - elements.rows):
+            s, k = elements.rows + j, acting.get(j)
+            force = self.force[:, k : k + 2] if k is not None else np.zeros((len(self.rows), 2))
+            wrong[:, s], moved[:, s] = misplaced(
+                int(self.code[s]), self._graph(j), self._offset(j), force, force_band, length_band
+            )
+        slipped = (self.outside >= at.OUTSIDE) & ~self.settled[:, None]
+        pulled = wrong & self.burst[:, None] & np.append(closed, np.zeros_like(slipped[0]))
+        wrong &= self.settled[:, None]
+        wrong[:, elements.rows :] |= slipped
+        wrong |= pulled
+        # What the passes could not settle may still say which flank is open.
+        power = self.basis.columns[self.power] - elements.springs
+        opening = (self.loose >= at.PATIENCE) & ~self.settled[:, None]
+        wrong[:, power] |= opening
+        return wrong, moved
+
+    def drifting(self) -> Flags:
+        """Samples whose load pushes along a move that no acting element resists."""
+        along = self.load @ self.basis.loose
+        return np.asarray(np.abs(along).max(axis=1, initial=0.0) > at.DRIFT * self.push)
+
+    def stopped_by(self) -> tuple[Flags, Codes]:
+        """What is first in the way of a drift, if anything, and where it stands then."""
+        elements = self.elements
+        stopping = np.zeros((len(self.rows), elements.switches), dtype=bool)
+        loose = self.basis.loose
+        drift = (self.load @ loose) @ loose.T
+        rows = slice(elements.springs, elements.springs + elements.rows)
+        speed = drift @ elements.vectors[rows].T
+        room = pick(self.data.gap, self.rows)[:, rows] - self.x @ elements.vectors[rows].T
+        for a in range(len(elements.scene.arcs)):
+            margin = arc_at(self.data, a, self.rows, self.x)[1]
+            room[:, len(elements.scene.rows) + a] = margin
+        fast = at.DRIFT * np.abs(drift).max(axis=1, initial=0.0)[:, None]
+        way = np.where(speed > fast, np.maximum(room, 0.0) / speed, np.inf)
+        way[:, self.code[: elements.rows] == at.CLOSED] = np.inf
+        places = np.repeat(self.code[None, :], len(self.rows), axis=0)
+        places[:, : elements.rows] = at.CLOSED
+        ends = [way]
+        for j in range(elements.switches - elements.rows):
+            column = elements.radial_column(j)
+            law, offset = self._graph(j), self._offset(j)
+            velocity = drift @ elements.vectors[column : column + 2].T
+            reached = until(offset, velocity, law.reach, fast[:, 0])
+            free = self.code[elements.rows + j] == at.OPEN
+            ends.append(np.where(free, reached, np.inf)[:, None])
+            places[:, elements.rows + j] = beyond(law)
+        ways = np.concatenate(ends, axis=1)
+        everyone, nearest = np.arange(len(self.rows)), ways.argmin(axis=1)
+        stopping[everyone, nearest] = np.isfinite(ways[everyone, nearest])
+        return stopping, places
+
+    def store(self, state: State) -> None:
+        """Write back where the samples stand."""
+        columns = self.basis.columns
+        state.x[self.rows] = self.x
+        force = np.zeros((len(self.rows), len(self.elements.kinds)))
+        force[:, columns] = self.force
+        state.force[self.rows] = force
+        state.root[np.ix_(self.rows, columns)] = self.root
+
+
+def pick(array: Array, rows: Rows) -> Array:
+    """Return the rows of an array, or its only one."""
+    return array[rows] if len(array) > 1 else array
+
+
+def solve(matrix: Array, sides: Array, size: int) -> Array:
+    """Solve (k, n, n) symmetric systems; singular ones through a proximal term.
+
+    Rigid contacts that push along one line leave their shares open: the matrix is singular, and any
+    solution is one. The refined proximal solution tends to the one of least norm; shares that
+    contradict one another grow without bound and are told by their signs.
+
+    Parameters
+    ----------
+    matrix : ndarray, shape (k, n, n)
+    sides : ndarray, shape (k, n)
+    size : int
+        Rows of the positive semidefinite part; the rest are constraints.
+    """
+    if not matrix.shape[1]:
+        return sides
+    scale = np.abs(matrix).max(axis=(1, 2))
+    scale = np.where(scale > 0.0, scale, 1.0)
+    normed, target = matrix / scale[:, None, None], sides / scale[:, None]
+    solved: Array = np.zeros(sides.shape)
+    regular = np.linalg.slogdet(normed)[0] != 0.0
+    solved[regular] = np.linalg.solve(normed[regular], target[regular][:, :, None])[:, :, 0]
+    residual = np.abs(times(normed, solved) - target).max(axis=1)
+    regular &= residual <= at.REFINED * np.maximum(np.abs(solved).max(axis=1), 1e-300)
+    if not regular.all():
+        sign = np.where(np.arange(matrix.shape[1]) < size, 1.0, -1.0)
+        normed, target = normed[~regular], target[~regular]
+        proximal = normed + at.PROXIMAL * np.diag(sign)
+        found: Array = np.zeros(target.shape)
+        for _ in range(at.REFINEMENTS):
+            left = target - times(normed, found)
+            found += np.linalg.solve(proximal, left[:, :, None])[:, :, 0]
+        solved[~regular] = found
+    return solved
+
+
+def times(matrices: Array, vectors: Array) -> Array:
+    """Return the products of (k, n, n) with (k, n)."""
+    return np.asarray((matrices @ vectors[:, :, None])[:, :, 0])
+
+
+def change(now: Array, before: Array) -> Array:
+    """Largest change of a row over its largest entry."""
+    size = np.abs(now).max(axis=1, initial=0.0)
+    return np.asarray(np.abs(now - before).max(axis=1, initial=0.0) / np.maximum(size, 1e-300))
+
+
+def root_of(b: Array, c: Array, compression: Array) -> Array:
+    """Return F^(1/3) of the law b F + c F^(2/3), c > 0, from above as in `PowerLaw.force`."""
+    y = np.sqrt(compression / c)
+    y = np.where(b > 0.0, np.minimum(y, np.cbrt(compression / np.where(b > 0.0, b, 1.0))), y)
+    for _ in range(60):
+        step = ((b * y + c) * y**2 - compression) / ((3.0 * b * y + 2.0 * c) * y)
+        y = y - step
+        if (np.abs(step) <= 1e-15 * y).all():
+            break
+    return y
+
+
+def piece(axis: Array, values: Array, points: Array, where: Array) -> tuple[Array, Array, Array]:
+    """Start on the axis, start value and slope of the piece of a table that holds `where`."""
+    last = (~np.isnan(axis)).sum(axis=1) - 2
+    k = np.clip((points <= where[:, None]).sum(axis=1) - 1, 0, last)[:, None]
+    axis, values = (np.broadcast_to(v, (len(k), v.shape[1])) for v in (axis, values))
+    x0, x1 = np.take_along_axis(axis, k, 1)[:, 0], np.take_along_axis(axis, k + 1, 1)[:, 0]
+    y0, y1 = np.take_along_axis(values, k, 1)[:, 0], np.take_along_axis(values, k + 1, 1)[:, 0]
+    return x0, y0, (y1 - y0) / (x1 - x0)
+
+
+def arc_at(data: Data, a: int, rows: Rows, x: Array) -> tuple[Array, Array]:
+    """Normal (k, 3) and margin (k,) of an arc at the coordinates x (k, n)."""
+    nominal = data.nominal[a]
+    moved = pick(data.shift, rows)[:, a] + x @ data.relative[a].T
+    d = nominal + moved
+    here = np.sqrt((d * d).sum(axis=1))
+    grown = 2.0 * moved @ nominal + (moved * moved).sum(axis=1)
+    margin = grown / (here + np.sqrt(nominal @ nominal))
+    return d / here[:, None], margin + pick(data.clearance, rows)[:, a]
+
+
+def until(offset: Array, velocity: Array, reach: Array, slow: Array) -> Array:
+    """How far to go until |offset + t velocity| = reach, (k,); infinite for what stands still."""
+    square = (velocity * velocity).sum(axis=1)
+    along = (offset * velocity).sum(axis=1)
+    inside = np.maximum(reach * reach - (offset * offset).sum(axis=1), 0.0)
+    far = (np.sqrt(along * along + square * inside) - along) / square
+    return np.where(square > slow * slow, np.maximum(far, 0.0), np.inf)
+
+
+def beyond(law: at.Graph) -> Codes:
+    """Place of a radial element past its level piece."""
+    rigid = np.where(law.reach > 0.0, at.WALL, at.PINNED)
+    return np.where(np.isinf(law.last), rigid, at.STOP).astype(np.int8)
+
+
+def direction(first: Array, second: Array) -> Array:
+    """Unit vectors along `first`, or `second` where that is zero, or x."""
+    vector = np.where((first != 0.0).any(axis=1)[:, None], first, second)
+    size = np.sqrt((vector * vector).sum(axis=1))
+    along = vector / np.where(size > 0.0, size, 1.0)[:, None]
+    along[size == 0.0] = (1.0, 0.0)
+    return along
+
+
+def block(
+    columns: slice, place: int, law: at.Graph, offset: Array, force: Array, push: Array
+) -> _Block:
+    """Tangent of a radial element at its current offset and force."""
+    count = len(offset)
+    one = np.broadcast_to(np.eye(2), (count, 2, 2))
+    radius, size = (np.sqrt((v * v).sum(axis=1)) for v in (offset, force))
+    if place in (at.CORNER, at.WALL):
+        along = direction(force, offset)
+        limit = law.stick if place == at.CORNER else law.reach
+        inner, outer = np.zeros(count), limit / np.where(size > 0.0, size, push)
+        start = limit
+    else:
+        along = direction(offset, force)
+        if place == at.STICK:
+            inner = outer = 1.0 / law.first
+            start = np.zeros(count)
+        elif place == at.PINNED:
+            inner = outer = start = np.zeros(count)
+        elif place == at.SLIP:
+            # Beyond the piece the true tangent is too soft to find the way back.
+            inner, start = np.zeros(count), np.zeros(count)
+            outer = np.clip(radius, law.stick, law.reach) / law.bound
+        else:
+            reached = np.maximum(radius, law.reach)
+            pull = law.bound + law.last * (reached - law.reach)
+            inner = 1.0 / law.last
+            outer = np.where(pull > 0.0, reached / np.where(pull > 0.0, pull, 1.0), inner)
+            start = law.reach - law.bound / law.last
+    dyad = along[:, :, None] * along[:, None, :]
+    compliance = inner[:, None, None] * dyad + outer[:, None, None] * (one - dyad)
+    bound = law.bound if place == at.SLIP else None
+    return _Block(columns, compliance, start[:, None] * along, along, bound)
+
+
+def misplaced(
+    place: int, law: at.Graph, offset: Array, force: Array, force_band: Array, length_band: Array
+) -> tuple[Flags, Codes]:
+    """Whether a radial element has left its place, and where it should stand instead."""
+    radius, size = (np.sqrt((v * v).sum(axis=1)) for v in (offset, force))
+    jump = law.bound > law.first * law.stick * (1.0 + 1e-9)
+    past = beyond(law)
+    level = np.where(law.reach > law.stick, at.SLIP, past)
+    back = np.where(law.stick > 0.0, np.where(jump, at.CORNER, at.STICK), at.PINNED)
+    back = np.where((law.bound == 0.0) & (law.reach > 0.0), at.OPEN, back)
+    inward = (offset * force).sum(axis=1) < 0.0
+    stays = np.full(len(radius), place)
+    if place == at.OPEN:
+        up, down, after, before = radius > law.reach + length_band, False, past, stays
+    elif place == at.STICK:
+        up, down = size > law.first * law.stick + force_band, False
+        after, before = np.where(jump, at.CORNER, level), stays
+    elif place == at.CORNER:
+        up, down = size > law.bound + force_band, size < law.first * law.stick - force_band
+        after, before = level, np.full(len(radius), at.STICK)
+    elif place == at.PINNED:
+        up = (size > law.bound + force_band) & (law.bound > 0.0)
+        down, after, before = False, level, stays
+    elif place == at.SLIP:
+        up, down = radius > law.reach + length_band, (radius < law.stick - length_band) | inward
+        after, before = past, back
+    elif place == at.STOP:
+        up, down = False, ((radius < law.reach - length_band) | inward) & (law.reach > 0.0)
+        after, before = (
+            stays,
+            np.where(law.reach > law.stick, np.where(law.bound > 0.0, at.SLIP, back), back),
+        )
+    else:
+        up, down = False, size <= force_band
+        after, before = stays, np.full(len(radius), at.OPEN)
+    wrong = np.broadcast_to(up | down, radius.shape)
+    return wrong, np.where(up, after, before).astype(np.int8)

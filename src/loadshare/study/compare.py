@@ -1,0 +1,227 @@
+"""Measured against computed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from loadshare.case import Case
+from loadshare.case.keys import dotted
+from loadshare.case.measured import COEFFICIENTS, Measurement
+from loadshare.errors import CaseError
+from loadshare.job import Progress, solve
+from loadshare.results import Result
+from loadshare.study.positions import loaded
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+MEANS = ("torque", "share", "pair_share")
+"""Quantities of a mesh: without a position, their mean over all positions is meant."""
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """One measured figure.
+
+    Attributes
+    ----------
+    measurement : str
+    quantity : str
+        "torque", "share", "pair_share", "omega" or "pair_omega".
+    where : str
+        Mesh or stage.
+    position : int or None
+    value, uncertainty : float
+        [N·m] or [-].
+    """
+
+    measurement: str
+    quantity: str
+    where: str
+    position: int | None
+    value: float
+    uncertainty: float
+
+    @property
+    def unit(self) -> str:
+        """SI unit."""
+        return "N*m" if self.quantity == "torque" else ""
+
+    @property
+    def key(self) -> str:
+        """Where the figure stands in the case."""
+        return dotted(("measured", self.measurement, self.quantity, self.where))
+
+
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """A measured figure and the one computed for it.
+
+    Attributes
+    ----------
+    target : Target
+    computed : float
+        [N·m] or [-].
+    """
+
+    target: Target
+    computed: float
+
+    @property
+    def difference(self) -> float:
+        """Computed less measured."""
+        return self.computed - self.target.value
+
+    @property
+    def deviations(self) -> float:
+        """The difference in standard deviations of the measurement."""
+        return self.difference / self.target.uncertainty
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All measured figures of a case against the computed ones.
+
+    Attributes
+    ----------
+    deviations : tuple of Deviation
+    result : Result
+        What was computed, certified.
+    """
+
+    deviations: tuple[Deviation, ...]
+    result: Result
+
+    @property
+    def chi_square(self) -> float:
+        """Sum of the squared deviations, in standard deviations."""
+        return math.fsum(d.deviations**2 for d in self.deviations)
+
+    def to_frame(self) -> pd.DataFrame:
+        """The comparison as a table."""
+        import pandas as pd
+
+        return pd.DataFrame(
+            {
+                "measurement": [d.target.measurement for d in self.deviations],
+                "quantity": [d.target.quantity for d in self.deviations],
+                "where": [d.target.where for d in self.deviations],
+                "position": [d.target.position for d in self.deviations],
+                "measured": [d.target.value for d in self.deviations],
+                "uncertainty": [d.target.uncertainty for d in self.deviations],
+                "computed": [d.computed for d in self.deviations],
+                "difference": [d.difference for d in self.deviations],
+                "deviations": [d.deviations for d in self.deviations],
+            }
+        )
+
+
+def compare(case: Case | str | FilePath, *, progress: Progress | None = None) -> Comparison:
+    """Compare what a case says was measured with what is computed.
+
+    Parameters
+    ----------
+    case : Case or path
+        With at least one table ``[measured.NAME]``.
+    progress : Progress, optional
+        Called after every position.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    CaseError
+        If the case holds no measurement, or cannot be used.
+    Refused
+        If a position has no certified equilibrium.
+
+    Examples
+    --------
+    >>> import loadshare as ls
+    >>> case = ls.load_case("cases/fgfbstts/both_errors.toml")
+    >>> printed = {"6-10": 0.933, "7-10": 1.067}
+    >>> measured = {"position": 1, "pair_share": printed, "uncertainty": 0.002}
+    >>> found = ls.compare(case.replace({"measured.fig10": measured}))
+    >>> [f"{d.target.where}: {d.difference:+.4f}" for d in found.deviations]
+    ['6-10: +0.0011', '7-10: -0.0011']
+    """
+    case = loaded(case)
+    wanted = targets(case)
+    result = solve(case, positions=needed(wanted), progress=progress)
+    return Comparison(tuple(Deviation(t, computed(t, result)) for t in wanted), result)
+
+
+def targets(case: Case) -> list[Target]:
+    """Return all measured figures of a case.
+
+    Raises
+    ------
+    CaseError
+        If there is none.
+    """
+    found = [t for name, m in case.measured.items() for t in _targets(name, m)]
+    if not found:
+        message = "holds no measurement"
+        raise CaseError([case.problem("measured", message, "tables [measured.NAME]")])
+    return found
+
+
+def _targets(name: str, measurement: Measurement) -> list[Target]:
+    at = measurement.position
+    found = []
+    if measurement.torque and measurement.torque_uncertainty:
+        spread = measurement.torque_uncertainty.si
+        found += [
+            Target(name, "torque", m, at, t.si, spread) for m, t in measurement.torque.items()
+        ]
+    for quantity in COEFFICIENTS:
+        figures: dict[str, float] = getattr(measurement, quantity) or {}
+        spread = measurement.uncertainty or 0.0
+        found += [Target(name, quantity, key, at, v, spread) for key, v in figures.items()]
+    return found
+
+
+def needed(wanted: list[Target]) -> list[int] | None:
+    """Return the positions that the figures need; None for all."""
+    positions = [t.position for t in wanted if t.position is not None]
+    return sorted(set(positions)) if len(positions) == len(wanted) else None
+
+
+def computed(target: Target, result: Result) -> float:
+    """Return the computed figure for a measured one [N·m] or [-]; NaN where there is none."""
+    at = [p for p in result.positions if target.position in (None, p.position)]
+    if target.quantity in MEANS:
+        values = [getattr(p, target.quantity)[target.where] for p in at]
+        return float(np.mean([np.nan if v is None else v for v in values]))
+    kind = "pair_share" if target.quantity == "pair_omega" else "share"
+    meshes = [m for s, own in result.stages.items() if target.where in (s, "system") for m in own]
+    shares = [getattr(p, kind)[m] for p in at for m in meshes]
+    return max((s for s in shares if s is not None), default=np.nan)
+
+
+def slope(target: Target, result: Result, rate: Callable[[int, str], Mapping[str, float]]) -> float:
+    """Return the derivative of a computed figure.
+
+    Parameters
+    ----------
+    target : Target
+    result : Result
+    rate : callable
+        Derivatives by mesh of a quantity ("torque", "share", "pair_share") at a position.
+    """
+    at = [p for p in result.positions if target.position in (None, p.position)]
+    if target.quantity in MEANS:
+        return float(np.mean([rate(p.position, target.quantity)[target.where] for p in at]))
+    kind = "pair_share" if target.quantity == "pair_omega" else "share"
+    meshes = [m for s, own in result.stages.items() if target.where in (s, "system") for m in own]
+    places = [(getattr(p, kind)[m] or 0.0, p.position, m) for p in at for m in meshes]
+    _, position, mesh = max(places)
+    return float(rate(position, kind)[mesh])

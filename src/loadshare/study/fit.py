@@ -1,0 +1,383 @@
+"""Unknown inputs fitted to what was measured: least squares with exact sensitivities."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path as FilePath
+from typing import Any
+
+import numpy as np
+
+from loadshare.case import Case
+from loadshare.errors import CaseError, Problem, Refused
+from loadshare.job import solve
+from loadshare.results import Result
+from loadshare.scene.scene import Array
+from loadshare.study.compare import Comparison, Deviation, Target, computed, needed, slope, targets
+from loadshare.study.parameter import (
+    STUDY,
+    Parameter,
+    Value,
+    grid,
+    named,
+    read_parameter,
+    read_value,
+)
+from loadshare.study.positions import loaded
+from loadshare.study.sensitivity import Sensitivity, sensitivity
+
+TELL_APART = 1e-6
+"""Singular value of the scaled sensitivities, over the largest, below which inputs are not told
+apart."""
+SHARE_OF = 0.1
+"""Part of an input in an undetermined combination from which on it belongs to it."""
+AT_BOUND = 1e-9
+"""Distance to a bound, over the range, that counts as none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """A fitted input.
+
+    Attributes
+    ----------
+    parameter : Parameter
+    low, high, start, value : float
+        In the parameter's unit.
+    deviation : float
+        Standard deviation; infinite where the data do not determine it.
+    at_bound : bool
+    """
+
+    parameter: Parameter
+    low: float
+    high: float
+    start: float
+    value: float
+    deviation: float
+    at_bound: bool
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Inputs fitted to measured figures.
+
+    Attributes
+    ----------
+    case : Case
+        With the fitted values.
+    unknowns : tuple of Unknown
+    covariance, correlation : ndarray, shape (n, n)
+        In the parameters' units; from the stated uncertainties. Infinite (covariance) or NaN
+        (correlation) where the data do not determine an input.
+    singular_values : ndarray, shape (min(m, n),)
+        Of the sensitivities, measured in standard deviations over the range of each unknown.
+    warnings : tuple of str
+        Which inputs the data cannot tell apart, and which stand at a bound.
+    comparison : Comparison
+        Measured against computed at the fitted values, certified.
+    starts : tuple of float
+        χ² reached from every starting point; NaN where one failed.
+    evaluations : int
+        Sets of equilibria solved.
+    """
+
+    case: Case
+    unknowns: tuple[Unknown, ...]
+    covariance: Array
+    correlation: Array
+    singular_values: Array
+    warnings: tuple[str, ...]
+    comparison: Comparison
+    starts: tuple[float, ...]
+    evaluations: int
+
+    @property
+    def chi_square(self) -> float:
+        """Sum of the squared deviations, in standard deviations."""
+        return self.comparison.chi_square
+
+    @property
+    def freedom(self) -> int:
+        """Figures less unknowns."""
+        return len(self.comparison.deviations) - len(self.unknowns)
+
+    @property
+    def values(self) -> dict[str, str | float]:
+        """Fitted values by parameter, as a case file says them."""
+        return {u.parameter.name: Value(u.value, u.parameter.unit).text for u in self.unknowns}
+
+
+def fit(
+    case: Case | str | FilePath,
+    unknowns: Mapping[Any, Sequence[object]],
+    *,
+    starts: int = 1,
+    seed: int = 0,
+    progress: Callable[[int, int], None] | None = None,
+) -> Fit:
+    """Fit inputs of a case to what was measured.
+
+    Parameters
+    ----------
+    case : Case or path
+        With measurements, ``[measured.NAME]``.
+    unknowns : mapping of key to (low, high)
+        Bounds by dotted key path, pattern or tuple of keys (which take the same value). The case's
+        own value is the first starting point if it lies between, else the middle.
+    starts : int
+        Starting points; the further ones are Sobol points between the bounds.
+    seed : int
+        Of those points.
+    progress : callable, optional
+        Called with the number of starting points that are done, and of all.
+
+    Returns
+    -------
+    Fit
+        The best of all starting points.
+
+    Raises
+    ------
+    CaseError
+        If the case holds no measurement, or an unknown or its bounds cannot be used.
+    Refused
+        If no starting point leads to a certified answer.
+
+    Examples
+    --------
+    >>> import loadshare as ls
+    >>> case = ls.load_case("cases/fgfbstts/installation_error.toml")
+    >>> case = case.replace({"measured.bench": {
+    ...     "position": 1, "pair_share": {"6-10": 0.80}, "uncertainty": 0.01}})
+    >>> found = ls.fit(case, {"errors.6.installation[0]": ("0 um", "100 um")})
+    >>> f"{found.unknowns[0].value:.2f} ± {found.unknowns[0].deviation:.2f} um"
+    '40.57 ± 1.98 um'
+    """
+    case = loaded(case)
+    problem = _Problem(case, unknowns)
+    reached: list[tuple[float, Array]] = []
+    chis: list[float] = []
+    refusal: Exception | None = None
+    for number, start in enumerate(problem.starting_points(starts, seed), start=1):
+        try:
+            chi, found = problem.descend(start)
+        except (Refused, CaseError) as error:
+            refusal = refusal or error
+            chis.append(math.nan)
+        else:
+            reached.append((chi, found))
+            chis.append(chi)
+        if progress is not None:
+            progress(number, starts)
+    if not reached:
+        assert refusal is not None
+        raise refusal
+    _, best = min(reached, key=lambda r: r[0])
+    return problem.told(best, tuple(chis))
+
+
+class _Problem:
+    """The least-squares problem, its unknowns scaled to [0, 1] between their bounds."""
+
+    def __init__(self, case: Case, unknowns: Mapping[Any, Sequence[object]]) -> None:
+        self.case = case
+        self.targets: list[Target] = targets(case)
+        self.positions = needed(self.targets)
+        if not unknowns:
+            raise CaseError([Problem(STUDY, "fit", "", "has no unknown")])
+        self.parameters: list[Parameter] = []
+        lows, highs = [], []
+        for key, bounds in unknowns.items():
+            numbers, unit = grid(list(bounds), named(key))
+            if len(numbers) != 2 or not numbers[0] < numbers[1]:
+                allowed = 'lowest and highest value, as ("0 um", "100 um")'
+                given = str(tuple(bounds))
+                raise CaseError([Problem(STUDY, named(key), given, "is no range", allowed)])
+            self.parameters.append(read_parameter(case, key, unit))
+            lows.append(numbers[0])
+            highs.append(numbers[1])
+        self.low, self.high = np.array(lows), np.array(highs)
+        self.spread = np.array([t.uncertainty for t in self.targets])
+        self.measured = np.array([t.value for t in self.targets])
+        self.evaluations = 0
+        self._last: tuple[bytes, Case, Result] | None = None
+
+    def starting_points(self, count: int, seed: int) -> list[Array]:
+        """Return the case's own values, then Sobol points."""
+        own = np.clip((self.own() - self.low) / (self.high - self.low), 0.0, 1.0)
+        points = [own]
+        if count > 1:
+            from scipy.stats import qmc
+
+            power = math.ceil(math.log2(count))
+            sampler = qmc.Sobol(len(self.parameters), seed=seed)
+            points += list(sampler.random_base2(power))[: count - 1]
+        return points
+
+    def own(self) -> Array:
+        """Values of the case itself; the middle of the bounds where it gives none."""
+        from loadshare.case.keys import look_up, parse
+
+        data = self.case.to_dict()
+        found = []
+        for parameter, middle in zip(self.parameters, (self.low + self.high) / 2, strict=True):
+            value = read_value(look_up(data, parse(parameter.keys[0])))
+            try:
+                found.append(middle if value is None else value.in_unit(parameter.unit).number)
+            except ValueError:
+                found.append(middle)
+        return np.array(found)
+
+    def numbers(self, u: Array) -> Array:
+        """Values of the unknowns from their places between the bounds."""
+        return np.asarray(self.low + np.clip(u, 0.0, 1.0) * (self.high - self.low))
+
+    def applied(self, u: Array) -> Case:
+        """Return the case at a point."""
+        changes: dict[str, object] = {}
+        for parameter, number in zip(self.parameters, self.numbers(u), strict=True):
+            changes |= parameter.changes(float(number))
+        return self.case.replace(changes)
+
+    def solved(self, u: Array) -> tuple[Case, Result]:
+        """Return the case and its certified result at a point; the last one is kept."""
+        key = u.tobytes()
+        if self._last is None or self._last[0] != key:
+            case = self.applied(u)
+            self._last = (key, case, solve(case, positions=self.positions))
+            self.evaluations += 1
+        return self._last[1], self._last[2]
+
+    def residual(self, u: Array) -> Array:
+        """Computed less measured figures, in standard deviations."""
+        _, result = self.solved(u)
+        found = np.array([computed(t, result) for t in self.targets])
+        return np.asarray((found - self.measured) / self.spread)
+
+    def jacobian(self, u: Array) -> Array:
+        """Derivative of the residual with respect to the scaled unknowns."""
+        case, result = self.solved(u)
+        keys = [key for parameter in self.parameters for key in parameter.keys]
+        rates = sensitivity(case, keys, positions=self.positions)
+        columns = [sum(self._column(rates, result, key) for key in p.keys) for p in self.parameters]
+        scale = self.high - self.low
+        return np.asarray(np.array(columns).T / self.spread[:, None] * scale)
+
+    def _column(self, rates: Sensitivity, result: Result, key: str) -> Array:
+        """Derivatives of the figures with respect to one key, per unit of its value."""
+        factor = next(item.value.factor for item in rates.inputs if item.key == key)
+        return factor * np.array(
+            [
+                slope(t, result, lambda position, kind: _mean(rates, position, key, kind))
+                for t in self.targets
+            ]
+        )
+
+    def descend(self, start: Array) -> tuple[float, Array]:
+        """Return the χ² and the point to which a start leads."""
+        from scipy.optimize import least_squares
+
+        # The method keeps strictly inside; a start on a bound would be moved by it anyway.
+        found = least_squares(
+            self.residual,
+            np.clip(start, 1e-10, 1.0 - 1e-10),
+            jac=self.jacobian,
+            bounds=(0.0, 1.0),
+            xtol=1e-13,
+            ftol=1e-13,
+            gtol=1e-13,
+            max_nfev=200,
+        )
+        return 2.0 * float(found.cost), self._snapped(np.asarray(found.x))
+
+    def _snapped(self, u: Array) -> Array:
+        """Put what the method left a hair inside a bound onto it."""
+        return np.where(u < AT_BOUND, 0.0, np.where(u > 1.0 - AT_BOUND, 1.0, u))
+
+    def told(self, u: Array, chis: tuple[float, ...]) -> Fit:
+        """Return the fit at a point."""
+        case, result = self.solved(u)
+        jacobian = self.jacobian(u)
+        _, sizes, right = np.linalg.svd(jacobian, full_matrices=True)
+        full = np.zeros(len(self.parameters))
+        full[: len(sizes)] = sizes
+        loose = full <= TELL_APART * max(float(full.max(initial=0.0)), 1e-300)
+        kept = right[~loose]
+        covariance = kept.T @ np.diag(full[~loose] ** -2.0) @ kept
+        names = [p.name for p in self.parameters]
+        groups = _groups(right[loose])
+        warnings = [
+            f"The data do not determine {names[group[0]]}."
+            if len(group) == 1
+            else f"The data cannot tell {', '.join(names[k] for k in group)} apart."
+            for group in groups
+        ]
+        free = np.zeros(len(names), dtype=bool)
+        free[[k for group in groups for k in group]] = True
+        covariance[free, :] = covariance[:, free] = math.inf
+        scale = self.high - self.low
+        covariance = covariance * np.outer(scale, scale)
+        spread = np.sqrt(np.diag(covariance))
+        with np.errstate(invalid="ignore"):
+            correlation = covariance / np.outer(spread, spread)
+        numbers, start = self.numbers(u), self.own()
+        unknowns = []
+        for k, parameter in enumerate(self.parameters):
+            at_bound = bool(u[k] <= 0.0 or u[k] >= 1.0)
+            if at_bound:
+                warnings.append(f"{parameter.name} stands at its bound.")
+            unknowns.append(
+                Unknown(
+                    parameter,
+                    float(self.low[k]),
+                    float(self.high[k]),
+                    float(start[k]),
+                    float(numbers[k]),
+                    float(spread[k]),
+                    at_bound,
+                )
+            )
+        deviations = tuple(Deviation(t, computed(t, result)) for t in self.targets)
+        return Fit(
+            case=case,
+            unknowns=tuple(unknowns),
+            covariance=covariance,
+            correlation=correlation,
+            singular_values=np.asarray(sizes),
+            warnings=tuple(warnings),
+            comparison=Comparison(deviations, result),
+            starts=chis,
+            evaluations=self.evaluations,
+        )
+
+
+def _mean(rates: Sensitivity, position: int, key: str, kind: str) -> dict[str, float]:
+    """Derivatives by mesh; at a kink the mean of both sides, or the one that exists."""
+    sides = [getattr(rates.rates[position, key, side], kind) for side in ("falling", "rising")]
+    found = {}
+    for mesh in sides[0]:
+        known = [s[mesh] for s in sides if not math.isnan(s[mesh])]
+        found[mesh] = sum(known) / len(known) if known else 0.0
+    return found
+
+
+def _groups(loose: Array) -> list[list[int]]:
+    """Inputs that the data leave open, those together that can make up for each other.
+
+    Parameters
+    ----------
+    loose : ndarray, shape (k, n)
+        Orthonormal directions that change no figure. Their projector, unlike themselves, does not
+        depend on how they were chosen.
+    """
+    shared = np.abs(loose.T @ loose) > SHARE_OF**2
+    groups: list[list[int]] = []
+    for k in range(len(shared)):
+        near = [g for g in groups if any(shared[k, m] for m in g)]
+        if shared[k, k]:
+            groups = [g for g in groups if g not in near]
+            groups.append(sorted([*(m for g in near for m in g), k]))
+    return groups

@@ -1,0 +1,184 @@
+"""A march with memory: revolutions of the gears, and spline friction that remembers its slip.
+
+At every step the programme of formulation section 5 is solved with the change of the slip, s − s₀,
+in place of the slip: the implicit step of a friction law, which dissipates F_m times the size of
+that change. Every step is certified with its memory.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path as FilePath
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from loadshare.case import Case
+from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify.state import State
+from loadshare.errors import CaseError, Refused
+from loadshare.job import Progress
+from loadshare.job.ladder import Answer
+from loadshare.job.positions import result_of
+from loadshare.results import Result
+from loadshare.study.answers import BACKEND
+from loadshare.study.memory import stepped
+from loadshare.study.positions import loaded
+from loadshare.train import Train, build_train
+from loadshare.train.gear import Vector
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Slip:
+    """What a spline did in one step.
+
+    Attributes
+    ----------
+    slip : ndarray, shape (2,)
+        s at the end of the step [m], in the gear's transverse frame.
+    stage : str
+        "stick" where s did not change, "slip" where it did, "stop" at the end of the clearance.
+    friction : float
+        Friction bound F_m [N].
+    dissipated : float
+        Energy that friction took up in the step [J].
+    """
+
+    slip: Vector
+    stage: str
+    friction: float
+    dissipated: float
+
+
+@dataclass(frozen=True)
+class March:
+    """Certified equilibria along a march, each from the slip of the one before.
+
+    Attributes
+    ----------
+    result : Result
+        Torques, shares, floats and certificates of every step.
+    revolutions : tuple of float
+        Of the reference gear at every step.
+    gear : str
+        Reference gear.
+    slips : tuple of mapping of gear to Slip
+        One per step.
+    """
+
+    result: Result
+    revolutions: tuple[float, ...]
+    gear: str
+    slips: tuple[dict[str, Slip], ...]
+
+    @property
+    def dissipated(self) -> float:
+        """Energy that the splines dissipated [J]."""
+        return float(sum(s.dissipated for step in self.slips for s in step.values()))
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """The result's labelled arrays, with slips, dissipation and revolutions by position."""
+        from loadshare.study.tables import march_dataset
+
+        return march_dataset(self)
+
+
+def march(
+    case: Case | str | FilePath,
+    *,
+    gear: str | None = None,
+    revolutions: float | None = None,
+    steps: int | None = None,
+    progress: Progress | None = None,
+) -> March:
+    """March through revolutions of a gear with friction that remembers.
+
+    The first step loads the train from rest, without slip.
+
+    Parameters
+    ----------
+    case : Case or path
+    gear : str, optional
+        Reference gear; that of the case's ``[march]`` by default.
+    revolutions : float, optional
+        Of that gear.
+    steps : int, optional
+    progress : Progress, optional
+        Called after every step.
+
+    Returns
+    -------
+    March
+
+    Raises
+    ------
+    CaseError
+        If the case has no march and none is given, or cannot be used.
+    Refused
+        If a step has no certified equilibrium. The steps before it are in its ``partial``.
+
+    Examples
+    --------
+    >>> import loadshare as ls
+    >>> found = ls.march("cases/fgfbstts/full_float.toml", gear="4", revolutions=1.0, steps=6)
+    >>> found.dissipated > 0.0
+    True
+    """
+    case = loaded(case)
+    given = {"gear": gear, "revolutions": revolutions, "steps": steps}
+    given = {key: value for key, value in given.items() if value is not None}
+    if case.march is None and len(given) < 3:
+        message = "is missing"
+        allowed = "a march with gear, revolutions and steps"
+        raise CaseError([case.problem("march", message, allowed)])
+    if given:
+        case = case.replace({f"march.{key}": value for key, value in given.items()})
+    return _marched(case, build_train(case), progress)
+
+
+def _marched(case: Case, train: Train, progress: Progress | None) -> March:
+    answers: list[Answer] = []
+    slips: list[dict[str, Slip]] = []
+    before: dict[str, Vector] = {gear: np.zeros(3) for gear in train.splines}
+    for index in range(1, train.count + 1):
+        remembering = train.remembering(before)
+        try:
+            answer = stepped(remembering, index)
+        except Refused as refusal:
+            if answers:
+                refusal.partial = result_of(case, train, answers, BACKEND, TOLERANCE)
+            raise
+        state = State(remembering, answer.equilibrium)
+        after = {g: state.slip(s) for g, s in train.splines.items()}
+        slips.append({g: _slip(state, answer, g, before[g], after[g]) for g in after})
+        answers.append(answer)
+        before = after
+        if progress is not None:
+            progress(index, train.count)
+    assert train.march is not None
+    reference, revolutions, steps = train.march
+    return March(
+        result=result_of(case, train, answers, BACKEND, TOLERANCE),
+        revolutions=tuple(revolutions * k / steps for k in range(steps)),
+        gear=reference,
+        slips=tuple(slips),
+    )
+
+
+def _slip(state: State, answer: Answer, gear: str, before: Vector, after: Vector) -> Slip:
+    spline = state.train.splines[gear]
+    friction = np.asarray(answer.equilibrium.radial_reaction[spline.name])
+    stage = answer.certificate.floats[gear].spline or ""
+    # Where a spline sticks, its slip changes by round-off only, to either side.
+    work = 0.0 if stage == "stick" else max(float(-friction @ (after - before)), 0.0)
+    return Slip(
+        slip=state.train.gears[gear].frame @ after,
+        stage=stage,
+        friction=spline.bound(state.transmitted(gear)),
+        dissipated=work,
+    )

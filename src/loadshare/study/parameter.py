@@ -1,0 +1,298 @@
+"""Inputs of a case that a study varies: which keys, in which unit, over which values."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from typing import Any
+
+from loadshare.case import Case
+from loadshare.case.content import ABOUT
+from loadshare.case.keys import Path, dotted, look_up, parse
+from loadshare.case.quantity import NUMBER, Dimension, as_text
+from loadshare.case.units import si_factor
+from loadshare.case.words import did_you_mean
+from loadshare.errors import CaseError, Problem
+
+STUDY = "study"
+_QUANTITY = re.compile(rf"\s*({NUMBER})\s*(.*?)\s*", re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True)
+class Value:
+    """A number as a case file says it.
+
+    Attributes
+    ----------
+    number : float
+        In `unit`.
+    unit : str
+        As written; empty for a plain number.
+    """
+
+    number: float
+    unit: str
+
+    @property
+    def text(self) -> str | float:
+        """What stands in a case file for it."""
+        return f"{self.number!r} {self.unit}" if self.unit else self.number
+
+    @property
+    def si_unit(self) -> str:
+        """SI unit of its kind; empty for a plain number."""
+        return _si_unit(self.unit)
+
+    @property
+    def factor(self) -> float:
+        """SI value of one `unit`."""
+        return (si_factor(self.unit, self.si_unit) or 1.0) if self.unit else 1.0
+
+    @property
+    def si(self) -> float:
+        """Value in SI units."""
+        return self.number * self.factor
+
+    def at(self, number: float) -> Value:
+        """Return another number in the same unit."""
+        return Value(float(number), self.unit)
+
+    def in_unit(self, unit: str) -> Value:
+        """Return the same value in another unit of its kind.
+
+        Raises
+        ------
+        ValueError
+            If the unit is of another kind.
+        """
+        if unit == self.unit:
+            return self
+        factor = si_factor(self.unit, unit) if self.unit and unit else None
+        if factor is None:
+            raise ValueError(f"{self.text} cannot be told in {unit or 'a plain number'}")
+        return Value(self.number * factor, unit)
+
+
+def read_value(given: object) -> Value | None:
+    """Return a physical value or a plain number, or None for what is neither.
+
+    Parameters
+    ----------
+    given : object
+        A number, a text with a unit, a pint quantity, a `Quantity` or a `Value`.
+    """
+    if isinstance(given, Value):
+        return given
+    given = as_text(given)
+    if isinstance(given, bool):
+        return None
+    if isinstance(given, int | float):
+        return Value(float(given), "")
+    match = _QUANTITY.fullmatch(given) if isinstance(given, str) else None
+    if match is None:
+        return None
+    number, unit = float(match[1].replace("−", "-")), match[2]
+    try:
+        return Value(number, unit) if not unit or _si_unit(unit) else None
+    except ValueError:
+        return None
+
+
+def _si_unit(unit: str) -> str:
+    """SI unit of the kind that `unit` measures; empty where no input of a case is of that kind."""
+    from loadshare.case import quantity
+
+    if not unit:
+        return ""
+    known = [d.unit for d in vars(quantity).values() if isinstance(d, Dimension)]
+    return next((si for si in known if si_factor(unit, si) is not None), "")
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One number that stands at one or more keys of a case.
+
+    Attributes
+    ----------
+    name : str
+        As the user named it.
+    keys : tuple of str
+        Dotted key paths that take the value, all alike.
+    unit : str
+        Unit of its values; empty for a plain number.
+    """
+
+    name: str
+    keys: tuple[str, ...]
+    unit: str
+
+    def applied(self, case: Case, number: float) -> Case:
+        """Return the case with the value at every key.
+
+        Raises
+        ------
+        CaseError
+            If the case cannot be used with it.
+        """
+        return case.replace(self.changes(number))
+
+    def changes(self, number: float) -> dict[str, Any]:
+        """Return the changes that `Case.replace` takes."""
+        return dict.fromkeys(self.keys, Value(float(number), self.unit).text)
+
+
+def read_parameter(case: Case, key: str | Sequence[str], unit: str) -> Parameter:
+    """Find the keys that a parameter means.
+
+    Parameters
+    ----------
+    case : Case
+    key : str or sequence of str
+        A dotted key path, a pattern in which a star stands for any name, keys joined by ``=``, or
+        several of these: all the keys take the same value.
+    unit : str
+        Unit of the values.
+
+    Raises
+    ------
+    CaseError
+        If a key is none, or a pattern matches nothing.
+    """
+    parts = [p for k in ([key] if isinstance(key, str) else key) for p in split_outside(k, "=")]
+    keys = tuple(dict.fromkeys(found for part in parts for found in matches(case, part)))
+    return Parameter("=".join(parts), keys, unit)
+
+
+def named(key: str | Sequence[str]) -> str:
+    """Return the name of a parameter that stands at one key or at several."""
+    return key if isinstance(key, str) else "=".join(key)
+
+
+def matches(case: Case, pattern: str) -> tuple[str, ...]:
+    """Return the keys of a case that a pattern means; a key without a star means itself.
+
+    Raises
+    ------
+    CaseError
+        If the text is no key path, or the pattern matches nothing.
+    """
+    try:
+        wanted = parse(pattern.strip())
+    except ValueError:
+        raise _unusable(pattern, "is not a key path", "a text such as rings.4.float") from None
+    if not any("*" in str(step) for step in wanted):
+        return (dotted(wanted),)
+    data = case.to_dict()
+    found = tuple(dotted(path) for path in _matching(data, wanted, ()))
+    if not found:
+        known = [dotted(path) for path in leaves(data)]
+        raise _unusable(pattern, "matches no key of the case", "", did_you_mean(pattern, known))
+    return found
+
+
+def _matching(data: Any, wanted: Path, above: Path) -> Iterator[Path]:
+    """Yield paths that a pattern covers; its last step need not be there."""
+    if len(above) == len(wanted):
+        yield above
+        return
+    here, step = look_up(data, above), wanted[len(above)]
+    if "*" not in str(step):
+        last = len(above) + 1 == len(wanted)
+        if look_up(here, (step,)) is not None or (last and isinstance(here, dict)):
+            yield from _matching(data, wanted, (*above, step))
+        return
+    names: Iterable[str | int] = here if isinstance(here, dict) else ()
+    for name in names:
+        if fnmatchcase(str(name), str(step)):
+            yield from _matching(data, wanted, (*above, name))
+
+
+def leaves(data: Any, above: Path = ()) -> Iterator[Path]:
+    """Yield the path of every value of a case that is no table or list, list items included."""
+    if isinstance(data, dict):
+        for key, item in data.items():
+            if above or key not in ABOUT:
+                yield from leaves(item, (*above, key))
+    elif isinstance(data, list):
+        for number, item in enumerate(data):
+            yield from leaves(item, (*above, number))
+    else:
+        yield above
+
+
+def grid(given: object, place: str) -> tuple[tuple[float, ...], str]:
+    """Read the values of a parameter.
+
+    Parameters
+    ----------
+    given : object
+        ``"0 um:12 um:61"`` (first, last, how many), or values: physical ones or plain numbers. The
+        unit is that of the first value that has one.
+    place : str
+        What is read, for messages.
+
+    Returns
+    -------
+    tuple of float
+        In the unit.
+    str
+        The unit; empty for plain numbers.
+
+    Raises
+    ------
+    CaseError
+        If the values cannot be read or differ in kind.
+    """
+    allowed = 'a grid "0 um:12 um:61" (first, last, how many), or a list of values with units'
+    count = 0
+    if isinstance(given, str) and ":" in given:
+        first, last, *rest = given.split(":")
+        items: list[object] = [first, last]
+        count = int(rest[0]) if len(rest) == 1 and rest[0].strip().isdigit() else 0
+        if count < 2:
+            raise _unusable(place, "has no number of points from 2 on", allowed, given=given)
+    elif isinstance(given, str):
+        items = list(given.split(","))
+    else:
+        unit = getattr(given, "units", None)
+        listed = as_text(given) if unit is not None else given
+        items = list(listed) if isinstance(listed, Iterable) else [listed]
+    values = [read_value(_plain(item)) for item in items]
+    if not values or any(v is None for v in values):
+        raise _unusable(place, "has values that cannot be read", allowed, given=str(given))
+    known = [v for v in values if v is not None]
+    unit = next((v.unit for v in known if v.unit), "")
+    try:
+        numbers = [v.in_unit(unit).number for v in known]
+    except ValueError as error:
+        raise _unusable(place, str(error), allowed, given=str(given)) from None
+    if count:
+        low, high = numbers
+        numbers = [low + (high - low) * k / (count - 1) for k in range(count - 1)] + [high]
+    return tuple(numbers), unit
+
+
+def _plain(item: object) -> object:
+    """Return a number of numpy as one of Python."""
+    return item.item() if hasattr(item, "item") and not hasattr(item, "units") else item
+
+
+def split_outside(text: str, sign: str) -> list[str]:
+    """Split a text at a sign that stands outside quotes; the parts stripped."""
+    parts, quote = [""], ""
+    for letter in text:
+        if letter in "\"'" and quote in ("", letter):
+            quote = "" if quote else letter
+        if letter == sign and not quote:
+            parts.append("")
+        else:
+            parts[-1] += letter
+    return [part.strip() for part in parts]
+
+
+def _unusable(
+    key: str, message: str, allowed: str = "", hint: str = "", given: str = ""
+) -> CaseError:
+    return CaseError([Problem(STUDY, key, given, message, allowed, hint)])

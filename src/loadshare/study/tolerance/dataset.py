@@ -1,0 +1,99 @@
+"""Statistics of a tolerance study as labelled arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.study.tolerance.statistics import BINS, Estimate
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from loadshare.study.tolerance.result import OmegaStatistics, Tolerance
+
+Array = NDArray[np.float64]
+
+
+def dataset(found: Tolerance) -> xr.Dataset:
+    """Return the statistics of Ω.
+
+    Dimensions are ``over`` ("stage", "group"), ``stage``, ``level`` of the quantiles, ``input`` and
+    ``bin``; intervals stand beside their figures as ``…_low`` and ``…_high``.
+    """
+    import xarray as xr
+
+    overs = list(dict.fromkeys(o.over for o in found.omega))
+    stages = list(dict.fromkeys(o.stage for o in found.omega))
+    levels = list(found.omega[0].summary.quantiles) if found.omega else []
+    units = list(found.inputs.unit_names)
+    of = {(o.over, o.stage): o for o in found.omega}
+    base = ("over", "stage")
+
+    sizes = {"level": len(levels), "input": len(units)}
+
+    def gathered(get: Callable[[OmegaStatistics], Any], *shape: int) -> Array:
+        values = np.full((len(overs), len(stages), *shape), np.nan)
+        for i, over in enumerate(overs):
+            for j, stage in enumerate(stages):
+                if (over, stage) in of:
+                    values[i, j] = get(of[over, stage])
+        return values
+
+    variables: dict[str, Any] = {
+        "deviation": (base, gathered(lambda o: o.summary.deviation)),
+        "lowest": (base, gathered(lambda o: o.summary.lowest)),
+        "highest": (base, gathered(lambda o: o.summary.highest)),
+        "count": ((*base, "bin"), gathered(lambda o: o.summary.counts, BINS)),
+    }
+
+    def estimates(name: str, get: Callable[[OmegaStatistics], list[Estimate]], *axis: str) -> None:
+        for end, field in (("", "value"), ("_low", "low"), ("_high", "high")):
+
+            def one(o: OmegaStatistics, field: str = field) -> Any:
+                values = [getattr(e, field) for e in get(o)]
+                return values if axis else values[0]
+
+            shape = tuple(sizes[name] for name in axis)
+            variables[name + end] = ((*base, *axis), gathered(one, *shape))
+
+    estimates("mean", lambda o: [o.summary.mean])
+    estimates("quantile", lambda o: list(o.summary.quantiles.values()), "level")
+    if found.limit is not None:
+        estimates("exceedance", lambda o: [o.exceedance or _NONE])
+    if any(o.shares for o in found.omega):
+        for name, order in (("first_order", "first"), ("total_order", "total")):
+            estimates(name, lambda o, order=order: _shares(o, order, len(units)), "input")  # type: ignore[misc]
+    edges = gathered(lambda o: o.summary.edges, BINS + 1)
+    attributes = {
+        "case": found.case,
+        "samples": found.samples,
+        "refused": found.refused,
+        "seed": found.settings["seed"],
+        "sampling": found.settings["sampling"],
+        "version": found.settings["version"],
+        "case_hash": found.settings["case_hash"],
+    }
+    if found.limit is not None:
+        attributes["limit"] = found.limit
+    return xr.Dataset(
+        variables,
+        coords={
+            "over": overs,
+            "stage": stages,
+            "level": levels,
+            "input": units,
+            "edge": ((*base, "bound"), edges),
+        },
+        attrs=attributes,
+    )
+
+
+_NONE = Estimate(np.nan, np.nan, np.nan)
+
+
+def _shares(one: OmegaStatistics, order: str, units: int) -> list[Estimate]:
+    return [getattr(s, order) for s in one.shares] or [_NONE] * units

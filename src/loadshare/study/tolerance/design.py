@@ -1,0 +1,111 @@
+"""Which inputs each sample has: the study's own samples, and those for the shares of variance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.job.many import BLOCK
+from loadshare.study.tolerance.inputs import Inputs
+from loadshare.study.tolerance.points import uniforms
+
+Array = NDArray[np.float64]
+Rows = NDArray[np.int64]
+
+
+class Design(Protocol):
+    """Samples in blocks of up to `BLOCK`."""
+
+    @property
+    def blocks(self) -> int:
+        """Number of blocks."""
+
+    def rows(self, block: int) -> Rows:
+        """Numbers of a block's samples, from 0."""
+
+    def values(self, block: int) -> Array:
+        """Inputs of a block's samples in their units, shape (rows, inputs)."""
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """Samples that are drawn."""
+
+    inputs: Inputs
+    count: int
+    seed: int
+    sampling: str
+
+    @property
+    def blocks(self) -> int:
+        """See `Design`."""
+        return -(-self.count // BLOCK)
+
+    def rows(self, block: int) -> Rows:
+        """See `Design`."""
+        return np.arange(block * BLOCK, min((block + 1) * BLOCK, self.count))
+
+    def values(self, block: int) -> Array:
+        """See `Design`."""
+        points = uniforms(self.sampling, self.seed, (), block, len(self.inputs.every))
+        return self.inputs.values(points[: len(self.rows(block))])
+
+
+@dataclass(frozen=True)
+class PickFreeze:
+    """Saltelli's design: A, B, and A with one unit of inputs after another taken from B.
+
+    Row r of matrix m has the number m · count + r; the matrices stand in this order.
+
+    Attributes
+    ----------
+    inputs : Inputs
+    count : int
+        Rows of each matrix.
+    seed : int
+    sampling : str
+
+    Notes
+    -----
+    A. Saltelli et al., Variance based sensitivity analysis of model output, Computer Physics
+    Communications 181 (2010). Correlated inputs are exchanged together, as one unit.
+    """
+
+    inputs: Inputs
+    count: int
+    seed: int
+    sampling: str
+
+    @property
+    def matrices(self) -> int:
+        """A, B, and one for each unit."""
+        return 2 + len(self.inputs.units)
+
+    @property
+    def _each(self) -> int:
+        return -(-self.count // BLOCK)
+
+    @property
+    def blocks(self) -> int:
+        """See `Design`."""
+        return self.matrices * self._each if self.count else 0
+
+    def rows(self, block: int) -> Rows:
+        """See `Design`."""
+        matrix, part = divmod(block, self._each)
+        start = matrix * self.count
+        return np.arange(start + part * BLOCK, start + min((part + 1) * BLOCK, self.count))
+
+    def values(self, block: int) -> Array:
+        """See `Design`."""
+        matrix, part = divmod(block, self._each)
+        width = len(self.inputs.every)
+        both = uniforms(self.sampling, self.seed, (1,), part, 2 * width)[: len(self.rows(block))]
+        points, other = both[:, :width].copy(), both[:, width:]
+        taken = {0: [], 1: list(range(width))}.get(matrix)
+        columns = list(self.inputs.units[matrix - 2]) if taken is None else taken
+        points[:, columns] = other[:, columns]
+        return self.inputs.values(points)

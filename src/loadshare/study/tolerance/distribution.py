@@ -1,0 +1,141 @@
+"""Distributions of inputs, by their quantile functions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.case.distributions import NUMBERS, Spread
+from loadshare.study.parameter import Value, read_value
+
+Array = NDArray[np.float64]
+
+PHASE = "uniform phase"
+TURN = Value(360.0, "deg")
+TAIL = 0.00135
+"""Probability beyond an end of the tolerance box where a distribution has no end: three standard
+deviations of a normal one."""
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """How one input scatters.
+
+    Attributes
+    ----------
+    kind : str
+        "normal", "truncated normal", "uniform", "rayleigh" or "uniform phase".
+    numbers : mapping of str to float
+        What the kind takes, in `unit`.
+    unit : str
+        Of its values; empty for a plain number.
+    """
+
+    kind: str
+    numbers: Mapping[str, float]
+    unit: str
+
+    @cached_property
+    def frozen(self) -> Any:
+        """The distribution as scipy.stats has it."""
+        from scipy import stats
+
+        of: dict[str, Callable[..., Any]] = {
+            "normal": lambda mean, deviation: stats.norm(mean, deviation),
+            "truncated normal": lambda mean, deviation, low, high: stats.truncnorm(
+                (low - mean) / deviation, (high - mean) / deviation, mean, deviation
+            ),
+            "uniform": lambda low, high: stats.uniform(low, high - low),
+            "rayleigh": lambda scale: stats.rayleigh(scale=scale),
+            PHASE: lambda: stats.uniform(0.0, TURN.number),
+        }
+        return of[self.kind](**self.numbers)
+
+    def at(self, probability: Array) -> Array:
+        """Return the values below which the probabilities lie."""
+        return np.asarray(self.frozen.ppf(probability))
+
+    @property
+    def periodic(self) -> bool:
+        """Whether its two ends are the same state of the machine."""
+        return self.kind == PHASE
+
+    def ends(self, tail: float = TAIL) -> tuple[float, float]:
+        """Return its two ends; where it has none, the quantile that leaves `tail` beyond."""
+        low, high = (float(end) for end in self.frozen.support())
+        inner = self.at(np.array([tail, 1.0 - tail]))
+        return (
+            low if np.isfinite(low) else float(inner[0]),
+            high if np.isfinite(high) else float(inner[1]),
+        )
+
+    def text(self, value: float) -> str | float:
+        """Return a value as a case file has it."""
+        return Value(float(value), self.unit).text
+
+    def __str__(self) -> str:
+        told = ", ".join(f"{k} {v:.6g}" for k, v in self.numbers.items())
+        return f"{self.kind} {told} {self.unit}" if told else self.kind
+
+
+@dataclass(frozen=True, slots=True)
+class Wrong:
+    """What is wrong with a number of a distribution; `key` is empty for all of it."""
+
+    key: str
+    message: str
+    allowed: str = ""
+
+
+def read_distribution(spread: Spread) -> Distribution | list[Wrong]:
+    """Read a distribution from a case's table, or tell what is wrong with it.
+
+    Parameters
+    ----------
+    spread : Spread
+
+    Returns
+    -------
+    Distribution or list of Wrong
+    """
+    names = NUMBERS[spread.distribution]
+    values: dict[str, Value] = {}
+    wrong: list[Wrong] = []
+    for name in names:
+        value = read_value(getattr(spread, name))
+        if value is None:
+            wrong.append(Wrong(name, "cannot be read", 'a value with its unit, as in "20 um"'))
+        else:
+            values[name] = value
+    if wrong:
+        return wrong
+    unit = next((v.unit for v in values.values() if v.unit), "" if names else TURN.unit)
+    numbers: dict[str, float] = {}
+    for name, value in values.items():
+        try:
+            numbers[name] = value.in_unit(unit).number
+        except ValueError as error:
+            wrong.append(Wrong(name, str(error)))
+    found = Distribution(spread.distribution, numbers, unit)
+    return wrong or list(_unsound(found)) or found
+
+
+def _unsound(found: Distribution) -> Iterator[Wrong]:
+    numbers = found.numbers
+    for name in ("deviation", "scale"):
+        if name in numbers and not numbers[name] > 0.0:
+            yield Wrong(name, "is not positive")
+            return
+    if "low" in numbers and not numbers["low"] < numbers["high"]:
+        yield Wrong("high", "is not above low")
+    elif found.kind == "truncated normal":
+        # Far out in a tail the quantile function has no digits left.
+        nearest = max(numbers["low"] - numbers["mean"], numbers["mean"] - numbers["high"], 0.0)
+        if nearest > 8.0 * numbers["deviation"]:
+            allowed = "limits that leave some of the distribution, within 8 deviations of the mean"
+            yield Wrong("", "has its limits too far from its mean", allowed)

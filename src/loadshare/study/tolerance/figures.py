@@ -1,0 +1,176 @@
+"""What is kept of every sample: the largest figures over positions and branches."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.case import Case
+from loadshare.errors import CaseError
+from loadshare.job.many import Block, mesh_torques, shares, solve_blocks
+from loadshare.study.tolerance.inputs import Inputs
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.ring import DrumRing
+from loadshare.train.train import Train
+
+Array = NDArray[np.float64]
+
+KINDS = {"omega": "stage", "pair_omega": "group"}
+"""Ω as columns name it, and over whose mean it is."""
+SYSTEM = "system"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Figures:
+    """Figures of some samples.
+
+    Attributes
+    ----------
+    columns : mapping of str to ndarray, shape (S,)
+        ``omega.STAGE``, ``pair_omega.STAGE`` [-], ``torque.MESH [N*m]``, ``float.GEAR [m]`` (way of
+        the centre) and ``boundary_force.GEAR [N]`` (hardest pressed contact of its ring): the
+        largest over the positions. NaN where a position is not certified.
+    residual : ndarray, shape (S,)
+        Largest scaled residual of the certificates.
+    message : mapping of int to str
+        Why a sample has no certified answer.
+    """
+
+    columns: Mapping[str, Array]
+    residual: Array
+    message: Mapping[int, str]
+
+
+def column_names(train: Train) -> list[str]:
+    """Return the columns of a train in their order."""
+    stages = [*(s.name for s in train.stages), SYSTEM]
+    return [
+        *(f"{kind}.{stage}" for kind in KINDS for stage in stages),
+        *(f"torque.{mesh} [N*m]" for mesh in train.meshes),
+        *(f"float.{gear} [m]" for gear in train.floating),
+        *(f"boundary_force.{gear} [N]" for gear in train.rings),
+    ]
+
+
+@dataclass(frozen=True, eq=False)
+class Solver:
+    """Solves samples of a case.
+
+    Attributes
+    ----------
+    case : Case
+    train : Train
+        Of the case.
+    inputs : Inputs
+    positions : tuple of int
+    tolerance : float
+        Largest scaled residual of a certified answer.
+    engine : {"compiled", "vectorised"}
+    """
+
+    case: Case
+    train: Train
+    inputs: Inputs
+    positions: tuple[int, ...]
+    tolerance: float
+    engine: str
+    names: list[str] = field(init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "names", column_names(self.train))
+
+    def solve(self, values: Array) -> Figures:
+        """Solve samples with these inputs, shape (S, inputs)."""
+        count = len(values)
+        columns = {name: np.full(count, np.nan) for name in self.names}
+        residual = np.full(count, np.nan)
+        message: dict[int, str] = {}
+        usable = np.arange(count)
+        try:
+            blocks = self._blocks(values)
+        except CaseError:
+            # One sample of these makes no case; it shall not take the others with it.
+            message |= self._unusable(values)
+            usable = np.setdiff1d(usable, list(message))
+            blocks = self._blocks(values[usable]) if len(usable) else []
+        for block in blocks:
+            rows = usable[block.rows]
+            solved = block.certified.all(axis=1)
+            for name, found in _figures(block).items():
+                columns[name][rows[solved]] = found[solved]
+            residual[rows[solved]] = block.residual[solved].max(axis=1)
+            refused: dict[int, list[str]] = {}
+            for (row, position), why in block.message.items():
+                refused.setdefault(int(usable[row]), []).append(f"position {position}: {why}")
+            message |= {row: "\n".join(why) for row, why in refused.items()}
+        return Figures(columns, residual, message)
+
+    def _blocks(self, values: Array) -> list[Block]:
+        return list(
+            solve_blocks(
+                self.case,
+                self.inputs.samples(values),
+                positions=self.positions,
+                tolerance=self.tolerance,
+                engine=self.engine,
+                workers=1,
+            )
+        )
+
+    def _unusable(self, values: Array) -> dict[int, str]:
+        found = {}
+        for row, sample in enumerate(values.tolist()):
+            try:
+                self.case.replace(self.inputs.changes(sample))
+            except CaseError as error:
+                found[row] = f"makes no case: {error}"
+        return found
+
+
+def _figures(block: Block) -> dict[str, Array]:
+    """Largest figures over the positions, shape (S,) each; NaN where there is none."""
+    every: dict[str, list[Array]] = {}
+    for answers in block.equilibria:
+        for name, values in _at_position(answers).items():
+            every.setdefault(name, []).append(values)
+    # fmax leaves a stage out at a position where it carries nothing.
+    return {name: np.fmax.reduce(values) for name, values in every.items()}
+
+
+def _at_position(answers: Equilibria) -> dict[str, Array]:
+    train = answers.names.train
+    torque, meshes = mesh_torques(answers)
+    order = {mesh: m for m, mesh in enumerate(meshes)}
+    found: dict[str, Array] = {}
+    for kind in KINDS:
+        omega = shares(torque, meshes, train.stages, pairs=kind == "pair_omega")
+        of = {s.name: _largest(omega, [order[m] for m in s.meshes]) for s in train.stages}
+        found |= {f"{kind}.{stage}": values for stage, values in of.items()}
+        found[f"{kind}.{SYSTEM}"] = np.fmax.reduce(list(of.values()))
+    found |= {f"torque.{mesh} [N*m]": torque[:, m] for mesh, m in order.items()}
+    gears = {gear: g for g, gear in enumerate(train.gears)}
+    for gear in train.floating:
+        way = np.linalg.norm(answers.displacement[:, gears[gear]], axis=1)
+        found[f"float.{gear} [m]"] = way
+    for gear in train.rings:
+        found[f"boundary_force.{gear} [N]"] = _boundary_force(answers, gear)
+    return found
+
+
+def _largest(values: NDArray[np.float64], columns: Sequence[int]) -> Array:
+    return np.asarray(np.fmax.reduce(values[:, list(columns)], axis=1))
+
+
+def _boundary_force(answers: Equilibria, gear: str) -> Array:
+    """Force of the hardest pressed contact of a gear's ring [N]."""
+    names = answers.names
+    ring = names.train.rings[gear]
+    if isinstance(ring, DrumRing):
+        mine = {*ring.stop_names, *(ring.arc_name(n) for n in ring.neighbours)}
+        columns = [c for c, name in enumerate(names.contacts) if name in mine]
+        return np.asarray(answers.ring_force[:, columns].max(axis=1))
+    number = [name for name, _ in names.radials].index(ring.name)
+    return np.asarray(np.linalg.norm(answers.radial_reaction[:, number], axis=1))

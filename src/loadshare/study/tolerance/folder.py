@@ -1,0 +1,169 @@
+"""The folder of a study: parts as Parquet files, and what they belong to."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from loadshare.errors import LoadshareError
+from loadshare.results.files import write_atomically
+from loadshare.study.tolerance.job import SAMPLES, STAMP, Job, Part
+
+if TYPE_CHECKING:
+    import numpy as np
+    import pandas as pd
+    import pyarrow as pa
+
+STUDY = "study.json"
+
+
+class Folder:
+    """Parts of a study on disk.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    job : Job
+
+    Raises
+    ------
+    LoadshareError
+        If the folder holds another study, or what is no study.
+    """
+
+    def __init__(self, path: Path, job: Job) -> None:
+        self.path, self.job = path, job
+        self.all = tuple(job.parts())
+        told = {"case": job.name, "text": job.text, "hash": job.hash, "settings": job.settings}
+        if not (path / STUDY).exists():
+            if path.exists() and (not path.is_dir() or any(path.iterdir())):
+                raise LoadshareError(
+                    f"{path}: is not empty and holds no tolerance study. Allowed: a new or empty "
+                    "folder, or the folder of the same study, which is then completed"
+                )
+            _write_json(path / STUDY, told)
+            return
+        try:
+            known = json.loads((path / STUDY).read_text(encoding="utf-8"))["settings"]
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise LoadshareError(f"{path / STUDY}: cannot be read: {error}") from None
+        apart = differing(known, json.loads(json.dumps(job.settings)))
+        if apart:
+            raise LoadshareError(
+                "\n".join(
+                    [
+                        f"{path}: holds a study with other settings:",
+                        *apart,
+                        "Give another folder, or the same settings to complete it.",
+                    ]
+                )
+            )
+
+    def file(self, part: Part) -> Path:
+        """Return where a part stands."""
+        folder = self.path if part.design == SAMPLES else self.path / part.design
+        return folder / f"part-{part.number:06d}.parquet"
+
+    def missing(self) -> list[Part]:
+        """Return the parts that are not there, or not whole."""
+        return [part for part in self.all if not self._whole(part)]
+
+    def _whole(self, part: Part) -> bool:
+        import pyarrow as pa
+        from pyarrow import parquet
+
+        try:
+            about = parquet.read_metadata(self.file(part))
+        except (OSError, pa.ArrowException):
+            return False
+        # A part of the same name can stem from elsewhere: the stamp names study, number and rows.
+        stamp = (about.metadata or {}).get(STAMP)
+        return bool(about.num_rows == part.rows and stamp == self.job.stamp(part))
+
+    def write(self, part: Part, table: pa.Table) -> None:
+        """Put a part in its place, whole or not at all."""
+        from pyarrow import parquet
+
+        file = self.file(part)
+        write_atomically(file, lambda to: parquet.write_table(table, to, compression="zstd"))
+        # What a killed process left of the same part.
+        for left in file.parent.glob(f".{file.name}.*"):
+            with suppress(FileNotFoundError):
+                left.unlink()
+
+    def files(self, design: str = SAMPLES) -> list[Path]:
+        """Return the parts' files in order."""
+        return [self.file(part) for part in self.all if part.design == design]
+
+    def column(self, name: str, design: str = SAMPLES) -> np.ndarray[Any, Any]:
+        """Return one column of all parts, shape (samples,)."""
+        import numpy as np
+        from pyarrow import parquet
+
+        pieces = [
+            parquet.read_table(file, columns=[name]).column(0).to_numpy()
+            for file in self.files(design)
+        ]
+        return np.concatenate(pieces)
+
+    def frame(self, columns: Sequence[str] | None = None) -> pd.DataFrame:
+        """Return columns of the study's own samples as a table."""
+        import pyarrow as pa
+        from pyarrow import parquet
+
+        chosen = None if columns is None else list(columns)
+        tables = [
+            parquet.read_table(file, columns=chosen).replace_schema_metadata()
+            for file in self.files()
+        ]
+        whole: pd.DataFrame = pa.concat_tables(tables, promote_options="none").to_pandas()
+        return whole
+
+
+def differing(known: dict[str, Any], asked: dict[str, Any]) -> list[str]:
+    """Return a line for each setting that differs."""
+    lines = []
+    for key in dict.fromkeys((*known, *asked)):
+        one, other = known.get(key), asked.get(key)
+        if one == other:
+            continue
+        if key == "inputs" and isinstance(one, list) and isinstance(other, list):
+            lines += _differing_inputs(one, other)
+        else:
+            lines.append(f"  {key}: {_short(one)} there, {_short(other)} asked")
+    return lines
+
+
+def _differing_inputs(known: Iterable[Any], asked: Iterable[Any]) -> list[str]:
+    there = {"=".join(one["keys"]): one for one in known}
+    here = {"=".join(one["keys"]): one for one in asked}
+    lines = [
+        f"  input {name}: {_told(there.get(name))} there, {_told(here.get(name))} asked"
+        for name in dict.fromkeys((*there, *here))
+        if there.get(name) != here.get(name)
+    ]
+    return lines or ["  inputs: in another order"]
+
+
+def _told(one: dict[str, Any] | None) -> str:
+    if one is None:
+        return "none"
+    numbers = " ".join(f"{k} {v:.6g}" for k, v in one["numbers"].items())
+    return " ".join(filter(None, (one["distribution"], numbers, one["unit"])))
+
+
+def _short(value: Any) -> str:
+    text = json.dumps(value, ensure_ascii=False)
+    return text if len(text) <= 60 else f"{text[:57]}…"
+
+
+def _write_json(file: Path, told: dict[str, Any]) -> None:
+    text = json.dumps(told, indent=1, ensure_ascii=False) + "\n"
+
+    def write(to: Path) -> None:
+        to.write_text(text, encoding="utf-8")
+
+    write_atomically(file, write)

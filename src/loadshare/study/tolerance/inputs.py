@@ -1,0 +1,263 @@
+"""Inputs of a tolerance study: which keys scatter, how, and which of them together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.case import Case, Study
+from loadshare.case.distributions import Group
+from loadshare.case.keys import dotted
+from loadshare.errors import CaseError, Problem
+from loadshare.study.parameter import matches, split_outside
+from loadshare.study.tolerance.copula import Copula, correlation_matrix
+from loadshare.study.tolerance.distribution import Distribution, read_distribution
+
+Array = NDArray[np.float64]
+
+FAR = 1e-9
+"""Probability beyond the values with which the case is tried before anything is drawn."""
+
+
+@dataclass(frozen=True)
+class Input:
+    """An input that scatters.
+
+    Attributes
+    ----------
+    keys : tuple of str
+        Dotted key paths, which take the same value.
+    distribution : Distribution
+    """
+
+    keys: tuple[str, ...]
+    distribution: Distribution
+
+    @property
+    def name(self) -> str:
+        """Its keys, joined by ``=``."""
+        return "=".join(self.keys)
+
+    @property
+    def column(self) -> str:
+        """Its name with the unit in brackets."""
+        return self._with_unit(self.name)
+
+    def _with_unit(self, name: str) -> str:
+        unit = self.distribution.unit
+        return f"{name} [{unit}]" if unit else name
+
+    def samples(self, values: Array) -> dict[str, Array]:
+        """Return values by key and unit, as `loadshare.solve_many` takes them."""
+        return {self._with_unit(key): values for key in self.keys}
+
+    def changes(self, value: float) -> dict[str, Any]:
+        """Return the changes that `Case.replace` takes."""
+        return dict.fromkeys(self.keys, self.distribution.text(value))
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """All inputs of a study.
+
+    Attributes
+    ----------
+    every : tuple of Input
+    copulas : tuple of Copula
+    """
+
+    every: tuple[Input, ...]
+    copulas: tuple[Copula, ...] = ()
+
+    def values(self, uniforms: Array) -> Array:
+        """Return inputs in their units from independent uniforms, both of shape (S, inputs)."""
+        for copula in self.copulas:
+            uniforms = copula.applied(uniforms)
+        columns = [one.distribution.at(uniforms[:, k]) for k, one in enumerate(self.every)]
+        return np.stack(columns, axis=1)
+
+    def samples(self, values: Array) -> dict[str, Array]:
+        """Return values, shape (S, inputs), as `loadshare.solve_many` takes them."""
+        found: dict[str, Array] = {}
+        for k, one in enumerate(self.every):
+            found |= one.samples(values[:, k])
+        return found
+
+    def changes(self, values: Sequence[float]) -> dict[str, Any]:
+        """Return one sample as the changes that `Case.replace` takes."""
+        found: dict[str, Any] = {}
+        for one, value in zip(self.every, values, strict=True):
+            found |= one.changes(value)
+        return found
+
+    @cached_property
+    def units(self) -> tuple[tuple[int, ...], ...]:
+        """Numbers of the inputs that are independent of all others: groups, and single ones."""
+        of = {member: copula.members for copula in self.copulas for member in copula.members}
+        return tuple(dict.fromkeys(of.get(k, (k,)) for k in range(len(self.every))))
+
+    @property
+    def unit_names(self) -> tuple[str, ...]:
+        """Name of each unit."""
+        return tuple(" + ".join(self.every[k].name for k in unit) for unit in self.units)
+
+    def to_plain(self) -> dict[str, Any]:
+        """Return what `from_plain` takes: tables, lists, texts and numbers."""
+        return {
+            "inputs": [
+                {
+                    "keys": list(one.keys),
+                    "distribution": one.distribution.kind,
+                    "numbers": dict(one.distribution.numbers),
+                    "unit": one.distribution.unit,
+                }
+                for one in self.every
+            ],
+            "groups": [
+                {"inputs": list(c.members), "correlation": c.matrix.tolist()} for c in self.copulas
+            ],
+        }
+
+    @classmethod
+    def from_plain(cls, plain: Mapping[str, Any]) -> Inputs:
+        """Return inputs from what `to_plain` gave."""
+        every = tuple(
+            Input(
+                tuple(one["keys"]),
+                Distribution(one["distribution"], one["numbers"], one["unit"]),
+            )
+            for one in plain["inputs"]
+        )
+        copulas = tuple(
+            Copula(tuple(c["inputs"]), np.array(c["correlation"])) for c in plain["groups"]
+        )
+        return cls(every, copulas)
+
+
+def read_inputs(case: Case, name: str) -> Inputs:
+    """Read the inputs of a tolerance study, and try the case with their far ends.
+
+    Parameters
+    ----------
+    case : Case
+    name : str
+        Of the study.
+
+    Raises
+    ------
+    CaseError
+        If an input, its distribution or a group cannot be used; all problems are listed.
+    """
+    reader = _Reader(case, name)
+    every = tuple(reader.inputs())
+    copulas = tuple(reader.copulas(every))
+    if reader.problems:
+        raise CaseError(reader.problems)
+    return Inputs(every, copulas)
+
+
+class _Reader:
+    """Reads inputs and groups, and gathers what is wrong."""
+
+    def __init__(self, case: Case, name: str) -> None:
+        self.case = case
+        self.path = ("study", name)
+        self.block: Study = case.study[name]
+        self.problems: list[Problem] = []
+        self.bad: set[str] = set()
+
+    def _wrong(
+        self, path: tuple[str | int, ...], message: str, allowed: str = "", hint: str = ""
+    ) -> None:
+        place = dotted((*self.path, *path))
+        self.problems.append(self.case.problem(place, message, allowed, hint))
+
+    def _keys(self, path: tuple[str | int, ...], text: str) -> list[tuple[str, ...]]:
+        """Return the keys of each input that a text names; those joined by = are one input."""
+        try:
+            parts = [matches(self.case, part) for part in split_outside(text, "=")]
+        except CaseError as error:
+            for problem in error.problems:
+                self._wrong(path, problem.message, problem.allowed, problem.hint)
+            return []
+        if len(parts) > 1:
+            return [tuple(dict.fromkeys(key for part in parts for key in part))]
+        return [(key,) for key in parts[0]]
+
+    def inputs(self) -> Iterator[Input]:
+        """Yield the inputs that can be used."""
+        seen: dict[str, str] = {}
+        for text, spread in (self.block.inputs or {}).items():
+            path = ("inputs", text)
+            found = read_distribution(spread)
+            if isinstance(found, list):
+                for wrong in found:
+                    tail = (wrong.key,) if wrong.key else ()
+                    self._wrong((*path, *tail), wrong.message, wrong.allowed)
+            for keys in self._keys(path, text):
+                double = [key for key in keys if key in seen]
+                for key in double:
+                    message = f"{key} is drawn by {seen[key]} already"
+                    self._wrong(path, message, "one distribution for each key")
+                seen |= dict.fromkeys(keys, text)
+                if isinstance(found, list):
+                    self.bad.update(keys)
+                elif not double and self._fits(path, one := Input(keys, found)):
+                    yield one
+
+    def _fits(self, path: tuple[str | int, ...], one: Input) -> bool:
+        """Tell whether the case can be used with the far ends of an input."""
+        for end in one.distribution.ends(FAR):
+            try:
+                self.case.replace(one.changes(end))
+            except CaseError as error:
+                told = one.distribution.text(end)
+                hint = f"{one.name} was tried with {told}."
+                if one.distribution.kind == "normal":
+                    hint += " A truncated normal distribution keeps within limits."
+                for problem in error.problems:
+                    self._wrong(path, problem.message, problem.allowed, problem.hint or hint)
+                self.bad.update(one.keys)
+                return False
+        return True
+
+    def copulas(self, every: Sequence[Input]) -> Iterator[Copula]:
+        """Yield the groups that can be used."""
+        number = {key: k for k, one in enumerate(every) for key in one.keys}
+        taken: set[int] = set()
+        for g, group in enumerate(self.block.groups or ()):
+            members = self._members(g, group, number)
+            if members is None:
+                continue
+            for k in sorted(taken & set(members)):
+                message = f"{every[k].name} is in another group already"
+                self._wrong(("groups", g, "inputs"), message, "one group for each input")
+            taken |= set(members)
+            matrix = correlation_matrix(group.correlation, len(members))
+            if isinstance(matrix, str):
+                hint = "Keys joined by = take the same value." if "definite" in matrix else ""
+                self._wrong(("groups", g, "correlation"), matrix, hint=hint)
+            else:
+                yield Copula(members, matrix)
+
+    def _members(self, g: int, group: Group, number: Mapping[str, int]) -> tuple[int, ...] | None:
+        """Return the numbers of a group's inputs; None where one is not usable."""
+        members: list[int] = []
+        usable = True
+        for i, text in enumerate(group.inputs):
+            path = ("groups", g, "inputs", i)
+            keys = [key for one in self._keys(path, text) for key in one]
+            usable = usable and bool(keys)
+            for key in keys:
+                if key in number:
+                    members.append(number[key])
+                    continue
+                usable = False
+                if key not in self.bad:
+                    self._wrong(path, f"{key} is not drawn", "a key of an input of this study")
+        return tuple(dict.fromkeys(members)) if usable else None

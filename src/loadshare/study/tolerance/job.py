@@ -1,0 +1,189 @@
+"""A tolerance study as plain data, so that any process can do any part of it."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from loadshare._version import __version__
+from loadshare.case import Case
+from loadshare.study.tolerance.design import Design, Drawn, PickFreeze
+from loadshare.study.tolerance.figures import Solver
+from loadshare.study.tolerance.inputs import Inputs
+from loadshare.train import build_train
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+SAMPLES, INDICES = "samples", "indices"
+STAMP = b"loadshare"
+"""Key in a part's metadata under which it says which study it belongs to."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Part:
+    """Whole blocks of a design, solved and written together.
+
+    Attributes
+    ----------
+    design : str
+        "samples" or "indices".
+    number : int
+        0-based.
+    rows : int
+        Number of samples.
+    """
+
+    design: str
+    number: int
+    rows: int
+
+
+@dataclass(frozen=True)
+class Job:
+    """All on which the samples of a study and their answers depend.
+
+    Attributes
+    ----------
+    name : str
+        Of the case.
+    text : str
+        The case as a case file.
+    settings : dict
+        Plain data: ``case_hash``, ``inputs``, ``groups``, ``samples``, ``seed``, ``sampling``,
+        ``indices``, ``positions``, ``tolerance``, ``engine``, ``chunk`` (blocks per part) and
+        ``version``.
+    """
+
+    name: str
+    text: str
+    settings: dict[str, Any]
+
+    @classmethod
+    def of(cls, case: Case, inputs: Inputs, **settings: Any) -> Job:
+        """Return the job of a case and its inputs."""
+        whole = {
+            "version": __version__,
+            "case_hash": case.hash,
+            **inputs.to_plain(),
+            **settings,
+        }
+        return cls(case.name, case.to_toml(), whole)
+
+    def to_json(self) -> str:
+        """Return it as text."""
+        return json.dumps({"name": self.name, "text": self.text, "settings": self.settings})
+
+    @classmethod
+    def from_json(cls, text: str) -> Job:
+        """Return what `to_json` told."""
+        return cls(**json.loads(text))
+
+    @cached_property
+    def hash(self) -> str:
+        """SHA-256 of the settings."""
+        text = json.dumps(self.settings, sort_keys=True, separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    @cached_property
+    def inputs(self) -> Inputs:
+        """The inputs."""
+        return Inputs.from_plain(self.settings)
+
+    @cached_property
+    def solver(self) -> Solver:
+        """What solves its samples."""
+        case = Case(tomllib.loads(self.text), name=self.name)
+        return Solver(
+            case,
+            build_train(case),
+            self.inputs,
+            tuple(self.settings["positions"]),
+            self.settings["tolerance"],
+            self.settings["engine"],
+        )
+
+    @cached_property
+    def designs(self) -> dict[str, Design]:
+        """Samples by what they serve."""
+        seed, sampling = self.settings["seed"], self.settings["sampling"]
+        return {
+            SAMPLES: Drawn(self.inputs, self.settings["samples"], seed, sampling),
+            INDICES: PickFreeze(self.inputs, self.settings["indices"], seed, sampling),
+        }
+
+    def parts(self) -> Iterator[Part]:
+        """Yield all parts, the study's own samples first."""
+        for name, design in self.designs.items():
+            for number in range(-(-design.blocks // self.settings["chunk"])):
+                rows = sum(len(design.rows(b)) for b in self.blocks(name, number))
+                yield Part(name, number, rows)
+
+    def blocks(self, design: str, number: int) -> range:
+        """Return the blocks of a part."""
+        chunk = self.settings["chunk"]
+        return range(chunk * number, min(chunk * (number + 1), self.designs[design].blocks))
+
+    def stamp(self, part: Part) -> bytes:
+        """Return what a part's metadata says of it."""
+        told = {"study": self.hash, "design": part.design, "part": part.number, "rows": part.rows}
+        return json.dumps(told, sort_keys=True).encode()
+
+    def table(self, part: Part) -> pa.Table:
+        """Draw and solve a part.
+
+        Returns
+        -------
+        pyarrow.Table
+            One row per sample: its number, inputs, figures, largest residual, and the message of
+            one that has no certified answer.
+        """
+        import pyarrow as pa
+
+        design = self.designs[part.design]
+        pieces = [self._piece(design, block) for block in self.blocks(part.design, part.number)]
+        joined = {
+            name: np.concatenate([piece[name] for piece in pieces])
+            for name in pieces[0]
+            if name != "message"
+        }
+        messages = [text for piece in pieces for text in piece["message"]]
+        return pa.table(
+            {**joined, "message": pa.array(messages, pa.string())},
+            metadata={STAMP: self.stamp(part)},
+        )
+
+    def _piece(self, design: Design, block: int) -> dict[str, Any]:
+        """Solve one block; answers never depend on what else is in its part."""
+        rows, values = design.rows(block), design.values(block)
+        found = self.solver.solve(values)
+        return {
+            "sample": rows,
+            **{one.column: values[:, k] for k, one in enumerate(self.inputs.every)},
+            **found.columns,
+            "residual": found.residual,
+            "certified": ~np.isnan(found.residual),
+            "message": [found.message.get(row) for row in range(len(rows))],
+        }
+
+
+@lru_cache(maxsize=4)
+def known_job(text: str) -> Job:
+    """Return a job from its text; kept, with its train, for the next part."""
+    return Job.from_json(text)
+
+
+def equilibria(samples: int, indices: int, units: int, positions: int) -> int:
+    """Return how many equilibria a study solves."""
+    return (samples + indices * (units + 2)) * positions
+
+
+CHUNK = 8
+"""Blocks per part: 32768 samples, some seconds of work and some megabytes of memory."""

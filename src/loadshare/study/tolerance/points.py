@@ -1,0 +1,57 @@
+"""Points in the unit cube, block by block: each block is the same whoever asks for it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.job.many import BLOCK
+
+Array = NDArray[np.float64]
+
+SEQUENCES = 16
+"""Scrambled Sobol sequences that take turns; they differ by chance alone, and so tell the error."""
+SMALLEST = 2.0**-54
+"""Stands for a point at 0, of which most distributions make infinity."""
+
+
+def uniforms(sampling: str, seed: int, stream: tuple[int, ...], block: int, width: int) -> Array:
+    """Return the points of a block, strictly between 0 and 1.
+
+    Parameters
+    ----------
+    sampling : {"random", "sobol"}
+        Independent points; or points of `SEQUENCES` scrambled Sobol sequences in turn: row i of a
+        block belongs to sequence i mod `SEQUENCES`.
+    seed : int
+    stream : tuple of int
+        Tells apart the points of one study that serve different ends.
+    block : int
+        0-based.
+    width : int
+        Number of coordinates.
+
+    Returns
+    -------
+    ndarray, shape (BLOCK, width)
+    """
+    if sampling == "sobol":
+        return _sobol(seed, stream, block, width)
+    sequence = np.random.SeedSequence(seed, spawn_key=(block, *stream))
+    points = np.random.default_rng(sequence).random((BLOCK, width))
+    return np.maximum(points, SMALLEST)
+
+
+def _sobol(seed: int, stream: tuple[int, ...], block: int, width: int) -> Array:
+    from scipy.stats import qmc
+
+    each = BLOCK // SEQUENCES
+    points = np.empty((each, SEQUENCES, width))
+    for r in range(SEQUENCES):
+        source = np.random.SeedSequence(seed, spawn_key=(r, *stream))
+        engine = qmc.Sobol(width, scramble=True, seed=np.random.default_rng(source))
+        if block:
+            engine.fast_forward(block * each)
+        points[:, r] = engine.random(each)
+    # Points stand on a grid of 2^-30, zero included; the middle of a cell is as good as its edge.
+    return points.reshape(BLOCK, width) + 2.0**-31

@@ -1,0 +1,178 @@
+"""What a tolerance study found."""
+
+from __future__ import annotations
+
+import shutil
+import weakref
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+
+from loadshare.study.tolerance.folder import Folder
+from loadshare.study.tolerance.indices import Share
+from loadshare.study.tolerance.inputs import Inputs
+from loadshare.study.tolerance.statistics import Estimate, Summary
+from loadshare.study.tolerance.worst import WorstCase
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+    from loadshare.report.figure import Figure
+
+Over: TypeAlias = Literal["stage", "group"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OmegaStatistics:
+    """How the largest Ω of a stage scatters.
+
+    Attributes
+    ----------
+    over : {"stage", "group"}
+        Over whose mean torque Ω is.
+    stage : str
+        Stage, or "system".
+    summary : Summary
+    exceedance : Estimate or None
+        P(Ω > limit); None without a limit.
+    shares : tuple of Share
+        Shares of variance; empty where none were asked or Ω does not vary.
+    """
+
+    over: str
+    stage: str
+    summary: Summary
+    exceedance: Estimate | None
+    shares: tuple[Share, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FloatStatistics:
+    """How a float scatters.
+
+    Attributes
+    ----------
+    gear : str
+    way : Summary
+        Way of its centre, the largest over the positions [m].
+    boundary_force : Summary or None
+        Force of the hardest pressed contact of its ring [N]; None without a ring.
+    pressed : float or None
+        Share of the samples in which it presses on its ring at some position.
+    """
+
+    gear: str
+    way: Summary
+    boundary_force: Summary | None
+    pressed: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class Tolerance:
+    """A tolerance study.
+
+    Attributes
+    ----------
+    case : str
+        Name of the case.
+    inputs : Inputs
+    settings : mapping
+        All on which the samples depend, as ``study.json`` has it.
+    limit : float or None
+    samples, refused : int
+        All samples; those without a certified answer, which are in no statistic.
+    messages : mapping of str to int
+        Why samples were refused, and how many.
+    omega : tuple of OmegaStatistics
+    torque : mapping of mesh to Summary
+        Largest driver torque over the positions [N·m].
+    floats : tuple of FloatStatistics
+    design_refused : int
+        Samples for the shares of variance without a certified answer; their rows are left out.
+    overs : tuple of str
+        "stage", and "group" where Ω of the system over the mean of the group differs from it.
+    worst : tuple of WorstCase
+        One for each of these.
+    residual : float
+        Largest scaled residual of all certificates.
+    folder : Folder
+        Where the samples are.
+    """
+
+    case: str
+    inputs: Inputs
+    settings: Mapping[str, Any]
+    limit: float | None
+    samples: int
+    refused: int
+    messages: Mapping[str, int]
+    omega: tuple[OmegaStatistics, ...]
+    torque: Mapping[str, Summary]
+    floats: tuple[FloatStatistics, ...]
+    design_refused: int
+    overs: tuple[str, ...]
+    worst: tuple[WorstCase, ...]
+    residual: float
+    folder: Folder
+
+    def of(self, stage: str = "system", over: Over = "stage") -> OmegaStatistics:
+        """Return how Ω of a stage scatters.
+
+        Raises
+        ------
+        KeyError
+            If there is no such stage, or Ω is over no such mean.
+        """
+        for one in self.omega:
+            if (one.stage, one.over) == (stage, over):
+                return one
+        raise KeyError(f"no Ω of stage {stage!r} over the mean of each {over!r}")
+
+    @property
+    def parts(self) -> list[Path]:
+        """Parquet files of the samples, in order."""
+        return self.folder.files()
+
+    def to_frame(self, columns: Sequence[str] | None = None) -> pd.DataFrame:
+        """Read the samples: inputs and largest figures, one row each.
+
+        Parameters
+        ----------
+        columns : sequence of str, optional
+            Such as ``["omega.system", "float.4 [m]"]``; all by default.
+        """
+        return self.folder.frame(columns)
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """Statistics of Ω as labelled arrays: over (over, stage), level, input, bin."""
+        from loadshare.study.tolerance.dataset import dataset
+
+        return dataset(self)
+
+    def plot(self, stage: str = "system", over: Over = "stage") -> Figure:
+        """Picture of how Ω of a stage scatters, and from which inputs it comes.
+
+        Parameters
+        ----------
+        stage : str
+        over : {"stage", "group"}
+            Over whose mean torque Ω is.
+        """
+        from loadshare.report.figures.tolerance import tolerance
+
+        return tolerance(self.dataset.sel(over=over), stage)
+
+
+def remove_with(found: Tolerance, path: Path) -> None:
+    """Remove a folder that nobody asked for when the study is no longer used."""
+    weakref.finalize(found, shutil.rmtree, path, ignore_errors=True)
+
+
+def counted(messages: Sequence[str]) -> dict[str, int]:
+    """Count messages, the most frequent first."""
+    return dict(Counter(messages).most_common())

@@ -1,0 +1,205 @@
+"""Moments, quantiles and probabilities with their confidence intervals."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import special
+
+from loadshare.study.tolerance.points import SEQUENCES
+
+Array = NDArray[np.float64]
+
+CONFIDENCE = 0.95
+"""Of every interval."""
+BINS = 60
+"""Of the histograms."""
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """A figure and its confidence interval.
+
+    Attributes
+    ----------
+    value, low, high : float
+    """
+
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Summary:
+    """How a figure scatters over the samples.
+
+    Attributes
+    ----------
+    count : int
+        Samples that have it.
+    mean : Estimate
+    deviation : float
+        Standard deviation.
+    lowest, highest : float
+    quantiles : mapping of level to Estimate
+    edges, counts : ndarray, shape (BINS + 1,), (BINS,)
+        Histogram.
+    """
+
+    count: int
+    mean: Estimate
+    deviation: float
+    lowest: float
+    highest: float
+    quantiles: dict[float, Estimate]
+    edges: Array
+    counts: NDArray[np.int64]
+
+
+def summary(values: Array, levels: Sequence[float], replicated: bool) -> Summary | None:
+    """Describe a figure; None if no sample has it.
+
+    Parameters
+    ----------
+    values : ndarray, shape (S,)
+        By sample; NaN where a sample has none.
+    levels : sequence of float
+        Of the quantiles.
+    replicated : bool
+        Whether the samples are of `SEQUENCES` sequences in turn, by whose scatter intervals are
+        then judged.
+    """
+    known = values[~np.isnan(values)]
+    if not len(known):
+        return None
+    replicates = _replicates(values) if replicated else None
+    ordered = np.sort(known)
+    deviation = float(np.std(known, ddof=1)) if len(known) > 1 else math.nan
+    counts, edges = np.histogram(known, bins=BINS, range=_range(ordered))
+    return Summary(
+        count=len(known),
+        mean=_mean(known, deviation, replicates),
+        deviation=deviation,
+        lowest=float(ordered[0]),
+        highest=float(ordered[-1]),
+        quantiles={level: quantile(ordered, level, replicates) for level in levels},
+        edges=edges,
+        counts=counts,
+    )
+
+
+def _range(ordered: Array) -> tuple[float, float]:
+    """Ends of a histogram: those of the values, with some room where these hardly differ."""
+    low, high = float(ordered[0]), float(ordered[-1])
+    least = 1e-6 * max(abs(low), abs(high), 1e-300)
+    if high - low < least:
+        low, high = low - least, high + least
+    return low, high
+
+
+def _replicates(values: Array) -> list[Array]:
+    """Split samples into the sequences from which they come, those without a figure left out."""
+    parts = [values[r::SEQUENCES] for r in range(SEQUENCES)]
+    return [known for part in parts if len(known := part[~np.isnan(part)])]
+
+
+def _from_replicates(value: float, found: Sequence[float]) -> Estimate:
+    """Student's interval from independent estimates of one figure."""
+    count = len(found)
+    if count < 2:
+        return Estimate(value, math.nan, math.nan)
+    factor = float(special.stdtrit(count - 1, 0.5 + CONFIDENCE / 2.0))
+    half = factor * float(np.std(found, ddof=1)) / math.sqrt(count)
+    return Estimate(value, value - half, value + half)
+
+
+def _mean(known: Array, deviation: float, replicates: list[Array] | None) -> Estimate:
+    value = float(known.mean())
+    if replicates is not None:
+        return _from_replicates(value, [float(part.mean()) for part in replicates])
+    half = float(special.ndtri(0.5 + CONFIDENCE / 2.0)) * deviation / math.sqrt(len(known))
+    return Estimate(value, value - half, value + half)
+
+
+def quantile(ordered: Array, level: float, replicates: list[Array] | None) -> Estimate:
+    """Return a quantile, its interval from order statistics or from replicates.
+
+    Parameters
+    ----------
+    ordered : ndarray
+        Figures in rising order.
+    level : float
+    replicates : list of ndarray or None
+        Their own quantiles would be biased far out in a tail. How the share of each at or below the
+        common quantile differs tells for which levels that quantile may stand.
+    """
+    value = float(np.quantile(ordered, level))
+    shares = [float((part <= value).mean()) for part in replicates or ()]
+    if len(set(shares)) > 1:
+        span = _from_replicates(level, shares)
+        low = float(np.quantile(ordered, span.low)) if span.low > 0.0 else -math.inf
+        high = float(np.quantile(ordered, span.high)) if span.high < 1.0 else math.inf
+        return Estimate(value, low, high)
+    from scipy import stats
+
+    # The number of samples below the true quantile is binomial.
+    tail = (1.0 - CONFIDENCE) / 2.0
+    count = len(ordered)
+    below, above = (int(stats.binom.ppf(p, count, level)) for p in (tail, 1.0 - tail))
+    low = float(ordered[below - 1]) if below >= 1 else -math.inf
+    high = float(ordered[above]) if above < count else math.inf
+    return Estimate(value, low, high)
+
+
+def wilson(hits: int, count: int, confidence: float = CONFIDENCE) -> Estimate:
+    """Return a probability from independent trials with Wilson's score interval.
+
+    Parameters
+    ----------
+    hits, count : int
+    confidence : float
+
+    Notes
+    -----
+    E. B. Wilson, Probable inference, the law of succession, and statistical inference, Journal of
+    the American Statistical Association 22 (1927).
+    """
+    z = float(special.ndtri(0.5 + confidence / 2.0))
+    share = hits / count
+    middle = (share + z * z / (2.0 * count)) / (1.0 + z * z / count)
+    inner = share * (1.0 - share) / count + z * z / (4.0 * count * count)
+    half = z / (1.0 + z * z / count) * math.sqrt(inner)
+    # Round-off must not keep an interval from its end.
+    low = 0.0 if hits == 0 else max(middle - half, 0.0)
+    high = 1.0 if hits == count else min(middle + half, 1.0)
+    return Estimate(share, low, high)
+
+
+def exceedance(values: Array, limit: float, replicated: bool) -> Estimate | None:
+    """Return P(value > limit); None if no sample has the figure.
+
+    Parameters
+    ----------
+    values : ndarray, shape (S,)
+        By sample; NaN where a sample has none.
+    limit : float
+    replicated : bool
+        As for `summary`. Where no sequence differs from another, Wilson's interval is given, which
+        is then too wide rather than too narrow.
+    """
+    known = values[~np.isnan(values)]
+    if not len(known):
+        return None
+    found = wilson(int((known > limit).sum()), len(known))
+    if not replicated:
+        return found
+    shares = [float((part > limit).mean()) for part in _replicates(values)]
+    if len(set(shares)) < 2:
+        return found
+    told = _from_replicates(found.value, shares)
+    return Estimate(told.value, max(told.low, 0.0), min(told.high, 1.0))

@@ -1,0 +1,367 @@
+"""Tolerance studies: `loadshare.tolerance`."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from loadshare.case import Case, Study
+from loadshare.certify.certificate import TOLERANCE
+from loadshare.errors import CaseError, Problem
+from loadshare.job import Progress
+from loadshare.job.machine import ENGINES, FEW
+from loadshare.job.positions import wanted_positions
+from loadshare.study.positions import loaded
+from loadshare.study.tolerance.figures import KINDS, SYSTEM
+from loadshare.study.tolerance.folder import Folder
+from loadshare.study.tolerance.indices import Share, shares
+from loadshare.study.tolerance.inputs import read_inputs
+from loadshare.study.tolerance.job import CHUNK, INDICES, Job, Part, equilibria
+from loadshare.study.tolerance.points import SEQUENCES
+from loadshare.study.tolerance.result import (
+    FloatStatistics,
+    OmegaStatistics,
+    Tolerance,
+    counted,
+    remove_with,
+)
+from loadshare.study.tolerance.statistics import Summary, exceedance, summary
+from loadshare.study.tolerance.worst import WorstCase, worst_case
+from loadshare.train import Train, build_train
+
+NAME = "tolerance"
+"""Of a study that is asked in Python alone."""
+SAMPLES, ROWS = 16384, 1024
+"""Samples, and rows of the design for the shares of variance, where none are given."""
+LEVELS = (0.5, 0.9, 0.95, 0.99, 0.999)
+"""Quantiles where none are given."""
+SMALL = 100_000
+"""Equilibria up to which starting worker processes costs more time than they save."""
+WORST = 4
+"""Worst samples from which the search for the worst case starts."""
+SAME = 1e-9
+"""Relative difference of Ω by stage and by group that counts as none."""
+PRESSED = 1e-9
+"""Force on a boundary, over the largest one in the study, that counts as one."""
+
+
+def tolerance(
+    case: Case | str | Path,
+    inputs: Mapping[str, Any] | None = None,
+    *,
+    study: str | None = None,
+    groups: Sequence[Any] | None = None,
+    samples: int | None = None,
+    seed: int | None = None,
+    sampling: str | None = None,
+    limit: float | None = None,
+    indices: int | None = None,
+    quantiles: Sequence[float] | None = None,
+    positions: Sequence[int] | None = None,
+    worst: bool = True,
+    out: str | Path | None = None,
+    scheduler: str | None = None,
+    workers: int = 2,
+    chunk: int = CHUNK,
+    engine: str = "auto",
+    progress: Progress | None = None,
+) -> Tolerance:
+    """Let inputs of a case scatter, and find how load sharing does.
+
+    Every sample is a certified equilibrium at every position. Samples are drawn in blocks of 4096,
+    each from its own seed: results are bit-identical whatever the workers and whatever was solved
+    before. A run that was killed goes on where it stood when it is asked again with the same `out`.
+
+    Parameters
+    ----------
+    case : Case or path
+    inputs : mapping of str to dict or Spread, optional
+        How inputs scatter, by key, as ``[study.NAME.inputs]`` in a case file has it. A star in a
+        key gives each key a draw of its own; keys joined by ``=`` take the same value.
+    study : str, optional
+        Study of the case that gives whatever is not given here; by default its only one of this
+        kind, where `inputs` is not given.
+    groups : sequence of dict or Group, optional
+        Correlated inputs, as ``{"inputs": […], "correlation": 0.8}``.
+    samples : int, optional
+        By default 16384.
+    seed : int, optional
+        By default 0.
+    sampling : {"random", "sobol"}, optional
+        Independent samples, or 16 scrambled Sobol sequences in turn; then a multiple of 16 samples.
+    limit : float, optional
+        Ω that should not be exceeded.
+    indices : int, optional
+        Rows of the design for the shares of variance, by default 1024: every row is solved for each
+        independent input and twice more. 0 leaves the shares out.
+    quantiles : sequence of float, optional
+        By default 0.5, 0.9, 0.95, 0.99 and 0.999.
+    positions : sequence of int, optional
+        1-based positions; all by default.
+    worst : bool
+        Look for the worst case within the tolerances as well.
+    out : path, optional
+        Folder for the samples, ``part-000000.parquet`` and so on. Without one they are kept as long
+        as the answer is.
+    scheduler : str, optional
+        Address of a Dask scheduler; its workers then solve the samples.
+    workers : int
+        Processes on this machine. A small study is solved in this one.
+    chunk : int
+        Blocks of 4096 samples in a part; one part per worker is lost if a run is killed.
+    engine : {"auto", "compiled", "vectorised"}
+        As for `solve_many`.
+    progress : Progress, optional
+        Called after every part with samples done and in all, those for the shares included.
+
+    Returns
+    -------
+    Tolerance
+        Samples without a certified answer are counted, with their messages, and in no statistic.
+
+    Raises
+    ------
+    CaseError
+        If the study, an input or its distribution cannot be used; all problems are listed.
+    LoadshareError
+        If `out` holds a study with other settings, or workers fail.
+    ValueError
+        If a position or an engine does not exist.
+
+    Examples
+    --------
+    >>> import loadshare as ls
+    >>> floats = {"rings.*.float": {"distribution": "uniform", "low": "0 um", "high": "12 um"}}
+    >>> found = ls.tolerance("cases/fgfbstts/limit_ring.toml", floats, samples=256, indices=0,
+    ...                      limit=1.03, positions=[1])
+    >>> found.of("system", "group").exceedance.value
+    0.2734375
+    """
+    case, name = _asked(
+        loaded(case),
+        study,
+        {
+            "inputs": inputs,
+            "groups": groups,
+            "samples": samples,
+            "seed": seed,
+            "sampling": sampling,
+            "limit": limit,
+            "indices": indices,
+            "quantiles": quantiles,
+            "positions": positions,
+        },
+    )
+    block = case.study[name]
+    job = _job(case, name, chunk, engine)
+    if out is not None:
+        folder = Folder(Path(out), job)
+        _solve(folder, scheduler, workers, progress)
+        return _found(folder, block, worst)
+    path = Path(tempfile.mkdtemp(prefix="loadshare-"))
+    try:
+        folder = Folder(path, job)
+        _solve(folder, scheduler, workers, progress)
+        found = _found(folder, block, worst)
+    except BaseException:
+        shutil.rmtree(path, ignore_errors=True)
+        raise
+    remove_with(found, path)
+    return found
+
+
+def _asked(case: Case, name: str | None, given: Mapping[str, Any]) -> tuple[Case, str]:
+    """Return the case with the study as it is asked, checked, and the study's name."""
+    own = [key for key, block in case.study.items() if block.kind == NAME]
+    asked = {key: value for key, value in given.items() if value is not None}
+    if name is None:
+        if "inputs" in asked:
+            whole = {"kind": NAME, **asked}
+            return case.replace({f"study.{NAME}": whole}), NAME
+        if len(own) != 1:
+            message = "has no tolerance study" if not own else "has several tolerance studies"
+            allowed = ", ".join(own) or 'a table [study.NAME] with kind = "tolerance", or inputs'
+            raise CaseError([Problem(case.name, "study", "", message, allowed)])
+        (name,) = own
+    elif name not in own:
+        message = "is no tolerance study of the case"
+        raise CaseError([Problem(case.name, f"study.{name}", "", message, ", ".join(own))])
+    from loadshare.case.keys import dotted
+
+    changes = {dotted(("study", name, key)): value for key, value in asked.items()}
+    return (case.replace(changes) if changes else case), name
+
+
+def _job(case: Case, name: str, chunk: int, engine: str) -> Job:
+    block = case.study[name]
+    samples = block.samples or SAMPLES
+    sampling = block.sampling or "random"
+    rows = ROWS if block.indices is None else block.indices
+    problems: list[Problem] = []
+    try:
+        read = read_inputs(case, name)
+    except CaseError as error:
+        problems += error.problems
+    if sampling == "sobol":
+        for key, count in (("samples", samples), ("indices", rows)):
+            if count % SEQUENCES:
+                place = f"study.{name}.{key}"
+                message = f"{count} does not share out among {SEQUENCES} Sobol sequences"
+                allowed = f"a multiple of {SEQUENCES}, best with a power of 2 for each"
+                problems.append(case.problem(place, message, allowed))
+    if problems:
+        raise CaseError(problems)
+    if engine not in ENGINES:
+        raise ValueError(f"unknown engine {engine!r}; allowed: {', '.join(ENGINES)}")
+    if chunk < 1:
+        raise ValueError(f"chunk {chunk}: a part has at least one block")
+    wanted = wanted_positions(build_train(case), block.positions)
+    if engine == "auto":
+        total = equilibria(samples, rows, len(read.units), len(wanted))
+        engine = "vectorised" if total <= FEW else "compiled"
+    return Job.of(
+        case,
+        read,
+        samples=samples,
+        seed=block.seed,
+        sampling=sampling,
+        indices=rows,
+        positions=wanted,
+        tolerance=TOLERANCE,
+        engine=engine,
+        chunk=chunk,
+    )
+
+
+def _solve(folder: Folder, scheduler: str | None, workers: int, progress: Progress | None) -> None:
+    """Solve what is missing."""
+    missing = folder.missing()
+    total = sum(part.rows for part in folder.all)
+    done = total - sum(part.rows for part in missing)
+    if progress is not None:
+        progress(done, total)
+    for part in _solved(folder, missing, scheduler, workers):
+        done += part.rows
+        if progress is not None:
+            progress(done, total)
+
+
+def _solved(
+    folder: Folder, missing: Sequence[Part], scheduler: str | None, workers: int
+) -> Iterator[Part]:
+    if not missing:
+        return iter(())
+    if scheduler is not None:
+        from loadshare.study.tolerance.cluster import solve_on_cluster
+
+        return solve_on_cluster(folder, missing, scheduler)
+    from loadshare.study.tolerance.local import solve_here, solve_parts
+
+    # By all parts and not by the missing ones: where a sample is solved shall not depend on when.
+    settings = folder.job.settings
+    if sum(part.rows for part in folder.all) * len(settings["positions"]) <= SMALL:
+        return solve_here(folder, missing)
+    return solve_parts(folder, missing, max(workers, 1))
+
+
+def _found(folder: Folder, block: Study, worst: bool) -> Tolerance:
+    """Read the statistics from the parts."""
+    job, train = folder.job, folder.job.solver.train
+    levels = block.quantiles or LEVELS
+    replicated = job.settings["sampling"] == "sobol"
+
+    def told(column: str) -> Summary | None:
+        return summary(folder.column(column), levels, replicated)
+
+    certified = folder.column("certified")
+    messages = folder.column("message")[~certified]
+    gone = 0
+    if job.settings["indices"]:
+        gone = int((~folder.column("certified", INDICES)).sum())
+    torque = {mesh: told(f"torque.{mesh} [N*m]") for mesh in train.meshes}
+    residual, apart = folder.column("residual"), _apart(folder)
+    return Tolerance(
+        case=job.name,
+        inputs=job.inputs,
+        settings=job.settings,
+        limit=block.limit,
+        samples=len(certified),
+        refused=int((~certified).sum()),
+        messages=counted([str(text).splitlines()[0] for text in messages]),
+        omega=tuple(_omega(folder, train, levels, block.limit)),
+        torque={mesh: found for mesh, found in torque.items() if found is not None},
+        floats=tuple(_floats(folder, train, levels)),
+        design_refused=gone,
+        overs=tuple(KINDS[kind] for kind in apart),
+        worst=tuple(_worst(folder, apart)) if worst else (),
+        residual=float(np.nanmax(residual)) if certified.any() else float("nan"),
+        folder=folder,
+    )
+
+
+def _omega(
+    folder: Folder, train: Train, levels: Sequence[float], limit: float | None
+) -> Iterator[OmegaStatistics]:
+    replicated = folder.job.settings["sampling"] == "sobol"
+    for kind, over in KINDS.items():
+        for stage in [*(s.name for s in train.stages), SYSTEM]:
+            values = folder.column(f"{kind}.{stage}")
+            found = summary(values, levels, replicated)
+            if found is not None:
+                above = None if limit is None else exceedance(values, limit, replicated)
+                parts = _shares(folder, f"{kind}.{stage}")
+                yield OmegaStatistics(over, stage, found, above, parts)
+
+
+def _shares(folder: Folder, column: str) -> tuple[Share, ...]:
+    settings, inputs = folder.job.settings, folder.job.inputs
+    if not settings["indices"]:
+        return ()
+    figures = folder.column(column, INDICES).reshape(-1, settings["indices"])
+    return shares(figures, inputs.unit_names, settings["seed"])
+
+
+def _floats(folder: Folder, train: Train, levels: Sequence[float]) -> Iterator[FloatStatistics]:
+    replicated = folder.job.settings["sampling"] == "sobol"
+    for gear in train.floating:
+        way = summary(folder.column(f"float.{gear} [m]"), levels, replicated)
+        if way is None:
+            continue
+        force, pressed = None, None
+        if gear in train.rings:
+            values = folder.column(f"boundary_force.{gear} [N]")
+            force = summary(values, levels, replicated)
+            known = values[~np.isnan(values)]
+            pressed = float((known > PRESSED * max(known.max(), 1e-300)).mean())
+        yield FloatStatistics(gear, way, force, pressed)
+
+
+def _worst(folder: Folder, kinds: Sequence[str]) -> Iterator[WorstCase]:
+    solver, seed = folder.job.solver, folder.job.settings["seed"]
+    for kind in kinds:
+        values = np.nan_to_num(folder.column(f"{kind}.{SYSTEM}"), nan=-np.inf)
+        worst = np.argsort(-values, kind="stable")[:WORST]
+        known = _inputs_of(folder, [int(row) for row in worst if np.isfinite(values[row])])
+        found = worst_case(solver, kind, known, seed)
+        if found is not None:
+            yield found
+
+
+def _apart(folder: Folder) -> list[str]:
+    """Kinds of Ω that differ: where groups share alike, as without groups, both are one."""
+    one, other = (folder.column(f"{kind}.{SYSTEM}") for kind in KINDS)
+    same = np.allclose(one, other, rtol=SAME, atol=0.0, equal_nan=True)
+    return list(KINDS)[:1] if same else list(KINDS)
+
+
+def _inputs_of(folder: Folder, rows: Iterable[int]) -> list[np.ndarray[Any, Any]]:
+    """Draw the inputs of some samples again."""
+    from loadshare.job.many import BLOCK
+
+    design = folder.job.designs["samples"]
+    return [design.values(row // BLOCK)[row % BLOCK] for row in rows]

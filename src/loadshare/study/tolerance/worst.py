@@ -1,0 +1,209 @@
+"""The worst case within the tolerances, and the inputs that give it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.errors import CaseError, Refused
+from loadshare.job import solve
+from loadshare.job.many import BLOCK
+from loadshare.study.tolerance.figures import KINDS, SYSTEM, Solver
+from loadshare.study.tolerance.inputs import Inputs
+
+Array = NDArray[np.float64]
+
+CORNERS, INNER = 6, 6
+"""Starting points at random vertices of the box, and at random inside."""
+STEP, LAST_STEP = 0.5, 1e-4
+"""First and last step along an input, over the width of its tolerance."""
+NARROWER = 0.25
+"""Factor of a step that gains nothing."""
+ROUNDS = 200
+GAIN = 1e-12
+"""Change of Ω that counts as one."""
+
+
+@dataclass(frozen=True)
+class WorstCase:
+    """The largest Ω that was found within the tolerances. There may be a larger one.
+
+    Attributes
+    ----------
+    over : str
+        "stage" or "group": over whose mean Ω is.
+    omega : float
+        Ω of the system, the largest over positions and branches, of a certified equilibrium that
+        was solved by itself.
+    inputs : mapping of str to float
+        By input, in its unit.
+    changes : mapping of str to str or float
+        The same, as `Case.replace` takes it.
+    at : mapping of str to str
+        "low", "high" or "between", by input.
+    solved : int
+        Samples that were solved to find it.
+    """
+
+    over: str
+    omega: float
+    inputs: dict[str, float]
+    changes: dict[str, Any]
+    at: dict[str, str]
+    solved: int
+
+
+class Box:
+    """The tolerance box: each input between its ends, scaled to [0, 1].
+
+    A distribution without an end is cut at three standard deviations of a normal one (0.135 % lie
+    beyond). Correlations do not narrow the box.
+    """
+
+    def __init__(self, inputs: Inputs) -> None:
+        ends = np.array([one.distribution.ends() for one in inputs.every])
+        self.low, self.high = ends[:, 0], ends[:, 1]
+        self.periodic = np.array([one.distribution.periodic for one in inputs.every])
+
+    def __len__(self) -> int:
+        return len(self.low)
+
+    def values(self, places: Array) -> Array:
+        """Return inputs in their units."""
+        return np.asarray(self.low + places * (self.high - self.low))
+
+    def places(self, values: Array) -> Array:
+        """Return where inputs stand in the box; what is beyond stands at its side."""
+        return np.asarray(np.clip((values - self.low) / (self.high - self.low), 0.0, 1.0))
+
+    def within(self, places: Array) -> Array:
+        """Bring places back into the box: angles around, others to the side."""
+        return np.where(self.periodic, places % 1.0, np.clip(places, 0.0, 1.0))
+
+
+def worst_case(solver: Solver, kind: str, known: Sequence[Array], seed: int) -> WorstCase | None:
+    """Look for the worst case from many starting points at once.
+
+    From each point every input is tried a step up and down; the point moves to the best of these,
+    or to what the gains of several inputs give together, and narrows its step where nothing gains.
+    All trials of all points are solved as one batch.
+
+    Parameters
+    ----------
+    solver : Solver
+    kind : {"omega", "pair_omega"}
+    known : sequence of ndarray, shape (inputs,)
+        Samples to start from, such as the worst ones of the study.
+    seed : int
+        Of the other starting points.
+
+    Returns
+    -------
+    WorstCase or None
+        None if no starting point has an answer, or none of the best is certified by itself.
+    """
+    box = Box(solver.inputs)
+    search = _Search(solver, box, f"{kind}.{SYSTEM}")
+    points = _starts(box, known, seed)
+    best = search.omega(points)
+    step = np.full(len(points), STEP)
+    for _ in range(ROUNDS):
+        active = np.flatnonzero((step >= LAST_STEP) & np.isfinite(best))
+        if not len(active):
+            break
+        moved, omega = search.round(points[active], best[active], step[active])
+        gains = omega > best[active] + GAIN
+        points[active[gains]], best[active[gains]] = moved[gains], omega[gains]
+        step[active[~gains]] *= NARROWER
+    for k in np.argsort(-best, kind="stable").tolist():
+        if np.isfinite(best[k]):
+            found = _confirmed(solver, box, kind, points[k], search.solved)
+            if found is not None:
+                return found
+    return None
+
+
+def _starts(box: Box, known: Sequence[Array], seed: int) -> Array:
+    rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(0, 3)))
+    inner = rng.random((INNER, len(box)))
+    corners = np.where(box.periodic, rng.random((CORNERS, len(box))), 0.0)
+    corners = np.where(box.periodic, corners, rng.integers(0, 2, (CORNERS, len(box))))
+    return np.array([*(box.places(k) for k in known), *corners, *inner], dtype=float)
+
+
+@dataclass
+class _Search:
+    solver: Solver
+    box: Box
+    column: str
+    solved: int = 0
+
+    def omega(self, places: Array) -> Array:
+        """Ω at places, shape (S,); minus infinity where there is no certified answer."""
+        found = np.full(len(places), -np.inf)
+        for at in range(0, len(places), BLOCK):
+            part = slice(at, at + BLOCK)
+            values = self.solver.solve(self.box.values(places[part])).columns[self.column]
+            found[part] = np.where(np.isnan(values), -np.inf, values)
+        self.solved += len(places)
+        return found
+
+    def round(self, points: Array, best: Array, step: Array) -> tuple[Array, Array]:
+        """Return for each point the best place tried around it, and its Ω."""
+        count, width = points.shape
+        ways = np.concatenate([np.eye(width), -np.eye(width)])
+        around = points[:, None, :] + step[:, None, None] * ways
+        trials = self.box.within(around.reshape(-1, width)).reshape(around.shape)
+        omega = self.omega(trials.reshape(-1, width)).reshape(count, 2 * width)
+        gain = np.where(np.isfinite(omega), omega - best[:, None], -np.inf)
+        # What gains by itself often gains together: all of it, and the better half.
+        up, down = gain[:, :width], gain[:, width:]
+        sign = np.where(up >= down, 1.0, -1.0)
+        each = np.maximum(up, down)
+        middle = np.array([np.median(g[g > GAIN]) if (g > GAIN).any() else np.inf for g in each])
+        together = np.stack(
+            [
+                self.box.within(points + step[:, None] * sign * (each > least[:, None]))
+                for least in (np.full(count, GAIN), middle)
+            ],
+            axis=1,
+        )
+        more = self.omega(together.reshape(-1, width)).reshape(count, -1)
+        every = np.concatenate([omega, more], axis=1)
+        chosen = every.argmax(axis=1)
+        places = np.concatenate([trials, together], axis=1)
+        rows = np.arange(count)
+        return places[rows, chosen], every[rows, chosen]
+
+
+def _confirmed(solver: Solver, box: Box, kind: str, place: Array, solved: int) -> WorstCase | None:
+    """Solve the place by itself, with a full certificate."""
+    values = box.values(place).tolist()
+    changes = solver.inputs.changes(values)
+    try:
+        result = solve(
+            solver.case.replace(changes),
+            positions=solver.positions,
+            tolerance=solver.tolerance,
+        )
+    except (Refused, CaseError):
+        return None
+    omega = (result.omega if kind == "omega" else result.pair_omega)[SYSTEM]
+    if omega is None:
+        return None
+    names = [one.name for one in solver.inputs.every]
+    return WorstCase(
+        over=KINDS[kind],
+        omega=omega,
+        inputs=dict(zip(names, values, strict=True)),
+        changes=changes,
+        at={
+            name: "between" if p else ("low" if u <= 0.0 else "high" if u >= 1.0 else "between")
+            for name, u, p in zip(names, place.tolist(), box.periodic, strict=True)
+        },
+        solved=solved,
+    )

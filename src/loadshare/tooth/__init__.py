@@ -1,0 +1,26 @@
+"""Tooth geometry, contact without load and loaded tooth contact analysis of a gear pair."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from loadshare.tooth.lawfile import load_law
+    from loadshare.tooth.mesh_laws import resolve
+    from loadshare.tooth.pairfile import load_pair
+
+_LAZY = {
+    "load_law": "loadshare.tooth.lawfile",
+    "load_pair": "loadshare.tooth.pairfile",
+    "resolve": "loadshare.tooth.mesh_laws",
+}
+
+__all__ = ["load_law", "load_pair", "resolve"]
+
+
+def __getattr__(name: str) -> Any:
+    """Import what is asked for only when it is asked for, so that the command starts quickly."""
+    if name in _LAZY:
+        return getattr(import_module(_LAZY[name]), name)
+    raise AttributeError(f"module 'loadshare.tooth' has no attribute {name!r}")

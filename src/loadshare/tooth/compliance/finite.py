@@ -1,0 +1,165 @@
+"""Compliance of a gear from finite elements: a few teeth with their rim."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from loadshare.tooth.body import Array, ToothBody
+from loadshare.tooth.compliance.block import (
+    BlockMesh,
+    Divisions,
+    block_mesh,
+    flank_name,
+    middle_names,
+)
+from loadshare.tooth.compliance.interface import Flank
+from loadshare.tooth.compliance.middle import MiddleSurface, under
+from loadshare.tooth.compliance.sheet import Sheet
+from loadshare.tooth.compliance.solid import Solid, build_solid
+
+REACH = 4.0
+"""Distance from the loaded tooth to the cut, in rim depths."""
+
+
+class FiniteElements:
+    """Bending, shear, root and rim of one gear from quadratic hexahedra.
+
+    Tooth 0 stands in the middle of `teeth` teeth, whose rim goes on without teeth on either side;
+    it is clamped on its free side and where it is cut from the gear. Every flank node is loaded in
+    turn along its normal and the middle surfaces of all the teeth are read, so the influence of a
+    loaded tooth on its neighbours is included; all teeth are alike, so one set of loads serves
+    every tooth.
+
+    Parameters
+    ----------
+    body : ToothBody
+    side : {+1, −1}
+        The flank that carries load.
+    teeth : int
+        Teeth in the model, odd; teeth farther apart than half of them do not feel one another.
+    bare : sequence of int, optional
+        Lengths in pitches of the elements of bare rim on either side; by default so many that the
+        cut is four rim depths away from the loaded tooth.
+    divisions : Divisions, optional
+        Of the loaded tooth; by default the face width decides how many layers there are.
+
+    Raises
+    ------
+    ValueError
+        If `teeth` is even, or the number of elements across the tooth is odd (the middle surface
+        must be a sheet of nodes).
+    """
+
+    def __init__(
+        self,
+        body: ToothBody,
+        side: int,
+        teeth: int = 3,
+        bare: Sequence[int] | None = None,
+        divisions: Divisions | None = None,
+    ) -> None:
+        n = divisions or default_divisions(body)
+        if teeth % 2 == 0 or teeth < 1 or teeth >= body.teeth:
+            raise ValueError(
+                f"teeth = {teeth}: the model has tooth 0 in its middle; allowed: odd numbers below "
+                f"the {body.teeth} teeth of the gear"
+            )
+        if n.across % 2:
+            raise ValueError(
+                f"across = {n.across}: the middle surface must be a sheet of nodes; allowed: even"
+            )
+        self.body, self.side, self.divisions = body, side, n
+        self.middle = MiddleSurface(body)
+        bare = _bare_rim(body, teeth) if bare is None else bare
+        mesh = block_mesh(self.middle, teeth, bare, n, n.coarser())
+        solid = build_solid(mesh, body.youngs_modulus, body.poisson)
+        self.size = solid.size
+        self._flank = Sheet(n.levels(self.middle)[2 * n.fillet :], n.stations())
+        self._feet = self.middle.feet(self._flank.places, side)
+        self._influence = self._solve(mesh, solid, teeth // 2)
+
+    def bulk(self, flanks: tuple[Flank, ...]) -> Array:
+        """See :meth:`loadshare.tooth.compliance.interface.Compliance.bulk`."""
+        weights = [self._flank.weights(f.uw) for f in flanks]
+        ends = np.cumsum([0] + [w.shape[0] for w in weights])
+        total = np.zeros((ends[-1], ends[-1]))
+        for i, here in enumerate(flanks):
+            for j, there in enumerate(flanks):
+                influence = self._influence.get(here.tooth - there.tooth)
+                if influence is not None:
+                    part = weights[i] @ (weights[j] @ influence.T).T
+                    total[ends[i] : ends[i + 1], ends[j] : ends[j + 1]] = part
+        # Reading at a depth leaves a small skew part, which Betti's theorem says is not real.
+        return 0.5 * (total + total.T)
+
+    def depth(self, uw: Array) -> Array:
+        """See :meth:`loadshare.tooth.compliance.interface.Compliance.depth`."""
+        return np.asarray(self._flank.weights(uw) @ self._feet.depth)
+
+    def _solve(self, mesh: BlockMesh, solid: Solid, reach: int) -> dict[int, Array]:
+        """Displacement of every foot on tooth k, along its normal, for loads on tooth 0."""
+        n = self.divisions
+        rows = range(2 * n.fillet, 2 * (n.fillet + n.flank) + 1)
+        names = [flank_name(level, n.across, self.side) for level in rows]
+        loaded = self._nodes(mesh, names)[self._flank.present]
+        forces = np.zeros((solid.size, len(loaded)))
+        for axis in range(3):
+            forces[solid.free[loaded, axis], np.arange(len(loaded))] = self._feet.inward[:, axis]
+
+        influence = {}
+        sheets, read = {}, {}
+        for k in range(-reach, reach + 1):
+            divisions = n if k == 0 else n.coarser()
+            z = np.concatenate([self._below(divisions), divisions.levels(self.middle)])
+            sheets[k] = Sheet(z, n.stations())
+            read[k] = self._nodes(mesh, middle_names(k, divisions))[sheets[k].present]
+        moved = solid.displacements(forces, np.concatenate(list(read.values())))
+        start = 0
+        for k, sheet in sheets.items():
+            part = moved[start : start + len(read[k])]
+            start += len(read[k])
+            weights = sheet.weights(self._feet.zw)
+            at_feet = (weights @ part.reshape(len(part), -1)).reshape(-1, 3, part.shape[2])
+            angle = 2.0 * np.pi * k / self.body.teeth
+            c, s = np.cos(angle), np.sin(angle)
+            normals = self._feet.inward @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+            influence[k] = np.einsum("nij,ni->nj", at_feet, normals)
+        return influence
+
+    def _nodes(self, mesh: BlockMesh, names: list[tuple[object, ...]]) -> np.ndarray:
+        """Nodes (names, layers) of named section nodes."""
+        section = np.array([mesh.number[name] for name in names])
+        return section[:, None] * mesh.layers + np.arange(mesh.layers)
+
+    def _below(self, n: Divisions) -> Array:
+        """Places on the middle surface below the waist, from the rim's free side."""
+        waist = self.middle.waist
+        return waist - n.depths()[:0:-1] * (1.0 + waist)
+
+
+def _bare_rim(body: ToothBody, teeth: int) -> list[int]:
+    """Lengths of the rim's elements, each a pitch longer, up to the cut four rim depths away."""
+    space = np.stack([body.outline(0.0, 0.5, side) for side in (-1, 1)])
+    pitch = float(np.linalg.norm(space[1] - space[0]))
+    depth = float(np.linalg.norm(under(body, space)[0] - space[0]))
+    wanted = int(np.ceil(REACH * depth / pitch)) - teeth // 2
+    left = max(0, min(wanted, (body.teeth - teeth - 1) // 2))
+    lengths: list[int] = []
+    while left > 0:
+        # An element may bend through 20° at most, and turn no sliver over to the next.
+        longest = min(len(lengths) + 1, max(1, body.teeth // 18))
+        lengths.append(min(longest, left))
+        left -= lengths[-1]
+    return lengths
+
+
+def default_divisions(body: ToothBody) -> Divisions:
+    """Divisions with layers about as deep as a flank is high, between 5 and 12."""
+    w = np.array([0.0, 1.0])
+    ends = body.outline(np.full(2, body.foot), w, 1)
+    height = np.linalg.norm(body.outline(1.0, 0.5, 1) - body.outline(body.foot, 0.5, 1))
+    layers = int(np.clip(np.ceil(1.2 * np.linalg.norm(ends[1] - ends[0]) / height), 5, 12))
+    return replace(Divisions(), width=layers)

@@ -1,0 +1,45 @@
+"""What every model of a gear's compliance answers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from loadshare.tooth.body import Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Flank:
+    """Points on the loaded flank of one tooth.
+
+    Attributes
+    ----------
+    tooth : int
+        Number of the tooth.
+    uw : array (n, 2)
+        Flank coordinates of the points.
+    """
+
+    tooth: int
+    uw: Array
+
+
+class Compliance(Protocol):
+    """Compliance of one gear without the neighbourhood of its contacts.
+
+    A force on a flank point acts along the flank's normal, into the tooth. What it moves is read
+    where that normal meets the middle surface of the tooth, at the depth h: there a concentrated
+    force is felt as a smooth field, so the figure does not depend on how finely the flank is
+    divided. What the tooth yields between flank and middle surface belongs to the contact law
+    (:mod:`loadshare.tooth.strips`). This is Weber and Banaschek's division.
+    """
+
+    def bulk(self, flanks: tuple[Flank, ...]) -> Array:
+        """Compliance (N, N) [m/N] between all points of all flanks, in their order; symmetric.
+
+        Entry (i, j) is the displacement of the middle surface under point i, along the inward
+        normal there, for a unit force on point j.
+        """
+
+    def depth(self, uw: Array) -> Array:
+        """Distance (n,) [m] from flank points (n, 2) to the middle surface, along the normal."""

@@ -1,0 +1,130 @@
+"""The middle surface of a tooth, and where the normals of a flank meet it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from loadshare.tooth.body import Array, ToothBody
+
+STEP = 1e-5
+"""Step in u and w of the differences that give normals and slopes."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Foot:
+    """Feet of flank normals on the middle surface.
+
+    Attributes
+    ----------
+    zw : array (n, 2)
+        Place on the middle surface: z = u for points between the flanks, and z below
+        `MiddleSurface.waist` (down to −1) for points under the tooth; w as on the flank.
+    depth : array (n,)
+        Distance from the flank along the normal [m].
+    inward : array (n, 3)
+        Unit vector into the tooth at the flank, gear frame of tooth 0.
+    """
+
+    zw: Array
+    depth: Array
+    inward: Array
+
+
+class MiddleSurface:
+    """The surface half-way between the two flanks of tooth 0, continued straight into the rim.
+
+    Parameters
+    ----------
+    body : ToothBody
+    waist : float
+        The u on the fillet from which the straight lines between the two sides make up the tooth.
+    """
+
+    def __init__(self, body: ToothBody, waist: float | None = None) -> None:
+        self.body = body
+        self.waist = waist_of(body) if waist is None else waist
+
+    def between(self, u: Array, w: Array) -> Array:
+        """Points (n, 3) half-way between the two sides [m]."""
+        return 0.5 * (self.body.outline(u, w, 1) + self.body.outline(u, w, -1))
+
+    def points(self, zw: Array) -> Array:
+        """Points (n, 3) [m] of the middle surface at places (n, 2)."""
+        z, w = zw[:, 0], zw[:, 1]
+        top = self.between(np.maximum(z, self.waist), w)
+        below = np.clip((self.waist - z) / (1.0 + self.waist), 0.0, None)
+        return top + below[:, None] * (under(self.body, top) - top)
+
+    def inward(self, uw: Array, side: int) -> Array:
+        """Unit normals (n, 3) of the flank `side`, into the tooth."""
+        u, w = uw[:, 0], uw[:, 1]
+        # One-sided at foot and tip, where the outline may have a kink.
+        low, high = np.maximum(u - STEP, self.body.foot), np.minimum(u + STEP, 1.0)
+        before, after = np.maximum(w - STEP, 0.0), np.minimum(w + STEP, 1.0)
+        outline = self.body.outline
+        along = outline(high, w, side) - outline(low, w, side)
+        across = outline(u, after, side) - outline(u, before, side)
+        normal = np.cross(along, across)
+        normal /= np.linalg.norm(normal, axis=1)[:, None]
+        inside = self.between(u, w) - outline(u, w, side)
+        return np.asarray(np.sign(np.sum(normal * inside, axis=1))[:, None] * normal)
+
+    def feet(self, uw: Array, side: int) -> Foot:
+        """Where the normals of flank points (n, 2) meet the middle surface.
+
+        A normal that leaves the tooth through its face end before it meets the middle surface has
+        its foot on the end.
+        """
+        flank = self.body.outline(uw[:, 0], uw[:, 1], side)
+        inward = self.inward(uw, side)
+        zw = uw.copy()
+        depth = np.zeros(len(uw))
+        for _ in range(30):
+            here = self.points(zw)
+            depth = np.sum((here - flank) * inward, axis=1)
+            miss = flank + depth[:, None] * inward - here
+            slopes = [
+                (self.points(zw + shift) - self.points(zw - shift)) / (2.0 * STEP)
+                for shift in STEP * np.eye(2)
+            ]
+            # The foot moves in the surface until what is left lies along the normal.
+            flat = [s - np.sum(s * inward, axis=1)[:, None] * inward for s in slopes]
+            a = np.stack(flat, axis=2)
+            move = np.einsum("nij,nj->ni", np.linalg.pinv(a), miss)
+            new = zw + np.clip(move, -0.3, 0.3)
+            new = np.column_stack([np.clip(new[:, 0], -1.0, 1.0), np.clip(new[:, 1], 0.0, 1.0)])
+            done = float(np.abs(new - zw).max()) < 1e-10
+            zw = new
+            if done:
+                break
+        return Foot(zw, np.sum((self.points(zw) - flank) * inward, axis=1), inward)
+
+
+def under(body: ToothBody, points: Array) -> Array:
+    """Points (..., 3) of the rim's free side that lie under `points` [m]."""
+    if body.shape == "face":
+        floor = float(np.min(body.outline(np.zeros(3), np.array([0.0, 0.5, 1.0]), 1)[..., 2]))
+        moved = points.copy()
+        moved[..., 2] = floor - body.rim
+        return moved
+    radius = np.hypot(points[..., 0], points[..., 1])
+    scale = np.ones_like(points)
+    scale[..., :2] = (body.rim / radius)[..., None]
+    return points * scale
+
+
+def waist_of(body: ToothBody, angle: float = 50.0) -> float:
+    """The u on the fillet where the outline makes `angle` [degrees] with the chord of the tooth."""
+    u = np.linspace(0.0, body.foot, 61)
+    middle = np.full_like(u, 0.5)
+    sides = [body.outline(u, middle, side) for side in (1, -1)]
+    chord = sides[0] - sides[1]
+    chord /= np.linalg.norm(chord, axis=1)[:, None]
+    tangent = -np.gradient(sides[0], u, axis=0)
+    tangent /= np.linalg.norm(tangent, axis=1)[:, None]
+    cosine = np.sum(chord * tangent, axis=1)
+    steep = np.flatnonzero(cosine[1:-1] < np.cos(np.radians(angle))) + 1
+    found = u[steep[0]] if len(steep) else 0.5 * body.foot
+    return float(np.clip(found, 0.2 * body.foot, 0.8 * body.foot))

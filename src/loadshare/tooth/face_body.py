@@ -1,0 +1,160 @@
+"""The solid tooth of a face gear."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import ClassVar, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from loadshare.tooth.body import Array
+from loadshare.tooth.face_flank import FaceFlank
+from loadshare.tooth.face_gear import FaceGear
+from loadshare.tooth.placement import Placement, fixed
+
+
+@dataclass(frozen=True)
+class FaceBody:
+    """`ToothBody` of a face gear.
+
+    Width stations are equal steps of the length along the shaper's axis (at 90°: coaxial
+    cylinders). The fillet is the path of the shaper's tip corner; between two fillets the root is
+    the path of the shaper's tip land.
+
+    Parameters
+    ----------
+    gear : FaceGear
+        The gear.
+    placement : Placement
+        Where it stands.
+    foot : float
+        The u at which the fillet ends.
+    """
+
+    gear: FaceGear
+    placement: Placement = field(default_factory=fixed)
+    foot: float = 0.4
+
+    shape: ClassVar[Literal["face"]] = "face"
+
+    @property
+    def teeth(self) -> int:
+        """Number of teeth."""
+        return self.gear.teeth
+
+    @property
+    def rim(self) -> float:
+        """Thickness of the body below the root [m]."""
+        return self.gear.rim_thickness
+
+    @property
+    def youngs_modulus(self) -> float:
+        """Modulus of elasticity [Pa]."""
+        return self.gear.youngs_modulus
+
+    @property
+    def poisson(self) -> float:
+        """Poisson's ratio."""
+        return self.gear.poisson
+
+    @cached_property
+    def flank(self) -> FaceFlank:
+        """The flank that a pinion pushes, side −1."""
+        return FaceFlank(self.gear)
+
+    def outline(self, u: ArrayLike, w: ArrayLike, side: int) -> Array:
+        """Boundary of half of tooth 0; see `ToothBody.outline`.
+
+        The flank goes by depth, the fillet by the shaper's angle.
+        """
+        gear = self.gear
+        u, w = np.broadcast_arrays(np.asarray(u, float), np.asarray(w, float))
+        length = gear.inner + w * (gear.outer - gear.inner)
+        foot_phi, foot_depth = self._foot(length)
+
+        up = np.clip((u - self.foot) / (1.0 - self.foot), 0.0, 1.0)
+        depth = foot_depth + up * (gear.tip_depth - foot_depth)
+        flank = self.flank.patch(*self.flank.at_blank(length, depth), 0.0).point
+
+        share = np.clip(u / self.foot, 0.0, 1.0)
+        land = self._land_share
+        along = np.clip((share - land) / (1.0 - land), 0.0, 1.0)
+        root = self._corner(length, foot_phi, along)
+        # From the end of the fillet the land runs on at the same radius to the middle of the space.
+        space = -math.pi / gear.teeth
+        polar = np.arctan2(root[..., 1], root[..., 0])
+        into = np.where(share < land, 1.0 - share / (land or 1.0), 0.0)
+        back = (space - polar) * into
+        spun = (root[..., 0] + 1j * root[..., 1]) * np.exp(1j * back)
+        root = np.stack([spun.real, spun.imag, root[..., 2]], axis=-1)
+
+        trailing = np.where((u <= self.foot)[..., None], root, flank)
+        half: Array = trailing * np.array([1.0, -float(side), 1.0])
+        return half
+
+    def locate(self, points: Array) -> tuple[Array, Array]:
+        """Flank coordinates (u, w) of points (..., 3); see `ToothBody.locate`."""
+        gear = self.gear
+        length, depth = gear.blank(points)
+        _, foot_depth = self._foot(length)
+        up = (depth - foot_depth) / (gear.tip_depth - foot_depth)
+        return self.foot + (1.0 - self.foot) * up, (length - gear.inner) / (gear.outer - gear.inner)
+
+    def to_body(self, points: Array, rotation: float) -> Array:
+        """Carry points (..., 3) from the fixed frame to the gear turned by `rotation` [rad]."""
+        return self.placement.to_body(points, rotation)
+
+    def to_space(self, points: Array, rotation: float) -> Array:
+        """Carry points (..., 3) from the gear turned by `rotation` [rad] to the fixed frame."""
+        return self.placement.to_space(points, rotation)
+
+    def _foot(self, length: Array) -> tuple[Array, Array]:
+        """Base-tangent angle and depth where the shaper's tip ends the flank."""
+        tip = np.full_like(length, self.gear.shaper.tip_roll)
+        phi = self.flank.at_length(length, tip)
+        return phi, self.gear.blank(self.flank.patch(tip, phi, 0.0).point)[1]
+
+    @property
+    def _last_phi(self) -> float:
+        """Base-tangent angle at which the shaper's tip corner is deepest in the gear."""
+        return -math.atan(self.gear.shaper.tip_roll)
+
+    @cached_property
+    def _land_share(self) -> float:
+        """Share of u from 0 to `foot` that is land; the rest is fillet.
+
+        The same over the whole width, so that a line of constant u keeps to the fillet: by length
+        in the middle of the width, and at most one half, for the fillet dwindles outwards.
+        """
+        gear = self.gear
+        middle = np.array(0.5 * (gear.inner + gear.outer))
+        corner = self._corner(middle, self._foot(middle)[0], np.linspace(0.0, 1.0, 33))
+        fillet = np.linalg.norm(np.diff(corner, axis=0), axis=1).sum()
+        # The shaper's tip land rolls out its own half angle of the space.
+        radius = math.hypot(corner[0, 0], corner[0, 1])
+        land = radius * gear.roll_ratio * gear.shaper.tip_half_angle
+        return min(float(land / (land + fillet)), 0.5)
+
+    def _corner(self, length: Array, foot_phi: Array, along: Array) -> Array:
+        """Path of the shaper's tip corner, from its deepest point (`along` 0) to the flank (1)."""
+        gear, shaper = self.gear, self.gear.shaper
+        phi = self._last_phi + along * (foot_phi - self._last_phi)
+        polar = phi + math.atan(shaper.tip_roll)
+        towards, tangential, axis = gear.axes.T
+        arm = shaper.tip * (
+            np.cos(polar)[..., None] * towards + np.sin(polar)[..., None] * tangential
+        )
+        axial = np.broadcast_to(length, polar.shape)
+        # Along the corner the length of the blank changes almost as the axial coordinate does.
+        for _ in range(30):
+            step = gear.blank(axial[..., None] * axis + arm)[0] - length
+            axial = axial - step
+            if np.abs(step).max() < 1e-15:
+                break
+        point = axial[..., None] * axis + arm
+        angle = gear.roll_ratio * (shaper.base_half_angle - shaper.tip_roll - phi)
+        spun = (point[..., 0] + 1j * point[..., 1]) * np.exp(1j * (angle - math.pi / gear.teeth))
+        return np.stack([spun.real, spun.imag, np.broadcast_to(point[..., 2], spun.shape)], axis=-1)

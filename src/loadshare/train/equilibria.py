@@ -1,0 +1,183 @@
+"""Answers of many samples in physical terms; `Equilibrium` is one of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.ring import DrumRing, RoundRing
+from loadshare.train.train import Train
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Names:
+    """Order in which a train's gears, contacts and radial elements stand in arrays.
+
+    Attributes
+    ----------
+    train : Train
+    """
+
+    train: Train
+
+    @cached_property
+    def gears(self) -> tuple[str, ...]:
+        """Gears."""
+        return tuple(self.train.gears)
+
+    @cached_property
+    def flanks(self) -> tuple[str, ...]:
+        """Flanks that can touch, mesh by mesh."""
+        return tuple(m.flank_name(d) for m in self.train.meshes.values() for d in m.flanks)
+
+    @cached_property
+    def contacts(self) -> tuple[str, ...]:
+        """Contacts of drums: all stops, then all arcs."""
+        drums = [r for r in self.train.rings.values() if isinstance(r, DrumRing)]
+        stops = [n for r in drums for n in r.stop_names]
+        return (*stops, *(r.arc_name(n) for r in drums for n in r.neighbours))
+
+    @cached_property
+    def radials(self) -> tuple[tuple[str, str], ...]:
+        """Round rings, then splines: name and gear."""
+        rounds = [r for r in self.train.rings.values() if isinstance(r, RoundRing)]
+        return (
+            *((r.name, r.gear) for r in rounds),
+            *((s.name, g) for g, s in self.train.splines.items()),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Equilibria:
+    """Displacements and forces of a train in S samples.
+
+    Attributes
+    ----------
+    names : Names
+    rotation : ndarray, shape (S, gears)
+        φ [rad].
+    displacement : ndarray, shape (S, gears, 3)
+        p [m].
+    flank_force : ndarray, shape (S, flanks)
+        [N].
+    ring_force : ndarray, shape (S, contacts)
+        [N].
+    radial_reaction : ndarray, shape (S, radials, 3)
+        Force on the gear [N].
+    shaft_torque : ndarray, shape (S, shafts)
+        Torque of elastic shafts [N·m]; 0 for rigid ones.
+    support_force : ndarray, shape (S, gears, 2)
+        Force on elastic bearings [N], in each gear's transverse frame; 0 for rigid ones.
+    """
+
+    names: Names
+    rotation: Array
+    displacement: Array
+    flank_force: Array
+    ring_force: Array
+    radial_reaction: Array
+    shaft_torque: Array
+    support_force: Array
+
+    def laid(self, lay: Callable[[Array], Array]) -> Equilibria:
+        """Return the same answers, their arrays laid out anew."""
+        return Equilibria(
+            self.names,
+            *(lay(getattr(self, f.name)) for f in fields(self) if f.name != "names"),
+        )
+
+    def one(self, sample: int, index: int, undetermined: tuple[str, ...] = ()) -> Equilibrium:
+        """Return a sample as an equilibrium of position `index`."""
+        names = self.names
+        return Equilibrium(
+            index=index,
+            rotation=dict(zip(names.gears, self.rotation[sample].tolist(), strict=True)),
+            displacement=dict(zip(names.gears, self.displacement[sample], strict=True)),
+            flank_force=dict(zip(names.flanks, self.flank_force[sample].tolist(), strict=True)),
+            ring_force=dict(zip(names.contacts, self.ring_force[sample].tolist(), strict=True)),
+            radial_reaction={
+                name: force
+                for (name, _), force in zip(
+                    names.radials, self.radial_reaction[sample], strict=True
+                )
+            },
+            undetermined=undetermined,
+            shaft_torque={
+                shaft.name: float(torque)
+                for shaft, torque in zip(
+                    names.train.shafts.values(), self.shaft_torque[sample], strict=True
+                )
+                if not math.isinf(shaft.stiffness)
+            },
+            support_force={
+                gear.name: force
+                for gear, force in zip(
+                    names.train.gears.values(), self.support_force[sample], strict=True
+                )
+                if gear.support is not None
+            },
+        )
+
+    @classmethod
+    def empty(cls, train: Train, count: int) -> Equilibria:
+        """Return room for the answers of `count` samples, not a number yet."""
+        names = Names(train)
+        gears = len(names.gears)
+
+        def room(*shape: int) -> Array:
+            return np.full((count, *shape), np.nan)
+
+        return cls(
+            names,
+            room(gears),
+            room(gears, 3),
+            room(len(names.flanks)),
+            room(len(names.contacts)),
+            room(len(names.radials), 3),
+            room(len(train.shafts)),
+            room(gears, 2),
+        )
+
+    def forget(self, sample: int) -> None:
+        """Let a sample be not a number throughout."""
+        for values in (
+            self.rotation,
+            self.displacement,
+            self.flank_force,
+            self.ring_force,
+            self.radial_reaction,
+            self.shaft_torque,
+            self.support_force,
+        ):
+            values[sample] = np.nan
+
+    def put(self, sample: int, answer: Equilibrium) -> None:
+        """Write an equilibrium in the place of a sample."""
+        names, train = self.names, self.names.train
+        self.rotation[sample] = [answer.rotation[g] for g in names.gears]
+        self.displacement[sample] = [answer.displacement[g] for g in names.gears]
+        self.flank_force[sample] = [answer.flank_force[f] for f in names.flanks]
+        self.ring_force[sample] = [answer.ring_force[c] for c in names.contacts]
+        for j, (name, _) in enumerate(names.radials):
+            self.radial_reaction[sample, j] = answer.radial_reaction[name]
+        phi = answer.rotation
+        for s, (name, shaft) in enumerate(train.shafts.items()):
+            torque = 0.0
+            if not math.isinf(shaft.stiffness):
+                wind = phi[shaft.first] - phi[shaft.second] - shaft.clocking
+                torque = answer.shaft_torque.get(name, shaft.stiffness * wind)
+            self.shaft_torque[sample, s] = torque
+        for g, (name, gear) in enumerate(train.gears.items()):
+            force = np.zeros(2)
+            if gear.support is not None:
+                moved = gear.frame @ answer.displacement[name]
+                force = answer.support_force.get(name, gear.support * moved)
+            self.support_force[sample, g] = force

@@ -1,0 +1,80 @@
+r"""Spline friction that remembers its slip (formulation, section 5).
+
+With memory the slip s of a spline is a coordinate of its own. The shaft bends by p − s, friction
+resists the change s − s₀ from the slip of the position before, and the clearance limits s itself:
+
+.. math:: W(p) = \min_s \tfrac12 K_w \lVert p - s\rVert^2 + F_m \lVert s - s_0\rVert
+    \quad \text{s.t.} \quad \lVert s\rVert \le S_2 - F_m / K_w
+
+Friction and clearance are radial laws about two different centres, s₀ and the unloaded place.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from loadshare.train.radial import ROUNDING, Piece, RadialLaw
+
+if TYPE_CHECKING:
+    from loadshare.train.train import Spline
+
+
+@dataclass(frozen=True, slots=True)
+class SlipFriction:
+    """Friction of a spline against a change of its slip.
+
+    Attributes
+    ----------
+    spline : Spline
+    """
+
+    spline: Spline
+
+    @property
+    def friction_force(self) -> float | None:
+        """Friction bound F_m [N] where it is fixed."""
+        return self.spline.friction_force
+
+    def law(self, torque: float) -> RadialLaw:
+        """Law about the slip of the position before: F_m in whatever direction it slips.
+
+        Raises
+        ------
+        ValueError
+            If the spline's law jumps where it starts to slip; the message names the numbers.
+        """
+        spline, bound = self.spline, self.spline.bound(torque)
+        spline.law(torque)
+        if spline.stick_limit is not None:
+            bent = spline.bending_stiffness * spline.stick_limit
+            if bent < bound * (1.0 - ROUNDING):
+                raise ValueError(
+                    f"{spline.name}: friction with memory has no step from K_w S1 = {bent:.6g} N "
+                    f"to F_m = {bound:.6g} N; leave stick_limit out"
+                )
+        return RadialLaw((Piece(bound, 0.0, math.inf, "slip"),))
+
+
+@dataclass(frozen=True, slots=True)
+class SlipStop:
+    """Clearance of a spline, which limits its slip.
+
+    Attributes
+    ----------
+    spline : Spline
+    """
+
+    spline: Spline
+
+    @property
+    def friction_force(self) -> float | None:
+        """Friction bound F_m [N] where it is fixed."""
+        return self.spline.friction_force
+
+    def law(self, torque: float) -> RadialLaw:
+        """Rigid stop at S2 − F_m/K_w about the unloaded place; at zero if friction needs it all."""
+        spline = self.spline
+        room = spline.clearance - spline.bound(torque) / spline.bending_stiffness
+        return RadialLaw((Piece(0.0, 0.0, max(room, 0.0), "slip"),))

@@ -1,0 +1,216 @@
+"""What a position brings, for many samples at once.
+
+A tolerance study, a sweep or a march solves one machine again and again with other errors,
+clearances, loads and compliances. Here these numbers stand in arrays whose leading axis runs over
+the samples; an array with a single row holds for all of them. What the arrays leave out (centres,
+lines of action, which elements there are) is the same in every sample.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.train.law import PowerLaw, TableLaw
+from loadshare.train.ring import DrumRing, RoundRing
+from loadshare.train.train import Train
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Situations:
+    """Situations of one train: S samples, or one row for all.
+
+    Gears, meshes, shafts, splines and rings stand in the order of the train; drums and round rings
+    are counted apart.
+
+    Attributes
+    ----------
+    train : Train
+        The machine; gives everything that does not vary.
+    count : int
+        S.
+    index : ndarray of int, shape (S or 1,)
+        1-based position.
+    offset : ndarray, shape (S or 1, gears, 3)
+        Centre offsets c [m].
+    torque : ndarray, shape (S or 1, gears)
+        External torques [N·m].
+    gap, backlash : ndarray, shape (S or 1, meshes)
+        Of the drive and the coast flank along the line of action [m].
+    bending, hertz : ndarray, shape (S or 1, meshes)
+        b [m/N] and c [m/N^(2/3)] of the laws; 0 where a mesh has a table.
+    table : ndarray, shape (S or 1, meshes, 2, points)
+        Forces [N] and compressions [m] of tabulated laws, the last point repeated to fill up.
+    clocking, torsion : ndarray, shape (S or 1, shafts)
+        [rad], [N·m/rad].
+    support : ndarray, shape (S or 1, gears, 2)
+        [N/m]; 0 for a rigid bearing, which has no coordinate.
+    arc_shift : ndarray, shape (S or 1, drums, 2, 3)
+        What errors add to the way from each neighbour [m].
+    arc_clearance, stop : ndarray, shape (S or 1, drums, 2)
+        c_x towards each neighbour; h1 and h2 [m].
+    wall : ndarray, shape (S or 1, drums)
+        Compliance of a drum's contacts [m/N]; 0 for a rigid ring.
+    round_radius, round_stiffness : ndarray, shape (S or 1, rounds)
+        [m], [N/m].
+    spline : ndarray, shape (S or 1, splines, 5)
+        K_w [N/m], S1 [m] (NaN for F_m/K_w), S2 [m], fixed F_m [N] (NaN if it follows the torque),
+        τ/radius [1/m].
+    """
+
+    train: Train
+    count: int
+    index: NDArray[np.intp]
+    offset: Array
+    torque: Array
+    gap: Array
+    backlash: Array
+    bending: Array
+    hertz: Array
+    table: Array
+    clocking: Array
+    torsion: Array
+    support: Array
+    arc_shift: Array
+    arc_clearance: Array
+    stop: Array
+    wall: Array
+    round_radius: Array
+    round_stiffness: Array
+    spline: Array
+
+    def take(self, rows: NDArray[np.intp] | slice) -> Situations:
+        """Return some of the samples."""
+        chosen = {
+            name: value[rows] if len(value) > 1 else value for name, value in self._arrays().items()
+        }
+        count = len(np.arange(self.count)[rows])
+        return replace(self, count=count, **chosen)
+
+    def laid(self, lay: Callable[[Array], Array]) -> Situations:
+        """Return the same situations, those arrays laid out anew that vary."""
+        varying: dict[str, Any] = {n: lay(a) for n, a in self._arrays().items() if len(a) > 1}
+        return replace(self, **varying)
+
+    def _arrays(self) -> dict[str, Any]:
+        names = (f.name for f in fields(self) if f.name not in ("train", "count"))
+        return {name: getattr(self, name) for name in names}
+
+
+def situation_of(train: Train, index: int) -> Situations:
+    """Return the situation of a train at position `index` (1-based), as a single sample."""
+    here = train.situation(index)
+    drums = [r for r in train.rings.values() if isinstance(r, DrumRing)]
+    rounds = [r for r in train.rings.values() if isinstance(r, RoundRing)]
+    laws = [m.law(here.mesh_position[m.name]) for m in train.meshes.values()]
+    powers = [law if isinstance(law, PowerLaw) else PowerLaw(0.0) for law in laws]
+    arcs = [[train.arc(r, side, here) for side in (0, 1)] for r in drums]
+    splines = train.splines.values()
+    return Situations(
+        train=train,
+        count=1,
+        index=np.array([index]),
+        offset=_row([here.offset[g] for g in train.gears], 3),
+        torque=_row([here.torque.get(g, 0.0) for g in train.gears]),
+        gap=_row([m.gap(here.mesh_position[m.name], True) for m in train.meshes.values()]),
+        backlash=_row([m.backlash for m in train.meshes.values()]),
+        bending=_row([p.b for p in powers]),
+        hertz=_row([p.c for p in powers]),
+        table=_tables([law if isinstance(law, TableLaw) else None for law in laws]),
+        clocking=_row([s.clocking for s in train.shafts.values()]),
+        torsion=_row([s.stiffness for s in train.shafts.values()]),
+        support=_row([_support(g.support) for g in train.gears.values()], 2),
+        arc_shift=_row([[a.shift for a in pair] for pair in arcs], 2, 3),
+        arc_clearance=_row([r.clearances for r in drums], 2),
+        stop=_row([(r.up, r.down) for r in drums], 2),
+        wall=_row([0.0 if math.isinf(r.stiffness) else 1.0 / r.stiffness for r in drums]),
+        round_radius=_row([r.radius for r in rounds]),
+        round_stiffness=_row([r.stiffness for r in rounds]),
+        spline=_row(
+            [
+                (
+                    s.bending_stiffness,
+                    math.nan if s.stick_limit is None else s.stick_limit,
+                    s.clearance,
+                    math.nan if s.friction_force is None else s.friction_force,
+                    s.friction_per_torque,
+                )
+                for s in splines
+            ],
+            5,
+        ),
+    )
+
+
+def stack(situations: Sequence[Situations]) -> Situations:
+    """Put situations of one train after one another, such as all positions of a cycle."""
+    first = situations[0]
+    count = sum(s.count for s in situations)
+    together: dict[str, Any] = {}
+    every = [s._arrays() for s in situations]
+    for name, value in first._arrays().items():
+        parts = [arrays[name] for arrays in every]
+        same = all(len(p) == 1 and p.shape == value.shape and _equal(p, value) for p in parts)
+        if same:
+            together[name] = value
+            continue
+        if name == "table":
+            points = max(p.shape[-1] for p in parts)
+            parts = [_filled(p, points) for p in parts]
+        together[name] = np.concatenate(
+            [
+                np.broadcast_to(p, (s.count, *p.shape[1:]))
+                for p, s in zip(parts, situations, strict=True)
+            ]
+        )
+    return replace(first, count=count, **together)
+
+
+def arcs_from(train: Train, offset: Array) -> Array:
+    """Return the shifts of every drum's arcs (S or 1, drums, 2, 3) [m] at given centre offsets."""
+    drums = [r for r in train.rings.values() if isinstance(r, DrumRing)]
+    order = {g: k for k, g in enumerate(train.gears)}
+    some = any(r.with_errors for r in drums)
+    shifts = np.zeros((len(offset) if some else 1, len(drums), 2, 3))
+    for d, ring in enumerate(drums):
+        gear = train.gears[ring.gear]
+        for side, name in enumerate(ring.neighbours):
+            if ring.with_errors:
+                shift = offset[:, order[ring.gear]] - offset[:, order[name]]
+                shifts[:, d, side] = shift - (shift @ gear.axis)[:, None] * gear.axis
+    return shifts
+
+
+def _row(values: Sequence[object], *inner: int) -> Array:
+    return np.array(values, dtype=float).reshape(1, len(values), *inner)
+
+
+def _support(support: Array | None) -> Array:
+    return np.zeros(2) if support is None else support
+
+
+def _tables(laws: Sequence[TableLaw | None]) -> Array:
+    points = max((len(law.forces) for law in laws if law), default=0)
+    table = np.zeros((1, len(laws), 2, points))
+    for m, law in enumerate(laws):
+        if law:
+            table[0, m, :, : len(law.forces)] = law.forces, law.compressions
+            table[0, m, :, len(law.forces) :] = np.nan
+    return table
+
+
+def _filled(table: Array, points: int) -> Array:
+    missing = points - table.shape[-1]
+    return np.pad(table, [(0, 0)] * 3 + [(0, missing)], constant_values=np.nan)
+
+
+def _equal(one: NDArray[np.generic], other: NDArray[np.generic]) -> bool:
+    nan = one.dtype.kind == "f"
+    return bool(np.array_equal(one, other, equal_nan=nan))

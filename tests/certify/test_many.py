@@ -1,0 +1,290 @@
+"""The certificate of many answers gives the figures of the single one, on right and wrong answers.
+
+Source: formulation, section 8. `Judge` and `certify` share the train's laws but sum up in another
+order, so that they differ by round-off: 1e-9 of a figure, or 1e-12 of the case where a figure is
+the small difference of large ones.
+"""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from hypothesis import given, note, settings
+from hypothesis import strategies as st
+from tests.physics.test_random_trains import PROFILE, split_torques, stars
+from tests.support import SHIPPED, answer, coasting, loaded, lost_contact, round_ring, shipped
+
+import loadshare as ls
+from loadshare.case import families
+from loadshare.certify import certify
+from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify.many import RESIDUALS, Judge
+from loadshare.train import Train, build_train
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.situations import Situations, situation_of, stack
+
+RELATIVE, ABSOLUTE = 1e-9, 1e-12
+
+CLAIMS = tuple(f.name for f in fields(Equilibria) if f.name != "names")
+
+
+def tabled() -> ls.Case:
+    """A star of three whose tables have different numbers of points."""
+    data = families.star(3).to_dict()
+    tables = (
+        {
+            "torque": ["30 N*m", "100 N*m", "400 N*m"],
+            "deflection": ["40 urad", "90 urad", "1 mrad"],
+        },
+        {"torque": ["500 N*m"], "deflection": ["0.5 mrad"]},
+    )
+    for mesh, table in zip(data["meshes"].values(), tables, strict=False):
+        del mesh["stiffness"]
+        mesh["table"] = table
+    return ls.Case(data | {"assumed": []})
+
+
+def never_slipping() -> ls.Case:
+    """A spline whose clearance closes before friction, which follows the torque, is overcome."""
+    return shipped("fgfbstts/all_elements").replace(
+        {"splines.5.friction": 0.3, "splines.5.clearance": "1 um"}
+    )
+
+
+WAYS = {name: (lambda name=name: shipped(name)) for name in SHIPPED} | {
+    "round ring": round_ring,
+    "elastic round ring": lambda: round_ring("5e8 N/m"),
+    "lost contact": lost_contact,
+    "coast flanks": coasting,
+    "tables": tabled,
+    "spline that never slips": never_slipping,
+    "no load": lambda: loaded(shipped("fgfbstts/limit_ring"), "0 N*m"),
+}
+
+
+def claims(train: Train, indices: list[int]) -> tuple[Situations, Equilibria]:
+    """The equilibria of some positions, by the back-end, as arrays."""
+    found = Equilibria.empty(train, len(indices))
+    for row, index in enumerate(indices):
+        found.put(row, answer(train, index)[0])
+    return stack([situation_of(train, k) for k in indices]), found
+
+
+def taken(found: Equilibria, rows: np.ndarray) -> Equilibria:
+    """Some of the answers, as copies."""
+    return replace(found, **{name: getattr(found, name)[rows].copy() for name in CLAIMS})
+
+
+def damaged(found: Equilibria, scales: dict[str, float], seed: int) -> Equilibria:
+    """Every answer with one to three of its figures scaled, turned round, dropped or shifted."""
+    rng = np.random.default_rng(seed)
+    spoilt = taken(found, np.arange(len(found.rotation)))
+    some = [name for name in CLAIMS if getattr(found, name)[0].size]
+    for row in range(len(spoilt.rotation)):
+        for _ in range(rng.integers(1, 4)):
+            name = some[rng.integers(len(some))]
+            figures = getattr(spoilt, name)[row].reshape(-1)
+            k = rng.integers(len(figures))
+            shift = rng.choice([-1.0, 1.0]) * scales[name] * 10.0 ** rng.uniform(-10.0, 0.5)
+            changes = (1.001 * figures[k], -figures[k], 0.0, figures[k] + shift)
+            figures[k] = changes[rng.integers(len(changes))]
+    return spoilt
+
+
+def scales_of(train: Train, load: float, deflection: float) -> dict[str, float]:
+    """What a damage of a claim is measured by: [rad], [m], [N], [N·m]."""
+    radius = min(g.base_radius for g in train.gears.values())
+    return {
+        "rotation": deflection / radius,
+        "displacement": deflection,
+        "flank_force": load,
+        "ring_force": load,
+        "radial_reaction": load,
+        "shaft_torque": load * radius,
+        "support_force": load,
+    }
+
+
+def figures(train: Train, index: int, found: Equilibria, row: int) -> np.ndarray:
+    """The single certificate's scaled residuals of an answer."""
+    single = certify(train, found.one(row, index))
+    return np.array([single.residuals[name].scaled for name in RESIDUALS])
+
+
+def agree(train: Train, indices: list[int], situations: Situations, found: Equilibria) -> None:
+    many = Judge(train).judge(situations, found)
+    single = np.array([figures(train, k, found, row) for row, k in enumerate(indices)])
+    np.testing.assert_allclose(many.residuals, single, rtol=RELATIVE, atol=ABSOLUTE)
+    passed = [certify(train, found.one(row, k)).passed for row, k in enumerate(indices)]
+    assert many.passed.tolist() == passed
+
+
+def positions(train: Train) -> list[int]:
+    return sorted({1, 1 + train.count // 2, train.count})
+
+
+@pytest.mark.parametrize("name", WAYS)
+def test_right_answers(name):
+    train = build_train(WAYS[name]())
+    indices = positions(train)
+    situations, found = claims(train, indices)
+    agree(train, indices, situations, found)
+    many = Judge(train).judge(situations, found)
+    assert many.passed.all()
+    assert many.tolerance == TOLERANCE
+    single = [certify(train, found.one(row, k)) for row, k in enumerate(indices)]
+    np.testing.assert_allclose(many.load, [c.load for c in single], rtol=1e-14)
+    np.testing.assert_allclose(many.deflection, [c.deflection for c in single], rtol=1e-9)
+
+
+@pytest.mark.parametrize("name", WAYS)
+def test_wrong_answers(name):
+    """Thirty answers, each damaged in one to three places; most are refused, all alike."""
+    train = build_train(WAYS[name]())
+    first = positions(train)
+    situations, found = claims(train, first)
+    right = Judge(train).judge(situations, found)
+    rows = np.arange(30) % len(first)
+    indices = [first[row] for row in rows]
+    scales = scales_of(train, float(right.load[0]), float(right.deflection[0]))
+    spoilt = damaged(taken(found, rows), scales, seed=len(name))
+    agree(train, indices, situations.take(rows), spoilt)
+    many = Judge(train).judge(situations.take(rows), spoilt)
+    assert not many.passed.all()
+    if "all_elements" in name:
+        assert (many.residuals > TOLERANCE).any(axis=0).all(), (
+            "a residual was never put to the test"
+        )
+
+
+@pytest.mark.parametrize("family", [stars, split_torques], ids=["star", "split torque"])
+def test_answers_of_random_trains(family):
+    @settings(PROFILE, max_examples=12)
+    @given(family(), st.integers(0, 1000))
+    def run(case: ls.Case, seed: int) -> None:
+        note(case.to_toml())
+        train = build_train(case)
+        situations, found = claims(train, [1])
+        right = Judge(train).judge(situations, found)
+        agree(train, [1], situations, found)
+        rows = np.zeros(6, dtype=int)
+        scales = scales_of(train, float(right.load[0]), float(right.deflection[0]))
+        spoilt = damaged(taken(found, rows), scales, seed)
+        agree(train, [1] * 6, situations.take(rows), spoilt)
+
+    run()
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_a_figure_that_is_not_a_number(bad):
+    """In whatever claim it stands: every residual is infinite, and the samples beside it are not
+    touched.
+    """
+    train = build_train(shipped("fgfbstts/all_elements"))
+    situations, found = claims(train, [1])
+    names = [name for name in CLAIMS if getattr(found, name)[0].size]
+    rows = np.zeros(len(names) + 1, dtype=int)
+    spoilt = taken(found, rows)
+    for row, name in enumerate(names):
+        getattr(spoilt, name)[row].flat[-1] = bad
+    many = Judge(train).judge(situations.take(rows), spoilt)
+    for row, name in enumerate(names):
+        assert np.isinf(many.residuals[row]).all(), name
+    assert many.passed.tolist() == [False] * len(names) + [True]
+
+
+def test_a_spline_whose_law_drops():
+    """S1 is given and F_m follows the torque: where the flanks carry little, the law would drop.
+    Such a claim is judged and refused, as by the single certificate.
+    """
+    case = shipped("fgfbstts/all_elements").replace({"splines.5.stick_limit": "0.5 um"})
+    train = build_train(case)
+    situations, found = claims(train, [1])
+    spoilt = taken(found, np.zeros(2, dtype=int))
+    spoilt.flank_force[0] *= 1e-3
+    many = Judge(train).judge(situations.take(np.zeros(2, dtype=int)), spoilt)
+    single = certify(train, spoilt.one(0, 1))
+    assert "drop" in single.residuals["cone_membership"].where
+    assert np.isinf(many.residuals[0]).all()
+    assert [figure.scaled for figure in single.residuals.values()] == [np.inf] * 7
+    assert many.passed.tolist() == [False, True]
+
+
+def test_a_squeeze_between_opposed_arcs():
+    """Both arcs of one ring push at once, of either ring: what the squeeze leaves open is the
+    largest force out of its cone.
+    """
+    train = build_train(shipped("fgfbstts/limit_ring"))
+    situations, found = claims(train, [1])
+    rings = list(train.rings.values())
+    rows = np.zeros(len(rings), dtype=int)
+    spoilt = taken(found, rows)
+    load = certify(train, found.one(0, 1)).load
+    for row, ring in enumerate(rings):
+        for neighbour in ring.neighbours:
+            spoilt.ring_force[row, found.names.contacts.index(ring.arc_name(neighbour))] += (
+                1e6 * load
+            )
+    many = Judge(train).judge(situations.take(rows), spoilt)
+    cone = RESIDUALS.index("cone_membership")
+    for row, ring in enumerate(rings):
+        single = certify(train, spoilt.one(row, 1)).failing["cone_membership"]
+        assert single.where == f"ring {ring.gear}: arcs"
+        assert many.residuals[row, cone] == pytest.approx(single.scaled, rel=RELATIVE)
+
+
+def test_a_wrong_shaft_torque_is_caught():
+    """A claimed torque frees the balance from the digits of the rotations; the law ties it down."""
+    train = build_train(shipped("fgfbstts/all_elements"))
+    situations, found = claims(train, [1])
+    elastic = [k for k, s in enumerate(train.shafts.values()) if np.isfinite(s.stiffness)]
+    rows = np.zeros(len(elastic), dtype=int)
+    spoilt = taken(found, rows)
+    for row, shaft in enumerate(elastic):
+        spoilt.shaft_torque[row, shaft] *= 1.0 + 1e-6
+    many = Judge(train).judge(situations.take(rows), spoilt)
+    assert elastic
+    for row in range(len(elastic)):
+        failing = certify(train, spoilt.one(row, 1)).failing
+        assert {"moment_balance", "deformation_law"} <= failing.keys()
+        assert (many.residuals[row, [1, 4]] > TOLERANCE).all()
+
+
+def test_a_wrong_support_force_is_caught():
+    train = build_train(shipped("fgfbstts/all_elements"))
+    situations, found = claims(train, [1])
+    held = [k for k, g in enumerate(train.gears.values()) if g.support is not None]
+    rows = np.zeros(len(held), dtype=int)
+    spoilt = taken(found, rows)
+    load = float(Judge(train).judge(situations, found).load[0])
+    for row, gear in enumerate(held):
+        spoilt.support_force[row, gear, 0] += 1e-6 * load
+    many = Judge(train).judge(situations.take(rows), spoilt)
+    assert len(held) > 1
+    for row, k in enumerate(held):
+        gear = list(train.gears.values())[k]
+        failing = certify(train, spoilt.one(row, 1)).failing
+        assert failing["force_balance"].where.endswith(gear.name)
+        # A bearing that is not there carries nothing; an elastic one what its displacement says.
+        law = "deformation_law" if gear.support[0] > 0.0 else "cone_membership"
+        assert law in failing
+        shown = dict(zip(RESIDUALS, many.residuals[row] > TOLERANCE, strict=True))
+        assert shown["force_balance"]
+        assert shown[law]
+
+
+@pytest.mark.parametrize("ratio", [1e12, 1e15])
+def test_a_stiff_shaft_is_certified_by_its_claimed_torque(ratio):
+    """The wind-up of a shaft that is 1e12 times as stiff as a mesh drowns in the digits of the
+    rotations, and a torque that follows from them is far out of balance. The claimed one is exact,
+    and the shaft as good as rigid.
+    """
+    case = shipped("fgfbstts/both_errors")
+    (shaft, *_) = case.shafts
+    rigid = ls.solve(case.replace({f'shafts."{shaft}".stiffness': "rigid"}), positions=[1])
+    stiff = ls.explain(case.replace({f'shafts."{shaft}".stiffness': f"{4e6 * ratio!r} N*m/rad"}))
+    assert certify(stiff.train, stiff.equilibrium).passed
+    assert not certify(stiff.train, replace(stiff.equilibrium, shaft_torque={})).passed
+    forces, expected = stiff.equilibrium.flank_force, rigid.positions[0].torque
+    torque = {m.name: m.radii[0] * forces[m.name] for m in stiff.train.meshes.values()}
+    assert torque == pytest.approx(expected, rel=1e-9)

@@ -1,0 +1,337 @@
+"""The ladder: the hot path first, then the back-ends, then a refusal that says why.
+
+Source: formulation, sections 6, 7 and 11.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.support import answer, disagreement, furthest, lost_contact, round_ring, shipped
+
+import loadshare as ls
+from loadshare.certify import certify
+from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify.state import State, turned
+from loadshare.errors import Refused
+from loadshare.job import ladder
+from loadshare.job.ladder import HOT, climb, climb_all, hot_answers, rungs
+from loadshare.job.machine import Machine
+from loadshare.scene import assemble
+from loadshare.scene.plan import Role
+from loadshare.solver import Options
+from loadshare.solver.contradiction import contradiction
+from loadshare.solver.hot import places, vectorised
+from loadshare.train import Train, build_train
+
+CASES = {
+    "limit ring": lambda: shipped("fgfbstts/limit_ring"),
+    "every element": lambda: shipped("fgfbstts/all_elements"),
+    "lost contact": lost_contact,
+    "round ring": round_ring,
+}
+
+
+def failing(elements, data, basis, code, rows, state, one_only):
+    """An engine that finds no answer on any set."""
+    return np.full(len(rows), places.FAILED, np.int8), np.repeat(code[None, :], len(rows), 0)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_what_the_hot_path_leaves_the_next_rung_answers(name, monkeypatch):
+    """And says so; the answer is the same."""
+    case = CASES[name]()
+    monkeypatch.setattr(vectorised, "settle", failing)
+    found = ls.solve(case, positions=[1])
+    assert found.passed
+    assert {p.effort.rung for p in found.positions} == {"clarabel + exact"}
+    monkeypatch.undo()
+    hot = ls.solve(case, positions=[1])
+    assert {p.effort.rung for p in hot.positions} == {HOT}
+    assert furthest(found.positions[0].torque, hot.positions[0].torque) < 1e-9
+
+
+def test_every_way_to_begin_is_tried():
+    """From rest, then one exchange at a time, then with the drive flanks turned round."""
+    visits = []
+
+    def watched(elements, data, basis, code, rows, state, one_only):
+        visits.append((bool(one_only[rows].all()), code.tobytes()))
+        return failing(elements, data, basis, code, rows, state, one_only)
+
+    own = Machine(build_train(shipped("fgfbstts/limit_ring")))
+    assert not own.answer(own.situations([1, 2]), TOLERANCE, watched).passed.any()
+    # Both positions begin on the same set, so that each way is one visit.
+    singly = [single for single, _ in visits]
+    assert {False, True} == set(singly)
+    assert singly == sorted(singly)
+    assert len({code for _, code in visits}) == 2
+
+
+def test_a_wrong_set_is_not_handed_out(monkeypatch):
+    """An engine that is content with any set: what the certificate refuses climbs on."""
+    settle = vectorised.settle
+
+    def content(elements, data, basis, code, rows, state, one_only):
+        settle(elements, data, basis, code, rows, state, one_only)
+        return np.full(len(rows), places.DONE, np.int8), np.repeat(code[None, :], len(rows), 0)
+
+    monkeypatch.setattr(vectorised, "settle", content)
+    own = Machine(build_train(shipped("fgfbstts/limit_ring")))
+    answers = own.answer(own.situations([1]), TOLERANCE, content)
+    assert not answers.passed.any(), "open stops are penetrated"
+    assert hot_answers(own, [1], TOLERANCE) == {}
+    (found,) = climb_all(own, [1], Options(), TOLERANCE)
+    assert found.rung == "clarabel + exact"
+    assert found.certificate.passed
+
+
+@pytest.mark.parametrize("solver", ["clarabel", "cvxpy"])
+def test_a_back_end_that_is_named_comes_first(solver, monkeypatch):
+    """The hot path is not even looked at."""
+
+    def forbidden(*_args):
+        raise AssertionError("the hot path was taken")
+
+    monkeypatch.setattr(ladder, "hot_answers", forbidden)
+    found = ls.solve(shipped("fgfbstts/limit_ring"), solver=solver, positions=[1])
+    assert found.positions[0].effort.rung == f"{solver} + exact"
+    assert found.stamp.solver == solver
+
+
+@pytest.mark.parametrize("asked", [{"method": "picard"}, {"method": "power"}, {"reduce": False}])
+def test_what_only_a_back_end_can_do_is_not_asked_of_the_hot_path(asked):
+    found = ls.solve(shipped("fgfbstts/limit_ring"), positions=[1], **asked)
+    assert found.positions[0].effort.rung == "clarabel + exact"
+
+
+def test_the_rungs_in_order():
+    told = [name for name, _ in rungs(Options())]
+    assert told[:2] == ["clarabel + exact", "whole scene"]
+    assert told[2:] == ["whole scene, picard", "whole scene, power"]
+    assert [name for name, _ in rungs(Options(method="power", reduce=False))] == [
+        "clarabel + exact",
+        "whole scene, newton",
+        "whole scene, picard",
+    ]
+
+
+def test_only_what_is_left_climbs(monkeypatch):
+    """One position of five fails on the hot path; only that one climbs, and order is kept."""
+    train = build_train(shipped("fgfbstts/both_errors"))
+    quick = hot_answers(Machine(train), range(1, 6), TOLERANCE)
+    monkeypatch.setattr(
+        ladder, "hot_answers", lambda *_: {k: a for k, a in quick.items() if k != 3}
+    )
+    found = list(climb_all(Machine(train), range(1, 6), Options(), TOLERANCE))
+    assert [a.equilibrium.index for a in found] == [1, 2, 3, 4, 5]
+    assert [a.rung == HOT for a in found] == [True, True, False, True, True]
+
+
+def test_the_record_of_the_hot_path():
+    """Roles, redundants, sets visited and what was left out can be explained."""
+    found = ls.explain(shipped("fgfbstts/limit_ring"))
+    assert found.rung == HOT
+    assert found.record.solver == HOT
+    assert found.record.kind.startswith("force method, ")
+    assert found.record.rounds >= 1
+    closed = {name for name, role in found.record.plan.rows.items() if role is Role.IN_PLAY}
+    pushing = {name for name, f in found.equilibrium.flank_force.items() if f > 0.0}
+    pushing |= {name for name, f in found.equilibrium.ring_force.items() if f > 0.0}
+    assert pushing <= closed
+    open_rows = {name for name, role in found.record.plan.rows.items() if role is Role.OPEN}
+    assert open_rows <= {name for name, _ in found.record.removed}
+
+
+def test_the_certificate_of_the_hot_path_is_that_of_the_answer():
+    """It is computed when it is looked at, and is the one that `certify` gives."""
+    for name in CASES:
+        found = ls.explain(CASES[name]())
+        again = certify(found.train, found.equilibrium)
+        assert dict(found.certificate.residuals) == dict(again.residuals)
+        assert dict(found.certificate.floats) == dict(again.floats)
+        assert found.certificate.load == pytest.approx(again.load, rel=1e-14)
+        assert found.certificate.deflection == pytest.approx(again.deflection, rel=1e-9)
+
+
+# --- Contradictions ---
+
+
+def squeezed(case: ls.Case, gear: str) -> ls.Case:
+    """Two idlers that errors have moved towards the pinion between them by 20 µm each, and a ring
+    without room that is dimensioned on the drawing.
+    """
+    case = case.replace({f"rings.{gear}.measured": "nominal", f"rings.{gear}.clearance": "0 um"})
+    train = build_train(case)
+    neighbours = train.rings[gear].neighbours
+    first, second = (train.gears[n].centre for n in neighbours)
+    along = (second - first)[:2] / np.linalg.norm(second - first)
+    moves = dict(zip(neighbours, (20e-6 * along, -20e-6 * along), strict=True))
+    return case.replace(
+        {f"errors.{n}.installation": [f"{float(v)!r} m" for v in c] for n, c in moves.items()}
+    )
+
+
+def test_a_contradiction_names_the_limits():
+    """Both arcs of the ring, and nothing that has no part in it."""
+    case = squeezed(shipped("fgfbstts/limit_ring"), "4")
+    scene = assemble(build_train(case), 1)
+    assert set(contradiction(scene)) == {"ring 4: arc 6", "ring 4: arc 7"}
+    with pytest.raises(Refused) as refused:
+        ls.solve(case, positions=[1])
+    told = str(refused.value)
+    assert "position 1: rigid limits contradict one another" in told
+    assert "ring 4: arc 6" in told
+    assert "ring 4: arc 7" in told
+    assert "ring 5" not in told
+    assert "clearance" in told
+    assert refused.value.partial is None
+
+
+def test_both_rings_are_named_where_they_contradict_each_other():
+    """Idler 7 pushes pinion 4 by 20 µm onto idler 6, which floats in a ring that holds it fast."""
+    case = squeezed(shipped("fgfbstts/limit_ring"), "4").replace(
+        {
+            "gears.6.support": "free",
+            "errors.6": None,
+            "rings.6": {"neighbours": ["4", "10"], "clearance": "0 um", "float": "0 um"},
+        }
+    )
+    named = contradiction(assemble(build_train(case), 1))
+    assert {name.split(":")[0] for name in named} == {"ring 4", "ring 6"}
+    with pytest.raises(Refused) as refused:
+        ls.solve(case, positions=[1])
+    assert all(name in str(refused.value) for name in named)
+
+
+def test_the_positions_that_have_an_answer_are_kept():
+    """An eccentric idler comes towards the pinion and goes: where it takes more than the clearance
+    the position is refused, and the others are in `partial`.
+    """
+    case = shipped("fgfbstts/eccentricity").replace(
+        {
+            "gears.4.support": "free",
+            "rings": {
+                "4": {
+                    "neighbours": ["7", "6"],
+                    "clearance": "5 um",
+                    "float": "5 um",
+                    "measured": "nominal",
+                }
+            },
+            "errors.6.eccentricity": {"amount": "20 um", "direction": "0 deg"},
+        }
+    )
+    train = build_train(case)
+    room = []
+    for index in range(1, train.count + 1):
+        here = train.situation(index)
+        room.append(
+            sum(train.arc(train.rings["4"], side, here).margin(np.zeros(3)) for side in (0, 1))
+        )
+    with pytest.raises(Refused) as refused:
+        ls.solve(case)
+    kept = [p.position for p in refused.value.partial.positions]
+    assert kept == [k for k, r in enumerate(room, start=1) if r >= 0.0]
+    assert 0 < len(kept) < train.count
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_limits_that_can_hold_do_not_contradict(name):
+    train = build_train(CASES[name]())
+    for index in range(1, train.count + 1):
+        assert contradiction(assemble(train, index)) == ()
+
+
+def test_room_for_the_squeeze_ends_the_contradiction():
+    """The overlap is 20 µm on either side: 21 µm of clearance hold it, 19 µm do not."""
+    case = squeezed(shipped("fgfbstts/limit_ring"), "4")
+    assert ls.solve(case.replace({"rings.4.clearance": "21 um"}), positions=[1]).passed
+    tight = build_train(case.replace({"rings.4.clearance": "19 um"}))
+    assert contradiction(assemble(tight, 1))
+
+
+# --- The squeeze between opposed rigid arcs ---
+
+
+def beside_the_line(distance: str = "525.6314 mm") -> ls.Case:
+    """The seed's limit rings without clearance, the idlers 1e-6 rad off the line of the arcs."""
+    case = shipped("fgfbstts/limit_ring")
+    for gear in ("6", "7", "8", "9"):
+        case = case.replace({f"gears.{gear}.centre.distance": distance})
+    return case
+
+
+def squeeze(train: Train, found: ls.Result | object) -> float:
+    """Largest force with which both arcs of a ring push at once [N]."""
+    forces = found.ring_force
+    return max(
+        min(forces[ring.arc_name(n)] for n in ring.neighbours) for ring in train.rings.values()
+    )
+
+
+def test_a_float_between_opposed_arcs_rolls_or_is_refused():
+    """Arcs 1e-6 rad off the line seem to wedge a float in with a squeeze of 1e6 times its push.
+    The float rolls away; the squeeze is never certified.
+    """
+    case = beside_the_line()
+    train = build_train(case)
+    ring = train.rings["4"]
+    arcs = [train.arc(ring, side, train.situation(1)) for side in (0, 1)]
+    wedge = float(np.linalg.norm(sum(a.normal(np.zeros(3)) for a in arcs)))
+    assert 1e-8 < wedge < 1e-5
+    for solver in ("auto", "clarabel"):
+        try:
+            found = ls.explain(case, solver=solver)
+        except Refused:
+            continue
+        assert found.certificate.passed
+        assert squeeze(train, found.equilibrium) < 1e-3 * found.certificate.load
+        moved = max(
+            abs(float(r.across @ found.equilibrium.displacement[g])) for g, r in train.rings.items()
+        )
+        assert moved > 1e-6, "the float has rolled to its stop"
+
+
+def test_a_squeeze_is_refused_by_its_certificate():
+    """The rolled answer with a squeeze added to both arcs of ring 4: in balance but for 1e-6 of
+    it, and refused for what the two directions leave open.
+    """
+    case = beside_the_line()
+    train = build_train(case)
+    found = ls.explain(case).equilibrium
+    load = certify(train, found).load
+    pair = {f"ring 4: arc {n}": 1e5 * load for n in ("6", "7")}
+    forced = {k: v + pair.get(k, 0.0) for k, v in found.ring_force.items()}
+    wedged = replace(found, ring_force=forced)
+    assert "cone_membership" in certify(train, wedged).failing
+    band = 1e-9 * certify(train, found).deflection
+    state = State(train, wedged)
+    assert state.squeezes(band)["ring 4: arcs"] > 1e-9 * load
+    assert state.squeezes(band)["ring 5: arcs"] < 1e-9 * load
+
+
+def test_the_turn_of_a_squeeze():
+    """y with ε y + y²/2a = band, over a: both limits in closed form."""
+    distance, band = 0.16, 1e-14
+    assert turned(0.0, band, distance) == pytest.approx(math.sqrt(2.0 * band / distance))
+    assert turned(0.1, band, distance) == pytest.approx(band / 0.1 / distance, rel=1e-6)
+    wedge = 3e-7
+    y = turned(wedge, band, distance) * distance
+    assert wedge * y + y * y / (2.0 * distance) == pytest.approx(band)
+
+
+def test_only_rigid_arcs_between_firm_neighbours_squeeze():
+    elastic = build_train(shipped("fgfbstts/limit_ring").replace({"rings.4.stiffness": "1e9 N/m"}))
+    state = State(elastic, answer(elastic)[0])
+    assert state.squeezes(1e-12).keys() == {"ring 5: arcs"}
+    giving = build_train(shipped("fgfbstts/all_elements"))
+    assert State(giving, answer(giving)[0]).squeezes(1e-12) == {}
+
+
+def test_climbing_alone_gives_the_answer_of_the_hot_path():
+    train = build_train(shipped("fgfbstts/all_elements"))
+    hot = hot_answers(Machine(train), [1], TOLERANCE)[1]
+    climbed = climb(train, 1, Options(), TOLERANCE)
+    assert max(disagreement(train, hot.equilibrium, climbed.equilibrium)) < 1e-9

@@ -1,0 +1,400 @@
+"""Many samples at once: the same answers as one at a time, in the right places, whatever the
+blocks and the workers.
+
+Tolerances: the same sample in other company takes another number of Newton passes, and differs by
+round-off times its condition: 1e-12. Solved alone it may begin elsewhere: 1e-9, as between methods.
+"""
+
+import inspect
+import tracemalloc
+from itertools import islice
+
+import numpy as np
+import pytest
+from tests.solver.hot.trains import VARIED, varied
+from tests.support import furthest, shipped
+
+import loadshare as ls
+from loadshare.case import families
+from loadshare.certify.certificate import TOLERANCE
+from loadshare.errors import CaseError
+from loadshare.job import many
+from loadshare.job.ladder import HOT
+from loadshare.job.many import KEEP, solve_blocks
+from loadshare.train.samples import samples_of
+
+RINGS = {
+    "rings.4.float [um]": [0.0, 4.0, 12.0],
+    "rings.5.float [um]": [0.0, 4.0, 12.0],
+}
+LIMIT_RING = "fgfbstts/limit_ring"
+
+
+def apart(one, other, name: str) -> float:
+    """Largest difference of a variable over its largest figure."""
+    a, b = one[name].values, other[name].values
+    assert (np.isnan(a) == np.isnan(b)).all()
+    size = np.nanmax(np.abs(a), initial=0.0) or 1.0
+    return float(np.nanmax(np.abs(a - b), initial=0.0)) / size
+
+
+# --- What comes back ---
+
+
+def test_shapes_labels_and_units():
+    case = shipped(LIMIT_RING)
+    found = ls.solve_many(case, RINGS)
+    assert dict(found.sizes) == {
+        "sample": 3,
+        "position": 5,
+        "mesh": 10,
+        "gear": 3,
+        "axis": 2,
+        "contact": 8,
+    }
+    assert found.torque.dims == ("sample", "position", "mesh")
+    assert found.displacement.dims == ("sample", "position", "gear", "axis")
+    assert found.contact_force.dims == ("sample", "position", "contact")
+    assert found.mesh.values.tolist() == list(case.meshes)
+    assert found.gear.values.tolist() == ["1", "4", "5"]
+    assert found.axis.values.tolist() == ["x", "y"]
+    assert found.position.values.tolist() == [1, 2, 3, 4, 5]
+    assert found.sample.values.tolist() == [0, 1, 2]
+    assert set(found.contact.values) == {
+        f"ring {g}: {c}"
+        for g, pair in (("4", "76"), ("5", "98"))
+        for c in ("upper stop", "lower stop", *(f"arc {n}" for n in pair))
+    }
+    units = {name: found[name].attrs["units"] for name in KEEP}
+    assert units == {
+        "torque": "N*m",
+        "share": "1",
+        "pair_share": "1",
+        "displacement": "m",
+        "contact_force": "N",
+    }
+    assert found.attrs["case"] == "limit_ring"
+    assert found.attrs["case_hash"] == case.hash
+    assert found.attrs["tolerance"] == TOLERANCE
+    assert found.attrs["refused"] == {}
+    assert (found.rung == HOT).all()
+    assert found.certified.all()
+    assert (found.residual <= TOLERANCE).all()
+
+
+@pytest.mark.parametrize("keep", [("torque",), ("share", "pair_share"), ("displacement",), ()])
+def test_only_what_is_kept(keep):
+    found = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1], keep=keep)
+    assert set(found.data_vars) == {*keep, "residual", "certified", "determined", "rung"}
+    whole = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1])
+    for name in keep:
+        np.testing.assert_array_equal(found[name], whole[name])
+
+
+def test_some_positions():
+    whole = ls.solve_many(shipped(LIMIT_RING), RINGS)
+    some = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[4, 2])
+    assert some.position.values.tolist() == [4, 2]
+    for name in KEEP:
+        chosen = whole.sel(position=[4, 2])
+        assert apart(chosen, some, name) < 1e-12
+
+
+def test_a_case_file_will_do(tmp_path):
+    path = tmp_path / "star.toml"
+    families.star(4).to_toml(path)
+    found = ls.solve_many(path, {"operating.torque [N*m]": [500.0]})
+    assert found.certified.all()
+    assert found.torque.sizes["mesh"] == len(ls.load_case(path).meshes)
+
+
+@pytest.mark.parametrize("name", VARIED)
+def test_each_sample_is_the_case_solved_alone(name):
+    """Torques, shares, floats, contact forces and what is determined, sample by sample."""
+    case, samples = varied(name, 4, seed=11)
+    found = ls.solve_many(case, samples, positions=[1])
+    ((_, group),) = samples_of(case, samples)
+    for sample in range(4):
+        alone = ls.solve(group.one(sample), positions=[1])
+        here, position = found.isel(sample=sample, position=0), alone.positions[0]
+        torque = dict(zip(found.mesh.values, here.torque.values, strict=True))
+        expected = {m: position.torque[m] for m in found.mesh.values}
+        assert furthest(expected, torque) < 1e-9
+        for values, known in ((here.share, position.share), (here.pair_share, position.pair_share)):
+            for mesh, value in zip(found.mesh.values, values.values, strict=True):
+                if mesh in known and np.isfinite(value):
+                    assert value == pytest.approx(known[mesh], rel=1e-9, abs=1e-9)
+                else:
+                    assert np.isnan(value)
+        assert bool(here.determined) == (not position.undetermined)
+        floats = {
+            g: tuple(v) for g, v in zip(found.gear.values, here.displacement.values, strict=True)
+        }
+        size = max(
+            position.certificate.deflection,
+            max(map(abs, np.ravel(list(floats.values()))), default=0.0),
+        )
+        assert set(floats) <= set(position.displacement)
+        for gear, moved in floats.items():
+            if not any(f"gear {gear} " in free for free in position.undetermined):
+                np.testing.assert_allclose(moved, position.displacement[gear], atol=1e-8 * size)
+
+
+def test_a_gear_that_floats_freely_is_not_determined():
+    """Nothing holds gear 1 in its place; a rigid bearing does. Rings of up to 2 µm hold the others:
+    the pinions press on them (Fig. 14).
+    """
+    case = shipped(LIMIT_RING)
+    samples = {key: [0.0, 2.0] for key in RINGS}
+    assert not ls.solve_many(case, samples).determined.any()
+    assert ls.solve_many(case.replace({"gears.1.support": "rigid"}), samples).determined.all()
+
+
+# --- Refusals ---
+
+
+def mixed() -> tuple[ls.Case, dict[str, list[float]]]:
+    """A ring dimensioned on the drawing whose idler comes too near by up to 30 µm; there is
+    room for 20.
+    """
+    case = shipped(LIMIT_RING).replace(
+        {
+            "rings.4.measured": "nominal",
+            "rings.4.clearance": "10 um",
+            "errors.6.installation": {"amount": "0 um", "direction": "131.17 deg"},
+        }
+    )
+    return case, {"errors.6.installation.amount [um]": [0.0, 30.0, 5.0]}
+
+
+def test_a_sample_whose_limits_contradict_is_refused_and_the_others_are_not():
+    case, samples = mixed()
+    found = ls.solve_many(case, samples, positions=[1, 2])
+    bad = ~found.certified.values.all(axis=1)
+    assert bad.sum() == 1
+    (number,) = np.flatnonzero(bad).tolist()
+    assert set(found.attrs["refused"]) == {f"sample {number}, position {k}" for k in (1, 2)}
+    for message in found.attrs["refused"].values():
+        assert "contradict" in message
+        assert "ring 4: arc" in message
+    refused, others = found.isel(sample=number), found.isel(sample=~bad)
+    for name in (*KEEP, "residual"):
+        assert np.isnan(refused[name]).all(), name
+    assert (refused.rung == "").all()
+    assert not refused.certified.any()
+    assert not refused.determined.any()
+    assert np.isfinite(others.torque).all()
+    assert others.certified.all()
+
+
+def test_a_train_without_a_path_for_the_torque_is_refused_with_a_message():
+    """The first wheels of both paths float freely: they yield to any push."""
+    case = families.two_path("0 mrad").replace(
+        {"gears.wheelA.support": "free", "gears.wheelB.support": "free"}
+    )
+    found = ls.solve_many(case, {'meshes."in-wheelA".stiffness [N*m/rad]': [1e6, 2e6]})
+    assert not found.certified.any()
+    assert np.isnan(found.torque).all()
+    assert (found.rung == "").all()
+    messages = found.attrs["refused"]
+    assert set(messages) == {"sample 0, position 1", "sample 1, position 1"}
+    for message in messages.values():
+        assert "nothing balances the load on gear" in message
+
+
+def test_a_law_that_drops_is_refused_sample_by_sample():
+    """S1 is given and the friction varies: where K_w S1 exceeds F_m there is no one equilibrium."""
+    case = shipped("fgfbstts/all_elements").replace({"splines.5.stick_limit": "0.5 um"})
+    samples = {"splines.5.friction": [0.002, 1e-5, 0.01]}
+    found = ls.solve_many(case, samples, positions=[1])
+    assert found.certified.values[:, 0].tolist() == [True, False, True]
+    (message,) = found.attrs["refused"].values()
+    assert "drop" in message
+
+
+def test_values_that_do_not_go_together_are_refused_sample_by_sample():
+    """Every value alone may stand in a case; the pair of the second sample may not: S2 < S1."""
+    case = shipped("fgfbstts/spline_clearance").replace(
+        {
+            "splines.4.friction": None,
+            "splines.4.normal_force": None,
+            "splines.4.friction_force": "100 N",
+            "splines.4.stick_limit": "1 um",
+        }
+    )
+    samples = {
+        "splines.4.stick_limit [um]": [1.0, 4.0, 4.0],
+        "splines.4.clearance [um]": [8.0, 3.0, 8.0],
+    }
+    with pytest.raises(CaseError, match="stick limit"):
+        # The smallest clearance with the largest stick limit is what the checks look at.
+        ls.solve(case.replace({"splines.4.stick_limit": "4 um", "splines.4.clearance": "3 um"}))
+    found = ls.solve_many(case, samples, positions=[1])
+    assert found.certified.values[:, 0].tolist() == [True, False, True]
+    (message,) = found.attrs["refused"].values()
+    assert "stick limit" in message
+
+
+def test_what_the_hot_path_leaves_climbs_and_says_so(monkeypatch):
+    """The engine declines every second sample: another rung answers those, all the same."""
+    from loadshare.solver.hot import places, vectorised
+
+    settle = vectorised.settle
+
+    def moody(elements, data, basis, code, rows, state, one_only):
+        verdict, proposal = settle(elements, data, basis, code, rows, state, one_only)
+        return np.where((rows % 2 == 1) & (data.count > 1), places.FAILED, verdict), proposal
+
+    expected = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1])
+    monkeypatch.setattr(vectorised, "settle", moody)
+    found = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1])
+    assert found.rung.values[:, 0].tolist() == [HOT, "clarabel + exact", HOT]
+    assert found.certified.all()
+    for name in ("torque", "share", "contact_force"):
+        assert apart(expected, found, name) < 1e-9
+
+
+def test_what_is_not_there_is_told():
+    case = shipped(LIMIT_RING)
+    with pytest.raises(ValueError, match=r"no variable torques; allowed: torque, share"):
+        ls.solve_many(case, RINGS, keep=["torques"])
+    with pytest.raises(ValueError, match="positions 9: this case has positions 1 to 5"):
+        ls.solve_many(case, RINGS, positions=[9])
+    with pytest.raises(ValueError, match="unknown engine 'fast'"):
+        ls.solve_many(case, RINGS, engine="fast")
+    with pytest.raises(CaseError, match="there is no key"):
+        ls.solve_many(case, {})
+
+
+# --- Blocks, workers, engines ---
+
+
+def floats(count: int) -> dict[str, np.ndarray]:
+    rng = np.random.default_rng(5)
+    return {key: rng.uniform(0.0, 12.0, count) for key in RINGS}
+
+
+def test_the_number_of_workers_does_not_matter(monkeypatch):
+    """Bit for bit: blocks are the same, whoever solves them."""
+    monkeypatch.setattr(many, "BLOCK", 7)
+    one, two, five = (
+        ls.solve_many(shipped(LIMIT_RING), floats(40), positions=[1, 3], workers=w)
+        for w in (1, 2, 5)
+    )
+    for other in (two, five):
+        assert one.identical(other)
+
+
+@pytest.mark.parametrize("block", [3, 23])
+@pytest.mark.parametrize("name", ["drums", "every element"])
+def test_the_size_of_blocks_does_not_matter(name, block, monkeypatch):
+    case, samples = varied(name, 24, seed=2)
+    whole = ls.solve_many(case, samples, positions=[1])
+    monkeypatch.setattr(many, "BLOCK", block)
+    parts = ls.solve_many(case, samples, positions=[1])
+    for name in ("torque", "contact_force", "displacement"):
+        assert apart(whole, parts, name) < 1e-12
+    for name in ("certified", "determined", "rung"):
+        np.testing.assert_array_equal(whole[name], parts[name])
+
+
+def test_the_company_does_not_matter():
+    """The first ten of forty samples are the ten alone."""
+    many_, few = floats(40), {key: v[:10] for key, v in floats(40).items()}
+    one = ls.solve_many(shipped(LIMIT_RING), many_, positions=[1]).isel(sample=slice(10))
+    other = ls.solve_many(shipped(LIMIT_RING), few, positions=[1])
+    for name in ("torque", "contact_force", "displacement"):
+        assert apart(one, other, name) < 1e-12
+
+
+def test_samples_of_different_machines_come_back_in_their_places():
+    """A key that changes the machine: samples are solved by groups and keep their numbers."""
+    case = shipped(LIMIT_RING)
+    samples = {
+        "rings.4.stiffness": ["rigid", "1e8 N/m", "rigid", "1e8 N/m"],
+        "rings.4.float [um]": [2.0, 2.0, 5.0, 5.0],
+    }
+    found = ls.solve_many(case, samples, positions=[1])
+    for sample in range(4):
+        alone = ls.solve(
+            case.replace(
+                {
+                    "rings.4.stiffness": samples["rings.4.stiffness"][sample],
+                    "rings.4.float": f"{samples['rings.4.float [um]'][sample]} um",
+                }
+            ),
+            positions=[1],
+        )
+        torque = dict(zip(found.mesh.values, found.torque.values[sample, 0], strict=True))
+        assert furthest(alone.positions[0].torque, torque) < 1e-9
+
+
+def test_gears_that_float_in_some_samples_only_are_all_told():
+    """Whichever sample comes first."""
+    case = shipped("fgfbstts/both_errors")
+    for order in (["rigid", "free"], ["free", "rigid"]):
+        found = ls.solve_many(
+            case, {"gears.4.support": order}, positions=[1], keep=["displacement"]
+        )
+        assert "4" in found.gear.values
+        moved = np.abs(found.displacement.sel(gear="4").values[:, 0]).max(axis=1)
+        assert moved[order.index("free")] > 1e-7
+        assert moved[order.index("rigid")] == 0.0
+
+
+def test_blocks_come_one_by_one(monkeypatch):
+    """In order and only as they are asked for."""
+    monkeypatch.setattr(many, "BLOCK", 4)
+    solved = []
+    real = many._block
+    monkeypatch.setattr(many, "_block", lambda *args: solved.append(1) or real(*args))
+    blocks = solve_blocks(shipped(LIMIT_RING), floats(40), positions=[1], workers=1)
+    assert inspect.isgenerator(blocks)
+    first = list(islice(blocks, 2))
+    assert [b.rows.tolist() for b in first] == [[0, 1, 2, 3], [4, 5, 6, 7]]
+    assert len(solved) == 2
+    blocks.close()
+
+
+def test_workers_run_ahead_by_a_block_each_and_no_more(monkeypatch):
+    monkeypatch.setattr(many, "BLOCK", 2)
+    solved = []
+    real = many._block
+    monkeypatch.setattr(many, "_block", lambda *args: solved.append(1) or real(*args))
+    blocks = solve_blocks(shipped(LIMIT_RING), floats(40), positions=[1], workers=2)
+    next(blocks)
+    assert len(solved) <= 4
+    assert sum(1 for _ in blocks) == 19
+
+
+def test_memory_does_not_grow_with_the_blocks(monkeypatch):
+    """Twenty-four blocks take no more room at once than four, but for the input's own columns."""
+    monkeypatch.setattr(many, "BLOCK", 100)
+    case = shipped(LIMIT_RING)
+
+    def peak(count: int) -> int:
+        samples = floats(count)
+        tracemalloc.start()
+        try:
+            for _ in solve_blocks(case, samples, positions=[1], workers=1, engine="vectorised"):
+                pass
+            return tracemalloc.get_traced_memory()[1]
+        finally:
+            tracemalloc.stop()
+
+    peak(100)
+    # A sample's answer is some 70 numbers; its columns, in and out of SI, are 4 and their copies.
+    few, more = peak(400), peak(2400)
+    assert more - few < 2000 * 16 * 8
+
+
+def test_progress_is_told_after_every_block(monkeypatch):
+    monkeypatch.setattr(many, "BLOCK", 4)
+    told = []
+    ls.solve_many(
+        shipped(LIMIT_RING),
+        floats(10),
+        positions=[1],
+        progress=lambda done, total: told.append((done, total)),
+    )
+    assert told == [(4, 10), (8, 10), (10, 10)]

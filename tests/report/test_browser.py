@@ -1,0 +1,173 @@
+"""The page in a browser: opens offline without a complaint, tells figures, sorts tables."""
+
+from __future__ import annotations
+
+import os
+import shutil
+
+import pytest
+from tests.report.pages import EVIL_CASE
+
+from loadshare.report.page import chapter_of_file, save_report
+
+FLAGS = (
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--window-size=1280,1000",
+)
+DRAWN = "return document.querySelectorAll('.figure svg.marks').length"
+PLACES = "return document.querySelectorAll('.figure').length"
+COLUMN = """
+const all = [...document.querySelectorAll("table")];
+const table = all.find((t) => t.textContent.includes(arguments[0]));
+return [...table.tBodies[0].rows].map((row) => row.cells[arguments[1]].textContent.trim());
+"""
+CLICK = """
+const all = [...document.querySelectorAll("table")];
+const table = all.find((t) => t.textContent.includes(arguments[0]));
+table.tHead.rows[0].cells[arguments[1]].querySelector("button").click();
+return table.tHead.rows[0].cells[arguments[1]].getAttribute("aria-sort");
+"""
+
+
+def _browser_path() -> str | None:
+    return (
+        shutil.which("chromium")
+        or shutil.which("chromium-browser")
+        or shutil.which("google-chrome")
+    )
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    """A headless Chromium; without one the tests are skipped, with CI set they fail."""
+    program, driver = _browser_path(), shutil.which("chromedriver")
+    if program is None or driver is None:
+        reason = "no chromium and chromedriver (apt-get install chromium chromium-driver)"
+        if os.environ.get("CI"):
+            pytest.fail(reason)
+        pytest.skip(reason)
+    from selenium import webdriver
+    from selenium.webdriver.chrome.options import Options
+    from selenium.webdriver.chrome.service import Service
+
+    options = Options()
+    options.binary_location = program
+    for flag in (*FLAGS, f"--user-data-dir={tmp_path_factory.mktemp('profile')}"):
+        options.add_argument(flag)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
+    found = webdriver.Chrome(options=options, service=Service(driver))
+    # The page must do without a network; the browser has none either.
+    found.set_network_conditions(offline=True, latency=0, throughput=0)
+    yield found
+    found.quit()
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory, ring_chapter):
+    """A report of a good case, a bad one, and one whose texts are hostile."""
+    folder = tmp_path_factory.mktemp("page")
+    (folder / "evil.toml").write_text(EVIL_CASE, encoding="utf-8")
+    (folder / "bad.toml").write_text("title = 'bad'\n", encoding="utf-8")
+    others = [chapter_of_file(folder / name) for name in ("evil.toml", "bad.toml")]
+    save_report([ring_chapter, *others], folder / "report.html")
+    return folder / "report.html"
+
+
+@pytest.fixture(scope="module")
+def opened(browser, page):
+    """The page, with all figures drawn."""
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    browser.get(page.as_uri())
+    figures = browser.execute_script(PLACES)
+    assert figures >= 8
+    WebDriverWait(browser, 60).until(lambda b: b.execute_script(DRAWN) == figures)
+    return browser
+
+
+def test_the_page_opens_without_a_complaint(opened):
+    assert opened.get_log("browser") == []
+    assert "load sharing" in opened.title
+    assert opened.execute_script("return performance.getEntriesByType('resource').length") == 0
+
+
+def test_hostile_texts_do_nothing(opened):
+    assert opened.execute_script("return window.pwned") is None
+    assert opened.execute_script("return document.querySelectorAll('article img').length") == 0
+
+
+def test_hovering_over_a_float_tells_its_figures(opened):
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    point = opened.execute_script(
+        """const figure = document.querySelector('[data-name="floats"]');
+        const marks = [...figure.querySelectorAll('path[aria-roledescription="point"]')];
+        marks[7].scrollIntoView({block: "center"});
+        return marks[7];"""
+    )
+    ActionChains(opened).move_to_element(point).perform()
+    tip = WebDriverWait(opened, 10).until(
+        lambda b: b.execute_script(
+            "const t = document.querySelector('#vg-tooltip-element.visible');"
+            "return t && t.innerText;"
+        )
+    )
+    lines = [line.strip() for line in tip.splitlines() if line.strip()]
+    told = dict(zip(lines[::2], lines[1::2], strict=True))
+    assert told["position"] == "1–5"
+    assert told["rests"] == "upper stop + arc 6"
+    assert told["x [µm]"].startswith("4.12")
+    assert told["y [µm]"].startswith("7.13")
+    assert float(told["reaction of the ring [N]"]) > 50.0
+
+
+def test_tables_sort_by_figures_and_by_words(opened):
+    heading = "torque [N·m]"
+    torques = [float(v) for v in opened.execute_script(COLUMN, heading, 2)]
+    assert torques != sorted(torques)
+    assert opened.execute_script(CLICK, heading, 2) == "ascending"
+    assert [float(v) for v in opened.execute_script(COLUMN, heading, 2)] == sorted(torques)
+    assert opened.execute_script(CLICK, heading, 2) == "descending"
+    assert [float(v) for v in opened.execute_script(COLUMN, heading, 2)] == sorted(torques)[::-1]
+    assert opened.execute_script(CLICK, heading, 0) == "ascending"
+    meshes = opened.execute_script(COLUMN, heading, 0)
+    # Numbers within names count as numbers: 10 after 9.
+    assert meshes == sorted(meshes, key=lambda m: [int(n) for n in m.split("-")])
+    assert opened.get_log("browser") == []
+
+
+def test_sorting_works_from_the_keyboard(opened):
+    button = opened.find_element("css selector", "article table th button")
+    opened.execute_script("arguments[0].focus()", button)
+    from selenium.webdriver.common.keys import Keys
+
+    button.send_keys(Keys.ENTER)
+    header = opened.find_element("css selector", "article table th")
+    assert header.get_attribute("aria-sort") == "ascending"
+
+
+def test_the_page_prints(opened):
+    """Folded tables are unfolded on paper; nothing is wider than the page."""
+    import base64
+
+    printed = base64.b64decode(opened.execute_cdp_cmd("Page.printToPDF", {})["data"])
+    assert printed.startswith(b"%PDF-")
+    closed = "article details:not(.vega-embed details):not([open])"
+    assert opened.find_elements("css selector", closed) == []
+
+
+def test_a_single_figure_opens_as_well(browser, picture, tmp_path):
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    file = picture("all_elements", "share").save(tmp_path / "share.html")
+    browser.get(file.as_uri())
+    WebDriverWait(browser, 60).until(lambda b: b.execute_script(DRAWN) == 1)
+    assert browser.get_log("browser") == []

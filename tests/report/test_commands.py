@@ -1,0 +1,91 @@
+"""`loadshare draw` and `loadshare report`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from tests.support import CASES
+from typer.testing import CliRunner
+
+from loadshare.cli.main import app
+
+RING = CASES / "fgfbstts/limit_ring.toml"
+STAR = CASES / "star/floating_sun_3.toml"
+
+
+@pytest.fixture
+def command(tmp_path, monkeypatch):
+    """Run the command in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+
+    def run(*words):
+        result = CliRunner().invoke(app, [str(w) for w in words], prog_name="loadshare")
+        if result.exception is not None and not isinstance(result.exception, SystemExit):
+            raise result.exception
+        return result
+
+    return run
+
+
+def test_draw_writes_a_drawing(command):
+    result = command("draw", STAR)
+    assert (result.exit_code, result.stdout, result.stderr) == (0, "Wrote drawing.svg.\n", "")
+    svg = Path("drawing.svg").read_text(encoding="utf-8")
+    assert "planet2" in svg
+    assert "sun (input), ring (output)" in svg
+
+
+def test_draw_shows_what_does_not_fit(command):
+    result = command("draw", RING, "--set", "gears.6.centre.angle=38 deg", "-o", "wrong.svg")
+    assert result.exit_code == 2
+    assert result.stdout == "Wrote wrong.svg.\n"
+    assert 'meshes."4-6".pressure_angle' in result.stderr
+    assert result.stderr.endswith("1 problem; the drawing shows what could be read.\n")
+    assert "27.5 mm too far apart" in Path("wrong.svg").read_text(encoding="utf-8")
+
+
+def test_draw_a_train_that_locks(command):
+    """A case whose values are right one by one, and whose train cannot turn."""
+    mesh = '{pressure_angle = "20 deg", stiffness = "1e6 N*m/rad"}'
+    result = command("draw", STAR, "--set", f'meshes."planet1-planet2"={mesh}')
+    assert result.exit_code == 2
+    assert result.stdout == "Wrote drawing.svg.\n"
+
+
+@pytest.mark.parametrize("words", [("draw", "none.toml"), ("report", "none")])
+def test_no_case(command, words):
+    result = command(*words)
+    assert result.exit_code == 2
+    assert "Traceback" not in result.output
+    assert result.stderr
+
+
+def test_draw_tells_which_endings_there_are(command):
+    result = command("draw", STAR, "-o", "a.bmp")
+    assert result.exit_code == 2
+    assert ".svg" in result.stderr
+    assert not Path("a.bmp").exists()
+
+
+def test_report_writes_a_page(command):
+    result = command("report", STAR)
+    assert (result.exit_code, result.stdout) == (0, "Wrote report.html.\n")
+    assert "Star with 3 planets" in Path("report.html").read_text(encoding="utf-8")
+
+
+def test_report_tells_what_failed_and_writes_the_page_all_the_same(command):
+    Path("bad.toml").write_text("title = 'bad'\n", encoding="utf-8")
+    result = command("report", "bad.toml", STAR, "-o", "both.html")
+    assert result.exit_code == 2
+    assert result.stderr.startswith("bad.toml: cannot be used\nbad.toml: operating: is missing")
+    page = Path("both.html").read_text(encoding="utf-8")
+    assert "cannot be used" in page
+    assert "Star with 3 planets" in page
+
+
+def test_a_page_that_cannot_be_written_is_told(command):
+    Path("report.html").mkdir()
+    result = command("report", STAR)
+    assert result.exit_code == 2
+    assert "Traceback" not in result.output

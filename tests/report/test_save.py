@@ -1,0 +1,87 @@
+"""Pictures on disk: the format follows from the ending, and HTML needs no network."""
+
+from __future__ import annotations
+
+import json
+import re
+import struct
+
+import pytest
+
+import loadshare as ls
+from loadshare.report.figure import CONFIG, Figure
+
+EVIL = "</script><script>window.pwned = true</script><img src=x onerror=alert(1)>"
+
+
+def without_scripts(page):
+    """A page with its script elements emptied."""
+    return re.sub(r"(<script[^>]*>).*?(</script>)", r"\1\2", page, flags=re.DOTALL)
+
+
+def test_png_has_the_size_of_the_scale(picture, tmp_path):
+    figure = picture("limit_ring", "share")
+    sizes = []
+    for scale in (1.0, 2.0):
+        file = figure.save(tmp_path / f"{scale}.png", scale=scale)
+        content = file.read_bytes()
+        assert content[:8] == b"\x89PNG\r\n\x1a\n"
+        sizes.append(struct.unpack(">II", content[16:24]))
+    assert sizes[1] == pytest.approx([2 * v for v in sizes[0]], abs=2)
+
+
+def test_svg_pdf_and_json(picture, tmp_path):
+    figure = picture("limit_ring", "share")
+    svg = figure.save(tmp_path / "new" / "a.svg").read_text(encoding="utf-8")
+    assert svg.startswith("<svg")
+    assert "Stage II" in svg
+    assert figure.save(tmp_path / "a.PDF").read_bytes().startswith(b"%PDF-")
+    assert json.loads(figure.save(tmp_path / "a.json").read_text(encoding="utf-8")) == figure.spec
+
+
+def test_html_holds_its_scripts_and_loads_nothing(picture, tmp_path):
+    page = picture("limit_ring", "share").save(tmp_path / "a.html").read_text(encoding="utf-8")
+    assert "vegaEmbed" in page
+    bare = without_scripts(page)
+    assert not re.search(r"<script[^>]+src=|<link[^>]+href=.(?!data:)|@import|url\(", bare)
+    assert "default-src 'none'" in page
+
+
+def test_an_unknown_ending_is_told(picture, tmp_path):
+    with pytest.raises(ls.LoadshareError, match=r"'.bmp'.*Allowed: .png, .svg, .pdf, .html, .json"):
+        picture("limit_ring", "share").save(tmp_path / "a.bmp")
+    with pytest.raises(ls.LoadshareError, match="none"):
+        picture("limit_ring", "share").save(tmp_path / "a")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_nothing_is_left_of_a_picture_that_failed(picture, tmp_path, monkeypatch):
+    import vl_convert
+
+    def broken(*_, **__):
+        raise ValueError("no")
+
+    monkeypatch.setattr(vl_convert, "vegalite_to_png", broken)
+    with pytest.raises(ValueError, match="no"):
+        picture("limit_ring", "share").save(tmp_path / "a.png")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_text_of_a_case_cannot_end_a_script(tmp_path):
+    import altair as alt
+
+    chart = alt.Chart(alt.InlineData(values=[{"a": EVIL}])).mark_text().encode(text="a:N")
+    figure = Figure("evil", chart.properties(title=EVIL))
+    page = figure.save(tmp_path / "a.html").read_text(encoding="utf-8")
+    # Two scripts with code and one with the specification.
+    assert len(re.findall(r"<script", page)) == 3
+    assert len(re.findall(r"</script", page)) == 3
+    assert "<img" not in without_scripts(page)
+    assert EVIL not in page
+
+
+def test_a_notebook_is_shown_svg(picture):
+    figure = picture("limit_ring", "share")
+    shown = figure._repr_mimebundle_()
+    assert set(shown) == {"image/svg+xml"}
+    assert figure.spec["config"] == CONFIG

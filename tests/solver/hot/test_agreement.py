@@ -1,0 +1,96 @@
+"""The hot path gives the equilibrium that Clarabel and the exact solve give, or none.
+
+Source: formulation, sections 7 and 11. Both end in a dense solve on an identified active set, by
+different formulas (forces here, displacements there); what is left is round-off times the condition
+of the case. 1e-9 of the largest figure is asked for, as between the back-ends.
+"""
+
+import pytest
+from hypothesis import given, note, settings
+from hypothesis import strategies as st
+from tests.physics.test_random_trains import PROFILE, split_torques, stars
+from tests.support import SHIPPED, answer, disagreement, forces, furthest, shipped
+
+import loadshare as ls
+from loadshare.certify import certify
+from loadshare.certify.certificate import TOLERANCE
+from loadshare.job.ladder import HOT, hot_answers
+from loadshare.job.machine import Machine
+from loadshare.results.result import Position
+from loadshare.train import build_train
+
+AGREE = 1e-9
+EXACT = 1e-12
+"""Residual below which displacements are compared: a push that is out of balance by more, though
+within the tolerance, may float a loose gear to its limit in one answer and not in the other.
+"""
+
+
+def floats(position: Position) -> dict[tuple[str, int], float]:
+    """Displacements of a position [m] by gear and axis."""
+    return {(g, k): v for g, d in position.displacement.items() for k, v in enumerate(d)}
+
+
+@pytest.mark.parametrize("case", SHIPPED)
+def test_every_position_of_a_shipped_case(case):
+    """Also what the equilibrium leaves open: both give the displacement of least norm."""
+    hot, other = ls.solve(shipped(case)), ls.solve(shipped(case), solver="clarabel")
+    for here, there in zip(hot.positions, other.positions, strict=True):
+        assert here.effort.rung == HOT, here.position
+        assert there.effort.rung == "clarabel + exact"
+        assert furthest(here.torque, there.torque) < AGREE, here.position
+        assert furthest(here.coast_torque, there.coast_torque) < AGREE, here.position
+        assert furthest(floats(here), floats(there)) < AGREE, here.position
+        assert here.undetermined == there.undetermined, here.position
+
+
+def agrees(case: ls.Case) -> bool:
+    """Whether the hot path answers a train; its answer must then be right."""
+    note(case.to_toml())
+    train = build_train(case)
+    found = hot_answers(Machine(train), [1], TOLERANCE).get(1)
+    if found is None:
+        return False
+    mine = found.equilibrium
+    verdict = certify(train, mine)
+    assert verdict.passed, verdict.failing
+    assert found.certificate.passed
+    try:
+        other, _ = answer(train)
+    except ls.Refused:
+        return True
+    second = certify(train, other)
+    if second.passed:
+        # Forces are as good as the balance that the certificates found.
+        left = max(verdict.worst, second.worst)
+        assert furthest(forces(mine), forces(other)) < AGREE + 10.0 * left
+        if left < EXACT:
+            assert disagreement(train, mine, other)[1] < AGREE
+    return True
+
+
+@pytest.mark.parametrize("family", [stars, split_torques], ids=["star", "split torque"])
+def test_a_random_train(family):
+    """What it answers is right, and it answers nearly all: or the ladder would hide its loss."""
+    answered = []
+
+    @settings(PROFILE, max_examples=30)
+    @given(family())
+    def run(case: ls.Case) -> None:
+        answered.append(agrees(case))
+
+    run()
+    assert sum(answered) >= 0.9 * len(answered), answered
+
+
+@pytest.mark.slow
+def test_many_random_trains():
+    answered = []
+
+    @settings(PROFILE, max_examples=500)
+    @given(st.one_of(split_torques(), stars()))
+    def run(case: ls.Case) -> None:
+        answered.append(agrees(case))
+
+    run()
+    assert sum(answered) >= 0.9 * len(answered), answered

@@ -1,0 +1,154 @@
+"""NumPy for all samples of a set together, Numba for one after another: the same passes.
+
+Each is the other's check: every formula stands in both. They may take another number of passes, as
+NumPy ends when the last sample of a set has settled; so they differ by round-off, and 1e-12 of the
+largest figure is asked for. The elements that act are the same to the letter.
+"""
+
+import numpy as np
+import pytest
+from hypothesis import given, note, settings
+from hypothesis import strategies as st
+from tests.physics.test_random_trains import PROFILE, split_torques, stars
+from tests.solver.hot.trains import VARIED, varied
+from tests.support import SHIPPED, shipped
+
+import loadshare as ls
+from loadshare.certify.certificate import TOLERANCE
+from loadshare.job.machine import FEW, Answers, Machine, engine_named
+from loadshare.solver.hot import compiled, vectorised
+from loadshare.solver.hot import places as at
+from loadshare.train import build_train
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.samples import samples_of
+from loadshare.train.situations import Situations
+
+SAME = 1e-12
+
+
+def apart(one: np.ndarray, other: np.ndarray) -> float:
+    """Largest difference in a sample over its largest figure."""
+    if not one.size:
+        return 0.0
+    one, other = (v.reshape(len(v), -1) for v in (one, other))
+    size = np.abs(one).max(axis=1)
+    return float((np.abs(one - other).max(axis=1) / np.where(size > 0.0, size, 1.0)).max())
+
+
+def forces(machine: Machine, found: Equilibria) -> np.ndarray:
+    """All forces (S, forces) [N], torques of shafts at the smallest base circle."""
+    radius = min(g.base_radius for g in machine.train.gears.values())
+    every = (
+        found.flank_force,
+        found.ring_force,
+        found.radial_reaction,
+        found.support_force,
+        found.shaft_torque / radius,
+    )
+    return np.concatenate([v.reshape(len(v), -1) for v in every], axis=1)
+
+
+def moves(machine: Machine, found: Equilibria) -> np.ndarray:
+    """All displacements (S, moves) [m], rotations at the base circle."""
+    radius = [g.base_radius for g in machine.train.gears.values()]
+    turned = found.rotation * radius
+    return np.concatenate([turned, found.displacement.reshape(len(turned), -1)], axis=1)
+
+
+def both(machine: Machine, situations: Situations) -> tuple[Answers, Answers]:
+    return tuple(
+        machine.answer(situations, TOLERANCE, engine)
+        for engine in (vectorised.settle, compiled.settle)
+    )
+
+
+def agree(machine: Machine, situations: Situations) -> Answers:
+    """Both engines certify the same samples, with the same elements and the same figures."""
+    one, other = both(machine, situations)
+    assert one.passed.tolist() == other.passed.tolist()
+    rows = one.passed
+    np.testing.assert_array_equal(one.code[rows], other.code[rows])
+    for figures in (forces, moves):
+        mine, others = (figures(machine, a.equilibria)[rows] for a in (one, other))
+        assert apart(mine, others) < SAME, figures.__name__
+    return one
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_every_position_of_a_shipped_case(name):
+    machine = Machine(build_train(shipped(name)))
+    found = agree(machine, machine.situations(range(1, machine.train.count + 1)))
+    assert found.passed.all()
+
+
+@pytest.mark.parametrize("name", VARIED)
+def test_random_samples(name):
+    """Of every position; nearly all of them are solved on the hot path."""
+    case, samples = varied(name, 40)
+    ((_, group),) = samples_of(case, samples)
+    machine = Machine(group.train)
+    sets, passed = set(), []
+    for index in range(1, min(group.train.count, 2) + 1):
+        found = agree(machine, group.situations(index))
+        passed += found.passed.tolist()
+        sets |= {code.tobytes() for code in found.code}
+    assert np.mean(passed) >= 0.9, name
+    assert len(sets) > 1 or name in ("errors", "tables"), "nothing opened or closed"
+
+
+@pytest.mark.parametrize("family", [stars, split_torques], ids=["star", "split torque"])
+def test_random_trains(family):
+    @settings(PROFILE, max_examples=30)
+    @given(family())
+    def run(case: ls.Case) -> None:
+        note(case.to_toml())
+        machine = Machine(build_train(case))
+        agree(machine, machine.situations([1]))
+
+    run()
+
+
+@settings(PROFILE, max_examples=200)
+@given(st.data())
+def test_radial_elements_move_alike_from_place_to_place(data):
+    """Whatever the law, the offset and the force, on corners and off them."""
+    length = st.sampled_from([0.0, 1.0, 1.0 + 1e-13, 2.0, 3.0])
+    stick, level = data.draw(length), data.draw(length)
+    first = data.draw(st.sampled_from([0.0, 1.0])) if stick == 0.0 else 1.0
+    bound = first * stick * data.draw(st.sampled_from([1.0, 1.5])) + (stick == 0.0) * first
+    last = data.draw(st.sampled_from([1.0, np.inf])) if first == 0.0 else first
+    law = (first, stick, bound, stick + level, last, True)
+    place = data.draw(st.sampled_from([at.STICK, at.CORNER, at.PINNED, at.SLIP, at.STOP, at.OPEN]))
+    u, p = data.draw(length), data.draw(length) * data.draw(st.sampled_from([-1.0, 1.0]))
+    graph = at.Graph(*(np.array([v]) for v in law))
+    bands = np.array([1e-12]), np.array([1e-12])
+    offset, force = np.array([[0.6 * u, 0.8 * u]]), np.array([[0.6 * p, 0.8 * p]])
+    wrong, moved = vectorised.misplaced(place, graph, offset, force, *bands)
+    other = compiled._misplaced(place, law, *offset[0], *force[0], 1e-12, 1e-12)
+    assert other == (moved[0] if wrong[0] else place)
+
+
+def test_solve_many_with_either_engine():
+    """And by name: "auto" compiles from a few thousand equilibria on."""
+    case, samples = varied("drums", 60, seed=5)
+    one, other = (
+        ls.solve_many(case, samples, positions=[2], engine=engine)
+        for engine in ("vectorised", "compiled")
+    )
+    for name in ("torque", "contact_force", "displacement"):
+        assert apart(one[name].values, other[name].values) < SAME
+    for name in ("certified", "determined", "rung"):
+        np.testing.assert_array_equal(one[name], other[name])
+    assert engine_named("vectorised", 10**6) is engine_named("auto", FEW) is vectorised.settle
+    assert engine_named("compiled", 1) is engine_named("auto", FEW + 1) is compiled.settle
+    with pytest.raises(ValueError, match="auto, compiled, vectorised"):
+        engine_named("fast", 1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", VARIED)
+def test_many_random_samples(name):
+    case, samples = varied(name, 2000, seed=1)
+    ((_, group),) = samples_of(case, samples)
+    machine = Machine(group.train)
+    assert agree(machine, group.situations(1)).passed.mean() >= 0.9

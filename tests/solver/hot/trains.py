@@ -1,0 +1,95 @@
+"""Machines, and samples of them that push contacts open and closed, for the tests of the hot
+path.
+"""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from tests.support import coasting, loaded, lost_contact, round_ring, shipped
+
+import loadshare as ls
+from loadshare.case import families
+
+ERRORS: dict[str, tuple[float, float]] = {
+    "errors.6.installation[0] [um]": (-80.0, 80.0),
+    "errors.6.installation[1] [um]": (-80.0, 120.0),
+    "errors.9.installation[1] [um]": (-120.0, 80.0),
+}
+SUN = {
+    "errors.planet1.installation.amount [um]": (0.0, 60.0),
+    "errors.planet1.installation.direction [deg]": (0.0, 360.0),
+}
+
+
+def placed(case: ls.Case) -> ls.Case:
+    """The seed's transmission with installation errors given by components."""
+    return case.replace(
+        {"errors.6.installation": ["0 um", "100 um"], "errors.9.installation": ["0 um", "-100 um"]}
+    )
+
+
+def starred(case: ls.Case) -> ls.Case:
+    """A star whose first planet has an error that can be varied."""
+    return case.replace({"errors.planet1.installation": {"amount": "1 um", "direction": "0 deg"}})
+
+
+def tabled() -> ls.Case:
+    """A star of three with tabulated laws on the sun's meshes."""
+    case = starred(families.star(3))
+    table = {
+        "torque": ["30 N*m", "90 N*m", "400 N*m"],
+        "deflection": ["40 urad", "90 urad", "1 mrad"],
+    }
+    suns = [m for m in case.meshes if "sun" in m]
+    changes = {}
+    for mesh in suns:
+        changes |= {f'meshes."{mesh}".stiffness': None, f'meshes."{mesh}".table': table}
+    return case.replace(changes)
+
+
+VARIED: dict[str, tuple[Callable[[], ls.Case], Mapping[str, tuple[float, float]]]] = {
+    "errors": (lambda: placed(loaded(shipped("fgfbstts/both_errors"), "900 N*m")), ERRORS),
+    "coast flanks": (
+        lambda: placed(coasting()),
+        {**ERRORS, "operating.torque [N*m]": (0.0, 100.0)},
+    ),
+    "drums": (
+        lambda: shipped("fgfbstts/limit_ring"),
+        {**ERRORS, "rings.4.float [um]": (0.0, 9.0), "rings.5.float [um]": (0.0, 9.0)},
+    ),
+    "splines": (
+        lambda: placed(shipped("fgfbstts/spline_clearance")),
+        {**ERRORS, "splines.4.clearance [um]": (0.0, 20.0), "splines.5.friction": (0.0, 0.3)},
+    ),
+    "every element": (
+        lambda: shipped("fgfbstts/all_elements"),
+        {
+            "errors.6.installation[1] [um]": (-80.0, 120.0),
+            "errors.1.installation.amount [um]": (0.0, 80.0),
+            "rings.5.float.up [um]": (0.0, 9.0),
+            "splines.4.clearance [um]": (0.0, 60.0),
+            "operating.power [kW]": (10.0, 2000.0),
+        },
+    ),
+    "round ring": (
+        lambda: starred(round_ring()),
+        {**SUN, "rings.sun.radius [um]": (0.0, 9.0)},
+    ),
+    "elastic round ring": (
+        lambda: starred(round_ring("5e8 N/m")),
+        {**SUN, "rings.sun.radius [um]": (0.0, 9.0)},
+    ),
+    "lost contact": (
+        lambda: starred(lost_contact()),
+        {**SUN, "operating.torque [N*m]": (1.0, 900.0)},
+    ),
+    "tables": (tabled, SUN),
+}
+"""What is varied, and between what."""
+
+
+def varied(name: str, count: int, seed: int = 0) -> tuple[ls.Case, dict[str, np.ndarray]]:
+    """A case and a table of random samples."""
+    make, ranges = VARIED[name]
+    rng = np.random.default_rng(seed)
+    return make(), {key: rng.uniform(low, high, count) for key, (low, high) in ranges.items()}

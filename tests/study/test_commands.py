@@ -1,0 +1,211 @@
+"""The commands of studies: what they print and write, and how they end."""
+
+import csv
+from pathlib import Path
+
+import pytest
+from tests.cli.conftest import CASES
+from typer.testing import CliRunner
+
+import loadshare as ls
+from loadshare.cli.main import app
+
+RING = CASES / "fgfbstts/limit_ring.toml"
+
+
+@pytest.fixture
+def command():
+    runner = CliRunner(env={"COLUMNS": "160", "FORCE_COLOR": None, "TTY_COMPATIBLE": None})
+
+    def run(*words: object):
+        result = runner.invoke(app, [str(word) for word in words], prog_name="loadshare")
+        if result.exception is not None and not isinstance(result.exception, SystemExit):
+            raise result.exception
+        assert "Traceback" not in result.output
+        return result
+
+    return run
+
+
+@pytest.fixture
+def measured(tmp_path: Path) -> Path:
+    """A case with a measurement and studies."""
+    path = tmp_path / "bench.toml"
+    path.write_text(
+        f"""extends = '{(CASES / "fgfbstts/installation_error.toml").as_posix()}'
+[measured.bench]
+position = 1
+pair_share = {{ "6-10" = 0.8 }}
+uncertainty = 0.01
+
+[study.compare]
+kind = "compare"
+
+[study.fit]
+kind = "fit"
+unknowns = {{ "errors.6.installation[0]" = ["0 um", "100 um"] }}
+starts = 2
+
+[study.sweep]
+kind = "sweep"
+over = {{ "errors.6.installation[0]" = ["0 um", "50 um"] }}
+positions = [1]
+
+[study.critical]
+kind = "critical"
+keys = ["errors.6.installation[0]"]
+start = "0 um"
+stop = "50 um"
+positions = [1]
+
+[study.sensitivity]
+kind = "sensitivity"
+keys = ["errors.*"]
+
+[study.march]
+kind = "march"
+gear = "6"
+revolutions = 1.0
+steps = 2
+""",
+        encoding="utf-8",
+    )
+    return path
+
+
+def test_sweep(command, tmp_path):
+    file = tmp_path / "sweep.csv"
+    result = command(
+        *("sweep", RING, "--position", 1, "-o", file),
+        *("--set", "rings.4.float=rings.5.float=0 um:10 um:3"),
+    )
+    assert result.exit_code == 0
+    row = next(line for line in result.stdout.splitlines() if line.split()[:1] == ["5"])
+    case = ls.load_case(RING).replace({"rings.4.float": "5 um", "rings.5.float": "5 um"})
+    omega = ls.solve(case, positions=[1]).pair_omega["II"]
+    assert f"{omega:.4f}" in row.split()
+    with file.open() as lines:
+        assert len(list(csv.DictReader(lines))) == 3 * 10
+
+
+def test_a_sweep_with_points_that_cannot_be_solved_tells_them(command):
+    result = command("sweep", RING, "--set", "rings.4.float=-1 um, 1 um", "--position", 1)
+    assert result.exit_code == 1
+    assert "certified" in result.stdout
+    assert "is negative" in result.stderr
+    assert "1 point of 2 not certified." in result.stderr
+
+
+def test_critical(command, tmp_path):
+    file = tmp_path / "events.csv"
+    words = ("critical", RING, "rings.4.float", "--from", "0 um", "--to", "12 um", "-o", file)
+    result = command(*words)
+    assert result.exit_code == 0
+    row = next(line for line in result.stdout.splitlines() if "upper stop" in line)
+    assert float(row.split()[0]) == pytest.approx(8.35, abs=0.01)
+    assert "float leaves boundary" in row
+    assert row.split()[-2:] == ["yes", "1-5"]
+    with file.open() as lines:
+        events = list(csv.DictReader(lines))
+    assert {e["position"] for e in events} == set("12345")
+    assert all(e["confirmed"] == "True" for e in events)
+    none = command("critical", RING, "rings.4.float", "--from", "9 um", "--to", "12 um")
+    assert "none" in none.stdout
+
+
+def test_sensitivity(command, tmp_path):
+    file = tmp_path / "rates.nc"
+    result = command("sensitivity", RING, "errors.*", "--position", 1, "-o", file)
+    assert result.exit_code == 0
+    assert "errors.9.installation[1]" in result.stdout
+    assert file.stat().st_size > 0
+    # A ring without float touches on all sides, and presses on one.
+    at_kink = command(
+        *("sensitivity", RING, "rings.4.float", "--position", 1),
+        *("--with", "rings.4.float=0 um"),
+    )
+    assert "stands on the verge" in at_kink.stdout
+    assert "lower stop" in at_kink.stdout
+
+
+def test_march(command, tmp_path):
+    file = tmp_path / "march.nc"
+    case = CASES / "fgfbstts/full_float.toml"
+    words = ("march", case, "--gear", 4, "--revolutions", 1, "--steps", 4, "-o", file)
+    result = command(*words)
+    assert result.exit_code == 0
+    assert "PASSED  4 of 4 positions certified" in result.stdout
+    assert "dissipated [J]" in result.stdout
+    assert file.stat().st_size > 0
+    plain = command("march", RING, "--gear", 4, "--revolutions", 1, "--steps", 1)
+    assert "nothing to remember" in plain.stdout
+
+
+def test_compare_and_fit(command, measured, tmp_path):
+    compared = command("compare", measured, "-o", tmp_path / "compared.csv")
+    assert compared.exit_code == 0
+    assert "pair_share 6-10" in compared.stdout
+    assert (tmp_path / "compared.csv").read_text().startswith("measurement,quantity")
+    file = tmp_path / "fitted.toml"
+    words = ("--unknown", "errors.6.installation[0]=0 um:100 um", "-o", file)
+    fitted = command("fit", measured, *words)
+    assert fitted.exit_code == 0
+    assert "40.5663" in fitted.stdout
+    assert ls.compare(file).chi_square < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("name", "shows"),
+    [
+        ("compare", "Measured against computed"),
+        ("fit", "χ² from each starting point"),
+        ("sweep", "Sweep of bench"),
+        ("critical", "Events from 0 to 50 [um]"),
+        ("sensitivity", "errors.6.installation[0]"),
+        ("march", "nothing to remember"),
+    ],
+)
+def test_a_study_that_the_case_holds(command, measured, name, shows):
+    result = command("study", measured, name)
+    assert result.exit_code == 0
+    assert shows in result.stdout
+
+
+def test_studies_are_listed(command, measured):
+    assert "fit: fit\n" in command("study", measured).stdout
+    assert "holds no study" in command("study", RING).stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (("sweep", RING, "--set", "rings.4.float"), "is not of the form"),
+        (("sweep", RING, "--set", "rings.4.flot=0 um:1 um:2"), "Did you mean float"),
+        (("sweep", RING, "--set", "a=0:1:2", "-o", "x.txt"), "must end in"),
+        (("critical", RING, "rings.4.float", "--from", "0 um", "--to", "1 N"), "cannot be told"),
+        (("critical", RING, "a", "--from", "0", "--to", "1", "--position", 9), "unknown key"),
+        (
+            *[("sweep", RING, "--set", "rings.4.float=0 um:1 um:2", "--position", 9)],
+            "positions 1 to 5",
+        ),
+        (("sensitivity", RING, "rings.4.flot"), "is not in the case"),
+        (("fit", RING, "--unknown", "rings.4.float=1 um"), "is not of the form"),
+        (("fit", RING, "--unknown", "rings.4.float=0 um:1 um"), "holds no measurement"),
+        (("compare", RING), "holds no measurement"),
+        (("march", RING), "march: is missing"),
+        (("study", RING, "x"), "study.x: is not in the case"),
+    ],
+)
+def test_what_cannot_be_done_is_told(command, words, said):
+    result = command(*words)
+    assert result.exit_code == 2
+    assert said in result.stderr.replace("\n", " ")
+
+
+def test_a_refused_study_ends_as_such(command):
+    result = command(
+        *("march", CASES / "fgfbstts/full_float.toml", "--with", "splines.4.stick_limit=1 um"),
+        *("--gear", 4, "--revolutions", 1, "--steps", 2),
+    )
+    assert result.exit_code == 1
+    assert "REFUSED" in result.stderr

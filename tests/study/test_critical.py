@@ -1,0 +1,216 @@
+"""Critical values: against closed forms, independent solves, and scans of certified active sets."""
+
+import numpy as np
+import pytest
+from tests.support import coasting, lost_contact, round_ring, shipped
+
+import loadshare as ls
+from loadshare.case import families
+from loadshare.scene import assemble
+from loadshare.study.answers import certified
+from loadshare.study.branch import Units, read_set
+from loadshare.study.branch.system import identified
+from loadshare.train import build_train
+
+EXACT = 1e-12
+"""Of the value: what root-finding on the branch promises."""
+
+
+def off_line() -> ls.Case:
+    """The seed's Fig. 13 with idlers 0.2 µm off the line through their pinion.
+
+    On the line the forces of a pinion's two meshes are opposite, so that nothing says where it
+    rests between its arcs. Off it they press the pinion to one side, if ever so little.
+    """
+    case = shipped("fgfbstts/limit_ring")
+    return case.replace({f"gears.{g}.centre.distance": "525.6314 mm" for g in "6789"})
+
+
+@pytest.fixture(scope="module")
+def rings():
+    """Both float ranges from none to more than enough."""
+    return ls.critical(off_line(), "rings.*.float", "0 um", "12 um", positions=[1])
+
+
+def unlimited(case: ls.Case, pinion: str) -> float:
+    """Displacement of a pinion across its neighbours [µm] when no stop limits it.
+
+    The equilibrium is solved to round-off on its active set: the certificate alone leaves the
+    displacement open to 1e-9 of the deflection, which is thirty times as large.
+    """
+    train = build_train(case.replace({"rings.4.float": "1 mm", "rings.5.float": "1 mm"}))
+    scene = assemble(train, 1)
+    branch, z = identified(scene, certified(train, 1).equilibrium)
+    return abs(float(train.rings[pinion].across @ scene.moved(pinion, branch.x(z)))) * 1e6
+
+
+@pytest.mark.parametrize("pinion", ["4", "5"])
+def test_a_stop_is_free_where_the_float_needs_no_more(rings, pinion):
+    """The critical range is the displacement without a limit, exactly."""
+    (event,) = [e for e in rings.of("leaves boundary", pinion) if "stop" in e.element]
+    assert event.value == pytest.approx(unlimited(off_line(), pinion), rel=EXACT)
+
+
+@pytest.mark.parametrize(("pinion", "printed"), [("4", 8.36), ("5", 2.91)])
+def test_the_thresholds_of_fig_13(pinion, printed):
+    """Printed: 8.36 and 2.91 µm; the reconstruction's own are 8.35 and 2.97 µm."""
+    case = shipped("fgfbstts/limit_ring")
+    found = ls.critical(case, "rings.*.float", "0 um", "12 um", positions=[1])
+    (event,) = [e for e in found.of("leaves boundary", pinion) if "stop" in e.element]
+    assert event.confirmed
+    assert event.value == pytest.approx(printed, abs=0.07)
+    # A free pinion may rest anywhere between its arcs, 0.2 nm apart, and its float with it.
+    assert event.value == pytest.approx(unlimited(case, pinion), rel=1e-9)
+
+
+def test_every_event_is_confirmed_by_certified_solves(rings):
+    assert [e.element for e in rings.events] == [
+        "ring 5: arc 8",
+        "ring 5: arc 9",
+        "ring 5: upper stop",
+        "ring 4: arc 6",
+        "ring 4: arc 7",
+        "ring 4: upper stop",
+    ]
+    for event in rings.events:
+        assert event.confirmed
+        assert event.worst <= 1e-9
+        assert event.together == 1
+        # Sides are as near as the interval over a million.
+        assert event.apart <= 1.3e-5
+    assert str(rings.events[-1]) == "8.35008 um: ring 4: upper stop: float leaves boundary"
+
+
+def test_two_events_in_a_millionth_of_the_interval_are_told_apart():
+    """Over 20 mm, the arcs of pinion 5 hand over to each other within 20 nm."""
+    case = off_line().replace({"rings.4.float": "20 um"})
+    found = ls.critical(case, "rings.5.float", "0 mm", "20 mm", positions=[1])
+    values = [e.value for e in found.events]
+    assert [e.element for e in found.events] == [
+        "ring 5: arc 8",
+        "ring 5: arc 9",
+        "ring 5: upper stop",
+    ]
+    assert values[1] - values[0] < 2.5e-5
+    assert all(e.confirmed for e in found.events)
+
+
+def test_marks_for_a_picture():
+    case = shipped("fgfbstts/limit_ring")
+    found = ls.critical(case, "rings.4.float", "8 um", "9 um", positions=[2, 3])
+    marks = dict(found.marks())
+    assert set(marks) == {e.value for e in found.events if e.position == 2}
+    assert "4: float leaves boundary" in marks.values()
+    assert found.marks(3) == found.marks(2)
+    assert ls.critical(case, "rings.4.float", "10 um", "11 um", positions=[1]).marks() == ()
+
+
+def test_positions_that_differ_in_nothing_have_the_same_events(rings):
+    case = shipped("fgfbstts/limit_ring")
+    found = ls.critical(case, "rings.5.float", "2 um", "4 um")
+    assert {e.position for e in found.events} == {1, 2, 3, 4, 5}
+    assert len({e.value for e in found.events if "stop" in e.element}) == 1
+
+
+def test_the_clearance_that_a_spline_uses_up():
+    """Where clearance opens, it is the displacement of the fully floating pinion."""
+    case = shipped("fgfbstts/spline_clearance")
+    found = ls.critical(case, "splines.*.clearance", "0 um", "20 um", positions=[1])
+    free = ls.solve(shipped("fgfbstts/full_float"), positions=[1]).positions[0]
+    (event,) = found.of("clearance opens", "4")
+    assert event.value == pytest.approx(np.hypot(*free.displacement["4"]) * 1e6, rel=EXACT)
+    # Pinion 5 frees first, as the paper finds; both shafts bend throughout until S2 = F_m / K_w.
+    assert found.of("clearance opens", "5")[0].value < event.value
+    both = found.of("clearance used up")
+    assert [e.value for e in both] == pytest.approx([50.0 / 1.78e7 * 1e6] * 2, rel=1e-9)
+    assert {e.together for e in both} == {2}
+
+
+def test_slip_starts_where_friction_is_what_a_sticking_spline_carries():
+    """A spline that sticks carries K_w R whatever its bound: the bound that frees it is known."""
+    case = shipped("fgfbstts/full_float")
+    stuck = case.replace({"splines.4.normal_force": "1 MN", "splines.5.normal_force": "1 MN"})
+    held = ls.solve(stuck, positions=[1]).floats[0]["4"].spline_force
+    found = ls.critical(stuck, "splines.4.normal_force", "100 N", "20 kN", positions=[1])
+    (event,) = found.of(gear="4")
+    assert (event.kind, event.before, event.after) == ("slip ends", "slip", "stick")
+    assert event.value * 1e3 == pytest.approx(held / 0.1 * 1e3, rel=1e-10)
+
+
+def test_load_and_gap_scale_alike():
+    """Linear springs: a star loses contact at a gap in proportion to the load."""
+    star = families.star(4)
+    gap = ls.critical(star, 'meshes."sun-planet1".gap', "0.1 mrad", "3 mrad").events[0]
+    load = ls.critical(lost_contact(), "operating.torque", "1 N*m", "1 kN*m").events[0]
+    assert load.value / 1000.0 == pytest.approx(0.4 / gap.value, rel=EXACT)
+    # The planet's other mesh and the opposite planet let go at the same load.
+    assert load.together == 4
+    assert load.kind == "contact closes"
+
+
+def scanned(case: ls.Case, key: str, values: np.ndarray, unit: str) -> list[tuple[float, set[str]]]:
+    """Changes of the certified active set between neighbouring values, by their upper value."""
+    changes, last = [], None
+    for value in values:
+        answer = ls.explain(case.replace({key: f"{float(value)!r} {unit}"}))
+        units = Units.of(answer.scene)
+        active, *_ = read_set(answer.scene, answer.equilibrium, units)
+        if last is not None and last.changes(active):
+            changes.append((float(value), set(last.changes(active))))
+        last = active
+    return changes
+
+
+@pytest.mark.parametrize(
+    ("case", "key", "ends", "unit"),
+    [
+        (coasting, "operating.torque", (1.0, 300.0), "N*m"),
+        (round_ring, "rings.sun.radius", (0.5, 20.0), "um"),
+        pytest.param(
+            lambda: shipped("fgfbstts/all_elements"),
+            *("operating.power", (20.0, 2000.0), "kW"),
+            marks=pytest.mark.slow,
+        ),
+    ],
+    ids=["coast flanks", "round ring", "all elements"],
+)
+def test_a_scan_of_certified_sets_finds_the_same_events(case, key, ends, unit):
+    low, high = ends
+    found = ls.critical(case(), key, f"{low} {unit}", f"{high} {unit}", positions=[1])
+    values = np.linspace(low, high, 41)
+    events = [(e.value, e.element) for e in found.events]
+    for upper, changed in scanned(case(), key, values, unit):
+        step = values[1] - values[0]
+        between = {name for value, name in events if upper - step <= value <= upper}
+        assert changed == between
+        events = [e for e in events if not upper - step <= e[0] <= upper]
+    assert events == []
+
+
+def test_an_interval_without_events():
+    found = ls.critical(shipped("fgfbstts/limit_ring"), "rings.4.float", "9 um", "12 um")
+    assert found.events == ()
+
+
+@pytest.mark.parametrize(
+    ("key", "start", "stop", "said"),
+    [
+        ("rings.4.float", "3 um", "2 um", "start 3 um is not below stop 2 um"),
+        ("rings.4.flot", "0 um", "2 um", "Did you mean float?"),
+        ("rong.*.float", "0 um", "2 um", "matches no key of the case"),
+        ("rings.4.float", "0 um", "2 kg", "cannot be read"),
+        ("rings.4.float", "0 um", "2 N", "cannot be told in um"),
+        ("rings..float", "0 um", "2 um", "is not a key path"),
+    ],
+)
+def test_what_cannot_be_followed_is_told(key, start, stop, said):
+    with pytest.raises(ls.CaseError, match="(?s)" + said.replace("?", r"\?")):
+        ls.critical(shipped("fgfbstts/limit_ring"), key, start, stop)
+
+
+def test_an_end_without_an_equilibrium_is_refused():
+    # Gear 6 floats with its pinion, and nothing limits either.
+    case = shipped("fgfbstts/limit_ring").replace({"rings": None})
+    case = case.replace({"gears.6.support": "free"})
+    with pytest.raises(ls.Refused, match="position 1"):
+        ls.critical(case, "operating.power", "1000 kW", "2000 kW", positions=[1])

@@ -1,0 +1,18 @@
+"""The examples of the docstrings say what is so."""
+
+import doctest
+from importlib import import_module
+
+import pytest
+from tests.support import CASES
+
+ROOMS = ("compare", "critical", "fit", "march", "named", "sensitivity", "sweep", "tolerance.study")
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_examples(room, monkeypatch):
+    monkeypatch.chdir(CASES.parent)
+    module = import_module(f"loadshare.study.{room}")
+    outcome = doctest.testmod(module)
+    assert outcome.attempted > 0
+    assert outcome.failed == 0

@@ -1,0 +1,175 @@
+"""Measured against computed, and inputs fitted to what was measured."""
+
+import math
+
+import numpy as np
+import pytest
+from tests.support import shipped
+
+import loadshare as ls
+
+SHARES = ("6-10", "7-10", "8-10", "9-10")
+
+
+def measured(case: ls.Case, uncertainty: float = 0.01, **changes: object) -> dict[str, object]:
+    """The pair shares that a changed case would show, as a measurement."""
+    found = ls.solve(case.replace(changes) if changes else case, positions=[1]).positions[0]
+    shares = {m: found.pair_share[m] for m in SHARES}
+    return {"position": 1, "pair_share": shares, "uncertainty": uncertainty}
+
+
+def both_errors(**measurements: object) -> ls.Case:
+    return shipped("fgfbstts/both_errors").replace(
+        {f"measured.{name}": m for name, m in measurements.items()}
+    )
+
+
+def test_every_kind_of_figure_is_compared():
+    case = both_errors(
+        torque={"position": 2, "torque": {"1-2": "1107.7 N*m"}, "torque_uncertainty": "5 N*m"},
+        mean={"share": {"6-10": 0.9}, "pair_share": {"6-10": 0.95}, "uncertainty": 0.1},
+        largest={"omega": {"II": 1.0, "system": 1.1}, "pair_omega": {"I": 1.0}, "uncertainty": 0.5},
+    )
+    found = ls.compare(case)
+    result = ls.solve(case)
+    computed = {d.target.key: d.computed for d in found.deviations}
+    assert computed == {
+        'measured.torque.torque."1-2"': result.positions[1].torque["1-2"],
+        'measured.mean.share."6-10"': pytest.approx(float(result.share.sel(mesh="6-10").mean())),
+        'measured.mean.pair_share."6-10"': pytest.approx(
+            float(result.pair_share.sel(mesh="6-10").mean())
+        ),
+        "measured.largest.omega.II": result.omega["II"],
+        "measured.largest.omega.system": result.omega["system"],
+        "measured.largest.pair_omega.I": result.pair_omega["I"],
+    }
+    first = found.deviations[0]
+    assert first.difference == pytest.approx(first.computed - 1107.7)
+    assert first.deviations == pytest.approx(first.difference / 5.0)
+    assert found.chi_square == pytest.approx(sum(d.deviations**2 for d in found.deviations))
+    assert found.to_frame()["computed"].tolist() == [d.computed for d in found.deviations]
+
+
+def test_a_single_position_is_solved_where_only_one_is_measured():
+    found = ls.compare(both_errors(one=measured(shipped("fgfbstts/both_errors"))))
+    assert [p.position for p in found.result.positions] == [1]
+    assert found.chi_square == 0.0
+
+
+def test_inputs_are_found_again():
+    """What a case with known errors shows leads back to these errors."""
+    truth = {"errors.6.installation.direction": "330 deg", "errors.8.installation.amount": "80 um"}
+    base = shipped("fgfbstts/both_errors")
+    case = base.replace({"measured.bench": measured(base, **truth)})
+    bounds = {
+        "errors.6.installation.direction": ("300 deg", "380 deg"),
+        "errors.8.installation.amount": ("0 mm", "0.2 mm"),
+    }
+    found = ls.fit(case, bounds)
+    direction, amount = found.unknowns
+    assert direction.value == pytest.approx(330.0, abs=1e-6)
+    assert amount.value == pytest.approx(0.08, abs=1e-9)
+    assert amount.start == pytest.approx(0.05)
+    assert found.chi_square < 1e-15
+    assert found.freedom == 2
+    assert found.warnings == ()
+    assert ls.compare(found.case).chi_square < 1e-15
+    assert found.values["errors.8.installation.amount"].endswith(" mm")
+
+
+def test_the_covariance_is_that_of_the_linear_problem():
+    """One input, four shares: σ² = 1/Σ(slope/uncertainty)², slopes from full solves."""
+    base = shipped("fgfbstts/installation_error")
+    key = "errors.6.installation[0]"
+    case = base.replace({"measured.bench": measured(base, 0.01, **{key: "40 um"})})
+    (unknown,) = ls.fit(case, {key: ("0 um", "100 um")}).unknowns
+    at = [
+        ls.solve(base.replace({key: f"{v} um"}), positions=[1]).positions[0] for v in (39.9, 40.1)
+    ]
+    slopes = [(at[1].pair_share[m] - at[0].pair_share[m]) / 0.2 for m in SHARES]
+    assert unknown.value == pytest.approx(40.0, abs=1e-7)
+    # The shares bend a little over 0.2 µm.
+    assert unknown.deviation == pytest.approx(0.01 / math.hypot(*slopes), rel=1e-5)
+
+
+def test_inputs_that_the_data_cannot_tell_apart_are_named():
+    base = shipped("fgfbstts/installation_error").replace({'meshes."5-8".backlash': "1 mm"})
+    case = base.replace({"measured.bench": measured(base)})
+    keys = ("errors.6.installation[0]", "errors.6.installation[1]", 'meshes."5-8".backlash')
+    bounds = {
+        keys[0]: ("0 um", "100 um"),
+        keys[1]: ("-90 um", "110 um"),
+        keys[2]: ("0.9 mm", "1.2 mm"),
+    }
+    found = ls.fit(case, bounds)
+    assert f"The data cannot tell {keys[0]}, {keys[1]} apart." in found.warnings
+    assert [math.isinf(u.deviation) for u in found.unknowns[:2]] == [True, True]
+    assert np.isnan(found.correlation[0, 1])
+    # A coast flank that stays open carries no message.
+    assert f"The data do not determine {keys[2]}." in found.warnings
+    assert found.singular_values[-1] < 1e-6 * found.singular_values[0]
+
+
+def test_tied_keys_are_one_unknown():
+    base = shipped("fgfbstts/limit_ring")
+    truth = {"rings.4.float": "2 um", "rings.5.float": "2 um"}
+    case = base.replace({"measured.bench": measured(base, **truth)})
+    found = ls.fit(case, {"rings.*.float": ("0 um", "5 um")})
+    (unknown,) = found.unknowns
+    assert unknown.parameter.keys == ("rings.4.float", "rings.5.float")
+    assert unknown.value == pytest.approx(2.0, abs=1e-7)
+
+
+def test_a_fit_beyond_its_bounds_stands_at_one_and_says_so():
+    base = shipped("fgfbstts/installation_error")
+    key = "errors.6.installation[0]"
+    case = base.replace({"measured.bench": measured(base, **{key: "150 um"})})
+    found = ls.fit(case, {key: ("0 um", "100 um")})
+    assert found.unknowns[0].at_bound
+    assert found.unknowns[0].value == 100.0
+    assert f"{key} stands at its bound." in found.warnings
+
+
+def test_several_starts_find_what_one_misses():
+    """A direction far off leads into another valley; the best of several starts is taken."""
+    base = shipped("fgfbstts/both_errors")
+    key = "errors.9.installation.direction"
+    shares = measured(base)
+    one = {**shares, "pair_share": {"9-10": shares["pair_share"]["9-10"]}}
+    case = base.replace({"measured.bench": one, key: "80 deg"})
+    found = ls.fit(case, {key: ("0 deg", "360 deg")}, starts=4, seed=1)
+    again = ls.fit(case, {key: ("0 deg", "360 deg")}, starts=4, seed=1)
+    assert len(found.starts) == 4
+    assert found.chi_square == pytest.approx(min(found.starts), abs=1e-12)
+    assert found.chi_square < 1e-10
+    assert again.unknowns == found.unknowns
+
+
+@pytest.mark.parametrize(
+    ("unknowns", "said"),
+    [
+        ({}, "has no unknown"),
+        ({"rings.4.float": ("3 um", "3 um")}, "is no range"),
+        ({"rings.4.float": ("1 um", "2 um", "3 um")}, "is no range"),
+        ({"rings.4.float": ("1 um", "2 N")}, "cannot be told"),
+        ({"rings.4.flot": ("1 um", "2 um")}, "Did you mean float"),
+    ],
+)
+def test_what_cannot_be_fitted_is_told(unknowns, said):
+    base = shipped("fgfbstts/limit_ring")
+    case = base.replace({"measured.bench": measured(base)})
+    with pytest.raises(ls.CaseError, match=said):
+        ls.fit(case, unknowns)
+
+
+def test_a_measurement_changes_no_mechanics():
+    base = shipped("fgfbstts/both_errors")
+    study = {"study.one": {"kind": "compare"}}
+    case = base.replace({"measured.bench": measured(base), **study})
+    assert case.hash == base.hash
+    assert case != base
+
+
+def test_nothing_measured_is_told():
+    with pytest.raises(ls.CaseError, match="holds no measurement"):
+        ls.compare(shipped("fgfbstts/limit_ring"))

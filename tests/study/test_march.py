@@ -1,0 +1,182 @@
+"""Friction with memory: closed forms, conservation, and a certificate that knows the memory."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.support import CASES, shipped
+
+import loadshare as ls
+from loadshare.certify import certify
+from loadshare.certify.state import State
+from loadshare.study.memory import stepped
+from loadshare.train import build_train
+
+TURN = {"march": {"gear": "4", "revolutions": 1.0, "steps": 8}}
+
+
+def floating(**changes: object) -> ls.Case:
+    """The seed's full float, marching through a revolution of pinion 4."""
+    return shipped("fgfbstts/full_float").replace({**TURN, **changes})
+
+
+def both(key: str, value: str) -> dict[str, str]:
+    """A key of both splines."""
+    return {f"splines.{g}.{key}": value for g in "45"}
+
+
+def test_without_friction_there_is_nothing_to_remember():
+    case = floating(**both("normal_force", "0 N"))
+    found = ls.march(case)
+    alone = ls.solve(case)
+    assert found.dissipated == 0.0
+    for here, there in zip(found.result.positions, alone.positions, strict=True):
+        assert here.torque == pytest.approx(there.torque, rel=1e-9)
+
+
+def test_a_spline_that_cannot_slip_is_a_spring():
+    """Bounded by more than it ever carries, friction holds: K_w is all there is."""
+    found = ls.march(floating(**both("normal_force", "10 MN")))
+    springs = {f"gears.{g}.support": "1.78e7 N/m" for g in "45"}
+    spring = floating(splines=None, assumed=["errors.*"], **springs)
+    alone = ls.solve(spring)
+    assert found.dissipated == 0.0
+    assert (found.dataset["stage"] == "stick").all()
+    assert np.abs(found.dataset["slip"]).max() < 1e-18
+    for here, there in zip(found.result.positions, alone.positions, strict=True):
+        assert here.torque == pytest.approx(there.torque, rel=1e-9)
+
+
+def test_the_first_step_is_the_holonomic_law():
+    """From rest |s − 0| is |s|: both laws are the same."""
+    case = floating()
+    found = ls.march(case, steps=1)
+    alone = ls.solve(case, positions=[1])
+    (here,), (there,) = found.result.positions, alone.positions
+    assert here.torque == pytest.approx(there.torque, rel=1e-9)
+    assert here.displacement["4"] == pytest.approx(there.displacement["4"], abs=1e-13)
+    assert here.floats["4"].spline == there.floats["4"].spline == "slip"
+    assert here.floats["4"].spline_force == pytest.approx(50.0, rel=1e-9)
+    # s = p (1 − F_m / (K_w R)), so that F_m |s| is dissipated.
+    radius = float(np.hypot(*there.displacement["4"]))
+    slip = radius - 50.0 / 1.78e7
+    assert np.linalg.norm(found.slips[0]["4"].slip) == pytest.approx(slip, rel=1e-7)
+    assert found.slips[0]["4"].dissipated == pytest.approx(50.0 * slip, rel=1e-7)
+
+
+def test_what_is_dissipated_is_friction_times_the_path_of_the_slip():
+    found = ls.march(floating(), revolutions=2.0, steps=24)
+    before = {g: np.zeros(2) for g in "45"}
+    for step in found.slips:
+        for gear, s in step.items():
+            path = float(np.linalg.norm(s.slip - before[gear]))
+            assert s.dissipated >= 0.0
+            assert s.dissipated == pytest.approx(s.friction * path, abs=1e-14)
+            assert (s.stage == "stick") == (path < 1e-15)
+            before[gear] = s.slip
+    assert found.dissipated > 0.0
+    assert found.result.passed
+
+
+def test_memory_matters():
+    """With memory a float lags behind: some step rests elsewhere than without."""
+    case = floating()
+    found, alone = ls.march(case), ls.solve(case)
+    apart = np.abs(found.dataset["displacement"] - alone.dataset["displacement"]).max()
+    assert apart > 1e-7
+
+
+def test_every_revolution_is_like_the_one_before():
+    """All that turns turns with the pinion, so what memory carries on is the same each time."""
+    only = {f"errors.{g}.eccentricity": None for g in ("1", "2", "3", "6", "7", "8", "9", "10")}
+    steps = 12
+    found = ls.march(floating(**only), revolutions=4.0, steps=4 * steps)
+    torque = found.dataset["torque"].values.reshape(4, steps, -1)
+    assert torque[2:] == pytest.approx(torque[1:3], rel=1e-9)
+    slip = found.dataset["slip"].sel(spline="4").values.reshape(4, steps, 2)
+    walked = np.diff(slip, axis=0)
+    # Along the direction that the meshes leave free a float may walk, as far in every revolution.
+    assert np.ptp(walked[1:], axis=(0, 1)).max() < 1e-12
+    # The first revolution starts from rest, where no friction has been stretched yet.
+    assert np.abs(walked[0] - walked[1]).max() > 1e-7
+
+
+@pytest.mark.parametrize("name", ["spline_clearance", "all_elements"])
+def test_a_clearance_that_is_used_up_holds_the_slip(name):
+    """At the stop friction and clearance share a force in no unique way; the sum is unique."""
+    changes = TURN if name == "spline_clearance" else {"march.steps": 3}
+    case = shipped(f"fgfbstts/{name}").replace(changes)
+    found = ls.march(case)
+    assert found.result.passed
+    assert "stop" in found.dataset["stage"].sel(spline="4").values
+    train = build_train(case)
+    for step in found.slips:
+        for gear, s in step.items():
+            spline = train.splines[gear]
+            room = spline.clearance - s.friction / spline.bending_stiffness
+            # The certificate leaves 1e-9 of the deflection open.
+            assert np.linalg.norm(s.slip) <= room + 1e-12
+            assert s.dissipated >= 0.0
+
+
+def test_the_certificate_refuses_a_forgotten_slip():
+    """The same answer judged from another slip is none."""
+    train = build_train(floating()).remembering({g: np.zeros(3) for g in "45"})
+    answer = stepped(train, 2)
+    assert answer.certificate.passed
+    state = State(train, answer.equilibrium)
+    slip = {g: state.slip(s) for g, s in train.splines.items()}
+    moved = train.remembering({g: s + np.array([1e-6, -2e-6, 0.0]) for g, s in slip.items()})
+    judged = certify(moved, answer.equilibrium)
+    assert "cone_membership" in judged.failing
+
+
+@pytest.mark.parametrize("share", [1.01, 0.5])
+def test_the_certificate_refuses_another_friction(share):
+    train = build_train(floating()).remembering({g: np.zeros(3) for g in "45"})
+    found = stepped(train, 1).equilibrium
+    wrong = dict(found.radial_reaction)
+    wrong["spline 4"] = share * wrong["spline 4"]
+    certificate = certify(train, replace(found, radial_reaction=wrong))
+    assert {"force_balance", "cone_membership"} <= set(certificate.failing)
+
+
+def test_a_law_that_jumps_has_no_memory():
+    case = floating(**{"splines.4.stick_limit": "1 um"})
+    with pytest.raises(ls.Refused, match="leave stick_limit out"):
+        ls.march(case)
+
+
+def test_a_case_without_a_march_is_told():
+    with pytest.raises(ls.CaseError, match="march: is missing"):
+        ls.march(shipped("fgfbstts/full_float"), steps=3)
+
+
+def test_a_refused_step_leaves_those_before_it(monkeypatch):
+    from loadshare.study import march as room
+
+    def fails(train, index):
+        if index > 2:
+            raise ls.Refused(f"position {index}: for the test")
+        return stepped(train, index)
+
+    monkeypatch.setattr(room, "stepped", fails)
+    with pytest.raises(ls.Refused, match="position 3") as caught:
+        ls.march(floating())
+    assert [p.position for p in caught.value.partial.positions] == [1, 2]
+
+
+def test_arrays_and_progress():
+    told = []
+    found = ls.march(
+        CASES / "fgfbstts/full_float.toml",
+        gear="4",
+        revolutions=0.5,
+        steps=4,
+        progress=lambda *done: told.append(done),
+    )
+    assert told == [(k, 4) for k in range(1, 5)]
+    arrays = found.dataset
+    assert arrays["slip"].dims == ("position", "spline", "component")
+    assert arrays["revolutions"].values.tolist() == [0.0, 0.125, 0.25, 0.375]
+    assert float(arrays["dissipated"].sum()) == pytest.approx(found.dissipated)

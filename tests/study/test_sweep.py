@@ -1,0 +1,126 @@
+"""Sweeps: every point is what a solve of its own gives, and none ends the sweep."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given
+from hypothesis import strategies as st
+from tests.support import shipped
+
+import loadshare as ls
+from loadshare.study.parameter import grid, read_parameter, split_outside
+
+
+def test_every_point_is_a_solve_of_its_own():
+    case = shipped("fgfbstts/limit_ring")
+    found = ls.sweep(case, {("rings.4.float", "rings.5.float"): "0 um:10 um:3"})
+    assert found.passed
+    name = "rings.4.float=rings.5.float"
+    arrays = found.dataset
+    assert arrays[name].attrs["units"] == "um"
+    assert arrays[name].values.tolist() == [0.0, 5.0, 10.0]
+    changed = case.replace({"rings.4.float": "5 um", "rings.5.float": "5 um"})
+    alone = ls.solve(changed)
+    here = arrays.sel({name: 5.0})
+    for kind in ("torque", "share", "pair_share", "displacement", "margin", "reaction"):
+        assert np.array_equal(here[kind], alone.dataset[kind], equal_nan=True), kind
+    assert here["pair_omega"].sel(stage="system") == alone.pair_omega["system"]
+    assert here["rest"].sel(position=1, float="4") == alone.floats[0]["4"].boundary
+    assert here["rest"].sel(position=1, float="1") == "inside"
+
+
+def test_a_star_ties_all_that_it_means():
+    case = shipped("fgfbstts/limit_ring")
+    parameter = read_parameter(case, "rings.*.float", "um")
+    assert parameter.keys == ("rings.4.float", "rings.5.float")
+    assert parameter.changes(2.5) == dict.fromkeys(parameter.keys, "2.5 um")
+    # A key that the tables lack may be set in all of them.
+    assert read_parameter(case, "rings.*.stiffness", "N/m").keys[1] == "rings.5.stiffness"
+
+
+def test_two_parameters_and_a_point_that_cannot_be(tmp_path):
+    case = shipped("fgfbstts/limit_ring")
+    over = {"rings.4.float": ["-1 um", "0 um"], "operating.power": ["1 MW", "2000 kW"]}
+    told = []
+    found = ls.sweep(case, over, positions=[1], progress=lambda *done: told.append(done))
+    assert told == [(k, 4) for k in range(1, 5)]
+    assert [p.status for p in found.points] == ["invalid", "invalid", "certified", "certified"]
+    assert "is negative" in found.points[0].message
+    arrays = found.dataset
+    assert arrays["torque"].dims[:2] == ("rings.4.float", "operating.power")
+    assert arrays["operating.power"].values.tolist() == [1.0, 2.0]
+    assert np.isnan(arrays["torque"].sel({"rings.4.float": -1.0})).all()
+    assert not np.isnan(arrays["torque"].sel({"rings.4.float": 0.0})).any()
+    found.to_netcdf(tmp_path / "sweep.nc")
+    with xr.open_dataset(tmp_path / "sweep.nc", engine="h5netcdf") as saved:
+        assert saved["status"].values.tolist() == arrays["status"].values.tolist()
+        assert np.array_equal(saved["torque"], arrays["torque"], equal_nan=True)
+    found.to_csv(tmp_path / "sweep.csv")
+    lines = (tmp_path / "sweep.csv").read_text().splitlines()
+    assert lines[0].startswith("rings.4.float [um],operating.power [MW],position,mesh,torque")
+    assert len(lines) == 1 + 2 + 2 * len(case.meshes)
+
+
+def test_a_refused_point_keeps_its_message_and_the_sweep_goes_on():
+    """A spline whose stick limit makes its law drop has no unique equilibrium."""
+    case = shipped("fgfbstts/full_float").replace(
+        {
+            "splines.4.normal_force": None,
+            "splines.4.friction": 0.1,
+            "splines.4.radius": "35 mm",
+            "splines.4.stick_limit": "100 um",
+        }
+    )
+    found = ls.sweep(case, {"operating.power": "20 kW:2000 kW:2"}, positions=[1])
+    assert [p.status for p in found.points] == ["refused", "certified"]
+    assert "would drop" in found.points[0].message
+    assert "would drop" in str(found.dataset["message"].values[0])
+
+
+def test_a_setting_makes_the_table_of_a_gears_errors():
+    case = shipped("fgfbstts/base").replace({"errors.6.installation": ["0 um", "0 um"]})
+    found = ls.sweep(case, {"errors.6.installation[0]": "0 um, 9 um"}, positions=[1])
+    omega = found.dataset["omega"].sel(stage="II").values
+    assert omega[0] == pytest.approx(1.0, abs=1e-12)
+    assert omega[1] > 1.001
+    with pytest.raises(ls.CaseError, match='"66" is not a gear'):
+        case.replace({"errors.66.installation": ["0 um", "0 um"]})
+
+
+@pytest.mark.parametrize(
+    ("over", "said"),
+    [
+        ({}, "1 or 2 parameters"),
+        ({"rings.4.flot": "0 um:1 um:3"}, "Did you mean float"),
+        ({"rings.4.float": "0 um:1 um"}, "number of points"),
+        ({"rings.4.float": "0 um:1 um:1"}, "number of points"),
+        ({"rings.4.float": "little"}, "cannot be read"),
+        ({"rings.4.float": ["0 um", "1 N"]}, "cannot be told in um"),
+        ({"rings.4.float": ["0 um"], "rings.*.float": ["1 um"]}, "is set by"),
+    ],
+)
+def test_what_cannot_be_swept_is_told(over, said):
+    with pytest.raises(ls.CaseError, match=said):
+        ls.sweep(shipped("fgfbstts/limit_ring"), over)
+
+
+@given(
+    st.floats(-1e3, 1e3, allow_nan=False),
+    st.floats(1e-3, 1e3),
+    st.integers(2, 50),
+)
+def test_a_grid_has_its_ends_and_even_steps(low, width, count):
+    values, unit = grid(f"{low!r} um : {low + width!r} um : {count}", "x")
+    assert unit == "um"
+    assert (values[0], values[-1], len(values)) == (low, low + width, count)
+    assert np.diff(values) == pytest.approx(width / (count - 1), rel=1e-6, abs=1e-9)
+
+
+def test_values_take_the_first_unit():
+    assert grid(["1 mm", "2 um", "0 m"], "x") == ((1.0, pytest.approx(0.002), 0.0), "mm")
+    assert grid(np.array([0.1, 0.2]), "x") == ((0.1, 0.2), "")
+    assert grid("0:1:3", "x") == ((0.0, 0.5, 1.0), "")
+
+
+def test_signs_in_quotes_do_not_split():
+    assert split_outside('meshes."a=b".gap=x = 1', "=") == ['meshes."a=b".gap', "x", "1"]

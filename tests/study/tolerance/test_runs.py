@@ -1,0 +1,329 @@
+"""Runs: bit-identical whoever solves them, resumed after a kill, and nothing lost on the way."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pytest
+from pyarrow import parquet
+from tests.support import CASES, shipped
+
+import loadshare as ls
+from loadshare.study.tolerance import local, study
+
+PATHS = "two_path/clocking_error"
+INPUTS = {
+    f'shafts."wheel{path}-pinion{path}".clocking': {
+        "distribution": "normal",
+        "mean": "0 mrad",
+        "deviation": "1 mrad",
+    }
+    for path in "AB"
+}
+BLOCKS = 5
+ASKED = {
+    "samples": BLOCKS * 4096 - 96,
+    "indices": 0,
+    "seed": 3,
+    "worst": False,
+    "engine": "vectorised",
+    "quantiles": [0.5],
+}
+
+
+@pytest.fixture(autouse=True, scope="module")
+def workers_for_all():
+    """Studies as small as these are else solved in one process."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(study, "SMALL", 0)
+        yield
+
+
+def run(out: Path, **settings):
+    return ls.tolerance(shipped(PATHS), INPUTS, out=out, **{**ASKED, **settings})
+
+
+def bits(out: Path) -> dict[str, bytes]:
+    """Every column of all parts, as bytes."""
+    files = sorted(out.glob("part-*.parquet"))
+    whole = pa.concat_tables(parquet.read_table(f).replace_schema_metadata() for f in files)
+    return {
+        name: column.combine_chunks().dictionary_encode().indices.to_numpy(False).tobytes()
+        if name == "message"
+        else column.to_numpy().tobytes()
+        for name, column in zip(whole.column_names, whole.columns, strict=True)
+    }
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory, workers_for_all) -> Path:
+    """A run of one worker, one block at a time."""
+    out = tmp_path_factory.mktemp("reference") / "study"
+    run(out, workers=1, chunk=1)
+    return out
+
+
+@pytest.mark.parametrize(("workers", "chunk"), [(2, 1), (2, 3)])
+def test_workers_and_chunks_change_no_bit(reference, tmp_path, workers, chunk):
+    told = []
+    found = run(
+        tmp_path / "study", workers=workers, chunk=chunk, progress=lambda *d: told.append(d)
+    )
+    assert len(found.parts) == -(-BLOCKS // chunk)
+    assert told[0] == (0, found.samples)
+    assert told[-1] == (found.samples, found.samples)
+    assert bits(tmp_path / "study") == bits(reference)
+
+
+def test_what_is_solved_here_is_what_workers_solve(reference, tmp_path, monkeypatch):
+    monkeypatch.setattr(study, "SMALL", 10**9)
+    run(tmp_path / "study", chunk=7)
+    assert bits(tmp_path / "study") == bits(reference)
+
+
+SCRIPT = """
+import sys
+import loadshare as ls
+from loadshare.study.tolerance import study
+study.SMALL = 0
+ls.tolerance(
+    ls.load_case({case!r}), {inputs!r}, out={out!r}, workers=2, chunk=1, **{asked!r}
+)
+"""
+
+
+def script(out: Path) -> subprocess.Popen:
+    case = str(CASES / f"{PATHS}.toml")
+    text = SCRIPT.format(case=case, inputs=INPUTS, out=str(out), asked=ASKED)
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+    return subprocess.Popen([sys.executable, "-c", text], env=environment)
+
+
+def test_killed_and_resumed(reference, tmp_path):
+    """SIGKILL while parts are being solved: those that are whole are kept as they are."""
+    out = tmp_path / "study"
+    process = script(out)
+    try:
+        until(lambda: len(list(out.glob("part-*.parquet"))) >= 2, process)
+    finally:
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+    # Workers end when their study is gone; one may still finish its part.
+    time.sleep(1.0)
+    kept = {file: file.stat().st_mtime_ns for file in out.glob("part-*.parquet")}
+    assert 2 <= len(kept) < BLOCKS
+    # What a kill in the midst of writing leaves.
+    (out / ".part-000004.parquet.half").write_bytes(b"PAR1 half")
+    found = run(out, workers=1, chunk=1)
+    assert {file: file.stat().st_mtime_ns for file in kept} == kept
+    assert found.samples == ASKED["samples"]
+    assert bits(out) == bits(reference)
+    assert sorted(p.name for p in out.iterdir()) == [
+        *(f"part-{k:06d}.parquet" for k in range(BLOCKS)),
+        "study.json",
+    ]
+
+
+def until(reached, process: subprocess.Popen | None = None, limit: float = 60.0) -> None:
+    end = time.monotonic() + limit
+    while not reached():
+        assert time.monotonic() < end, "waited too long"
+        assert process is None or process.poll() is None, "the study ended too soon"
+        time.sleep(0.002)
+
+
+def test_a_damaged_part_is_solved_again(reference, tmp_path):
+    out = tmp_path / "study"
+    run(out, workers=1, chunk=3)
+    whole = bits(out)
+    first, second = sorted(out.glob("part-*.parquet"))
+    first.write_bytes(first.read_bytes()[:-200])
+    # A part of another study, or of another number, under this one's name.
+    second.unlink()
+    parquet.write_table(parquet.read_table(sorted(reference.glob("*.parquet"))[0]), second)
+    found = run(out, workers=1, chunk=3)
+    assert bits(out) == whole == bits(reference)
+    assert found.samples == ASKED["samples"]
+
+
+def test_other_settings_are_told(tmp_path):
+    out = tmp_path / "study"
+    few = {"samples": 64, "chunk": 1}
+    run(out, **few, limit=1.05)
+    # Neither limit, quantiles nor workers bear on the samples.
+    assert run(out, **few, limit=1.1, workers=1, quantiles=[0.9]).limit == 1.1
+    other = {**INPUTS, next(iter(INPUTS)): {"distribution": "uniform phase"}}
+    with pytest.raises(ls.LoadshareError) as caught:
+        ls.tolerance(
+            shipped(PATHS).replace({"operating.torque": "300 N*m"}),
+            other,
+            out=out,
+            **{**ASKED, **few, "seed": 4},
+        )
+    told = str(caught.value)
+    for said in ("seed: 3 there, 4 asked", "case_hash", "normal mean 0 deviation 1 mrad there"):
+        assert said in told, said
+    assert "samples:" not in told
+    about = json.loads((out / "study.json").read_text(encoding="utf-8"))
+    assert about["settings"]["seed"] == 3
+    assert ls.Case(tomllib.loads(about["text"])).hash == about["settings"]["case_hash"]
+
+
+def test_a_folder_of_something_else_is_left_alone(tmp_path):
+    (tmp_path / "mine.txt").write_text("mine")
+    with pytest.raises(ls.LoadshareError, match="holds no tolerance study"):
+        run(tmp_path, samples=64)
+    assert [p.name for p in tmp_path.iterdir()] == ["mine.txt"]
+
+
+def test_a_worker_that_dies_is_replaced_once(tmp_path, monkeypatch):
+    """The first process of each worker is killed on its first part; the next one solves it."""
+    begun = []
+    begin = local._Worker._begin
+
+    def dying(self):
+        process = begin(self)
+        begun.append(process)
+        if len(begun) == 1:
+            process.kill()
+        return process
+
+    monkeypatch.setattr(local._Worker, "_begin", dying)
+    found = run(tmp_path / "study", samples=4096, workers=1)
+    assert (found.samples, len(begun)) == (4096, 2)
+
+
+def test_a_worker_that_dies_again_ends_the_study(tmp_path, monkeypatch):
+    begin = local._Worker._begin
+
+    def dying(self):
+        process = begin(self)
+        process.kill()
+        return process
+
+    monkeypatch.setattr(local._Worker, "_begin", dying)
+    with pytest.raises(ls.LoadshareError, match="died 2 times"):
+        run(tmp_path / "study", samples=64, workers=2)
+
+
+def test_refused_samples_are_counted_and_told():
+    """Under little torque the law of a spline with a stick limit drops: no unique equilibrium."""
+    case = shipped("fgfbstts/full_float").replace(
+        {
+            "splines.4.normal_force": None,
+            "splines.4.friction": 0.1,
+            "splines.4.radius": "35 mm",
+            "splines.4.stick_limit": "100 um",
+        }
+    )
+    inputs = {"operating.power": {"distribution": "uniform", "low": "20 kW", "high": "800 kW"}}
+    found = ls.tolerance(case, inputs, samples=24, indices=8, worst=False, positions=[1])
+    frame = found.to_frame()
+    refused = ~frame["certified"]
+    assert 0 < found.refused < 24
+    assert found.refused == refused.sum() == sum(found.messages.values())
+    power = frame["operating.power [kW]"]
+    assert power[refused].max() < power[~refused].min()
+    assert all("would drop" in text for text in frame.loc[refused, "message"])
+    assert frame.loc[~refused, "message"].isna().all()
+    assert np.isnan(frame.loc[refused, "omega.system"]).all()
+    assert found.of("system").summary.count == 24 - found.refused
+    assert found.design_refused > 0
+
+
+def test_a_sample_that_makes_no_case_does_not_take_others_with_it(monkeypatch):
+    """Far beyond what was tried a normal value can leave what a case allows: here without trial."""
+    from loadshare.study.tolerance import inputs as room
+
+    monkeypatch.setattr(room, "FAR", 0.4)
+    inputs = {"rings.4.float": {"distribution": "normal", "mean": "2 um", "deviation": "1 um"}}
+    found = ls.tolerance(
+        shipped("fgfbstts/limit_ring"), inputs, samples=100, indices=0, worst=False, positions=[1]
+    )
+    frame = found.to_frame()
+    negative = frame["rings.4.float [um]"] < 0.0
+    assert found.refused == negative.sum() > 0
+    assert frame.loc[~negative, "certified"].all()
+    assert any("makes no case" in text for text in found.messages)
+
+
+@contextmanager
+def cluster(folder: Path, workers: int):
+    """A scheduler and workers without nannies, each a process of its own."""
+    known = folder / "scheduler.json"
+    environment = {
+        **os.environ,
+        "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+        "OPENBLAS_NUM_THREADS": "1",
+    }
+    started = []
+
+    def start(*words: str) -> subprocess.Popen:
+        log = (folder / f"log-{len(started)}.txt").open("w")
+        process = subprocess.Popen(
+            [sys.executable, "-m", *words], env=environment, stdout=log, stderr=log, cwd=folder
+        )
+        log.close()
+        started.append(process)
+        return process
+
+    try:
+        start(
+            "distributed.cli.dask_scheduler",
+            *("--host", "127.0.0.1", "--port", "0", "--no-dashboard"),
+            *("--scheduler-file", str(known)),
+        )
+        until(known.exists)
+        address = json.loads(known.read_text())["address"]
+        crew = [
+            start(
+                "distributed.cli.dask_worker",
+                *(address, "--nthreads", "1", "--no-nanny", "--no-dashboard"),
+            )
+            for _ in range(workers)
+        ]
+        yield address, crew
+    finally:
+        for process in reversed(started):
+            process.kill()
+            process.wait()
+
+
+@pytest.mark.filterwarnings("ignore::DeprecationWarning:distributed", "ignore::ResourceWarning")
+def test_a_cluster_that_loses_a_worker_gives_the_same_bits(reference, tmp_path):
+    pytest.importorskip("distributed")
+    out = tmp_path / "study"
+    with cluster(tmp_path, 2) as (address, crew):
+        from distributed import Client
+
+        with Client(address) as client:
+            client.wait_for_workers(2, timeout=60)
+        lost = []
+
+        def kill_one(done: int, _: int) -> None:
+            if done and not lost:
+                crew[0].send_signal(signal.SIGKILL)
+                lost.append(done)
+
+        run(out, scheduler=address, chunk=1, progress=kill_one)
+        assert lost == [4096]
+        assert crew[0].wait() == -signal.SIGKILL
+        assert crew[1].poll() is None
+    assert bits(out) == bits(reference)
+
+
+def test_a_cluster_that_is_not_there(tmp_path, monkeypatch):
+    pytest.importorskip("distributed")
+    from loadshare.study.tolerance import cluster as room
+
+    monkeypatch.setattr(room, "WAIT", "1s")
+    with pytest.raises(ls.LoadshareError, match="cannot be reached"):
+        run(tmp_path / "study", samples=64, scheduler="tcp://127.0.0.1:9")

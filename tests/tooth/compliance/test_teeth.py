@@ -1,0 +1,176 @@
+"""Compliance of teeth: finite elements against a resolved plane model, slices against both."""
+
+from dataclasses import replace
+from functools import cache
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from tests.tooth.bodies import SpurTooth
+from tests.tooth.compliance.plane import solve_plane
+
+from loadshare.tooth.compliance.block import Divisions
+from loadshare.tooth.compliance.finite import FiniteElements
+from loadshare.tooth.compliance.interface import Flank
+from loadshare.tooth.compliance.middle import MiddleSurface
+from loadshare.tooth.compliance.slices import Slices
+from loadshare.tooth.hertz import compression, contact_modulus, half_width
+
+BODY = SpurTooth(teeth=25, module=5e-3, face_width=50e-3, rim=0.035)
+MESH = Divisions(across=4, flank=4, fillet=1, root=2, rim=3, width=3)
+STATIONS = (np.arange(32) + 0.5) / 32
+CUT = (1, 1, 1, 1)
+
+
+@cache
+def finite(poisson=0.3, side=1):
+    return FiniteElements(replace(BODY, poisson=poisson), side, bare=CUT, divisions=MESH)
+
+
+@cache
+def thin():
+    return FiniteElements(replace(BODY, rim=0.045), 1, divisions=MESH)
+
+
+@cache
+def slices():
+    return Slices(BODY, 1)
+
+
+def row(u, tooth=0):
+    """A line of points over the face width, at one height."""
+    return Flank(tooth, np.column_stack([np.full_like(STATIONS, u), STATIONS]))
+
+
+def even(model, u):
+    """Mean displacement [m] per load per width [N/m]."""
+    return float(model.bulk((row(u),)).mean()) * BODY.face_width
+
+
+@pytest.mark.parametrize("u", [0.5, 0.7, 0.9])
+def test_solid_tooth_is_the_plane_tooth_without_poisson(u):
+    """ν = 0 makes the even load plane. The plane model is far finer: 1 %."""
+    body = replace(BODY, poisson=0.0)
+    plane = solve_plane(body, u, 1.0, 2e-4, bare=CUT)
+    assert even(finite(poisson=0.0), u) == pytest.approx(plane.foot, rel=1e-2)
+
+
+@pytest.mark.parametrize(("poisson", "share"), [(0.0, 0.01), (0.3, 0.03)])
+@pytest.mark.parametrize("u", [0.5, 0.85, 0.97])
+def test_middle_surface_and_compression_make_the_whole(poisson, share, u):
+    """A tooth with its pressure resolved, against bulk at the middle surface plus compression.
+
+    Measured: 0.3 to 0.7 % for ν = 0, 1.4 to 2.3 % for ν = 0.3; the half-space that the
+    compression stands for has no free flank on its other side.
+    """
+    body = replace(BODY, poisson=poisson)
+    q = 5e5
+    width = float(half_width(q, 100.0, contact_modulus((206e9,) * 2, (poisson,) * 2)))
+    plane = solve_plane(body, u, q, width, bare=CUT)
+    local = float(compression(q, width, plane.depth, 206e9, poisson))
+    assert plane.foot + local == pytest.approx(plane.surface, rel=share)
+
+
+def test_feet_lie_on_the_normal_and_in_the_middle():
+    middle = MiddleSurface(BODY)
+    uw = np.array([[0.45, 0.1], [0.7, 0.5], [1.0, 0.9]])
+    for side in (1, -1):
+        feet = middle.feet(uw, side)
+        points = BODY.outline(uw[:, 0], uw[:, 1], side) + feet.depth[:, None] * feet.inward
+        # A spur tooth's middle surface is the plane y = 0, and its normals touch the base circle.
+        np.testing.assert_allclose(points[:, 1], 0.0, atol=1e-12)
+        flank = BODY.outline(uw[:, 0], uw[:, 1], side)
+        arm = np.cross(flank, feet.inward)[:, 2]
+        np.testing.assert_allclose(
+            np.abs(arm), BODY.base_radius, rtol=2e-6
+        )  # one-sided slope at the tip
+
+
+@pytest.mark.parametrize("model", [finite, slices])
+def test_compliance_is_symmetric_and_semidefinite(model):
+    flanks = (row(0.6), row(0.9, tooth=1), row(0.5, tooth=-1))
+    bulk = model().bulk(flanks)
+    np.testing.assert_array_equal(bulk, bulk.T)
+    values = np.linalg.eigvalsh(bulk)
+    assert values[0] > -1e-10 * values[-1]
+
+
+def test_the_skew_part_is_small():
+    """Read at a depth, Betti's symmetry holds but for a few percent of the largest entry."""
+    influence = finite()._influence
+    largest = np.abs(influence[0]).max()
+    assert np.abs(influence[0] - influence[0].T).max() < 0.05 * largest
+    assert np.abs(influence[1] - influence[-1].T).max() < 0.01 * largest
+
+
+def test_both_flanks_are_alike():
+    """The mirror image of a load on one flank; the neighbours change places."""
+    here, there = finite(), finite(side=-1)
+    np.testing.assert_allclose(
+        here.bulk((row(0.7), row(0.8, 1))), there.bulk((row(0.7), row(0.8, -1))), rtol=1e-7
+    )
+
+
+def test_neighbours_yield_too():
+    model = finite()
+    shares = [
+        model.bulk((row(0.8), row(0.8, k)))[: len(STATIONS), len(STATIONS) :].mean() for k in (1, 2)
+    ]
+    assert shares[0] > 0.0
+    assert shares[1] == 0.0  # beyond the model's teeth
+
+
+@pytest.mark.slow
+def test_mesh_refinement():
+    """Coarse, default and finer: steps that shrink, the last below 2 %."""
+    meshes = (
+        replace(MESH, across=2, flank=2, root=1, rim=2, width=2),
+        MESH,
+        replace(MESH, across=6, flank=6, fillet=2, root=3, rim=4, width=5),
+    )
+    means = np.array(
+        [
+            [even(FiniteElements(BODY, 1, bare=CUT, divisions=n), u) for u in (0.55, 0.75, 0.95)]
+            for n in meshes
+        ]
+    )
+    steps = np.abs(np.diff(means, axis=0)) / means[-1]
+    assert np.all(steps[1] < steps[0])
+    assert np.all(steps[1] < 0.02)
+
+
+def test_a_deeper_rim_yields_more():
+    assert even(thin(), 0.8) < even(finite(), 0.8)
+
+
+@pytest.mark.parametrize("u", [0.6, 0.75, 0.9, 1.0])
+def test_slices_against_finite_elements(u):
+    """Even load, on a rim one tooth height deep: 15 %, most of it the root's."""
+    assert even(slices(), u) == pytest.approx(even(thin(), u), rel=0.15)
+
+
+def test_slices_converge_over_the_width():
+    points = row(0.8)
+    parts = [Slices(BODY, 1, width_degree=n).bulk((points,)) for n in (8, 13, 18)]
+    steps = [np.abs(a - b).max() for a, b in pairwise(parts)]
+    assert steps[1] < steps[0]
+    # What an even load does needs no degree at all but for Poisson's bending across.
+    means = [p.mean() for p in parts]
+    np.testing.assert_allclose(means, means[-1], rtol=1e-3)
+
+
+@pytest.mark.parametrize("model", [FiniteElements, Slices])
+def test_compliance_scales_with_the_inverse_of_modulus_and_length(model):
+    bulks = []
+    for scale, modulus in ((1.0, 206e9), (2.5, 103e9)):
+        body = SpurTooth(25, scale * 5e-3, scale * 50e-3, scale * 0.045, youngs_modulus=modulus)
+        kwargs = {"divisions": replace(MESH, width=2)} if model is FiniteElements else {}
+        bulks.append(model(body, 1, **kwargs).bulk((row(0.7),)))
+    np.testing.assert_allclose(bulks[1] * 2.5 * 0.5, bulks[0], rtol=1e-6, atol=1e-18)
+
+
+def test_a_model_that_cannot_be_built_is_told():
+    with pytest.raises(ValueError, match="allowed: odd numbers below the 25 teeth"):
+        FiniteElements(BODY, 1, teeth=4)
+    with pytest.raises(ValueError, match="allowed: even"):
+        FiniteElements(BODY, 1, divisions=Divisions(across=3))

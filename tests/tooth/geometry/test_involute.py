@@ -1,0 +1,24 @@
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from loadshare.tooth.involute import inv, inverse_inv
+
+
+@given(st.floats(1e-4, 1.5))
+def test_inverse_undoes_the_involute_function(angle):
+    # inv α loses digits as α³/3 below α ≈ 1e-4: the error of α is that of inv α over tan² α.
+    assert inverse_inv(inv(angle)) == pytest.approx(angle, abs=1e-15 / math.tan(angle) ** 2 + 1e-14)
+
+
+def test_tabled_value():
+    # inv 20° = 0.014904 in every gear handbook.
+    assert inv(math.radians(20.0)) == pytest.approx(0.014904, abs=5e-7)
+
+
+def test_ends():
+    assert inverse_inv(0.0) == 0.0
+    with pytest.raises(ValueError, match="negative"):
+        inverse_inv(-1e-6)

@@ -1,0 +1,52 @@
+"""Stiffness by formula against ISO/TR 6336-30, example 1."""
+
+import math
+
+import pytest
+
+from loadshare.tooth.iso6336 import formula_stiffness
+
+UNIT = 1e9  # N/(mm·µm)
+
+
+def example(**changes):
+    data = {
+        "teeth": (17, 103),
+        "profile_shift": (0.145, 0.0),
+        "dedendum": (1.4, 1.4),
+        "contact_ratio": 1.5491,
+        "helix_angle": math.radians(15.8),
+    } | changes
+    return formula_stiffness(**data)
+
+
+def test_example_1():
+    found = example()
+    # Printed to 4 and 5 decimals; ε_α to 4.
+    assert found.virtual_teeth == (
+        pytest.approx(18.905, abs=5e-4),
+        pytest.approx(114.543, abs=5e-4),
+    )
+    assert found.theoretical / UNIT == pytest.approx(17.85584, rel=1e-4)
+    assert found.single / UNIT == pytest.approx(12.37047, rel=1e-4)
+    assert found.mesh / UNIT == pytest.approx(17.46485, rel=1e-4)
+    assert found.lead / UNIT == pytest.approx(14.84512, rel=1e-4)
+
+
+def test_the_last_term_takes_the_second_gears_shift():
+    # A public code squares x1 there and gets 17.844 for the example.
+    assert example().theoretical / UNIT != pytest.approx(17.844, abs=5e-3)
+
+
+def test_factors():
+    assert example(blank_factor=0.9).single == pytest.approx(0.9 * example().single)
+    assert example(dedendum=(1.2, 1.2)).single == pytest.approx(example().single / 0.9)
+    assert example(dedendum=(1.2, 1.6)).single == pytest.approx(example().single)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"profile_shift": (2.0, 0.5)}, {"teeth": (0, 20)}, {"contact_ratio": 0.0}]
+)
+def test_out_of_range(wrong):
+    with pytest.raises(ValueError, match=r"x1|positive"):
+        example(**wrong)

@@ -1,0 +1,27 @@
+"""The page on tooth contact names every key and shows what the pair files give."""
+
+import re
+
+from tests.tooth.use.pairs import PAIRS, written
+
+from loadshare.tooth import load_pair
+from loadshare.tooth.pairfile_model import CONTENTS
+
+PAGE = (PAIRS.parents[1] / "docs/ltca.md").read_text(encoding="utf-8")
+
+
+def keys():
+    for model in CONTENTS.values():
+        schema = model.model_json_schema()
+        for table in (schema, *schema["$defs"].values()):
+            yield from table.get("properties", {})
+
+
+def test_the_page_names_every_key():
+    missing = {key for key in keys() if f"`{key}`" not in PAGE}
+    assert not missing
+
+
+def test_the_pair_file_of_the_page_is_one(tmp_path):
+    (text,) = re.findall(r"```toml\n(kind = .*?)```", PAGE, re.DOTALL)
+    assert load_pair(written(tmp_path, text)).title == "Pinion and wheel"

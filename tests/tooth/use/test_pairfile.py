@@ -1,0 +1,203 @@
+"""Pair files: what they give, and how what is wrong with them is told."""
+
+import math
+
+import numpy as np
+import pytest
+from tests.tooth.use.pairs import FACE, PAIRS, SPUR, written
+
+from loadshare.errors import CaseError
+from loadshare.tooth.face_pair import FaceGearPair
+from loadshare.tooth.helicoid_pair import Misalignment
+from loadshare.tooth.pairfile import load_pair
+from loadshare.tooth.pairfile_model import CONTENTS
+
+
+def told(path):
+    with pytest.raises(CaseError) as caught:
+        load_pair(path)
+    assert all(problem.file == str(path) for problem in caught.value.problems)
+    return {problem.key: problem for problem in caught.value.problems}
+
+
+def test_the_driven_gear_takes_what_it_leaves_out_from_the_driver(tmp_path):
+    text = SPUR.replace("[driven]", 'helix_angle = "12 deg"\n[driven]')
+    pair = load_pair(written(tmp_path, text)).geometry
+    driven = pair.driven_gear
+    assert driven.module == pytest.approx(3e-3, rel=1e-15)
+    assert driven.pressure_angle == pytest.approx(math.radians(20), rel=1e-15)
+    assert driven.helix_angle == pytest.approx(-math.radians(12), rel=1e-15)
+    # a = m (z1 + z2)/(2 cos β): no profile shift, no backlash.
+    assert pair.centre_distance == pytest.approx(0.1125 / math.cos(math.radians(12)), rel=1e-12)
+
+
+def test_an_internal_gear_has_the_same_hand_as_its_pinion(tmp_path):
+    text = SPUR.replace(
+        "[driven]\nteeth = 50", "[driven]\ninternal = true\naddendum = 0.8\nteeth = 80"
+    )
+    text = text.replace("[driven]", 'helix_angle = "12 deg"\n[driven]')
+    pair = load_pair(written(tmp_path, text)).geometry
+    assert pair.driven_gear.internal
+    assert pair.driven_gear.helix_angle == pair.driver_gear.helix_angle > 0.0
+
+
+def test_every_value_reaches_its_gear(tmp_path):
+    text = SPUR.replace(
+        "[driven]",
+        """rim = "20 mm"
+youngs_modulus = "210 GPa"
+poisson = 0.28
+profile_shift = 0.1
+[driver.modification]
+tip_relief = "20 um"
+tip_relief_length = "2 mm"
+tip_relief_exponent = 2
+lead_crowning = "5 um"
+[misalignment]
+centre_distance = "0.1 mm"
+deviation = "1 mrad"
+[driven]""",
+    )
+    pair = load_pair(written(tmp_path, "helices = 1\n" + text)).geometry
+    gear = pair.driver_gear
+    assert (gear.rim, gear.youngs_modulus, gear.poisson) == (0.02, 2.1e11, 0.28)
+    assert gear.modification.tip_relief == pytest.approx(20e-6, rel=1e-15)
+    assert gear.modification.tip_relief_length == pytest.approx(2e-3, rel=1e-15)
+    assert gear.modification.lead_crowning == pytest.approx(5e-6, rel=1e-15)
+    assert pair.misalignment == Misalignment(centre_distance=1e-4, deviation=1e-3)
+
+
+def test_a_face_gear_is_cut_by_a_shaper_of_its_pinion(tmp_path):
+    text = FACE.replace('face_width = "20 mm"', 'face_width = "20 mm"\nprofile_shift = 0.05')
+    pair = load_pair(written(tmp_path, text)).geometry
+    assert isinstance(pair, FaceGearPair)
+    shaper = pair.gear.shaper
+    assert (shaper.module, shaper.teeth, shaper.profile_shift) == (4e-3, 27, 0.05)
+    assert shaper.pressure_angle == pair.pinion.pressure_angle
+
+
+def test_all_problems_are_told_at_once(tmp_path):
+    text = SPUR.replace('"3 mm"', '"3 kg"').replace("[driven]\nteeth = 50", "[driven]\nteth = 50")
+    text = text.replace('"slices"', '"slice"').replace('"100 N*m"', '"-1 N*m"')
+    problems = told(written(tmp_path, text))
+    assert set(problems) == {
+        "driver.module",
+        "driven.teeth",
+        "driven.teth",
+        "analysis.compliance",
+        "torque",
+    }
+    assert problems["driver.module"].message == "is a mass, a length is needed"
+    assert problems["driven.teth"].hint == "Did you mean teeth?"
+    assert problems["analysis.compliance"].hint == "Did you mean slices?"
+
+
+@pytest.mark.parametrize(
+    ("change", "key", "said"),
+    [
+        (('kind = "helicoid"', ""), "kind", "is missing"),
+        (('"helicoid"', '"helicoids"'), "kind", "is not a kind of pair"),
+        (('module = "3 mm"', ""), "driver.module", "is missing"),
+        (('"slices"', '"slices"\nteeth = 3'), "analysis.teeth", "is of finite elements"),
+        (
+            ('compliance = "slices"', 'compliance = "finite elements"\nteeth = 4'),
+            "analysis.teeth",
+            "is even",
+        ),
+        (('title = "', 'assumed = ["driver.modul"]\ntitle = "'), "assumed[0]", "matches no key"),
+    ],
+)
+def test_a_wrong_file_is_told(tmp_path, change, key, said):
+    problems = told(written(tmp_path, SPUR.replace(*change)))
+    assert said in problems[key].message
+
+
+def test_problems_of_the_geometry_stand_where_they_were_written(tmp_path):
+    text = SPUR.replace("teeth = 25", "teeth = 12\nprofile_shift = -0.1")
+    problem = told(written(tmp_path, text))["driver.profile_shift"]
+    assert problem.given == "-0.1"
+    assert "undercuts" in problem.message
+
+
+def test_a_default_that_does_not_fit_is_told_with_its_value(tmp_path):
+    problem = told(written(tmp_path, SPUR.replace('"20 deg"', '"28 deg"')))
+    assert problem["driver.tip_radius"].given == "0.38"
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    with pytest.raises(CaseError, match="no such file"):
+        load_pair(tmp_path / "none.toml")
+
+
+def test_the_hash_is_of_the_values_and_not_of_how_they_are_written(tmp_path):
+    first = load_pair(written(tmp_path, SPUR)).hash
+    same = SPUR.replace('"3 mm"', '"0.003 m"').replace("A spur pair", "Another title")
+    assert load_pair(written(tmp_path, same)).hash == first
+    for change in (
+        ("teeth = 25", "teeth = 26"),
+        ("100 N*m", "101 N*m"),
+        ("points = 8", "points = 9"),
+    ):
+        assert load_pair(written(tmp_path, SPUR.replace(*change))).hash != first
+
+
+def test_a_revised_pair_is_the_one_that_a_file_would_give(tmp_path):
+    pair = load_pair(written(tmp_path, SPUR))
+    text = SPUR.replace("positions = 2", "positions = 3").replace("100 N*m", "250 N*m")
+    assert pair.revised(torque=250.0, positions=3).hash == load_pair(written(tmp_path, text)).hash
+    exact = SPUR.replace("slices", "finite elements").replace(
+        "points = 8", "points = 8\nlayers = 5"
+    )
+    fast = load_pair(written(tmp_path, exact)).revised(compliance="slices")
+    assert fast.hash == pair.hash
+
+
+def test_options_of_the_finite_elements_reach_them(tmp_path):
+    text = SPUR.replace('"slices"', '"finite elements"\nteeth = 1\nlayers = 2')
+    coarse = load_pair(written(tmp_path, text)).revised(positions=1).analyse()
+    finer = text.replace("layers = 2", "layers = 5")
+    fine = load_pair(written(tmp_path, finer)).revised(positions=1).analyse()
+    change = float(coarse.secant()[0] / fine.secant()[0]) - 1.0
+    # Fewer elements are stiffer, and quadratic ones already near.
+    assert 0.0 < change < 0.05
+
+
+def test_a_misaligned_pair_as_a_whole_is_turned_and_its_law_is_not(tmp_path):
+    aligned = load_pair(written(tmp_path, FACE))
+    text = FACE + '[misalignment]\ngear_shift = "20 um"\n'
+    shifted = load_pair(written(tmp_path, text))
+    # Shifted towards the pinion by s, the flank is met earlier by s sin α along the line of action.
+    lead = -20e-6 * math.sin(math.radians(25)) / aligned.geometry.arm
+    assert aligned.offset == 0.0
+    assert shifted.offset == pytest.approx(lead, rel=0.02)
+    found = shifted.analyse()
+    assert np.mean(found.unloaded_error - shifted.offset) == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", ["p12", "p46", "p610"])
+def test_shipped_pairs_are_sound(name):
+    pair = load_pair(PAIRS / f"{name}.toml")
+    assert "driver" in pair.content.assumed
+    assert "driven" in pair.content.assumed
+    assert pair.geometry.contact_ratio > 1.2
+
+
+def test_shipped_teeth_have_the_papers_ratio():
+    """I12·I46 lies between 13.9230 and 13.9244, whatever the paper's teeth are."""
+    first, second, third = (load_pair(PAIRS / f"{n}.toml").content for n in ("p12", "p46", "p610"))
+    ratio = first.driven.teeth / first.driver.teeth * second.driven.teeth / second.driver.teeth
+    assert 13.9230 < ratio < 13.9244
+    # Idler 6 is the driven gear of one pair and the driver of the other.
+    idler, again = second.driven, third.driver
+    for key in ("teeth", "profile_shift", "addendum", "dedendum", "tip_radius", "modification"):
+        assert getattr(idler, key) == getattr(again, key)
+    assert second.driver.module == third.driver.module
+    assert second.driver.helix_angle.si == -third.driver.helix_angle.si
+
+
+def test_every_key_of_a_pair_file_is_described():
+    for model in CONTENTS.values():
+        schema = model.model_json_schema()
+        for table in (schema, *schema["$defs"].values()):
+            for key, about in table.get("properties", {}).items():
+                assert about.get("description") or "$ref" in about, key
