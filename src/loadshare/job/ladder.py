@@ -15,13 +15,12 @@ import numpy as np
 from loadshare.certify import Certificate, certify
 from loadshare.certify.certificate import certify_later
 from loadshare.errors import Refused
-from loadshare.job.machine import Answers, Machine
+from loadshare.job.machine import Answers, Machine, engine_named
 from loadshare.scene import assemble
 from loadshare.scene.plan import Plan, Role
 from loadshare.scene.scene import Scene
 from loadshare.solver import Options, Record, solve_scene
 from loadshare.solver.contradiction import contradiction
-from loadshare.solver.hot import vectorised
 from loadshare.solver.position import coordinates_of, of_least_norm
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.train import Train
@@ -69,7 +68,11 @@ def rungs(options: Options) -> Iterator[tuple[str, Options]]:
 
 
 def climb_all(
-    machine: Machine, indices: Sequence[int], options: Options, tolerance: float, hot: bool = True
+    machine: Machine,
+    indices: Sequence[int],
+    options: Options,
+    tolerance: float,
+    engine: str | None = "vectorised",
 ) -> Iterator[Answer | Refused]:
     """Answer positions, all of them on the hot path first.
 
@@ -81,8 +84,8 @@ def climb_all(
     options : Options
         For what the hot path leaves.
     tolerance : float
-    hot : bool
-        Whether to take the hot path at all.
+    engine : str or None
+        Of the hot path, by name; None leaves it out.
 
     Yields
     ------
@@ -90,8 +93,8 @@ def climb_all(
         In the order of the positions; a refusal where no rung gives a certified answer.
     """
     quick: dict[int, Answer] = {}
-    if hot and machine.train.slip is None:
-        quick = hot_answers(machine, indices, tolerance)
+    if engine is not None and machine.train.slip is None:
+        quick = hot_answers(machine, indices, tolerance, engine)
     for index in indices:
         if index in quick:
             yield quick[index]
@@ -102,10 +105,17 @@ def climb_all(
             yield refusal
 
 
-def hot_answers(machine: Machine, indices: Sequence[int], tolerance: float) -> dict[int, Answer]:
+def hot_answers(
+    machine: Machine,
+    indices: Sequence[int],
+    tolerance: float,
+    engine: str = "vectorised",
+) -> dict[int, Answer]:
     """Answer what the hot path can, by position."""
     train = machine.train
-    found = machine.answer(machine.situations(indices), tolerance, vectorised.settle)
+    found = machine.answer(
+        machine.situations(indices), tolerance, engine_named(engine, len(indices))
+    )
     answers = {}
     for row in np.flatnonzero(found.passed).tolist():
         index = indices[row]

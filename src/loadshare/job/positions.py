@@ -36,6 +36,7 @@ def solve(
     reduce: bool = True,
     tolerance: float = TOLERANCE,
     positions: Iterable[int] | None = None,
+    engine: str = "vectorised",
     progress: Progress | None = None,
 ) -> Result:
     """Find and certify the equilibrium of a case at every position.
@@ -54,6 +55,9 @@ def solve(
         Largest scaled residual of a certified answer.
     positions : iterable of int, optional
         1-based positions to solve; all by default.
+    engine : {"vectorised", "compiled"}
+        Of the hot path: NumPy, or Numba, which takes a second to load and is several times faster
+        for those who solve many cases in one process.
     progress : Progress, optional
         Called after every position.
 
@@ -80,10 +84,11 @@ def solve(
     """
     case, machine = prepared(case)
     options, hot = _options(solver, method, reduce)
+    settle = engine if hot else None
     wanted = wanted_positions(machine.train, positions)
     answers: list[Answer] = []
     refusals: list[Refused] = []
-    for done, found in enumerate(climb_all(machine, wanted, options, tolerance, hot), start=1):
+    for done, found in enumerate(climb_all(machine, wanted, options, tolerance, settle), start=1):
         if isinstance(found, Refused):
             refusals.append(found)
         else:
@@ -133,7 +138,8 @@ def explain(
     case, machine = prepared(case)
     options, hot = _options(solver, method, reduce)
     wanted = wanted_positions(machine.train, [position])
-    (found,) = climb_all(machine, wanted, options, tolerance, hot)
+    settle = "vectorised" if hot else None
+    (found,) = climb_all(machine, wanted, options, tolerance, settle)
     if isinstance(found, Refused):
         raise found
     if found.rung == HOT:

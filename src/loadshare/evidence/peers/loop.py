@@ -16,7 +16,8 @@ from loadshare.evidence.peers.form import Array, Form
 from loadshare.train.radial import RadialLaw
 
 PASSES = 60
-SMALL = 1e-18
+SMALL, OPEN = 1e-18, 1e-6
+"""Smallest forces at which the law of a closed and of an open row is linearised, in loads."""
 
 
 class Failure(RuntimeError):  # noqa: N818 -- what a peer says of itself
@@ -89,8 +90,7 @@ def settle(form: Form, inner: Inner, stop: float, method: str = "newton") -> Cla
         claim = Claim(claim.x, claim.forces, claim.pulls, number)
         if not form.curved:
             return claim
-        linear = None if method == "exact" else (compliance, offset)
-        misfit = misfit_of(form, claim, linear, rows, gaps, laws)
+        misfit = misfit_of(form, claim, method == "exact", rows, gaps, laws)
         if misfit <= stop or (misfit <= 1e3 * stop and misfit >= 0.5 * best):
             return claim
         best = min(best, misfit)
@@ -146,13 +146,14 @@ def next_forces(form: Form, claim: Claim, before: Array, method: str) -> Array:
         return np.maximum(claim.forces, SMALL)
     approach = form.rows @ claim.x - form.gaps
     found = force_of(form.linear, form.hertz, approach)
-    return np.maximum(np.where(approach > 0.0, found, 0.1 * before), SMALL)
+    # An open row's tangent is kept moderate: its compliance would spoil the whole programme.
+    return np.maximum(np.where(approach > 0.0, found, np.maximum(0.1 * before, OPEN)), SMALL)
 
 
 def misfit_of(
     form: Form,
     claim: Claim,
-    linear: tuple[Array, Array] | None,
+    exact: bool,
     rows: Array,
     gaps: Array,
     laws: Sequence[RadialLaw],
@@ -163,21 +164,21 @@ def misfit_of(
     ----------
     form : Form
     claim : Claim
-    linear : tuple of ndarray, or None
-        Compliances and offsets that stood for the laws; None where the laws stood themselves.
+    exact : bool
+        Whether the laws stood as they are, not tangents or secants in their place.
     rows, gaps : ndarray
         With the faces that stood for the arcs.
     laws : sequence of RadialLaw
     """
     force = np.maximum(claim.forces, 0.0)
     worst = 0.0
-    if form.hertz.any() and linear is not None:
-        compliance, offset = linear
-        # The trace of force that an interior point leaves on an open contact is no force.
-        closed = (form.rows @ claim.x > form.gaps) & (force > 0.0)
-        true = form.linear * force + form.hertz * np.cbrt(force) ** 2
-        used = compliance * force + offset
-        worst = float(np.where(closed, np.abs(true - used), 0.0).max())
+    if form.hertz.any() and not exact:
+        # The trace of force that an interior point leaves on an open contact is no force, but a
+        # compressed contact that a tangent's offset lets go free is out of its law.
+        approach = form.rows @ claim.x - form.gaps
+        yielded = form.linear * force + form.hertz * np.cbrt(force) ** 2
+        curved = (approach > 0.0) & (form.hertz > 0.0)
+        worst = float(np.where(curved, np.abs(yielded - approach), 0.0).max())
     if len(form.arcs.rows):
         new_rows, new_gaps = faces(form, claim.x)
         k = form.arcs.rows

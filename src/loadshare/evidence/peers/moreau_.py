@@ -22,7 +22,7 @@ from loadshare.train.radial import RadialLaw
 
 
 class Moreau:
-    """Batched interior-point (and, for small QPs, active-set) method."""
+    """Batched interior-point method."""
 
     def __init__(self, tolerance: float) -> None:
         self.tolerance = tolerance
@@ -65,7 +65,10 @@ class Moreau:
                     num_nonneg_cones=layout.below,
                     so_cone_dims=[3] * layout.discs,
                 ),
-                settings=moreau.Settings(device="cpu", batch_size=count, ipm_settings=ipm),
+                # Left to itself it takes an active-set method for QPs, which stays at 1e-4 here.
+                settings=moreau.Settings(
+                    solver="ipm", device="cpu", batch_size=count, ipm_settings=ipm
+                ),
             )
         return self._solvers[count]
 
@@ -119,8 +122,8 @@ class Moreau:
                     continue
                 claim = layout.claim(np.asarray(answer.x[k]), np.asarray(answer.z[k]))
                 claim = Claim(claim.x, claim.forces, claim.pulls, number)
-                rows, gaps, compliance, offset, laws = used[k]
-                misfit = misfit_of(forms[k], claim, (compliance, offset), rows, gaps, laws)
+                rows, gaps, _, _, laws = used[k]
+                misfit = misfit_of(forms[k], claim, False, rows, gaps, laws)
                 found[k] = claim
                 if not forms[k].curved or misfit <= self.tolerance:
                     going.discard(k)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from operator import mul
 from typing import Any
 
 from loadshare.evidence.reference.elements import Contact, Graph
@@ -74,8 +75,8 @@ def _newton(machine: Machine, guess: Guess, tolerance: Any, nothing: Any) -> Set
     """Newton's method; directions that the train's own rounding leaves free are held still.
 
     A free pinion between two flanks is in balance only as far as their normals are opposite, and
-    doubles are opposite to 1e-12. Each null vector then gets a tie through the origin, whose force
-    is that rounding.
+    doubles are opposite to 1e-12. Each null vector then gets a tie where the guess stands, whose
+    force is that rounding.
     """
     try:
         return _iterated(machine, guess, tolerance, nothing)
@@ -84,7 +85,7 @@ def _newton(machine: Machine, guess: Guess, tolerance: Any, nothing: Any) -> Set
         if fault.left > ROUNDING or not spans:
             raise NoReference(f"an active set contradicts itself: {fault}") from fault
     zero = machine.arithmetic.mpf(0)
-    held = [({i: v for i, v in enumerate(s) if v}, zero) for s in spans]
+    held = [({i: v for i, v in enumerate(s) if v}, sum(map(mul, s, guess.x), zero)) for s in spans]
     count = len(machine.ties)
     tied = replace(guess, ties=[*guess.ties, *(zero for _ in held)])
     try:
@@ -112,11 +113,11 @@ def _iterated(machine: Machine, guess: Guess, tolerance: Any, nothing: Any) -> S
 
 
 def _step(equations: Equations, nothing: Any) -> tuple[Guess, tuple[tuple[Any, ...], ...]]:
-    """One Newton step, least-norm in what the equations leave free."""
+    """One Newton step, none along what the equations leave free."""
     machine, at = equations.machine, equations.at
     n = machine.size
     step, spans = solve_sparse(equations.rows, list(equations.right), equations.count, nothing)
-    x = _least_norm([a + s for a, s in zip(at.x, step, strict=False)], spans, n)
+    x = [a + s for a, s in zip(at.x, _across(step[:n], spans, n), strict=True)]
     forces = {}
     for name, force in at.forces.items():
         new = force + step[equations.force_at[name]]
@@ -142,18 +143,26 @@ def _step(equations: Equations, nothing: Any) -> tuple[Guess, tuple[tuple[Any, .
     return Guess(x, forces, ties, at.places, pulls, bounds), tuple(tuple(s[:n]) for s in spans)
 
 
-def _least_norm(x: list[Any], spans: list[list[Any]], n: int) -> list[Any]:
-    """Move coordinates along null vectors to the point of least norm."""
+def loose_directions(machine: Machine, at: Guess) -> list[list[Any]]:
+    """Return directions of the coordinates that no force above `ROUNDING` and no spring holds."""
+    carrying = {name: force for name, force in at.forces.items() if force > ROUNDING}
+    equations = Equations(machine, replace(at, forces=carrying))
+    none = [0 * r for r in equations.right]
+    _, spans = solve_sparse(equations.rows, none, equations.count, 10 * ROUNDING)
+    return [s[: machine.size] for s in spans if any(s[: machine.size])]
+
+
+def _across(step: list[Any], spans: list[list[Any]], n: int) -> list[Any]:
+    """Return the part of a step of the coordinates that is square to null vectors."""
     moving = [s[:n] for s in spans if any(s[:n])]
     if not moving:
-        return x
-    rows = [
-        {j: sum(a * b for a, b in zip(one, other, strict=True)) for j, other in enumerate(moving)}
-        for one in moving
-    ]
-    right = [-sum(a * b for a, b in zip(one, x, strict=True)) for one in moving]
+        return step
+    rows = [{j: sum(map(mul, one, other)) for j, other in enumerate(moving)} for one in moving]
+    right = [-sum(map(mul, one, step)) for one in moving]
     shares, _ = solve_sparse(rows, right, len(moving), 0)
-    return [v + sum(w * m[i] for w, m in zip(shares, moving, strict=True)) for i, v in enumerate(x)]
+    return [
+        v + sum(w * m[i] for w, m in zip(shares, moving, strict=True)) for i, v in enumerate(step)
+    ]
 
 
 def _along(pull: list[Any], q: list[Any], radius: Any) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from loadshare.evidence.reference.equations import Guess
 from loadshare.evidence.reference.machine import Machine, machine
-from loadshare.evidence.reference.settle import NoReference, Settled, settle
+from loadshare.evidence.reference.settle import NoReference, Settled, loose_directions, settle
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
 from loadshare.train.train import Situation, Train
@@ -43,6 +43,9 @@ class Reference:
         Force [N] of every spline and round ring on its gear.
     undetermined : frozenset of str
         Gears whose displacement the equilibrium does not determine.
+    loose : frozenset of str
+        Gears, these included, whose displacement hangs on forces below 1e-9 of the load: where they
+        come to rest is decided by digits that no case file has.
     residual : float
         Largest residual of all equations, in forces and lengths of the case.
     imbalance : float
@@ -60,6 +63,7 @@ class Reference:
     force: Mapping[str, float]
     pull: Mapping[str, Vector]
     undetermined: frozenset[str]
+    loose: frozenset[str]
     residual: float
     imbalance: float
     slack: float
@@ -176,6 +180,16 @@ def _hinted(fine: Machine, train: Train, hint: Equilibrium) -> Guess:
     return Guess(x, forces, [zero] * len(fine.ties), places, pulls, bounds)
 
 
+def _moving(fine: Machine, spans: Sequence[Sequence[Any]]) -> frozenset[str]:
+    """Gears that null vectors displace."""
+    return frozenset(
+        gear
+        for gear, i in fine.moves.items()
+        for span in spans
+        if max(abs(span[i]), abs(span[i + 1])) > FREE * max(abs(v) for v in span)
+    )
+
+
 def _report(fine: Machine, train: Train, settled: Settled) -> Reference:
     at, unit, length = settled.at, fine.arithmetic.mpf(fine.force), fine.arithmetic.mpf(fine.length)
     force = {n: float(at.forces.get(n, 0) * unit) for n in fine.contacts}
@@ -185,12 +199,7 @@ def _report(fine: Machine, train: Train, settled: Settled) -> Reference:
         net = flanks[0] - (flanks[1] if len(flanks) > 1 else 0)
         torque[name] = fine.arithmetic.mpf(mesh.radii[0]) * net * unit
     gaps = [-c.approach(at.x)[0] for n, c in fine.contacts.items() if n not in at.forces]
-    free = {
-        gear
-        for gear, i in fine.moves.items()
-        for span in settled.free
-        if max(abs(span[i]), abs(span[i + 1])) > FREE * max(abs(v) for v in span)
-    }
+    undetermined = _moving(fine, settled.free)
     return Reference(
         torque={n: float(t) for n, t in torque.items()},
         displacement={
@@ -199,7 +208,8 @@ def _report(fine: Machine, train: Train, settled: Settled) -> Reference:
         },
         force=force,
         pull={n: np.array([-float(v * unit) for v in p]) for n, p in at.pulls.items()},
-        undetermined=frozenset(free),
+        undetermined=undetermined,
+        loose=undetermined | _moving(fine, loose_directions(fine, at)),
         residual=float(settled.residual),
         imbalance=float(settled.imbalance),
         slack=float(min([*at.forces.values(), *gaps], default=0)),
