@@ -134,6 +134,7 @@ def solve_many(
     tolerance: float = TOLERANCE,
     engine: str = "auto",
     workers: int = WORKERS,
+    least_norm: bool = False,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Find and certify the equilibria of many samples of a case.
@@ -156,6 +157,9 @@ def solve_many(
         on.
     workers : int
         Threads.
+    least_norm : bool
+        Move displacements that an equilibrium leaves undetermined to the least-norm ones, as
+        `solve` does: some milliseconds for every sample in which a closed contact carries nothing.
     progress : Progress, optional
         Called after every block with samples done and in all.
 
@@ -199,7 +203,7 @@ def solve_many(
         tolerance=tolerance,
         engine=engine,
         workers=workers,
-        least_norm=True,
+        least_norm=least_norm,
     ):
         table = table or _Table(block, count, keep)
         table.write(block)
