@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS = 1
 export NO_MKDOCS_2_WARNING = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-all lint format types layers docs docs-serve cases bench stress clean
+.PHONY: help run test test-all lint format types layers docs docs-serve cases bench stress reproduce clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  %-12s %s\n", $$1, $$2}'
@@ -64,6 +64,9 @@ bench: $(VENV)/.bench ## measure speed against accuracy (docs/evidence)
 
 stress: $(VENV)/.bench ## try every method on every family (docs/evidence)
 	$(BIN)/loadshare stress
+
+reproduce: $(VENV)/.run ## compute the seed paper's figures (docs/reproduction.md)
+	$(BIN)/loadshare reproduce
 
 clean: ## remove what was built
 	rm -rf $(VENV) site dist build .pytest_cache .mypy_cache .ruff_cache

@@ -209,8 +209,8 @@ def test_all_problems_of_a_case_are_listed_one_per_line(command, broken):
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("--solver", "x"), "'clarabel', 'osqp', 'cvxpy'"),
-        (("--method", "x"), "'newton', 'picard', 'power'"),
+        (("--solver", "x"), "'--solver': 'x' is not one of 'auto', 'clarabel', 'osqp', 'cvxpy'"),
+        (("--method", "x"), "'--method': 'x' is not one of 'newton', 'picard', 'power'"),
         (("--position", "6"), "this case has positions 1 to 5"),
         (("--tolerance", "nan"), "must be a positive number"),
         (("--tolerance", "0"), "must be a positive number"),

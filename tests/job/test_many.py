@@ -30,6 +30,12 @@ RINGS = {
 LIMIT_RING = "fgfbstts/limit_ring"
 
 
+def small_blocks(monkeypatch, samples: int) -> None:
+    """Take so many samples at a time, and one position after another."""
+    monkeypatch.setattr(many, "BLOCK", samples)
+    monkeypatch.setattr(many, "TOGETHER", 1)
+
+
 def apart(one, other, name: str) -> float:
     """Largest difference of a variable over its largest figure."""
     a, b = one[name].values, other[name].values
@@ -276,7 +282,7 @@ def floats(count: int) -> dict[str, np.ndarray]:
 
 def test_the_number_of_workers_does_not_matter(monkeypatch):
     """Bit for bit: blocks are the same, whoever solves them."""
-    monkeypatch.setattr(many, "BLOCK", 7)
+    small_blocks(monkeypatch, 7)
     one, two, five = (
         ls.solve_many(shipped(LIMIT_RING), floats(40), positions=[1, 3], workers=w)
         for w in (1, 2, 5)
@@ -290,7 +296,7 @@ def test_the_number_of_workers_does_not_matter(monkeypatch):
 def test_the_size_of_blocks_does_not_matter(name, block, monkeypatch):
     case, samples = varied(name, 24, seed=2)
     whole = ls.solve_many(case, samples, positions=[1])
-    monkeypatch.setattr(many, "BLOCK", block)
+    small_blocks(monkeypatch, block)
     parts = ls.solve_many(case, samples, positions=[1])
     for name in ("torque", "contact_force", "displacement"):
         assert apart(whole, parts, name) < 1e-12
@@ -344,7 +350,7 @@ def test_gears_that_float_in_some_samples_only_are_all_told():
 
 def test_blocks_come_one_by_one(monkeypatch):
     """In order and only as they are asked for."""
-    monkeypatch.setattr(many, "BLOCK", 4)
+    small_blocks(monkeypatch, 4)
     solved = []
     real = many._block
     monkeypatch.setattr(many, "_block", lambda *args: solved.append(1) or real(*args))
@@ -357,7 +363,7 @@ def test_blocks_come_one_by_one(monkeypatch):
 
 
 def test_workers_run_ahead_by_a_block_each_and_no_more(monkeypatch):
-    monkeypatch.setattr(many, "BLOCK", 2)
+    small_blocks(monkeypatch, 2)
     solved = []
     real = many._block
     monkeypatch.setattr(many, "_block", lambda *args: solved.append(1) or real(*args))
@@ -369,7 +375,7 @@ def test_workers_run_ahead_by_a_block_each_and_no_more(monkeypatch):
 
 def test_memory_does_not_grow_with_the_blocks(monkeypatch):
     """Twenty-four blocks take no more room at once than four, but for the input's own columns."""
-    monkeypatch.setattr(many, "BLOCK", 100)
+    small_blocks(monkeypatch, 100)
     case = shipped(LIMIT_RING)
 
     def peak(count: int) -> int:
@@ -389,7 +395,7 @@ def test_memory_does_not_grow_with_the_blocks(monkeypatch):
 
 
 def test_progress_is_told_after_every_block(monkeypatch):
-    monkeypatch.setattr(many, "BLOCK", 4)
+    small_blocks(monkeypatch, 4)
     told = []
     ls.solve_many(
         shipped(LIMIT_RING),

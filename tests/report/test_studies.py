@@ -89,6 +89,29 @@ def test_names_and_positions_can_be_chosen(line, read):
     assert "torque, largest over positions [N·m]" in read(sweep(line, "torque").spec).words()
 
 
+def test_round_off_does_not_look_like_a_result(line, read):
+    """A pinion on its stop has no margin; that of another lies a fraction of an atom beside."""
+    margin = np.array([3e-17, -2e-17, 0.0, 1e-16, 0.0]).reshape(5, 1, 1).repeat(2, axis=1)
+    attrs = {"units": "m", "long_name": "margin"}
+    data = line.assign(margin=(("rings.4.float", "position", "float"), margin, attrs))
+    spec = read(sweep(data, "margin").spec)
+    assert "margin, largest over positions [µm]" in spec.words()
+    low, high = spec.marks("point")[0]["encoding"]["y"]["scale"]["domain"]
+    # A nanometre at least, in µm, with its margin on both sides.
+    assert high - low == pytest.approx(1.16e-3)
+    assert low < 0.0 < high
+
+
+def test_a_float_without_a_ring_has_no_reaction_to_show(line, read):
+    names = {"float": ["b", "c"]}
+    data = line.reindex(names, fill_value=0.0).assign(
+        margin=(("float",), np.array([1e-6, np.nan]), {"units": "m"})
+    )
+    assert {r["name"] for r in read(sweep(data, "reaction").spec).rows("point", "name")} == {"b"}
+    both = read(sweep(data, "reaction", names=["b", "c"]).spec).rows("point", "name")
+    assert {r["name"] for r in both} == {"b", "c"}
+
+
 @pytest.mark.parametrize(
     ("settings", "told"),
     [
@@ -170,7 +193,7 @@ def test_the_distribution_holds_every_sample(scattered, read):
     assert reached[-1] == pytest.approx(1.0, rel=1e-12)
     assert reached == sorted(reached)
     words = spec.words()
-    assert "P(Ω > 1.045) = 0.0123 (0.01 to 0.02)" in words
+    assert "P(Ω > 1.045) = 0.0123 (95 %: 0.01 to 0.02)" in words
     assert "2,000 samples" in words
     marks = {r["text"]: r["x"] for r in spec.rows("rule", "text")}
     assert set(marks) == {"50 %", "95 %", "limit"}

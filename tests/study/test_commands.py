@@ -13,9 +13,8 @@ from loadshare.cli.main import app
 RING = CASES / "fgfbstts/limit_ring.toml"
 
 
-@pytest.fixture
-def command():
-    runner = CliRunner(env={"COLUMNS": "160", "FORCE_COLOR": None, "TTY_COMPATIBLE": None})
+def on_a_screen_of(columns: int):
+    runner = CliRunner(env={"COLUMNS": f"{columns}", "FORCE_COLOR": None, "TTY_COMPATIBLE": None})
 
     def run(*words: object):
         result = runner.invoke(app, [str(word) for word in words], prog_name="loadshare")
@@ -25,6 +24,16 @@ def command():
         return result
 
     return run
+
+
+@pytest.fixture
+def command():
+    return on_a_screen_of(160)
+
+
+@pytest.fixture
+def narrow():
+    return on_a_screen_of(80)
 
 
 @pytest.fixture
@@ -80,12 +89,28 @@ def test_sweep(command, tmp_path):
         *("--set", "rings.4.float=rings.5.float=0 um:10 um:3"),
     )
     assert result.exit_code == 0
-    row = next(line for line in result.stdout.splitlines() if line.split()[:1] == ["5"])
+    assert "Sweep of limit_ring: largest Ω, by stage" in result.stdout
+    row = [line for line in result.stdout.splitlines() if line.split()[:1] == ["5"]][-1]
     case = ls.load_case(RING).replace({"rings.4.float": "5 um", "rings.5.float": "5 um"})
     omega = ls.solve(case, positions=[1]).pair_omega["II"]
     assert f"{omega:.4f}" in row.split()
     with file.open() as lines:
         assert len(list(csv.DictReader(lines))) == 3 * 10
+
+
+def test_a_narrow_screen_cuts_no_figure(narrow):
+    """Two inputs with long names, in eighty columns: every Ω stands whole."""
+    result = narrow(
+        *("sweep", CASES / "two_path/clocking_error.toml", "--position", 1),
+        *("--set", "shafts.'wheelA-pinionA'.clocking=0 mrad, 1 mrad"),
+        *("--set", "shafts.'wheelB-pinionB'.clocking=0 mrad, 1 mrad"),
+    )
+    assert result.stdout.count("1.0457") == 2 * 3
+    assert "by stage and by group alike" in result.stdout
+    told = narrow("sensitivity", RING, "--position", 1).stdout
+    assert 'meshes."9-10".stiffness       6.425e+06 N*m/rad' in told
+    # None has a kink: no column for the other side.
+    assert "falling" not in told
 
 
 def test_a_sweep_with_points_that_cannot_be_solved_tells_them(command):
@@ -104,7 +129,8 @@ def test_critical(command, tmp_path):
     row = next(line for line in result.stdout.splitlines() if "upper stop" in line)
     assert float(row.split()[0]) == pytest.approx(8.35, abs=0.01)
     assert "float leaves boundary" in row
-    assert row.split()[-2:] == ["yes", "1-5"]
+    assert row.split()[-1] == "1-5"
+    assert "confirmed by certified solves on both sides" in result.stdout
     with file.open() as lines:
         events = list(csv.DictReader(lines))
     assert {e["position"] for e in events} == set("12345")
@@ -169,6 +195,36 @@ def test_a_study_that_the_case_holds(command, measured, name, shows):
     result = command("study", measured, name)
     assert result.exit_code == 0
     assert shows in result.stdout
+
+
+def test_a_study_that_lacks_an_answer_ends_as_the_command_does(command, tmp_path):
+    path = tmp_path / "open.toml"
+    path.write_text(
+        f"""extends = '{RING.as_posix()}'
+[study.sweep]
+kind = "sweep"
+over = {{ "rings.4.float" = ["-1 um", "1 um"] }}
+positions = [1]
+""",
+        encoding="utf-8",
+    )
+    result = command("study", path, "sweep")
+    assert result.exit_code == 1
+    assert "1 point of 2 not certified." in result.stderr
+
+
+def test_an_event_that_is_not_confirmed_is_told(command, monkeypatch):
+    from dataclasses import replace
+
+    from loadshare.study import critical as room
+
+    found = ls.critical(RING, "rings.4.float", "8 um", "9 um", positions=[1])
+    doubtful = replace(found, events=(replace(found.events[0], confirmed=False), *found.events[1:]))
+    monkeypatch.setattr(room, "critical", lambda *_, **__: doubtful)
+    result = command("critical", RING, "rings.4.float", "--from", "8 um", "--to", "9 um")
+    assert result.exit_code == 1
+    assert "1 event of 2 not confirmed" in result.stderr
+    assert [line.split()[-2] for line in result.stdout.splitlines()[-2:]] == ["NO", "yes"]
 
 
 def test_studies_are_listed(command, measured):

@@ -100,7 +100,7 @@ def test_marks_for_a_picture():
     found = ls.critical(case, "rings.4.float", "8 um", "9 um", positions=[2, 3])
     marks = dict(found.marks())
     assert set(marks) == {e.value for e in found.events if e.position == 2}
-    assert "4: float leaves boundary" in marks.values()
+    assert "gear 4: float leaves boundary" in marks.values()
     assert found.marks(3) == found.marks(2)
     assert ls.critical(case, "rings.4.float", "10 um", "11 um", positions=[1]).marks() == ()
 

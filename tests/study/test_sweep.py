@@ -29,6 +29,24 @@ def test_every_point_is_a_solve_of_its_own():
     assert here["rest"].sel(position=1, float="1") == "inside"
 
 
+def test_the_picture_is_that_of_the_arrays(tmp_path):
+    case = shipped("fgfbstts/limit_ring")
+    found = ls.sweep(case, {"rings.*.float": "0 um:12 um:4"}, positions=[1])
+    events = ls.critical(case, "rings.*.float", "0 um", "12 um", positions=[1]).marks()
+    figure = found.plot("pair_omega", names=["II"], events=events)
+    rows = [row for rows in figure.spec["datasets"].values() for row in rows]
+    shown = {r["x"]: r["y"] for r in rows if "y" in r}
+    arrays = found.dataset["pair_omega"].sel(stage="II")
+    assert shown == dict(zip([0.0, 4.0, 8.0, 12.0], arrays.values.tolist(), strict=True))
+    told = {r["event"]: r["x"] for r in rows if "event" in r}
+    assert told == {event: value for value, event in events}
+    assert set(told) == {"gear 4: float leaves boundary", "gear 5: float leaves boundary"}
+    text = found.plot().save(tmp_path / "sweep.svg").read_text(encoding="utf-8")
+    assert "Limit rings on the floating pinions" in text
+    with pytest.raises(ls.LoadshareError, match="no variable 'colour'"):
+        found.plot("colour")
+
+
 def test_a_star_ties_all_that_it_means():
     case = shipped("fgfbstts/limit_ring")
     parameter = read_parameter(case, "rings.*.float", "um")

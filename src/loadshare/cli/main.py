@@ -17,8 +17,10 @@ import typer
 from loadshare._version import __version__
 from loadshare.cli.batch.command import batch
 from loadshare.cli.check import check
+from loadshare.cli.command import Command
 from loadshare.cli.draw import draw
 from loadshare.cli.evidence.chart import chart
+from loadshare.cli.evidence.reproduce import reproduce
 from loadshare.cli.evidence.stress import stress
 from loadshare.cli.ltca import ltca
 from loadshare.cli.new import new
@@ -44,9 +46,9 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 STUDIES = (sweep, critical, sensitivity, tolerance, march, compare, fit, study)
-EVIDENCE = (chart, stress)
+EVIDENCE = (chart, stress, reproduce)
 for command in (run, batch, report, draw, check, schema, new, ltca, *STUDIES, *EVIDENCE):
-    app.command()(command)
+    app.command(cls=Command)(command)
 
 
 def _tell_version(wanted: bool) -> None:

@@ -27,6 +27,12 @@ FEW = 2000
 """Equilibria up to which compiling, or reading what was compiled, costs more than it saves."""
 
 
+def _parts(count: int, parts: int) -> list[slice]:
+    """Equal parts of so many samples."""
+    each = count // max(parts, 1)
+    return [slice(k * each, k * each + each) for k in range(parts)]
+
+
 def engine_named(name: str, count: int) -> Engine:
     """Return an engine by name.
 
@@ -46,6 +52,8 @@ def engine_named(name: str, count: int) -> Engine:
     return compiled.settle
 
 
+PILOTS, WORTH = 64, 8
+"""Samples that show the others where to begin, and how many times as many it takes."""
 Attempt = Callable[[NDArray[np.bool_]], tuple[State, Found]]
 """Solves some of the samples anew."""
 
@@ -123,7 +131,11 @@ class Machine:
         return self._own[1]
 
     def answer(
-        self, situations: Situations, tolerance: float, engine: Engine, start: int | None = None
+        self,
+        situations: Situations,
+        tolerance: float,
+        engine: Engine,
+        starts: Sequence[int] = (),
     ) -> Answers:
         """Solve and certify samples.
 
@@ -133,16 +145,24 @@ class Machine:
         tolerance : float
             Largest scaled residual of a certified answer.
         engine : Engine
-        start : int, optional
-            Begin at what the train itself does at this position (1-based).
+        starts : sequence of int, optional
+            Positions (1-based) at which equal parts of the samples begin where the train itself
+            stands.
         """
         data = data_of(self.elements, situations)
-        begin = self._start(start, engine) if start is not None else None
-        state = at_rest(self.elements, data, begin.share if begin else None)
-        code = first_sets(self.elements, data)
-        if begin is not None:
-            code[:, : self.elements.rows] = begin.code
-        found = exchange(self.elements, data, state, engine, code)
+        state, code = at_rest(self.elements, data), first_sets(self.elements, data)
+        parts = _parts(data.count, len(starts))
+        for part, index in zip(parts, starts, strict=True):
+            begin = self._start(index, engine)
+            if begin is not None:
+                self._begin(part, begin, data, state, code)
+        found = None
+        if parts and parts[0].stop >= WORTH * PILOTS:
+            found = self._pilots(parts, data, state, code, engine)
+        more = exchange(
+            self.elements, data, state, engine, code, only=~found.solved if found else None
+        )
+        found = found.completed(more) if found else more
         for again in self._again(data, engine):
             if found.solved.all():
                 break
@@ -160,6 +180,31 @@ class Machine:
             found.code,
             found.turns,
         )
+
+    def _begin(self, part: slice, begin: _Start, data: Data, state: State, code: Codes) -> None:
+        code[part, : self.elements.rows] = begin.code
+        state.begin(part, begin.share, data)
+
+    def _pilots(
+        self, parts: Sequence[slice], data: Data, state: State, code: Codes, engine: Engine
+    ) -> Found:
+        """Solve the first samples of every part; the others begin where most of these stand."""
+        pilots = np.concatenate([np.arange(p.start, p.start + PILOTS) for p in parts])
+        some = np.zeros(data.count, dtype=bool)
+        some[pilots] = True
+        found = exchange(self.elements, data, state, engine, code, only=some)
+        pilots = pilots[found.solved[pilots]]
+        if len(pilots):
+            # The set from which it takes the fewest changes to all the others.
+            closed = found.code[pilots, : self.elements.rows].astype(float)
+            apart = closed.sum(axis=1) - 2.0 * closed @ closed.mean(axis=0)
+            middle = pilots[apart.argmin()]
+            alike = pilots[(found.code[pilots] == found.code[middle]).all(axis=1)]
+            share = np.abs(state.force[alike]).mean(axis=0) / pushes(data)[alike].mean()
+            begin = _Start(found.code[middle, : self.elements.rows], share)
+            for part in parts:
+                self._begin(slice(part.start + PILOTS, part.stop), begin, data, state, code)
+        return found
 
     def _again(self, data: Data, engine: Engine) -> Iterator[Attempt]:
         """Further ways for samples that found no consistent set: from rest, then one at a time."""

@@ -7,6 +7,7 @@ certified at once; single samples that it leaves climb the ladder.
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -30,6 +31,7 @@ from loadshare.solver.position import of_least_norm
 from loadshare.train import build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.samples import Samples, samples_of
+from loadshare.train.situations import stack
 from loadshare.train.train import Stage
 
 if TYPE_CHECKING:
@@ -38,7 +40,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 BLOCK = 4096
-"""Samples that are solved together."""
+"""Samples that are solved together, if every one has a few positions."""
+TOGETHER = 20480
+"""Equilibria that are solved together."""
 WORKERS = 2
 """Threads; the compiled passes hold no lock."""
 KEEP = ("torque", "share", "pair_share", "displacement", "contact_force")
@@ -100,13 +104,12 @@ def solve_blocks(
         case = load_case(case)
     groups = samples_of(case, samples)
     total = sum(len(rows) for rows, _ in groups)
+    wanted = tuple(wanted_positions(groups[0][1].train, positions))
+    size = max(BLOCK, TOGETHER // len(wanted))
     tasks: list[tuple[Machine, NDArray[np.intp], Samples, slice]] = []
     for rows, group in groups:
-        machine = Machine(group.train)
-        tasks += [
-            (machine, rows, group, slice(at, at + BLOCK)) for at in range(0, len(rows), BLOCK)
-        ]
-    wanted = tuple(wanted_positions(tasks[0][0].train, positions))
+        machine = _machine(case, group)
+        tasks += [(machine, rows, group, slice(at, at + size)) for at in range(0, len(rows), size)]
     solver = engine_named(engine, total * len(wanted))
 
     def work(task: tuple[Machine, NDArray[np.intp], Samples, slice]) -> Block:
@@ -123,6 +126,23 @@ def solve_blocks(
             block = running.pop(0).result()
             running += [pool.submit(work, task) for task in islice(queue, 1)]
             yield block
+
+
+RECENT = 16
+"""Machines that are kept, for those who solve samples of one case again and again."""
+_recent: OrderedDict[tuple[object, ...], tuple[Case, Machine]] = OrderedDict()
+
+
+def _machine(case: Case, samples: Samples) -> Machine:
+    """Return the machine of samples that share one; what varies in them is no part of it."""
+    fixed = [(c.path, c.text(0)) for c in samples.columns if c.path not in samples.values]
+    key = (id(case), frozenset(samples.values), *fixed)
+    if key not in _recent:
+        # The case is kept with its machine, so that its id is not given to another.
+        _recent[key] = case, Machine(samples.train)
+        if len(_recent) > RECENT:
+            _recent.popitem(last=False)
+    return _recent[key][1]
 
 
 def solve_many(
@@ -224,34 +244,42 @@ def _block(
     least_norm: bool,
 ) -> Block:
     """Solve one block; what the hot path leaves climbs the ladder."""
-    shape = (len(rows), len(positions))
+    count, shape = len(rows), (len(rows), len(positions))
     certified, determined = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
     residual = np.full(shape, np.nan)
     rung = np.full(shape, HOT, dtype="<U24")
     message: dict[tuple[int, int], str] = {}
-    every = []
-    for p, index in enumerate(positions):
-        found = machine.answer(samples.situations(index), tolerance, engine, start=index)
-        certified[:, p] = found.passed
-        residual[:, p] = found.verdicts.worst
-        determined[:, p] = found.tied & found.held
+    every: list[Equilibria] = []
+    abreast = max(1, TOGETHER // count)
+    for at in range(0, len(positions), abreast):
+        some = positions[at : at + abreast]
+        situations = stack([samples.situations(index) for index in some])
+        found = machine.answer(situations, tolerance, engine, starts=some)
+        every += [
+            found.equilibria.part(slice(p * count, p * count + count)) for p in range(len(some))
+        ]
+        columns = slice(at, at + len(some))
+        certified[:, columns] = found.passed.reshape(-1, count).T
+        residual[:, columns] = found.verdicts.worst.reshape(-1, count).T
+        determined[:, columns] = (found.tied & found.held).reshape(-1, count).T
         if least_norm:
-            for row in np.flatnonzero(found.passed & ~found.tied).tolist():
-                _settle_loose(found.equilibria, row, samples.one(row), index, tolerance)
-        for row in np.flatnonzero(~found.passed).tolist():
-            try:
-                train = build_train(samples.one(row))
-                answer = climb(train, index, Options(), tolerance)
-            except (CaseError, Refused) as refusal:
-                message[int(rows[row]), index] = str(refusal)
-                residual[row, p], rung[row, p] = np.nan, ""
-                found.equilibria.forget(row)
-                continue
-            found.equilibria.put(row, answer.equilibrium)
-            certified[row, p], rung[row, p] = True, answer.rung
-            residual[row, p] = answer.certificate.worst
-            determined[row, p] = not answer.equilibrium.undetermined
-        every.append(found.equilibria)
+            for k in np.flatnonzero(found.passed & ~found.tied).tolist():
+                p, row = divmod(k, count)
+                _settle_loose(every[at + p], row, samples.one(row), some[p], tolerance)
+    for row, p in np.argwhere(~certified).tolist():
+        index = positions[p]
+        try:
+            train = build_train(samples.one(row))
+            answer = climb(train, index, Options(), tolerance)
+        except (CaseError, Refused) as refusal:
+            message[int(rows[row]), index] = str(refusal)
+            residual[row, p], rung[row, p] = np.nan, ""
+            every[p].forget(row)
+            continue
+        every[p].put(row, answer.equilibrium)
+        certified[row, p], rung[row, p] = True, answer.rung
+        residual[row, p] = answer.certificate.worst
+        determined[row, p] = not answer.equilibrium.undetermined
     return Block(rows, positions, tuple(every), certified, residual, determined, rung, message)
 
 
@@ -266,14 +294,13 @@ def _settle_loose(answers: Equilibria, row: int, case: Case, index: int, toleran
 def mesh_torques(answers: Equilibria) -> tuple[Array, tuple[str, ...]]:
     """Return torques at the drivers [N·m], drive less coast, (S, meshes), and the meshes."""
     meshes = answers.names.train.meshes
-    torque = np.zeros((len(answers.flank_force), len(meshes)))
+    lever = np.zeros((answers.flank_force.shape[1], len(meshes)))
     flank = 0
     for m, mesh in enumerate(meshes.values()):
         for drive in mesh.flanks:
-            sign = mesh.radii[0] if drive else -mesh.radii[0]
-            torque[:, m] += sign * answers.flank_force[:, flank]
+            lever[flank, m] = mesh.radii[0] if drive else -mesh.radii[0]
             flank += 1
-    return torque, tuple(meshes)
+    return answers.flank_force @ lever, tuple(meshes)
 
 
 def shares(torque: Array, meshes: tuple[str, ...], stages: Iterable[Stage], pairs: bool) -> Array:
@@ -302,6 +329,11 @@ class _Table:
         self.positions, self.keep, self.names = first.positions, keep, names
         train = names.train
         self.moving = [k for k, g in enumerate(train.gears.values()) if g.moves]
+        # From the displacements of all gears to those that can move, in their frames.
+        frames = np.zeros((len(train.gears), 3, len(self.moving), 2))
+        for column, k in enumerate(self.moving):
+            frames[k, :, column] = list(train.gears.values())[k].frame.T
+        self.frames = frames.reshape(3 * len(train.gears), -1)
         shape = (count, len(first.positions))
         sizes = {
             "torque": (len(train.meshes),),
@@ -326,22 +358,21 @@ class _Table:
         self.rung[rows] = block.rung
         for (row, index), why in block.message.items():
             self.message[f"sample {row}, position {index}"] = why
-        gears = list(self.names.train.gears.values())
+        place = slice(rows[0], rows[-1] + 1) if rows[-1] - rows[0] == len(rows) - 1 else rows
         stages = self.names.train.stages
         for p, answers in enumerate(block.equilibria):
             torque, meshes = mesh_torques(answers)
             values = self.values
             if "torque" in values:
-                values["torque"][rows, p] = torque
+                values["torque"][place, p] = torque
             for name, pairs in (("share", False), ("pair_share", True)):
                 if name in values:
-                    values[name][rows, p] = shares(torque, meshes, stages, pairs=pairs)
+                    values[name][place, p] = shares(torque, meshes, stages, pairs=pairs)
             if "displacement" in values:
-                for k, g in enumerate(self.moving):
-                    moved = answers.displacement[:, g] @ gears[g].frame.T
-                    values["displacement"][rows, p, k] = moved
+                flat = answers.displacement.reshape(len(rows), -1)
+                values["displacement"][place, p] = (flat @ self.frames).reshape(len(rows), -1, 2)
             if "contact_force" in values:
-                values["contact_force"][rows, p] = answers.ring_force
+                values["contact_force"][place, p] = answers.ring_force
 
     def dataset(self, case: Case, tolerance: float) -> xr.Dataset:
         """Return everything with labels."""

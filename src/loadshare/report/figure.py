@@ -43,6 +43,8 @@ CONFIG: dict[str, Any] = {
         "tickColor": SOFT,
         "labelLimit": 220,
     },
+    # Every figure stands below its tick, and none runs into the next.
+    "axisQuantitative": {"labelFlush": False, "labelOverlap": True, "labelSeparation": 6},
     "legend": {
         "labelColor": INK,
         "titleColor": INK,

@@ -35,6 +35,8 @@ NUMBER = Unit("")
 MICROMETRE = Unit("µm", 1e6)
 MILLIMETRE = Unit("mm", 1e3)
 MICRORADIAN = Unit("µrad", 1e6)
+ROUND_OFF = 1e-12
+"""Length that is as good as none [m]."""
 
 # By the unit's name in labelled arrays: from small to large, each with the SI value at which the
 # next one becomes easier to read.
@@ -62,6 +64,6 @@ def engineering(values: Iterable[float], unit: str) -> Unit:
     if ladder is None:
         return Unit(unit)
     largest = max((abs(v) for v in values if math.isfinite(v)), default=0.0)
-    if largest == 0.0 and unit == "m":
+    if largest < ROUND_OFF and unit == "m":
         return MICROMETRE
     return next(known for known, end in ladder if largest < end)

@@ -266,6 +266,32 @@ class Data:
     radial: Array
     carried: Array
 
+    @cached_property
+    def loaded(self) -> NDArray[np.intp]:
+        """Coordinates with a load in some sample."""
+        return np.flatnonzero(self.load.any(axis=0))
+
+    @cached_property
+    def push(self) -> Array:
+        """Largest load of every sample, shape (S or 1,)."""
+        return np.asarray(np.abs(self.load[:, self.loaded]).max(axis=1, initial=0.0))
+
+    @cached_property
+    def steady(self) -> NDArray[np.bool_]:
+        """Elements whose b is the same in all samples, shape (m,)."""
+        return np.asarray((self.bending == self.bending[:1]).all(axis=0))
+
+    @cached_property
+    def curved(self) -> NDArray[np.bool_]:
+        """Elements with c > 0 in some sample, shape (m,)."""
+        return np.asarray(self.hertz.any(axis=0))
+
+    @cached_property
+    def laws(self) -> bytes:
+        """What the structure of a set depends on: power laws, and compliances that do not vary."""
+        constant = np.where(self.steady, self.bending[0], np.nan)
+        return self.curved.tobytes() + constant.tobytes()
+
 
 def data_of(elements: Elements, situations: Situations) -> Data:
     """Write the numbers of many situations in the order and the units of the elements."""
@@ -282,22 +308,22 @@ def data_of(elements: Elements, situations: Situations) -> Data:
     tabulated = np.full(len(elements.kinds), -1)
     meshes = list(train.meshes.values())
     flat = situations.offset.reshape(len(situations.offset), -1)
-    column = elements.springs
-    for m, mesh in enumerate(meshes):
-        shifts = np.zeros((len(order), 3))
-        for drive in mesh.flanks:
-            on_driver, on_driven, normal = mesh.direction(drive)
-            constant = on_driver * scene.rotation[mesh.driver].constant
-            constant += on_driven * scene.rotation[mesh.driven].constant
-            shifts[:] = 0.0
-            shifts[order[mesh.driver]], shifts[order[mesh.driven]] = normal, -normal
-            room = situations.gap[:, m] if drive else situations.backlash[:, m]
-            gaps.append(room - constant - flat @ shifts.reshape(-1))
-            bends.append(situations.bending[:, m])
-            hertz.append(situations.hertz[:, m])
-            if situations.table.shape[-1] and situations.table[0, m, 0, 1] > 0.0:
-                tabulated[column] = m
-            column += 1
+    flanks = [(m, mesh, drive) for m, mesh in enumerate(meshes) for drive in mesh.flanks]
+    shifts = np.zeros((len(flanks), len(order), 3))
+    for e, (_, mesh, drive) in enumerate(flanks):
+        normal = mesh.direction(drive)[2]
+        shifts[e, order[mesh.driver]], shifts[e, order[mesh.driven]] = normal, -normal
+    nearer = shifts.reshape(len(flanks), -1) @ flat.T
+    for e, (m, mesh, drive) in enumerate(flanks):
+        on_driver, on_driven, _ = mesh.direction(drive)
+        constant = on_driver * scene.rotation[mesh.driver].constant
+        constant += on_driven * scene.rotation[mesh.driven].constant
+        room = situations.gap[:, m] if drive else situations.backlash[:, m]
+        gaps.append(room - constant - nearer[e])
+        bends.append(situations.bending[:, m])
+        hertz.append(situations.hertz[:, m])
+        if situations.table.shape[-1] and situations.table[0, m, 0, 1] > 0.0:
+            tabulated[elements.springs + e] = m
     none = np.zeros(1)
     drums = situations.wall.shape[1]
     for d in range(drums):
@@ -319,9 +345,9 @@ def data_of(elements: Elements, situations: Situations) -> Data:
     return Data(
         count=situations.count,
         load=situations.torque @ to_load / force,
-        gap=_columns(gaps) / length,
-        bending=_columns(bends) * (force / length),
-        hertz=_columns(hertz) * (math.cbrt(force) ** 2 / length),
+        gap=_columns(gaps, 1.0 / length),
+        bending=_columns(bends, force / length),
+        hertz=_columns(hertz, math.cbrt(force) ** 2 / length),
         tabulated=tabulated,
         tables=situations.table / np.array([force, length])[:, None],
         nominal=np.array([a.arc.nominal for a in arcs]).reshape(-1, 3) / length,
@@ -333,15 +359,16 @@ def data_of(elements: Elements, situations: Situations) -> Data:
     )
 
 
-def _columns(values: list[Array]) -> Array:
-    """Stand one-dimensional arrays of length S or 1 side by side."""
+def _columns(values: list[Array], factor: float) -> Array:
+    """Stand one-dimensional arrays of length S or 1 side by side, times a factor."""
     if not values:
         return np.zeros((1, 0))
-    count = max(len(v) for v in values)
-    table = np.empty((count, len(values)))
-    for k, value in enumerate(values):
-        table[:, k] = value
-    return table
+    # Written lengthwise and turned at the end: a column of a wide table is slow to write.
+    table = np.empty((len(values), max(len(v) for v in values)))
+    for row, value in zip(table, values, strict=True):
+        row[:] = value
+    table *= factor
+    return np.ascontiguousarray(table.T)
 
 
 def _springs_of(

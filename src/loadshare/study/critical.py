@@ -70,7 +70,8 @@ class Critical:
         here = [e for e in self.events if e.position == (position or self.events[0].position)]
         words: dict[float, dict[str, None]] = {}
         for event in here:
-            told = f"{event.gear or event.element}: {event.kind}"
+            what = f"gear {event.gear}" if event.gear else event.element
+            told = f"{what}: {event.kind}"
             words.setdefault(event.value, {})[told] = None
         return tuple((value, "; ".join(told)) for value, told in words.items())
 

@@ -3,15 +3,16 @@
 Where every element stands clear of its limits the answer is one linear solve with the Jacobian of
 the active set. An element on the verge (no gap and no force, or a radius just at a corner) makes a
 kink: each side has its own active set, found by exchanging verge elements until none is violated to
-first order. Source: implicit function theorem; for the verge, the directional derivative of a
-complementarity problem.
+first order. A body that floats free stands on a verge as well: where the input loads it along its
+free move, the contacts in the way catch it and carry what is new. Source: implicit function
+theorem; for the verge, the directional derivative of a complementarity problem.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from itertools import product
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from itertools import combinations, product
 
 import numpy as np
 
@@ -26,6 +27,8 @@ MOST = 10
 """Verge elements up to which all their combinations are tried."""
 FOLLOWS = 1e-7
 """Part of a derivative that an active set may leave unbalanced: what differencing leaves open."""
+ROUND_OFF = 1e-11
+"""Effect of an input's step on the equations, in loads and deflections, that counts as none."""
 SLIDES = 1e-5
 """First-order violation of a verge element that counts as none, relative to the largest."""
 
@@ -42,11 +45,14 @@ class Motion:
         Its unknowns at the equilibrium.
     rate : ndarray
         Their derivative with respect to the input, per SI unit.
+    caught : tuple of str
+        Contacts that catch bodies which floated free.
     """
 
     branch: Branch
     z: Array
     rate: Array
+    caught: tuple[str, ...] = ()
 
 
 class Neighbourhood:
@@ -90,8 +96,9 @@ class Neighbourhood:
         pulls = self.branch.pulls(self.z)
         return branch.start(self.branch.x(self.z), forces, pulls)
 
-    def rate(self, branch: Branch, z: Array, explicit: Array) -> Array | None:
+    def rate(self, branch: Branch, z: Array, change: Derivative) -> Array | None:
         """Return dz for a derivative of the residual, or None if the set cannot follow."""
+        explicit = change.value[: branch.size]
         if branch.active not in self._factors:
             jacobian = branch.jacobian(z)
             inverse = np.asarray(np.linalg.pinv(jacobian, rcond=RANK), dtype=np.float64)
@@ -101,7 +108,7 @@ class Neighbourhood:
         # A singular set follows only what its equations can balance.
         left = float(np.abs(jacobian @ found + explicit).max(initial=0.0))
         size = float(np.abs(explicit).max(initial=0.0))
-        return found if left <= FOLLOWS * size else None
+        return found if left <= max(FOLLOWS * size, ROUND_OFF / change.step) else None
 
     def motion(
         self,
@@ -124,19 +131,36 @@ class Neighbourhood:
         Motion or None
             None if no active set can follow to that side.
         """
-        for active in self.sets():
+        for active, caught in self._ways():
             branch = self.on(active)
             z = self.unknowns(branch)
             try:
                 change = explicit(branch, z)
-                rate = self.rate(branch, z, change.value[: branch.size])
+                rate = self.rate(branch, z, change)
             except BranchLost:
                 continue
-            if rate is None:
+            if rate is None or not self._pressed(branch, z, sign * rate, caught):
                 continue
             if not self.verge or self._holds(branch, z, sign, rate, change.step, shifted):
-                return Motion(branch, z, rate)
+                return Motion(branch, z, rate, caught)
         return None
+
+    def _ways(self) -> Iterator[tuple[ActiveSet, tuple[str, ...]]]:
+        """Yield the sets that meet here; then those in which contacts catch what floats free."""
+        for active in self.sets():
+            yield active, ()
+        free = self.branch.undetermined(self.z).shape[1]
+        names = self.branch.catching(self.z)[:MOST]
+        for count in range(1, min(free, len(names)) + 1):
+            for caught in combinations(names, count):
+                for active in self.sets():
+                    yield replace(active, closed=active.closed | set(caught)), caught
+
+    @staticmethod
+    def _pressed(branch: Branch, z: Array, rate: Array, caught: tuple[str, ...]) -> bool:
+        """Whether the contacts that catch a body are pressed and do not pull."""
+        contacts = branch.contacts(z) if caught else {}
+        return all(float(contacts[name][1] @ rate) >= 0.0 for name in caught)
 
     def _holds(
         self,

@@ -30,7 +30,7 @@ from loadshare.study.answers import certified
 from loadshare.study.branch import Branch
 from loadshare.study.branch.system import identified
 from loadshare.study.differences import Derivative, differentiate
-from loadshare.study.directional import Motion, Neighbourhood
+from loadshare.study.directional import ROUND_OFF, Motion, Neighbourhood
 from loadshare.study.parameter import STUDY, Value, leaves, matches, read_value
 from loadshare.study.positions import loaded
 from loadshare.train import Train, build_train
@@ -41,8 +41,6 @@ if TYPE_CHECKING:
 SIDES = ("falling", "rising")
 TIE = 1e-9
 """Shares that differ by no more are both the largest."""
-ROUND_OFF = 1e-11
-"""Effect of an input's step on the equations, in loads and deflections, that counts as none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +67,8 @@ class Kink:
     ----------
     position : int
     elements : tuple of str
-        What has neither gap nor force, or stands at a corner of its law.
+        What has neither gap nor force, or stands at a corner of its law; and contacts that catch a
+        body which floats free, as soon as an input loads it.
     """
 
     position: int
@@ -214,9 +213,7 @@ def sensitivity(
         rates=rates,
         omega=stages["share"],
         pair_omega=stages["pair_share"],
-        kinks=tuple(
-            Kink(c.position, tuple(c.neighbourhood.verge)) for c in corners if c.neighbourhood.verge
-        ),
+        kinks=tuple(Kink(c.position, elements) for c in corners if (elements := c.on_the_verge)),
         error={item.key: error[item.key] for item in usable},
         skipped=tuple(skipped),
     )
@@ -281,6 +278,12 @@ class _Corner:
         self.torque = _torques(branch, z)
         loose = branch.undetermined(z)
         self.loose = np.abs(loose).max(axis=1, initial=0.0) > 1e-9
+        self._caught: dict[str, None] = {}
+
+    @property
+    def on_the_verge(self) -> tuple[str, ...]:
+        """Elements for which the derivatives found so far hold to one side only."""
+        return tuple(dict.fromkeys((*self.neighbourhood.verge, *self._caught)))
 
     def rates(
         self, trains: Callable[[float], Train], value: Value
@@ -321,7 +324,9 @@ class _Corner:
                         raise
             able = next(iter(derivatives.values())).sides[sign > 0] if derivatives else False
             found[side] = self._told(motion if able else None, derivatives)
-            both = motion if not here.verge else None
+            caught = motion.caught if motion is not None else ()
+            self._caught |= dict.fromkeys(caught)
+            both = motion if not here.verge and not caught else None
         worst = 0.0
         for derivative in derivatives.values():
             size = float(np.abs(derivative.value).max(initial=0.0))

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+    from loadshare.report.figure import Figure
     from loadshare.results import Result
 
 CERTIFIED, PARTLY, REFUSED, INVALID = "certified", "partly refused", "refused", "invalid"
@@ -84,6 +85,38 @@ class Sweep:
         from loadshare.study.tables import sweep_dataset
 
         return sweep_dataset(self)
+
+    def plot(
+        self,
+        show: str = "omega",
+        *,
+        names: Sequence[str] | None = None,
+        position: int | None = None,
+        events: Sequence[tuple[float, str]] = (),
+    ) -> Figure:
+        """Picture of a figure over the grid: lines over one parameter, maps over two.
+
+        Parameters
+        ----------
+        show : str
+            Variable of `dataset`: "omega", "pair_omega", "torque", "share", "pair_share",
+            "displacement", "margin", "reaction".
+        names : sequence of str, optional
+            Stages, meshes or floats to show; all by default.
+        position : int, optional
+            Position to show; by default the largest value over the positions.
+        events : sequence of (float, str)
+            Values of the one parameter at which something happens, and what, as
+            `Critical.marks` gives them.
+
+        Raises
+        ------
+        LoadshareError
+            If there is no such variable, name or position.
+        """
+        from loadshare.report.figures.sweep import sweep as drawn
+
+        return drawn(self.dataset, show, names=names, position=position, events=events)
 
     def to_frame(self) -> pd.DataFrame:
         """Torques and coefficients as a table, one row per point, position and mesh."""

@@ -49,6 +49,7 @@ def sweep_dataset(sweep: Sweep) -> xr.Dataset:
     attributes = {"case": sweep.case, "loadshare_version": __version__}
     if first is None:
         return xr.Dataset(words, coords=coords, attrs=attributes)
+    attributes["title"] = first.stamp.title
     positions = sorted({p.position for r in results if r for p in r.positions})
     model = first.dataset.reindex(position=positions)
     parts = [r.dataset.reindex(position=positions) if r else None for r in results]

@@ -94,6 +94,10 @@ class Equilibria:
             *(lay(getattr(self, f.name)) for f in fields(self) if f.name != "names"),
         )
 
+    def part(self, samples: slice) -> Equilibria:
+        """Return some of the samples, as a view."""
+        return self.laid(lambda array: array[samples])
+
     def one(self, sample: int, index: int, undetermined: tuple[str, ...] = ()) -> Equilibrium:
         """Return a sample as an equilibrium of position `index`."""
         names = self.names

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -171,10 +172,23 @@ class Samples:
     def _offset(self, index: int) -> Iterator[Edit]:
         turned = self.train.situation(index).rotation
         for g, (name, gear) in enumerate(self.train.gears.items()):
-            mine = [p for p in self.values if p[:2] == ("errors", name)]
-            if not mine:
+            if not any(p[:2] == ("errors", name) for p in self.values):
                 continue
-            given = self.case.errors[name]
+            fixed, turning = self._errors[name]
+            if turning is not None:
+                angle = gear.sense * turned[name]
+                c, s = np.cos(angle), np.sin(angle)
+                fixed = fixed + turning @ (np.array([[c, s], [-s, c]]) @ gear.frame)
+            yield (g,), fixed
+
+    @cached_property
+    def _errors(self) -> dict[str, tuple[Array, Array | None]]:
+        """Installation errors (S, 3) and eccentricities before gears turn (S, 2), by gear."""
+        found = {}
+        for name, gear in self.train.gears.items():
+            given = self.case.errors.get(name)
+            if given is None:
+                continue
             fixed = np.broadcast_to(self.train.offsets[name].installation, (self.count, 3)).copy()
             if isinstance(given.installation, spec.Offset):
                 key = ("errors", name, "installation")
@@ -185,14 +199,15 @@ class Samples:
                 component = self._get("errors", name, "installation", axis)
                 if component is not None:
                     fixed[:, axis] = component
+            turning = None
             if given.eccentricity is not None:
                 key = ("errors", name, "eccentricity")
                 amount = self._or((*key, "amount"), given.eccentricity.amount.si)
                 angle = self._or((*key, "direction"), given.eccentricity.direction.si)
                 angle = angle + self._or((*key, "phase"), given.eccentricity.phase.si)
-                angle = angle + gear.sense * turned[name]
-                fixed = fixed + _polar(amount, angle) @ gear.frame
-            yield (g,), fixed
+                turning = _polar(amount, angle)
+            found[name] = fixed, turning
+        return found
 
     def _or(self, path: Path, nominal: float) -> Array:
         found = self.values.get(path)

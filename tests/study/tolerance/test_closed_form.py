@@ -8,6 +8,7 @@ from scipy import special
 from tests.support import shipped
 
 import loadshare as ls
+from loadshare.study.tolerance import study as room
 
 A, B = 'shafts."wheelA-pinionA".clocking', 'shafts."wheelB-pinionB".clocking'
 MEAN = 1.2
@@ -104,6 +105,25 @@ def test_the_worst_case_is_at_the_vertex(slope):
     assert again.omega["system"] == worst.omega
 
 
+def test_the_worst_case_is_not_sought_again(slope, tmp_path, monkeypatch):
+    """It is kept with its study, and sought anew where the file is of no use."""
+    asked = {"samples": 64, "worst": True, "out": tmp_path / "study"}
+    first = study(**asked).worst
+    sought = []
+    search = room._searched
+    monkeypatch.setattr(room, "_searched", lambda *a: sought.append(a) or search(*a))
+    assert study(**asked).worst == first
+    assert sought == []
+    file = tmp_path / "study" / "worst.json"
+    kept = file.read_text(encoding="utf-8")
+    other = kept.replace(study(samples=64, out=tmp_path / "study").folder.job.hash, "another")
+    for useless in (other, kept[:-20], kept.replace('"solved"', '"seen"')):
+        file.write_text(useless, encoding="utf-8")
+        assert study(**asked).worst == first
+        assert file.read_text(encoding="utf-8") == kept
+    assert len(sought) == 3
+
+
 def test_the_worst_phase_is_between(slope):
     """A phase has no vertex. Two equal eccentricities help each other most, or not at all."""
     case = shipped("fgfbstts/base").replace(
@@ -136,5 +156,7 @@ def test_dataset_and_picture(slope, tmp_path):
     text = picture.read_text(encoding="utf-8")
     assert "How Ω of stage II scatters" in text
     assert "256 samples" in text
+    assert "torque over the mean of its stage" in text
+    assert found.dataset.attrs["title"] in text
     with pytest.raises(KeyError, match="stage 'III'"):
         found.of("III")

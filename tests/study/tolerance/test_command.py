@@ -62,10 +62,12 @@ def test_a_study_is_told_and_written(command, scattering, tmp_path):
         "Shares of the variance of Ω of the system",
         "Largest driver torque over positions [N*m]",
         "there may be a worse one",
+        "Intervals in brackets: 95 %.",
     ):
         assert said in told.output, said
     assert "group" not in told.output
-    assert sorted(p.name for p in out.iterdir()) == ["indices", "part-000000.parquet", "study.json"]
+    files = ["indices", "part-000000.parquet", "study.json", "worst.json"]
+    assert sorted(p.name for p in out.iterdir()) == files
     again = command("tolerance", scattering, "--output", out)
     assert again.stdout == told.stdout
     other = command("tolerance", scattering, "-o", out, "--seed", 6, "--samples", 64)

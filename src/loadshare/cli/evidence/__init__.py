@@ -1,1 +1,1 @@
-"""`loadshare chart` and `loadshare stress`: the evidence, measured again."""
+"""The evidence, measured and computed again: `chart`, `stress`, `reproduce`."""

@@ -52,6 +52,12 @@ def answered() -> Iterator[None]:
         fail([str(error)], UNUSABLE)
 
 
+def end(lines: list[str]) -> None:
+    """Leave with the code of a refusal where a study tells that it lacks an answer."""
+    if lines:
+        fail(lines, REFUSED)
+
+
 def open_case(file: Path, changes: list[str] | None) -> Case:
     """Return the case of a file, with what ``--with`` changes.
 

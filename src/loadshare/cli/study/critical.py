@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from loadshare.cli.console import console, progress
-from loadshare.cli.exits import REFUSED, fail
+from loadshare.cli.exits import counted
 from loadshare.cli.study.common import (
     CaseFile,
     Changes,
@@ -15,6 +15,7 @@ from loadshare.cli.study.common import (
     Positions,
     answered,
     check_ending,
+    end,
     open_case,
     write_table,
 )
@@ -49,8 +50,14 @@ def critical(
     show_critical(console(), found)
     if file is not None:
         write_table(file, events_frame(found))
-    if not all(event.confirmed for event in found.events):
-        fail(["Some events could not be confirmed on both sides."], REFUSED)
+    end(unconfirmed(found))
+
+
+def unconfirmed(found: Critical) -> list[str]:
+    """Return what is to be said of events that were not confirmed; nothing if all were."""
+    count = sum(not event.confirmed for event in found.events)
+    told = "not confirmed by certified solves on both sides."
+    return [f"{counted(count, 'event')} of {len(found.events)} {told}"] if count else []
 
 
 def events_frame(found: Critical) -> pd.DataFrame:
@@ -69,6 +76,7 @@ def show_critical(screen: Console, found: Critical) -> None:
     from loadshare.cli.tables.table import show, table
 
     unit = f" [{found.parameter.unit}]" if found.parameter.unit else ""
+    doubtful = not all(e.confirmed for e in found.events)
     alike: dict[tuple[str, ...], list[int]] = {}
     for e in found.events:
         row = (
@@ -77,13 +85,12 @@ def show_critical(screen: Console, found: Critical) -> None:
             e.kind,
             e.before,
             e.after,
-            "yes" if e.confirmed else "NO",
+            *(["yes" if e.confirmed else "NO"] if doubtful else []),
         )
         alike.setdefault(row, []).append(e.position)
-    made = table(
-        (f"{found.parameter.name}{unit}", "element", "event", "below", "above", "confirmed", "at"),
-        words=("element", "event", "below", "above", "confirmed", "at"),
-    )
+    words = ("element", "event", "below", "above", *(["confirmed"] if doubtful else []), "at")
+    made = table((f"{found.parameter.name}{unit}", *words), words=words)
+    made.columns[0].no_wrap = False
     for shown, positions in sorted(alike.items(), key=lambda item: float(item[0][0])):
         made.add_row(*shown, ranges(positions))
     title = f"Events from {found.start:g} to {found.stop:g}{unit}"
@@ -91,3 +98,5 @@ def show_critical(screen: Console, found: Critical) -> None:
         screen.print(f"\n{title}: none")
         return
     show(screen, title, made)
+    if not doubtful:
+        screen.print("Each is confirmed by certified solves on both sides.")

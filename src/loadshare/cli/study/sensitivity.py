@@ -57,27 +57,25 @@ def show_sensitivity(screen: Console, found: Sensitivity) -> None:
     """Print what moves the system's Ω most, per unit of each input and over its whole value."""
     from loadshare.cli.tables.table import show, table
 
-    made = table(
-        ("input", "value", "dΩ per unit", "falling", "dΩ over its value"), words=("input", "value")
-    )
     ordered = sorted(found.inputs, key=lambda item: -_whole(found, item))
-    two_sided = True
+    one_sided = {item.key for item in ordered[:SHOWN] if _apart(found, item)}
+    sides = ("dΩ per unit", *(["falling"] if one_sided else []))
+    made = table(("input", "value", *sides, "dΩ over its value"), words=("input", "value"))
     for item in ordered[:SHOWN]:
         falling, rising = (found.pair_omega[item.key, s]["system"] for s in SIDES)
         factor = item.value.factor
-        apart = not math.isclose(falling, rising, rel_tol=1e-6, abs_tol=1e-300)
-        two_sided = two_sided and not apart
+        below = [_signed(falling * factor) if item.key in one_sided else ""] if one_sided else []
         made.add_row(
             item.key,
-            str(item.value.text),
+            f"{item.value.number:.6g} {item.value.unit}".strip(),
             _signed(rising * factor),
-            _signed(falling * factor) if apart else "",
+            *below,
             _signed(_whole(found, item)),
         )
     show(screen, "Sensitivity of the system's Ω, by group mean", made)
     if len(ordered) > SHOWN:
         screen.print(f"{len(ordered) - SHOWN} inputs that matter less are not shown.")
-    if not two_sided:
+    if one_sided:
         screen.print("Where a value stands under falling, the derivative differs to that side.")
     for kink in found.kinks:
         screen.print(
@@ -86,6 +84,12 @@ def show_sensitivity(screen: Console, found: Sensitivity) -> None:
         )
     for key, why in found.skipped:
         screen.print(f"Left out: {key}: {why}.", soft_wrap=True)
+
+
+def _apart(found: Sensitivity, item: Input) -> bool:
+    """Whether the derivatives to both sides differ."""
+    falling, rising = (found.pair_omega[item.key, s]["system"] for s in SIDES)
+    return not math.isclose(falling, rising, rel_tol=1e-6, abs_tol=1e-300)
 
 
 def _whole(found: Sensitivity, item: Input) -> float:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from loadshare.cli.console import console, progress
-from loadshare.cli.study.common import CaseFile, Changes, answered, open_case
+from loadshare.cli.study.common import CaseFile, Changes, answered, end, open_case
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -22,6 +22,7 @@ def study(
     change: Changes = None,
 ) -> None:
     """Run a study that the case holds, [study.NAME]."""
+    from loadshare.cli.study.tolerance import rated_progress
     from loadshare.study.named import run_study
 
     with answered():
@@ -32,9 +33,26 @@ def study(
             if not loaded.study:
                 typer.echo("The case holds no study: add a table [study.NAME].")
             return
-        with progress(name, 1) as tick:
+        kind = loaded.study[name].kind if name in loaded.study else ""
+        bar = rated_progress("samples") if kind == "tolerance" else progress(name, 1)
+        with bar as tick:
             found = run_study(loaded, name, progress=tick)
-    _show(console(), loaded.study[name].kind, found)
+    _show(console(), kind, found)
+    end(_open(kind, found))
+
+
+def _open(kind: str, found: Any) -> list[str]:
+    """Return what a study could not answer."""
+    from loadshare.cli.study.critical import unconfirmed
+    from loadshare.cli.study.sweep import open_points
+    from loadshare.cli.study.tolerance import refused_samples
+
+    told: dict[str, Callable[[Any], list[str]]] = {
+        "critical": unconfirmed,
+        "sweep": open_points,
+        "tolerance": refused_samples,
+    }
+    return told[kind](found) if kind in told else []
 
 
 def _show(screen: Console, kind: str, found: Any) -> None:

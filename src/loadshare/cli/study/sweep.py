@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from loadshare.cli.console import console, progress
-from loadshare.cli.exits import REFUSED, counted, fail
+from loadshare.cli.exits import counted
 from loadshare.cli.study.common import (
     CaseFile,
     Changes,
@@ -15,14 +15,18 @@ from loadshare.cli.study.common import (
     TableFile,
     answered,
     check_ending,
+    end,
     open_case,
     write_table,
 )
 
 if TYPE_CHECKING:
     from rich.console import Console
+    from rich.table import Table
 
     from loadshare.study.sweep import Sweep
+
+MEANS = {"stage": "omega", "group": "pair_omega"}
 
 
 def sweep(
@@ -60,31 +64,50 @@ def sweep(
             found = swept(loaded, over, positions=position, progress=tick)
     show_sweep(console(), found)
     write_table(file, found.to_frame() if file else None, found.dataset if file else None)
+    end(open_points(found))
+
+
+def open_points(found: Sweep) -> list[str]:
+    """Return why points have no certified answer; nothing if all have one."""
     failed = [p for p in found.points if p.status != "certified"]
-    if failed:
-        told = dict.fromkeys(f"{p.status}: {p.message.splitlines()[0]}" for p in failed)
-        fail(
-            [*told, f"{counted(len(failed), 'point')} of {len(found.points)} not certified."],
-            REFUSED,
-        )
+    if not failed:
+        return []
+    told = dict.fromkeys(f"{p.status}: {p.message.splitlines()[0]}" for p in failed)
+    return [*told, f"{counted(len(failed), 'point')} of {len(found.points)} not certified."]
 
 
 def show_sweep(screen: Console, found: Sweep) -> None:
-    """Print the largest Ω of every stage at every point."""
-    from loadshare.cli.tables.table import show, table
+    """Print the largest Ω of every stage at every point; by the group where that differs."""
+    from loadshare.cli.tables.table import show
+
+    tables = {mean: _table(found, kind) for mean, kind in MEANS.items()}
+    texts = {mean: [list(column.cells) for column in made.columns] for mean, made in tables.items()}
+    alike = texts["stage"] == texts["group"]
+    for mean, made in tables.items():
+        by = "stage and by group alike" if alike else mean
+        show(screen, f"Sweep of {found.case}: largest Ω, by {by}", made)
+        if alike:
+            return
+
+
+def _table(found: Sweep, kind: str) -> Table:
+    from loadshare.cli.tables.table import table
     from loadshare.report.numbers import omega
 
     first = next((p.result for p in found.points if p.result is not None), None)
     stages = list(first.omega) if first is not None else []
     heads = [f"{p.name} [{p.unit}]" if p.unit else p.name for p in found.parameters]
-    made = table(
-        (*heads, *(f"Ω {s}" for s in stages), *(f"Ω {s}, group" for s in stages), "status"),
-        words=("status",),
-    )
+    # Where every point is certified, a column that says so would only take room.
+    status = [] if found.passed else ["status"]
+    made = table((*heads, *(f"Ω {stage}" for stage in stages), *status), words=status)
+    for column in made.columns[: len(heads)]:
+        # A long key is folded, and its figures stay whole.
+        column.no_wrap, column.min_width = False, 9
     for point in found.points:
-        shares = []
-        for kind in ("omega", "pair_omega"):
-            values = getattr(point.result, kind) if point.result is not None else {}
-            shares += [omega(values.get(stage)) for stage in stages]
-        made.add_row(*(f"{value:.6g}" for value in point.values), *shares, point.status)
-    show(screen, f"Sweep of {found.case}", made)
+        shares = [
+            omega(getattr(point.result, kind)[stage] if point.result is not None else None)
+            for stage in stages
+        ]
+        values = (f"{value:.6g}" for value in point.values)
+        made.add_row(*values, *shares, *([point.status] if status else []))
+    return made

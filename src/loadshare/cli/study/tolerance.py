@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from loadshare.cli.console import Tick, console
-from loadshare.cli.exits import REFUSED, UNUSABLE, counted, fail
-from loadshare.cli.study.common import CaseFile, Changes, answered, open_case
+from loadshare.cli.exits import UNUSABLE, counted, fail
+from loadshare.cli.study.common import CaseFile, Changes, answered, end, open_case
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -83,8 +83,14 @@ def tolerance(
     show_tolerance(console(), found)
     if out is not None:
         typer.echo(f"Wrote {out}", err=True)
-    if found.refused:
-        fail([f"{counted(found.refused, 'sample')} of {found.samples} not certified."], REFUSED)
+    end(refused_samples(found))
+
+
+def refused_samples(found: Tolerance) -> list[str]:
+    """Return how many samples have no certified answer; nothing if all have one."""
+    if not found.refused:
+        return []
+    return [f"{counted(found.refused, 'sample')} of {found.samples} not certified."]
 
 
 @contextmanager
@@ -175,6 +181,8 @@ def _show_omega(screen: Console, found: Tolerance) -> None:
         quantiles.add_row(label, *(f"{q.value:.5f}" for q in s.quantiles.values()))
     show(screen, "Largest Ω over branches and positions", figures)
     show(screen, "Its quantiles", quantiles)
+    if found.limit is not None or any(one.shares for one in found.omega):
+        screen.print("Intervals in brackets: 95 %.")
 
 
 def _interval(found: Estimate, form: str = ".4g") -> str:

@@ -167,7 +167,7 @@ def _lines(
         f"{reading.field}:Q",
         title=reading.title,
         scale=alt.Scale(domain=padded(min(values), max(values), reading.least), nice=False),
-        axis=alt.Axis(tickCount=6, format="~f"),
+        axis=alt.Axis(tickCount=6, format=",~f"),
     )
     x = alt.X(
         "position:Q",
@@ -203,7 +203,7 @@ def _bars(
         f"{reading.field}:Q",
         title=reading.title,
         scale=alt.Scale(domain=domain, nice=False),
-        axis=alt.Axis(tickCount=5, format="~f"),
+        axis=alt.Axis(tickCount=5, format=",~f"),
     )
     y = alt.Y("mesh:N", title=None, sort=names, axis=alt.Axis(domain=False, ticks=False))
     colours = alt.Color(

@@ -98,7 +98,7 @@ class _Panel:
         self.labels = Labels(self.low, self.high, SIDE / (2.0 * self.half))
         self.places = self._here(journey.path)
         names = [direction_name(v) for v in journey.result.frames[journey.gear]]
-        axis = alt.Axis(tickCount=5, format="~f")
+        axis = alt.Axis(tickCount=5, format=",~f")
 
         def scale(k: int) -> alt.Scale:
             return alt.Scale(domain=[self.low[k], self.high[k]], nice=False, zero=False)

@@ -43,6 +43,10 @@ NAMED_BY = ("stage", "mesh", "float", "gear")
 WIDTH, HEIGHT = 460, 280
 MAP = 300
 """Side of a map [px]."""
+LEAST = {"m": 1e-9, "rad": 1e-9, "N": 1e-3, "N*m": 1e-3}
+"""Least range of an axis, SI: below it, round-off would look like a result."""
+SHARE = 1e-4
+"""The same, over the largest value."""
 
 
 def sweep(
@@ -109,6 +113,13 @@ class _Shown:
     unit: Unit
     title: str
     looks: dict[str, Look]
+    least: float
+
+    def domain(self, share: float) -> list[float]:
+        """Range of an axis, with a margin over the range of the values."""
+        finite = self.values[np.isfinite(self.values)]
+        low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
+        return padded(low, high, max(self.least, SHARE * max(abs(low), abs(high))), share)
 
 
 def _shown(
@@ -142,20 +153,27 @@ def _shown(
         known = [show]
     else:
         known = [str(n) for n in variable[by].values]
-    wanted = _telling(variable, by, known) if names is None else list(names)
+    wanted = _telling(data, show, variable, by, known) if names is None else list(names)
     wrong = [name for name in wanted if name not in known]
     if wrong:
         raise LoadshareError(f"no {by} {', '.join(wrong)}. Allowed: {', '.join(known)}")
     values = variable.transpose(by, *parameters).values[[known.index(n) for n in wanted]]
     keep = [k for k in range(len(wanted)) if np.isfinite(values[k]).any()]
-    unit = engineering(values[np.isfinite(values)], str(data[show].attrs.get("units", "1")))
+    si = str(data[show].attrs.get("units", "1"))
+    unit = engineering(values[np.isfinite(values)], si)
     wanted = [wanted[k] for k in keep]
     looks = _looks(data, by, wanted)
-    return _Shown(wanted, by, values[keep] * unit.factor, unit, told, looks)
+    least = LEAST.get(si.replace(" ", "*"), 1e-6) * unit.factor
+    return _Shown(wanted, by, values[keep] * unit.factor, unit, told, looks, least)
 
 
-def _telling(variable: xr.DataArray, by: str, names: list[str]) -> list[str]:
-    """Names to be shown by default: not the system where it only repeats one of its stages."""
+def _telling(
+    data: xr.Dataset, show: str, variable: xr.DataArray, by: str, names: list[str]
+) -> list[str]:
+    """Names to be shown by default: none that only repeats another, or has nothing to show."""
+    if show == "reaction" and "margin" in data:
+        # Without a ring there is no reaction, and no margin either.
+        return [n for n in names if bool(data["margin"].sel({by: n}).notnull().any())] or names
     if by != "stage" or "system" not in names:
         return names
     whole = variable.sel(stage="system").values
@@ -198,13 +216,10 @@ def _lines(data: xr.Dataset, shown: _Shown, name: str, events: Sequence[Event]) 
         for line, values in zip(shown.names, shown.values, strict=True)
         for x, y in zip(grid, values, strict=True)
     ]
-    finite = shown.values[np.isfinite(shown.values)]
-    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 1.0)
-    size = max(abs(low), abs(high))
     y_axis = alt.Y(
         "y:Q",
         title=shown.unit.title(shown.title),
-        scale=alt.Scale(domain=padded(low, high, 1e-4 * size or 1.0), nice=False),
+        scale=alt.Scale(domain=shown.domain(0.08), nice=False),
     )
     x_axis = alt.X("x:Q", title=title, scale=alt.Scale(nice=False, zero=False))
     by_name = channels("name", shown.looks, shown.by)
@@ -234,13 +249,11 @@ def _maps(data: xr.Dataset, shown: _Shown, parameters: list[str]) -> Drawing:
 
     (xs, x_title), (ys, y_title) = (_parameter(data, name) for name in parameters)
     x_edges, y_edges = _edges(xs), _edges(ys)
-    finite = shown.values[np.isfinite(shown.values)]
-    ends = [float(finite.min()), float(finite.max())] if finite.size else [0.0, 1.0]
     colour = alt.Color(
         "value:Q",
         title=shown.unit.title(shown.title).split(",")[0],
         # Light to dark in one direction, so that it reads in grey.
-        scale=alt.Scale(scheme="tealblues", domain=ends, nice=False),
+        scale=alt.Scale(scheme="tealblues", domain=shown.domain(0.0), nice=False),
         legend=alt.Legend(titleLimit=240, gradientLength=200),
     )
     x_scale = alt.Scale(domain=[float(x_edges.min()), float(x_edges.max())], nice=False)

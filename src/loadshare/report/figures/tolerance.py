@@ -40,7 +40,7 @@ def tolerance(data: xr.Dataset, stage: str = "system") -> Figure:
         Either ``omega`` (sample, stage), or, for more samples than a picture should hold,
         ``count`` (stage, bin) with the coordinate ``edge`` (one more than bins). Optional:
         ``quantile`` (stage, level); ``exceedance``, ``exceedance_low``, ``exceedance_high``
-        (stage), P(Ω > limit) and its confidence interval, ``limit`` being an attribute of the
+        (stage), P(Ω > limit) and its 95 % interval, ``limit`` being an attribute of the
         dataset; ``first_order`` and ``total_order`` (stage, input), Sobol indices, each with
         ``…_low`` and ``…_high``.
     stage : str
@@ -72,6 +72,8 @@ def tolerance(data: xr.Dataset, stage: str = "system") -> Figure:
     if "first_order" in one or "total_order" in one:
         parts.append(_inputs(one))
     told = [str(one.attrs.get("title") or one.attrs.get("case", "")), f"{total:,} samples"]
+    if "over" in one.coords:
+        told.append(f"torque over the mean of its {one['over'].item()}")
     if limit is not None and "exceedance" in one:
         told.append(_exceedance(one, float(limit)))
     name = "the system" if stage == "system" else f"stage {stage}"
@@ -222,5 +224,5 @@ def _exceedance(one: xr.Dataset, limit: float) -> str:
     told = f"P(Ω > {limit:g}) = {significant(float(one['exceedance']), 3)}"
     if "exceedance_low" in one and "exceedance_high" in one:
         low, high = float(one["exceedance_low"]), float(one["exceedance_high"])
-        told += f" ({significant(low, 3)} to {significant(high, 3)})"
+        told += f" (95 %: {significant(low, 3)} to {significant(high, 3)})"
     return told

@@ -150,7 +150,7 @@ class _View:
 
         first, second = (direction_name(v) for v in self.frame)
         names = (MILLIMETRE.title(first), MILLIMETRE.title(second))
-        axis = alt.Axis(grid=False, tickCount=6 if self.plan else 4, format="~f")
+        axis = alt.Axis(grid=False, tickCount=6 if self.plan else 4, format=",~f")
 
         def channel(kind: Any, name: str, k: int) -> Any:
             domain = alt.Scale(domain=[self.low[k], self.high[k]], nice=False, zero=False)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.scene.elements import Elements, wind_up
+from loadshare.scene.scene import Array
 from loadshare.solver.hot.state import State
 from loadshare.train.equilibria import Equilibria, Names
 
@@ -17,50 +19,75 @@ CARRIES = 1e-12
 
 def equilibria(elements: Elements, state: State) -> Equilibria:
     """Return displacements and forces of all samples in SI units."""
-    scene, train = elements.scene, elements.scene.train
-    names = Names(train)
-    x = state.x * elements.length
-    force = state.force * elements.force
-    rotation = np.zeros((len(x), len(names.gears)))
-    displacement = np.zeros((len(x), len(names.gears), 3))
-    for g, gear in enumerate(names.gears):
-        r = scene.rotation[gear]
-        rotation[:, g] = r.constant
-        if r.index is not None:
-            rotation[:, g] += r.rate * x[:, r.index]
-        where = scene.displacement.get(gear)
-        if where is not None:
-            displacement[:, g] = x[:, where] @ train.gears[gear].frame
+    names = Names(elements.scene.train)
+    map_ = _map(elements, names)
+    x, force = state.x, state.force
+    count, gears, radials = len(x), len(names.gears), len(names.radials)
     rows = np.maximum(force[:, elements.springs : elements.springs + elements.rows], 0.0)
+    rows *= elements.force
     flanks = len(names.flanks)
-    radial_reaction = np.zeros((len(x), len(names.radials), 3))
-    for j, (_, gear) in enumerate(names.radials):
-        k = elements.radial_column(j)
-        radial_reaction[:, j] = -force[:, k : k + 2] @ train.gears[gear].frame
-    shaft_torque = np.zeros((len(x), len(train.shafts)))
-    support_force = np.zeros((len(x), len(names.gears), 2))
+    return Equilibria(
+        names,
+        x @ map_.rotation + map_.turned,
+        (x @ map_.displacement).reshape(count, gears, 3),
+        rows[:, :flanks],
+        rows[:, flanks:],
+        (force @ map_.reaction).reshape(count, radials, 3),
+        force @ map_.torque,
+        (force @ map_.support).reshape(count, gears, 2),
+    )
+
+
+class _Map(NamedTuple):
+    """Matrices from coordinates (n) and forces (m) to physical quantities in SI units."""
+
+    rotation: Array  # (n, gears)
+    turned: Array  # (gears,)
+    displacement: Array  # (n, 3 gears)
+    reaction: Array  # (m, 3 radial elements)
+    torque: Array  # (m, shafts)
+    support: Array  # (m, 2 gears)
+
+
+def _map(elements: Elements, names: Names) -> _Map:
+    """Return the matrices of a machine, written down once."""
+    known = elements.kept.get(("map",))
+    if known is not None:
+        return cast(_Map, known)
+    scene, train = elements.scene, elements.scene.train
+    gears, n, m = len(names.gears), elements.scene.size, len(elements.kinds)
+    rotation, turned = np.zeros((n, gears)), np.zeros(gears)
+    displacement, support = np.zeros((n, gears, 3)), np.zeros((m, gears, 2))
+    reaction, torque = np.zeros((m, len(names.radials), 3)), np.zeros((m, len(train.shafts)))
     spring = 0
     for s, shaft in enumerate(train.shafts.values()):
         if not math.isinf(shaft.stiffness):
-            _, rate = wind_up(scene, shaft.first, shaft.second)
-            shaft_torque[:, s] = force[:, spring] / rate
+            torque[spring, s] = 1.0 / wind_up(scene, shaft.first, shaft.second)[1]
             spring += 1
     for g, name in enumerate(names.gears):
-        support = train.gears[name].support
-        if name in scene.displacement and support is not None:
-            for k in np.flatnonzero(support > 0.0).tolist():
-                support_force[:, g, k] = force[:, spring]
-                spring += 1
-    return Equilibria(
-        names,
-        rotation,
-        displacement,
-        rows[:, :flanks],
-        rows[:, flanks:],
-        radial_reaction,
-        shaft_torque,
-        support_force,
+        gear, r, where = train.gears[name], scene.rotation[name], scene.displacement.get(name)
+        turned[g] = r.constant
+        if r.index is not None:
+            rotation[r.index, g] = r.rate
+        if where is not None:
+            displacement[where, g] = gear.frame
+            if gear.support is not None:
+                for k in np.flatnonzero(gear.support > 0.0).tolist():
+                    support[spring, g, k] = 1.0
+                    spring += 1
+    for j, (_, name) in enumerate(names.radials):
+        column = elements.radial_column(j)
+        reaction[column : column + 2, j] = -train.gears[name].frame
+    found = _Map(
+        rotation * elements.length,
+        turned,
+        displacement.reshape(n, -1) * elements.length,
+        reaction.reshape(m, -1) * elements.force,
+        torque * elements.force,
+        support.reshape(m, -1) * elements.force,
     )
+    elements.kept["map",] = found
+    return found
 
 
 def tied(elements: Elements, state: State, code: NDArray[np.int8]) -> NDArray[np.bool_]:

@@ -14,7 +14,9 @@ from numpy.typing import NDArray
 
 from loadshare.scene.elements import Basis, Data, Elements
 from loadshare.scene.scene import Array
+from loadshare.solver.hot import lanes
 from loadshare.solver.hot import places as at
+from loadshare.solver.hot.lanes import is_plain
 from loadshare.solver.hot.state import State
 from loadshare.train.radial import ROUNDING as WRITTEN
 
@@ -95,6 +97,26 @@ def settle(
 
     Parameters and return values are those of :func:`loadshare.solver.hot.vectorised.settle`.
     """
+    if is_plain(elements, data):
+        verdict, proposal = lanes.settle(elements, data, basis, code, rows, state, one_only)
+        left = np.flatnonzero(verdict == lanes.UNDECIDED)
+        if len(left):
+            verdict[left], proposal[left] = _one_by_one(
+                elements, data, basis, code, rows[left], state, one_only
+            )
+        return verdict, proposal
+    return _one_by_one(elements, data, basis, code, rows, state, one_only)
+
+
+def _one_by_one(
+    elements: Elements,
+    data: Data,
+    basis: Basis,
+    code: Codes,
+    rows: Rows,
+    state: State,
+    one_only: NDArray[np.bool_],
+) -> tuple[Codes, Codes]:
     verdict = np.empty(len(rows), dtype=np.int8)
     proposal = np.empty((len(rows), len(code)), dtype=np.int8)
     _settle_all(

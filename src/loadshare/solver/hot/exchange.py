@@ -23,6 +23,9 @@ Engine = Callable[
     tuple[Codes, Codes],
 ]
 
+WORD = 8
+"""Bytes of a word."""
+_KEYS = np.random.default_rng(11).integers(1 << 62, size=1 << 12) | 1
 TOGETHER = 6
 """Exchanges of all wrong signs at once; after these, one at a time."""
 TURNS = 12
@@ -66,7 +69,7 @@ def first_sets(elements: Elements, data: Data) -> Codes:
     count = data.count
     code = np.zeros((count, elements.switches), dtype=np.int8)
     everyone = np.arange(count)
-    push = np.abs(pick(data.load, everyone)).max(axis=1, initial=0.0)
+    push = pick(data.push, everyone)
     for k, row in enumerate(elements.scene.rows):
         if row.kind == "drive flank":
             code[:, k] = np.where(push > 0.0, at.CLOSED, at.OPEN)
@@ -114,31 +117,76 @@ def exchange(
     Found
         Samples that ran into a cycle, a mechanism or a law without meaning are not solved.
     """
-    code = first_sets(elements, data) if code is None else np.array(code)
-    count = len(code)
+    given = first_sets(elements, data) if code is None else code
+    count, switches = given.shape
+    # Rows of whole words, so that sets can be told apart word by word.
+    code = np.zeros((count, -(-max(switches, 1) // WORD) * WORD), dtype=np.int8)
+    code[:, :switches] = given
     solved = np.zeros(count, dtype=bool)
     turns = np.zeros(count, dtype=np.intp)
     held = np.zeros(count, dtype=bool)
     one_only = np.full(count, singly)
-    limit = TURNS + 2 * elements.switches
+    limit = TURNS + 2 * switches
+    waiting = _Waiting()
     rows = np.arange(count) if only is None else np.flatnonzero(only)
-    waiting = _grouped(code[rows], rows)
+    waiting.add(code[rows], rows)
     while waiting:
-        key = max(waiting, key=lambda k: sum(map(len, waiting[k])))
-        rows = np.concatenate(waiting.pop(key))
-        here = np.frombuffer(key, dtype=np.int8)
+        here, rows = waiting.most()
         turns[rows] += 1
-        basis = elements.basis(here)
-        verdict, proposal = engine(elements, data, basis, here, rows, state, one_only)
+        basis = elements.basis(here[:switches])
+        verdict, proposal = engine(elements, data, basis, here[:switches], rows, state, one_only)
+        code[rows] = here
         done = rows[verdict == at.DONE]
         solved[done], held[done] = True, not basis.loose.shape[1]
-        onward = (verdict == at.OTHER) & (turns[rows] < limit)
-        rows = rows[onward]
-        code[rows] = _without_wedges(elements, data, here, proposal[onward])
-        one_only[rows] |= turns[rows] >= TOGETHER
-        for other, more in _grouped(code[rows], rows).items():
-            waiting.setdefault(other, []).extend(more)
-    return Found(solved, code, turns, held)
+        onward = np.flatnonzero((verdict == at.OTHER) & (turns[rows] < limit))
+        if len(onward):
+            rows = rows[onward]
+            one_only[rows] |= turns[rows] >= TOGETHER
+            other = np.zeros((len(rows), code.shape[1]), dtype=np.int8)
+            other[:, :switches] = proposal[onward]
+            waiting.add(_without_wedges(elements, data, here, other), rows)
+    return Found(solved, code[:, :switches], turns, held)
+
+
+class _Waiting:
+    """Samples that wait to be solved, by the set that they go to."""
+
+    def __init__(self) -> None:
+        self.sets: dict[int, Codes] = {}
+        self.parts: dict[int, list[NDArray[np.intp]]] = {}
+        self.sizes: dict[int, int] = {}
+
+    def __bool__(self) -> bool:
+        return bool(self.sizes)
+
+    def most(self) -> tuple[Codes, NDArray[np.intp]]:
+        """Take the set to which most samples go, and them."""
+        key = max(self.sizes, key=self.sizes.__getitem__)
+        del self.sizes[key]
+        parts = self.parts.pop(key)
+        return self.sets[key], parts[0] if len(parts) == 1 else np.concatenate(parts)
+
+    def add(self, code: Codes, rows: NDArray[np.intp]) -> None:
+        """Let samples wait for the sets in `code`, shape (len(rows), whole words)."""
+        if not len(rows):
+            return
+        # Should two sets have one key, a sample is solved on the other one: what it finds there
+        # is judged there.
+        keys = code.view(np.int64) @ _KEYS[: code.shape[1] // WORD]
+        if (keys == keys[0]).all():
+            self._put(int(keys[0]), code[0], rows)
+            return
+        order = np.argsort(keys)
+        keys = keys[order]
+        starts = np.flatnonzero(np.append(True, keys[1:] != keys[:-1]))
+        parts = np.split(rows[order], starts[1:])
+        for key, first, part in zip(keys[starts].tolist(), order[starts], parts, strict=True):
+            self._put(key, code[first], part)
+
+    def _put(self, key: int, code: Codes, rows: NDArray[np.intp]) -> None:
+        self.sets.setdefault(key, code)
+        self.parts.setdefault(key, []).append(rows)
+        self.sizes[key] = self.sizes.get(key, 0) + len(rows)
 
 
 def _without_wedges(elements: Elements, data: Data, here: Codes, proposal: Codes) -> Codes:
@@ -150,21 +198,3 @@ def _without_wedges(elements: Elements, data: Data, here: Codes, proposal: Codes
             leaves = one if here[one] != at.OPEN else other
             proposal[both, leaves] = at.OPEN
     return proposal
-
-
-def _grouped(code: Codes, rows: NDArray[np.intp]) -> dict[bytes, list[NDArray[np.intp]]]:
-    """Rows by the set they stand on."""
-    if not len(rows):
-        return {}
-    if not code.shape[1]:
-        return {b"": [rows]}
-    keys = np.ascontiguousarray(code).view(np.dtype((np.void, code.shape[1])))[:, 0]
-    if (keys == keys[0]).all():
-        return {keys[0].tobytes(): [rows]}
-    unique, which = np.unique(keys, return_inverse=True)
-    order = np.argsort(which, kind="stable")
-    ends = np.cumsum(np.bincount(which))
-    return {
-        key.tobytes(): [part]
-        for key, part in zip(unique, np.split(rows[order], ends[:-1]), strict=True)
-    }

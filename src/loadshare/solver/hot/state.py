@@ -39,29 +39,24 @@ class State:
             getattr(self, name)[rows] = getattr(other, name)[rows]
         return self
 
+    def begin(self, samples: slice, share: Array, data: Data) -> None:
+        """Take the laws of some samples first at forces in these shares (m,) of the load."""
+        roots = np.cbrt(pushes(data)[samples])
+        self.root[samples] = roots[:, None] * np.cbrt(np.maximum(share, 1e-6))
 
-def at_rest(elements: Elements, data: Data, share: Array | None = None) -> State:
-    """Return the state before anything has moved.
 
-    Parameters
-    ----------
-    elements : Elements
-    data : Data
-    share : ndarray, shape (m,), optional
-        Force of every element over the load at which laws are first taken; a half by default.
-    """
+def at_rest(elements: Elements, data: Data) -> State:
+    """Return the state before anything has moved; laws are first taken at half the load."""
     push = pushes(data)
     count, width = data.count, len(elements.kinds)
-    share = np.full(width, 0.5) if share is None else np.maximum(share, 1e-6)
     return State(
         x=np.zeros((count, elements.scene.size)),
         force=np.zeros((count, width)),
-        root=np.cbrt(push)[:, None] * np.cbrt(share),
+        root=np.repeat(np.cbrt(0.5 * push)[:, None], width, axis=1),
         floor=FLOOR * np.cbrt(push),
     )
 
 
 def pushes(data: Data) -> Array:
     """Largest load of every sample, shape (S,); 1 where there is none."""
-    push = np.abs(data.load).max(axis=1, initial=0.0)
-    return np.broadcast_to(np.where(push > 0.0, push, 1.0), (data.count,))
+    return np.broadcast_to(np.where(data.push > 0.0, data.push, 1.0), (data.count,))

@@ -346,6 +346,16 @@ class Branch:
             found.append(Gauge(name, (end - hold.radius) / self.units.length, to))
         return found
 
+    def catching(self, z: Array) -> list[str]:
+        """Open contacts that a move which nothing resists may close, the nearest first."""
+        loose = self.undetermined(z)
+        ways: dict[str, float] = {}
+        for touch in self._touches(z):
+            closing = float(np.linalg.norm(touch.vector @ loose))
+            if touch.row.name not in self.active.closed and closing > 1e-9:
+                ways[touch.row.name] = -touch.approach / closing
+        return sorted(ways, key=ways.__getitem__)
+
     def equilibrium(self, z: Array) -> Equilibrium:
         """Return a point in physical terms, to be judged by the certificate."""
         scene, x = self.scene, self.x(z)

@@ -70,6 +70,7 @@ def dataset(found: Tolerance) -> xr.Dataset:
     edges = gathered(lambda o: o.summary.edges, BINS + 1)
     attributes = {
         "case": found.case,
+        "title": found.folder.job.solver.case.title,
         "samples": found.samples,
         "refused": found.refused,
         "seed": found.settings["seed"],

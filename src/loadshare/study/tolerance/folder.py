@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 STUDY = "study.json"
+WORST = "worst.json"
 
 
 class Folder:
@@ -93,6 +94,18 @@ class Folder:
         for left in file.parent.glob(f".{file.name}.*"):
             with suppress(FileNotFoundError):
                 left.unlink()
+
+    def worst(self) -> list[dict[str, Any]] | None:
+        """Return the worst cases that were found for this study, or None if none are known."""
+        try:
+            told = json.loads((self.path / WORST).read_text(encoding="utf-8"))
+            return list(told["worst"]) if told["study"] == self.job.hash else None
+        except (OSError, ValueError, KeyError, TypeError):
+            return None
+
+    def keep_worst(self, found: Sequence[dict[str, Any]]) -> None:
+        """Write the worst cases, so that the search need not be made again."""
+        _write_json(self.path / WORST, {"study": self.job.hash, "worst": list(found)})
 
     def files(self, design: str = SAMPLES) -> list[Path]:
         """Return the parts' files in order."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import shutil
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -298,7 +300,7 @@ def _found(folder: Folder, block: Study, worst: bool) -> Tolerance:
         floats=tuple(_floats(folder, train, levels)),
         design_refused=gone,
         overs=tuple(KINDS[kind] for kind in apart),
-        worst=tuple(_worst(folder, apart)) if worst else (),
+        worst=_worst(folder, apart) if worst else (),
         residual=float(np.nanmax(residual)) if certified.any() else float("nan"),
         folder=folder,
     )
@@ -341,7 +343,19 @@ def _floats(folder: Folder, train: Train, levels: Sequence[float]) -> Iterator[F
         yield FloatStatistics(gear, way, force, pressed)
 
 
-def _worst(folder: Folder, kinds: Sequence[str]) -> Iterator[WorstCase]:
+def _worst(folder: Folder, kinds: Sequence[str]) -> tuple[WorstCase, ...]:
+    """Return the worst cases: those that an earlier run found, or what a search finds."""
+    known = folder.worst()
+    if known is not None:
+        # A file that something else wrote under this name holds other keys.
+        with suppress(TypeError):
+            return tuple(WorstCase(**one) for one in known)
+    found = tuple(_searched(folder, kinds))
+    folder.keep_worst([asdict(one) for one in found])
+    return found
+
+
+def _searched(folder: Folder, kinds: Sequence[str]) -> Iterator[WorstCase]:
     solver, seed = folder.job.solver, folder.job.settings["seed"]
     for kind in kinds:
         values = np.nan_to_num(folder.column(f"{kind}.{SYSTEM}"), nan=-np.inf)

@@ -16,7 +16,7 @@ def main() -> None:
     # The study tells its workers when to end; an interrupt from the keyboard is its affair.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # What libraries print goes to stderr: standard output is for answers.
-    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    answers = os.dup(1)
     os.dup2(2, 1)
     folder = folder_of(sys.stdin.readline())
     for line in sys.stdin:
@@ -27,8 +27,11 @@ def main() -> None:
             reply = {"done": str(part.number)}
         except Exception as error:  # noqa: BLE001 -- told by the study
             reply = {"error": f"{type(error).__name__}: {error}"}
-        answers.write(json.dumps(reply) + "\n")
-        answers.flush()
+        try:
+            os.write(answers, (json.dumps(reply) + "\n").encode())
+        except BrokenPipeError:
+            # The study is gone; the part stands in its place for the next one.
+            return
 
 
 if __name__ == "__main__":

@@ -1,0 +1,36 @@
+"""`loadshare reproduce`: the seed paper's figures, computed and set beside the printed ones."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from loadshare.cli.evidence.console import DRAWING, need, teller
+from loadshare.cli.exits import UNUSABLE, fail, writing
+
+
+def reproduce(
+    folder: Annotated[
+        Path,
+        typer.Option("-o", "--output", metavar="DIR", file_okay=False, help="Folder to write to."),
+    ] = Path("docs"),
+    cases: Annotated[
+        Path, typer.Option("--cases", metavar="DIR", help="Folder of the shipped cases.")
+    ] = Path("cases"),
+    quiet: Annotated[bool, typer.Option("--quiet", help="Tell no steps.")] = False,
+) -> None:
+    """Compute the seed paper's figures and write page and pictures."""
+    need(DRAWING, "reproduce")
+    from loadshare.errors import LoadshareError
+    from loadshare.evidence.reproduction.publish import reproduce as computed
+
+    try:
+        found = computed(cases, teller(quiet))
+    except LoadshareError as error:
+        fail([str(error)], UNUSABLE)
+    with writing(folder):
+        files = found.write(folder)
+    for file in files:
+        typer.echo(f"Wrote {file}")

@@ -1,0 +1,108 @@
+"""The seed's cases, and what every chapter asks of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from loadshare.case import Case, load_case
+from loadshare.errors import LoadshareError
+from loadshare.job import solve
+from loadshare.report.palette import Palette
+from loadshare.train import build_train
+
+if TYPE_CHECKING:
+    from loadshare.results import Position
+    from loadshare.tooth.pairfile import PairFile
+
+GEARS = tuple(str(n) for n in range(1, 11))
+PAIRS = {"4": ("6-10", "7-10"), "5": ("8-10", "9-10")}
+"""Output meshes of each pinion's two branches."""
+PINIONS = tuple(PAIRS)
+
+
+class Seed:
+    """The folder of shipped cases.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Holds ``fgfbstts`` and, for Fig. 7, ``pairs``.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._cases: dict[str, Case] = {}
+        self._pairs: dict[str, PairFile] = {}
+
+    def case(self, name: str) -> Case:
+        """A case of the seed's transmission.
+
+        Raises
+        ------
+        LoadshareError
+            If the folder does not hold it.
+        """
+        path = self.folder / "fgfbstts" / f"{name}.toml"
+        if not path.is_file():
+            raise LoadshareError(
+                f"{path}: is not there; --cases names the folder of the shipped cases"
+            )
+        if name not in self._cases:
+            self._cases[name] = load_case(path)
+        return self._cases[name]
+
+    def pair(self, name: str) -> PairFile | None:
+        """A pair of gears with its teeth; None if the folder does not hold it."""
+        path = self.folder / "pairs" / f"{name}.toml"
+        if name not in self._pairs and path.is_file():
+            from loadshare.tooth.pairfile import load_pair
+
+            self._pairs[name] = load_pair(path)
+        return self._pairs.get(name)
+
+    @property
+    def used(self) -> dict[str, str]:
+        """Hash of the physical content of every file that was read so far, by its path."""
+        cases = {f"fgfbstts/{name}.toml": case.hash for name, case in self._cases.items()}
+        pairs = {f"pairs/{name}.toml": pair.hash for name, pair in self._pairs.items()}
+        return dict(sorted((cases | pairs).items()))
+
+    @cached_property
+    def palette(self) -> Palette:
+        """Looks of the gears and meshes, as in every other picture of this train."""
+        case = self.case("base")
+        ends = {name: (mesh.driver, mesh.driven) for name, mesh in case.meshes.items()}
+        return Palette(list(case.gears), ends)
+
+
+def first(case: Case, changes: Mapping[str, Any] | None = None) -> Position:
+    """Certified equilibrium of position 1; every other is the same without marching."""
+    changed = case.replace(changes) if changes else case
+    (position,) = solve(changed, positions=[1]).positions
+    return position
+
+
+def pair_omega(position: Position, pinion: str) -> float:
+    """Largest Ω of a pinion's pair."""
+    return max(position.pair_share[mesh] or 0.0 for mesh in PAIRS[pinion])
+
+
+def push_on(case: Case, position: Position, pinion: str) -> float:
+    """Size of the force [N] that a pinion's meshes leave on its bearing.
+
+    It is summed from the torques and the lines of action (formulation, section 2).
+    """
+    train = build_train(case)
+    total = np.zeros(3)
+    for mesh in train.meshes.values():
+        force = position.torque[mesh.name] / mesh.radii[0]
+        if mesh.driver == pinion:
+            total -= force * mesh.drive_normal
+        elif mesh.driven == pinion:
+            total += force * mesh.drive_normal
+    return float(np.linalg.norm(total))
