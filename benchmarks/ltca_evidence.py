@@ -2,16 +2,14 @@
 
 Run with ``python benchmarks/ltca_evidence.py`` in the repository. It measures what the page on
 loaded tooth contact states: ISO/TR 6336-30, example 1; refinement of elements and of contact
-points; the stiffness ranges of the seed paper; time and error of both models of the teeth.
+points; the stiffness ranges of the seed paper. Times are in ``benchmarks/ltca.py``.
 """
 
 from __future__ import annotations
 
 import math
-import resource
 import sys
-import time
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
 from typing import TypeVar
@@ -20,6 +18,7 @@ import numpy as np
 
 from loadshare.tooth.compliance.block import Divisions
 from loadshare.tooth.compliance.finite import FiniteElements
+from loadshare.tooth.compliance.slices import Slices
 from loadshare.tooth.contact_programme import solve_contact
 from loadshare.tooth.helicoid import HelicoidGear
 from loadshare.tooth.helicoid_pair import HelicoidPair
@@ -50,16 +49,6 @@ def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> None:
     say("\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n")
 
 
-def timed(action: Callable[[], T], repeat: int = 1) -> tuple[T, float]:
-    """Answer of an action, and the least of its times [s]."""
-    best = math.inf
-    for _ in range(repeat):
-        start = time.perf_counter()
-        answer = action()
-        best = min(best, time.perf_counter() - start)
-    return answer, best
-
-
 def iso_pair(bore: float | None = None) -> HelicoidPair:
     """ISO/TR 6336-30, example 1, its wheel solid to a bore radius [m]."""
     common = {"module": 8e-3, "face_width": 0.1, "dedendum": 1.4}
@@ -68,10 +57,18 @@ def iso_pair(bore: float | None = None) -> HelicoidPair:
     return HelicoidPair(pinion, wheel, 0.5)
 
 
+def compliances(gears: HelicoidPair, model: str) -> PairCompliance:
+    """Compliances from finite elements, from slices, or from slices on half-planes."""
+    if model != "half-planes":
+        return pair_compliance(gears, model)
+    sides = ((gears.driver, 1), (gears.driven, gears.driven_side))
+    return PairCompliance(*(Slices(*side, rigid_body=True) for side in sides), "slices")
+
+
 def mean_stiffness(gears: HelicoidPair, model: str) -> float:
     """Mean over the cycle at 300 N/mm, per face width [N/(mm·µm)]."""
     torque = LINE_LOAD * 0.1 * gears.driver_gear.radius
-    found = ltca(gears, torque, 8, FIT_LOADS, model, 32).secant(0.9)
+    found = ltca(gears, torque, 8, FIT_LOADS, compliances(gears, model), 32).secant(0.9)
     return float(found.mean()) / gears.driver_gear.base_radius**2 / 0.1 * 1e-9
 
 
@@ -81,9 +78,8 @@ def single_stiffness(model: str, bore: float | None) -> float:
     pinion = HelicoidGear(teeth=19, profile_shift=0.145, **common)
     wheel = HelicoidGear(teeth=115, rim=bore, **common)
     gears = HelicoidPair(pinion, wheel, 134 * 4e-3 + 0.14 * 8e-3)
-    compliance, load, found = pair_compliance(gears, model), LINE_LOAD * 0.1, []
-    for phase in np.arange(10) / 10.0:
-        position = gears.position(float(phase), 32)
+    compliance, load, found = compliances(gears, model), LINE_LOAD * 0.1, []
+    for position in gears.positions(np.arange(10) / 10.0, 32):
         for line in position.lines:
             alone = contact_problem(gears, replace(position, lines=(line,)), compliance)
             found.append(load / solve_contact(alone, load).approach / 0.1 * 1e-9)
@@ -98,20 +94,26 @@ def standard() -> None:
     )  # fmt: skip
     single, mesh = formula.single * 1e-9, formula.mesh * 1e-9
     rows = [["standard, by formula", f"{single:.2f}", "–", f"{mesh:.2f}", "–"]]
-    for name, model, bore in (
-        ("finite elements, wheel solid to 0.72 of its root radius", "finite elements", 0.30),
-        ("finite elements, rim of 1.5 tooth heights, clamped", "finite elements", None),
-        ("slices", "slices", None),
-    ):
-        # The virtual spur wheel is solid to the same part of its root.
-        spur = bore and bore * (115 * 4e-3 - 1.4 * 8e-3) / (iso_pair().driven_gear.root)
-        c = single_stiffness(model, spur), mean_stiffness(iso_pair(bore), model)
-        said = [
-            (f"{v:.2f}", f"{100 * (v / w - 1):+.1f} %")
-            for v, w in zip(c, (single, mesh), strict=True)
-        ]
-        rows.append([name, *said[0], *said[1]])
+    for model in ("finite elements", "slices"):
+        for wheel, bore in (
+            ("wheel solid to 0.72 of its root radius", 0.30),
+            ("rim of 1.5 tooth heights, held", None),
+        ):
+            rows.append([f"{model}, {wheel}", *against(model, bore, single, mesh)])
+    rows.append(["slices on half-planes", *against("half-planes", None, single, mesh)])
     table(("ISO/TR 6336-30, example 1", "c'", "difference", "c_γα", "difference"), rows)
+
+
+def against(model: str, bore: float | None, single: float, mesh: float) -> list[str]:
+    """C' and c_γα of a model with their differences from the standard."""
+    # The virtual spur wheel is solid to the same part of its root.
+    spur = bore and bore * (115 * 4e-3 - 1.4 * 8e-3) / iso_pair().driven_gear.root
+    found = single_stiffness(model, spur), mean_stiffness(iso_pair(bore), model)
+    return [
+        text
+        for value, wanted in zip(found, (single, mesh), strict=True)
+        for text in (f"{value:.2f}", f"{100 * (value / wanted - 1):+.1f} %")
+    ]
 
 
 def refined(level: int, layers: int) -> Divisions:
@@ -191,43 +193,8 @@ def seed() -> None:
     )  # fmt: skip
 
 
-def models() -> None:
-    """Time and error of the slices against finite elements, five positions and three loads."""
-    cases = {name: load_pair(PAIRS / f"{name}.toml") for name in PAPER}
-    gears = {name: (pair.geometry, pair.torque) for name, pair in cases.items()}
-    rows = []
-    for name, (geometry, torque) in gears.items():
-        ltca(geometry, torque, 1, compliance="slices", points=8)  # tables and imports
-        exact, build = timed(lambda g=geometry: pair_compliance(g))
-        fast, short = timed(lambda g=geometry: pair_compliance(g, "slices"), 5)
-        results = {}
-        for key, compliance, repeat in (("exact", exact, 1), ("fast", fast, 3)):
-            results[key] = timed(
-                lambda g=geometry, t=torque, c=compliance: ltca(g, t, 5, FIT_LOADS, c), repeat
-            )
-        k, whole = results["exact"][0].secant(0.9), build + results["exact"][1]
-        q, quick = results["fast"][0].secant(0.9), short + results["fast"][1]
-        error = q / k
-        rows.append(
-            [
-                name, f"{build:.2f}", f"{1e3 * short:.0f}", f"{build / short:.0f}",
-                f"{whole:.2f}", f"{quick:.2f}", f"{whole / quick:.0f}",
-                f"{100 * (error.mean() - 1):+.1f} %",
-                f"{100 * np.abs(error / error.mean() - 1).max():.1f} %",
-            ]
-        )  # fmt: skip
-    table(
-        ("pair", "elements [s]", "slices [ms]", "times faster", "analysis, elements [s]",
-         "analysis, slices [s]", "times faster", "error of mean K", "error of its shape"),
-        rows,
-    )  # fmt: skip
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    say(f"Largest memory of the process so far: {peak:.0f} MiB.\n")
-
-
 def main() -> None:
     """Print all tables."""
-    models()
     seed()
     standard()
     convergence("p12", 3, (1, 2, 3, 4))

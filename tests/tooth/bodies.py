@@ -128,7 +128,10 @@ class SpurPair:
         enter, leave, pitch = self._path
         return (leave - enter) / pitch
 
-    def position(self, phase, points_per_line):
+    def positions(self, phases, points_per_line):
+        return tuple(self._position(phase, points_per_line) for phase in phases)
+
+    def _position(self, phase, points_per_line):
         a, b = self.driver, self.driven
         enter, leave, pitch = self._path
         n, width = points_per_line, a.face_width

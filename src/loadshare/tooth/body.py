@@ -84,10 +84,10 @@ class ToothBody(Protocol):
         """
         ...
 
-    def to_body(self, points: Array, rotation: float) -> Array:
+    def to_body(self, points: Array, rotation: Array | float) -> Array:
         """Carry points (..., 3) from the fixed frame to the gear turned by `rotation` [rad]."""
         ...
 
-    def to_space(self, points: Array, rotation: float) -> Array:
+    def to_space(self, points: Array, rotation: Array | float) -> Array:
         """Carry points (..., 3) from the gear turned by `rotation` [rad] to the fixed frame."""
         ...

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -127,6 +128,6 @@ class PairGeometry(Protocol):
         """Overlap ratio; 0 for spur teeth and face gears."""
         ...
 
-    def position(self, phase: float, points_per_line: int) -> MeshPosition:
-        """Unloaded contact at a phase of the mesh cycle."""
+    def positions(self, phases: Sequence[float], points_per_line: int) -> tuple[MeshPosition, ...]:
+        """Unloaded contact at phases of the mesh cycle."""
         ...

@@ -18,6 +18,7 @@ import numpy as np
 
 from loadshare.tooth.body import Array
 from loadshare.tooth.strips import FAINT, StripLine
+from loadshare.tooth.surface import Surface
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,17 +53,20 @@ class ContactProblem:
             total[part, part] -= line.removed
         return total
 
+    @cached_property
+    def surface(self) -> Surface:
+        """What the surfaces yield."""
+        return Surface(self.lines)
+
     def compliance(self, force: Array) -> tuple[Array, Array]:
         """Secant and tangent compliance (N, N) [m/N] at the forces (N,) [N].
 
         u = secant @ force, and the tangent is du/dp.
         """
-        secant, tangent = self.fixed.copy(), self.fixed.copy()
         least = FAINT * float(np.sum(np.maximum(force, 0.0)))
-        for line, part in zip(self.lines, self.parts, strict=True):
-            surface = line.surface(force[part], least)
-            secant[part, part] += surface[0]
-            tangent[part, part] += surface[1]
+        secant, tangent = self.surface.compliance(force, least)
+        secant += self.fixed
+        tangent += self.fixed
         return secant, tangent
 
     def yielded(self, force: Array) -> Array:

@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike
 from loadshare.tooth.body import Array
 from loadshare.tooth.face_flank import FaceFlank
 from loadshare.tooth.face_gear import FaceGear
-from loadshare.tooth.placement import Placement, fixed
+from loadshare.tooth.gap import LAST_STEP
+from loadshare.tooth.placement import Placement, fixed, turned
 
 
 @dataclass(frozen=True)
@@ -70,30 +71,34 @@ class FaceBody:
 
         The flank goes by depth, the fillet by the shaper's angle.
         """
-        gear = self.gear
         u, w = np.broadcast_arrays(np.asarray(u, float), np.asarray(w, float))
-        length = gear.inner + w * (gear.outer - gear.inner)
-        foot_phi, foot_depth = self._foot(length)
-
-        up = np.clip((u - self.foot) / (1.0 - self.foot), 0.0, 1.0)
-        depth = foot_depth + up * (gear.tip_depth - foot_depth)
-        flank = self.flank.patch(*self.flank.at_blank(length, depth), 0.0).point
-
-        share = np.clip(u / self.foot, 0.0, 1.0)
-        land = self._land_share
-        along = np.clip((share - land) / (1.0 - land), 0.0, 1.0)
-        root = self._corner(length, foot_phi, along)
-        # From the end of the fillet the land runs on at the same radius to the middle of the space.
-        space = -math.pi / gear.teeth
-        polar = np.arctan2(root[..., 1], root[..., 0])
-        into = np.where(share < land, 1.0 - share / (land or 1.0), 0.0)
-        back = (space - polar) * into
-        spun = (root[..., 0] + 1j * root[..., 1]) * np.exp(1j * back)
-        root = np.stack([spun.real, spun.imag, root[..., 2]], axis=-1)
-
-        trailing = np.where((u <= self.foot)[..., None], root, flank)
+        length = self.gear.inner + w * (self.gear.outer - self.gear.inner)
+        rooted = u <= self.foot
+        trailing = np.empty((*u.shape, 3))
+        trailing[rooted] = self._root(u[rooted] / self.foot, length[rooted])
+        up = (u[~rooted] - self.foot) / (1.0 - self.foot)
+        trailing[~rooted] = self._side(np.minimum(up, 1.0), length[~rooted])
         half: Array = trailing * np.array([1.0, -float(side), 1.0])
         return half
+
+    def _side(self, up: Array, length: Array) -> Array:
+        """Points of the flank at shares of its depth, 0 at the fillet and 1 at the tip."""
+        gear = self.gear
+        foot_depth = self._foot(length)[1]
+        depth = foot_depth + up * (gear.tip_depth - foot_depth)
+        return self.flank.point(*self.flank.at_blank(length, depth))
+
+    def _root(self, share: Array, length: Array) -> Array:
+        """Points of the root at shares of its line, from the middle of the space to the flank."""
+        share = np.maximum(share, 0.0)
+        land = self._land_share
+        along = np.maximum((share - land) / (1.0 - land), 0.0)
+        root = self._corner(length, self._foot(length)[0], along)
+        # From the end of the fillet the land runs on at the same radius to the middle of the space.
+        space = -math.pi / self.gear.teeth
+        polar = np.arctan2(root[..., 1], root[..., 0])
+        into = np.where(share < land, 1.0 - share / (land or 1.0), 0.0)
+        return turned(root, (space - polar) * into)
 
     def locate(self, points: Array) -> tuple[Array, Array]:
         """Flank coordinates (u, w) of points (..., 3); see `ToothBody.locate`."""
@@ -103,11 +108,11 @@ class FaceBody:
         up = (depth - foot_depth) / (gear.tip_depth - foot_depth)
         return self.foot + (1.0 - self.foot) * up, (length - gear.inner) / (gear.outer - gear.inner)
 
-    def to_body(self, points: Array, rotation: float) -> Array:
+    def to_body(self, points: Array, rotation: Array | float) -> Array:
         """Carry points (..., 3) from the fixed frame to the gear turned by `rotation` [rad]."""
         return self.placement.to_body(points, rotation)
 
-    def to_space(self, points: Array, rotation: float) -> Array:
+    def to_space(self, points: Array, rotation: Array | float) -> Array:
         """Carry points (..., 3) from the gear turned by `rotation` [rad] to the fixed frame."""
         return self.placement.to_space(points, rotation)
 
@@ -115,7 +120,7 @@ class FaceBody:
         """Base-tangent angle and depth where the shaper's tip ends the flank."""
         tip = np.full_like(length, self.gear.shaper.tip_roll)
         phi = self.flank.at_length(length, tip)
-        return phi, self.gear.blank(self.flank.patch(tip, phi, 0.0).point)[1]
+        return phi, self.gear.blank(self.flank.point(tip, phi))[1]
 
     @property
     def _last_phi(self) -> float:
@@ -148,13 +153,14 @@ class FaceBody:
             np.cos(polar)[..., None] * towards + np.sin(polar)[..., None] * tangential
         )
         axial = np.broadcast_to(length, polar.shape)
-        # Along the corner the length of the blank changes almost as the axial coordinate does.
+        sine, cosine = axis[0], axis[2]
         for _ in range(30):
-            step = gear.blank(axial[..., None] * axis + arm)[0] - length
+            point = axial[..., None] * axis + arm
+            rise = point[..., 0] / np.hypot(point[..., 0], point[..., 1])
+            step = (gear.blank(point)[0] - length) / (sine**2 * rise + cosine**2)
             axial = axial - step
-            if np.abs(step).max() < 1e-15:
+            if np.abs(step).max(initial=0.0) < LAST_STEP:
                 break
         point = axial[..., None] * axis + arm
         angle = gear.roll_ratio * (shaper.base_half_angle - shaper.tip_roll - phi)
-        spun = (point[..., 0] + 1j * point[..., 1]) * np.exp(1j * (angle - math.pi / gear.teeth))
-        return np.stack([spun.real, spun.imag, np.broadcast_to(point[..., 2], spun.shape)], axis=-1)
+        return turned(point, angle - math.pi / gear.teeth)

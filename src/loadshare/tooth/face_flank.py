@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from loadshare.tooth.body import Array
 from loadshare.tooth.face_gear import FaceGear
-from loadshare.tooth.flank import Patch, dot, solve_2
+from loadshare.tooth.flank import Patch, solve_2
+from loadshare.tooth.placement import turned
+
+Pair: TypeAlias = tuple[Array, Array]
+
+# A Newton step below this [rad] is the last: what is left is about its square, below round-off.
+LAST_TURN = 1e-8
 
 
 @dataclass(frozen=True)
@@ -54,27 +62,31 @@ class FaceFlank:
         gear, s = self.gear, -self.side
         base, ratio = gear.shaper.base_radius, gear.roll_ratio
         roll, phi, turn = np.broadcast_arrays(a, b, turn)
-        towards, tangential, axis = gear.axes.T
-        cosine, sine = np.cos(phi)[..., None], np.sin(phi)[..., None]
-        across = cosine * towards + sine * tangential
-        around = cosine * tangential - sine * towards
+        cosine, sine = np.cos(phi), np.sin(phi)
         axial = gear.axial_scale / cosine
-        point = axial * axis + base * (across + (s * roll)[..., None] * around)
+        reach = s * base * roll
+        across, around = self._vector(cosine, sine, 0.0), self._vector(-sine, cosine, 0.0)
+        point = self._generated(roll, phi)
 
         # Seen from the gear, everything also turns back by m φ_s about z.
-        back = ratio * _about_z(point)
-        point_roll = s * (base * around - back)
-        point_phi = (
-            axial * (sine / cosine) * axis + base * (around - (s * roll)[..., None] * across) - back
+        back, back_normal = ratio * _about_z(point), ratio * _about_z(around)
+        along_phi = self._vector(
+            -base * sine - reach * cosine, base * cosine - reach * sine, axial * sine / cosine
         )
-        back_normal = ratio * _about_z(around)
-        angle = turn + self.side * np.pi / gear.teeth
-        angle = angle - ratio * (phi - s * gear.shaper.base_half_angle + s * roll)
-        vectors = np.stack(
-            [point, -s * around, point_roll, point_phi, back_normal, s * (across + back_normal)]
+        components = (
+            point,
+            -s * around,
+            s * (base * around - back),
+            along_phi - back,
+            back_normal,
+            s * (across + back_normal),
         )
-        spun = (vectors[..., 0] + 1j * vectors[..., 1]) * np.exp(1j * angle)
-        return Patch(*np.stack([spun.real, spun.imag, vectors[..., 2]], axis=-1))
+        return Patch.spun(components, turn - self._turned_back(roll, phi))
+
+    def point(self, roll: Array, phi: Array) -> Array:
+        """Points (..., 3) of the flank of tooth 0 at surface parameters ξ and Φ [m]."""
+        points = np.moveaxis(self._generated(roll, phi), 0, -1)
+        return turned(points, -self._turned_back(roll, phi))
 
     def at_blank(self, length: Array, depth: Array) -> tuple[Array, Array]:
         """Surface parameters of the points at given lengths and depths of the blank [m].
@@ -93,15 +105,10 @@ class FaceFlank:
             roll = (depth / gear.shaper.base_radius - np.cos(start)) / np.sin(start)
         phi = self.side * start
         for _ in range(30):
-            patch = self.patch(roll, phi, 0.0)
-            now = gear.blank(patch.point)
-            gradient = self._blank_gradient(patch.point)
-            first, second = (
-                (dot(rise, patch.point_a), dot(rise, patch.point_b)) for rise in gradient
-            )
+            now, first, second = self._blank(roll, phi)
             step_a, step_b = solve_2(first, second, now[0] - length, now[1] - depth)
             roll, phi = roll - step_a, phi - step_b
-            if not np.nanmax(np.abs(step_a) + np.abs(step_b), initial=0.0) > 1e-13:
+            if not np.nanmax(np.abs(step_a) + np.abs(step_b), initial=0.0) > LAST_TURN:
                 break
         return roll, phi
 
@@ -112,22 +119,57 @@ class FaceFlank:
         with np.errstate(invalid="ignore"):
             phi = self.side * np.arccos(gear.axial_scale / length)
         for _ in range(30):
-            patch = self.patch(roll, phi, 0.0)
-            along = dot(self._blank_gradient(patch.point)[0], patch.point_b)
-            step = (gear.blank(patch.point)[0] - length) / along
+            now, along, _ = self._blank(roll, phi)
+            step = (now[0] - length) / along[1]
             phi = phi - step
-            if not np.nanmax(np.abs(step), initial=0.0) > 1e-13:
+            if not np.nanmax(np.abs(step), initial=0.0) > LAST_TURN:
                 break
         return phi
 
-    def _blank_gradient(self, points: Array) -> tuple[Array, Array]:
-        towards, _, axis = self.gear.axes.T
-        outward = points * np.array([1.0, 1.0, 0.0])
-        outward = outward / np.sqrt(dot(outward, outward))[..., None]
-        up = np.array([0.0, 0.0, 1.0])
-        return axis[0] * outward + axis[2] * up, towards[0] * outward + towards[2] * up
+    def _turned_back(self, roll: Array, phi: Array) -> Array:
+        """Angle m φ_s of the gear since it stood with tooth 0 on +x [rad]."""
+        gear, s = self.gear, -self.side
+        shaper_turn = phi - s * gear.shaper.base_half_angle + s * roll
+        return gear.roll_ratio * shaper_turn - self.side * np.pi / gear.teeth
+
+    def _generated(self, roll: Array, phi: Array) -> Array:
+        """Coordinates (3, ...) of the points where the shaper generates them, gear frame [m]."""
+        base, reach = self.gear.shaper.base_radius, -self.side * roll
+        cosine, sine = np.cos(phi), np.sin(phi)
+        return self._vector(
+            base * (cosine - reach * sine),
+            base * (sine + reach * cosine),
+            self.gear.axial_scale / cosine,
+        )
+
+    def _vector(self, towards: Array, tangential: Array, axial: Array | float) -> Array:
+        """Components (3, ...) in the gear's frame of a vector given in the shaper's."""
+        angle = self.gear.shaft_angle
+        c, n = math.cos(angle), math.sin(angle)
+        return np.stack([c * towards + n * axial, tangential, c * axial - n * towards])
+
+    def _blank(self, roll: Array, phi: Array) -> tuple[Pair, Pair, Pair]:
+        """Length and depth of the blank [m], then the slopes of either over ξ and Φ."""
+        gear, s = self.gear, -self.side
+        base = gear.shaper.base_radius
+        c, n = math.cos(gear.shaft_angle), math.sin(gear.shaft_angle)
+        cosine, sine = np.cos(phi), np.sin(phi)
+        x, y, z = self._generated(roll, phi)
+        radius = np.hypot(x, y)
+        by_roll = self._vector(-s * base * sine, s * base * cosine, 0.0)
+        by_phi = self._vector(
+            -y, base * (cosine - s * roll * sine), gear.axial_scale * sine / cosine**2
+        )
+        (out_roll, up_roll), (out_phi, up_phi) = (
+            ((x * dx + y * dy) / radius, dz) for dx, dy, dz in (by_roll, by_phi)
+        )
+        return (
+            (n * radius + c * z, c * radius - n * z),
+            (n * out_roll + c * up_roll, n * out_phi + c * up_phi),
+            (c * out_roll - n * up_roll, c * out_phi - n * up_phi),
+        )
 
 
 def _about_z(vectors: Array) -> Array:
-    """ẑ × vectors."""
-    return np.stack([-vectors[..., 1], vectors[..., 0], np.zeros_like(vectors[..., 0])], axis=-1)
+    """ẑ × vectors (3, ...)."""
+    return np.stack([-vectors[1], vectors[0], np.zeros_like(vectors[0])])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar, TypeVar
@@ -17,15 +17,15 @@ from loadshare.tooth.face_body import FaceBody
 from loadshare.tooth.face_flank import FaceFlank
 from loadshare.tooth.face_gear import FaceGear
 from loadshare.tooth.flank import Patch
-from loadshare.tooth.gap import Trace
+from loadshare.tooth.gap import Extents
 from loadshare.tooth.helicoid import HelicoidGear
 from loadshare.tooth.helicoid_body import HelicoidBody
 from loadshare.tooth.helicoid_flank import HelicoidFlank
 from loadshare.tooth.involute import inv, inverse_inv
 from loadshare.tooth.placement import Placement, fixed
-from loadshare.tooth.positions import position
+from loadshare.tooth.positions import between, positions
 from loadshare.tooth.span import span
-from loadshare.tooth.valley import Anchor, anchor, follow
+from loadshare.tooth.valley import Valleys, anchor
 
 Roll = TypeVar("Roll", float, Array)
 
@@ -177,7 +177,7 @@ class FaceGearPair:
     def _flanks(self) -> tuple[HelicoidFlank, FaceFlank]:
         return HelicoidFlank(self.pinion), FaceFlank(self.gear, self.driven_side)
 
-    def ideal(self, phase: float) -> tuple[float, float]:
+    def ideal(self, phase: Array) -> tuple[Array, Array]:
         """Rotations at which the pair without misalignment touches [rad].
 
         At phase 0 pair 0 touches at the pitch point of pinion and shaper.
@@ -189,37 +189,28 @@ class FaceGearPair:
         at_pitch += self.gear.roll_ratio * (pitch - shaper.base_half_angle)
         return driver, at_pitch + turn / self.ratio
 
-    def _anchor(self, pairs: Array, driver: float, driven: float) -> Anchor:
-        """The ideal pair's points of contact."""
+    def valleys(self, pairs: Array, driver: Array, driven: Array) -> Valleys:
+        """Lines of pairs (m,) at rotations (m,) [rad], from the ideal pair's points of contact."""
         gear = self.pinion
-        phi = driver + 2.0 * math.pi * pairs[:, None] / gear.teeth + gear.base_half_angle
+        phi = driver + 2.0 * math.pi * pairs / gear.teeth + gear.base_half_angle
         roll = self.working_angle + phi
         # Below the base circle there is no involute; no pair is active near it.
         roll = np.maximum(roll, 0.25 * gear.form_roll)
-        axial = np.full_like(roll, self.contact_length - self.middle)
+        own = roll, np.full_like(roll, self.contact_length - self.middle)
         other = self.shaper_roll(roll), np.full_like(roll, -self.working_angle)
-        flanks = self.patches(pairs[:, None], (roll, axial), other, driver, driven)
-        return anchor((roll, axial), other, flanks)
+        flanks = self.driver_patch(pairs, own, driver), self.driven_patch(pairs, other, driven)
+        return Valleys(self, pairs, driver, driven, anchor(own, other, flanks))
 
-    def patches(
-        self,
-        pairs: Array,
-        driver_at: tuple[Array, Array],
-        driven_at: tuple[Array, Array],
-        driver: Array | float,
-        driven: float,
-    ) -> tuple[Patch, Patch]:
-        """Points of both flanks of pairs of teeth, fixed frame."""
-        own, other = self._flanks
-        per_tooth = 2.0 * math.pi / self.pinion.teeth
-        first = own.patch(*driver_at, driver + per_tooth * pairs)
+    def driver_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
+        """Points of the pinion's flanks at surface parameters `at`, fixed frame."""
+        turn = rotation + 2.0 * math.pi / self.pinion.teeth * pairs
+        return self._flanks[0].patch(*at, turn)
+
+    def driven_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
+        """Points of the gear's flanks at surface parameters `at`, fixed frame."""
+        turn = rotation + 2.0 * math.pi / self.gear.teeth * pairs
         place = self.driven.placement
-        second = other.patch(*driven_at, driven + per_tooth / self.ratio * pairs)
-        return first, second.turned(place.axes, place.origin)
-
-    def trace(self, pairs: Array, stations: Array, driver: float, driven: float) -> Trace:
-        """Flanks and gap at stations (m, n) [m] of the lines of m pairs."""
-        return follow(self, pairs, stations, self._anchor(pairs, driver, driven), driver, driven)
+        return self._flanks[1].patch(*at, turn).turned(place.axes, place.origin)
 
     def margins(
         self, driver_at: tuple[Array, Array], driven_at: tuple[Array, Array]
@@ -227,7 +218,7 @@ class FaceGearPair:
         """Distance to every edge of the active flanks by name [m], negative beyond it."""
         roll, axial = driver_at
         pinion, gear = self.pinion, self.gear
-        length, depth = gear.blank(self._flanks[1].patch(*driven_at, 0.0).point)
+        length, depth = gear.blank(self._flanks[1].point(*driven_at))
         return {
             "driver tip": pinion.base_radius * (pinion.tip_roll - roll),
             "driver root": pinion.base_radius * (roll - pinion.form_roll),
@@ -238,8 +229,8 @@ class FaceGearPair:
             "driven outer end": gear.outer - length,
         }
 
-    def extents(self, driver: float, driven: float) -> tuple[Array, Array, Array]:
-        """Pairs on both active flanks, with the first and last station of their lines [m].
+    def extents(self, driver: Array, driven: Array) -> Extents:
+        """Lines of the pairs on both active flanks at positions (k,), by position and pair.
 
         A line's part on both flanks is where its least margin is positive.
         """
@@ -248,23 +239,34 @@ class FaceGearPair:
         middle = self.working_angle + driver + gear.base_half_angle
         # Lines of neighbouring stations reach past the ideal contact's range of roll.
         first, last = self.first_roll - per_tooth, gear.tip_roll + per_tooth
-        pairs = np.arange(
-            math.ceil((first - middle) / per_tooth), math.floor((last - middle) / per_tooth) + 1.0
-        )
-        start = self._anchor(pairs, driver, driven)
+        position, pairs = between((first - middle) / per_tooth, (last - middle) / per_tooth)
+        valleys = self.valleys(pairs, driver[position], driven[position])
 
         def margin(stations: Array) -> Array:
-            trace = follow(self, pairs, stations, start, driver, driven)
-            least = np.min(list(self.margins(trace.driver_at, trace.driven_at).values()), axis=0)
-            return np.where(np.isfinite(trace.gap), least, -1.0)
+            nonlocal valleys
+            found = valleys.find(stations)
+            if valleys.known is None:
+                valleys = valleys.knowing(stations, found)
+            a, b, c, d, gap = found
+            least = np.min(list(self.margins((a, b), (c, d)).values()), axis=0)
+            return np.where(np.isfinite(gap), least, -1.0)
 
         width = min(gear.face_width, self.gear.outer - self.gear.inner)
-        along = np.maximum(np.abs(start.major[:, 0, 2]), 0.2)
-        found, first_station, last_station = span(
+        along = np.maximum(np.abs(valleys.start.major[:, 2]), 0.2)
+        found, start, end = span(
             margin, 1.1 * (0.5 * width + abs(self.contact_length - self.middle)) / along
         )
-        return pairs[found], first_station[found], last_station[found]
+        valleys = valleys.rows(found)
+        return Extents(
+            position[found],
+            pairs[found],
+            start[found],
+            end[found],
+            valleys.driver,
+            valleys.driven,
+            valleys.trace,
+        )
 
-    def position(self, phase: float, points_per_line: int) -> MeshPosition:
-        """Unloaded contact at a phase of the mesh cycle; see `positions.position`."""
-        return position(self, phase, points_per_line)
+    def positions(self, phases: Sequence[float], points_per_line: int) -> tuple[MeshPosition, ...]:
+        """Unloaded contact at phases of the mesh cycle; see `positions.positions`."""
+        return positions(self, phases, points_per_line)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,21 +33,24 @@ class Patch:
     normal_a: Array
     normal_b: Array
 
+    @classmethod
+    def spun(cls, components: Sequence[Iterable[Array | float]], angle: Array) -> Patch:
+        """A patch whose vectors have the components (x, y, z), turned about z by angles [rad]."""
+        vectors = np.empty((6, 3, *angle.shape))
+        cosine, sine = np.cos(angle), np.sin(angle)
+        for vector, (x, y, z) in zip(vectors, components, strict=True):
+            vector[0] = cosine * x - sine * y
+            vector[1] = sine * x + cosine * y
+            vector[2] = z
+        return cls(*(_last(vector) for vector in vectors))
+
     def turned(self, rotation: Array, origin: Array) -> Patch:
         """The patch carried to another frame: x ↦ rotation x + origin."""
+        names = list(self.__dataclass_fields__)
+        vectors = [getattr(self, name) for name in names]
         if not np.array_equal(rotation, np.eye(3)):
-            vectors = (getattr(self, name) @ rotation.T for name in self.__dataclass_fields__)
-            moved = Patch(*vectors)
-        else:
-            moved = self
-        return Patch(
-            moved.point + origin,
-            moved.normal,
-            moved.point_a,
-            moved.point_b,
-            moved.normal_a,
-            moved.normal_b,
-        )
+            vectors = [vector @ rotation.T for vector in vectors]
+        return Patch(vectors[0] + origin, *vectors[1:])
 
     def normal_change(self, direction: Array) -> Array:
         """Change of the unit normal per length along tangential directions.
@@ -78,6 +82,22 @@ def dot(first: Array, second: Array) -> Array:
     return product
 
 
+def cross(first: Array, second: Array) -> Array:
+    """Vector products along the last axis."""
+    a, b, c = first[..., 0], first[..., 1], first[..., 2]
+    d, e, f = second[..., 0], second[..., 1], second[..., 2]
+    product = np.empty((3, *np.broadcast_shapes(a.shape, d.shape)))
+    product[0] = b * f - c * e
+    product[1] = c * d - a * f
+    product[2] = a * e - b * d
+    return _last(product)
+
+
+def _last(vectors: Array) -> Array:
+    """Components (3, ...) as the last axis."""
+    return vectors.transpose(*range(1, vectors.ndim), 0)
+
+
 def solve_2(
     first: tuple[Array, Array], second: tuple[Array, Array], right_1: Array, right_2: Array
 ) -> tuple[Array, Array]:
@@ -85,6 +105,18 @@ def solve_2(
     (a, b), (c, d) = first, second
     area = a * d - b * c
     return (d * right_1 - b * right_2) / area, (a * right_2 - c * right_1) / area
+
+
+def solve_3(first: Array, second: Array, third: Array, right: Array) -> tuple[Array, Array, Array]:
+    """Solve stacked systems of three equations, given by their columns (..., 3).
+
+    A singular system gives infinite or undefined numbers.
+    """
+    across = cross(first, second)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        over = 1.0 / dot(across, third)
+        beside = cross(right, third)
+        return -dot(beside, second) * over, dot(beside, first) * over, dot(across, right) * over
 
 
 def unit(vectors: Array) -> Array:
@@ -111,11 +143,11 @@ def principal_directions(driver: Patch, driven: Patch) -> tuple[Array, Array]:
         Unit tangents of the driver's flank, major × minor = normal.
     """
     first = unit(driver.point_a)
-    second = np.cross(driver.normal, first)
+    second = cross(driver.normal, first)
     change_1 = driver.normal_change(first) + driven.normal_change(first)
     change_2 = driver.normal_change(second) + driven.normal_change(second)
     k11, k22 = dot(first, change_1), dot(second, change_2)
     k12 = 0.5 * (dot(first, change_2) + dot(second, change_1))
     greatest = 0.5 * np.arctan2(2.0 * k12, k11 - k22)
     minor = np.cos(greatest)[..., None] * first + np.sin(greatest)[..., None] * second
-    return np.cross(minor, driver.normal), minor
+    return cross(minor, driver.normal), minor

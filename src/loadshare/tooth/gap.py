@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from loadshare.errors import LoadshareError
 from loadshare.tooth.body import Array
-from loadshare.tooth.flank import Patch, dot
+from loadshare.tooth.flank import Patch, dot, solve_3
 
 # A Newton step below this [m] is the last: convergence is quadratic, so that what is left is its
-# square over a radius of curvature, far below round-off.
-LAST_STEP = 1e-10
+# square over a radius of curvature, below round-off.
+LAST_STEP = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +54,33 @@ class Trace:
         return slope
 
 
+@dataclass(frozen=True, eq=False)
+class Extents:
+    """Contact lines of several positions, and how far they reach on both active flanks.
+
+    Parameters
+    ----------
+    position : array (m,) of int
+        Which of the positions asked for a line belongs to.
+    pairs : array (m,)
+        Pairs of teeth.
+    start, end : array (m,)
+        First and last station of the lines [m].
+    driver, driven : array (m,)
+        Rotations of the gears [rad].
+    trace : callable
+        From stations (m, n) [m] to the `Trace` of the lines there.
+    """
+
+    position: NDArray[np.int64]
+    pairs: Array
+    start: Array
+    end: Array
+    driver: Array
+    driven: Array
+    trace: Callable[[Array], Trace]
+
+
 class Lines(Protocol):
     """The contact lines of a pair of gears, as geometry gives them before any gap is known."""
 
@@ -61,27 +89,20 @@ class Lines(Protocol):
         """Approach along the normal per radian of the driver [m]."""
         ...
 
-    def ideal(self, phase: float) -> tuple[float, float]:
-        """Rotations of driver and driven gear at a phase of the ideal pair [rad]."""
+    def ideal(self, phase: Array) -> tuple[Array, Array]:
+        """Rotations of driver and driven gear at phases of the ideal pair [rad]."""
         ...
 
-    def extents(self, driver: float, driven: float) -> tuple[Array, Array, Array]:
-        """Pairs on both active flanks, with the first and last station of their lines [m]."""
+    def extents(self, driver: Array, driven: Array) -> Extents:
+        """Lines of the pairs on both active flanks at positions (k,), by position and pair."""
         ...
 
-    def patches(
-        self,
-        pairs: Array,
-        driver_at: tuple[Array, Array],
-        driven_at: tuple[Array, Array],
-        driver: Array | float,
-        driven: float,
-    ) -> tuple[Patch, Patch]:
-        """Points of both flanks of pairs of teeth, fixed frame."""
+    def driver_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
+        """Points of the driver's flanks at surface parameters `at`, fixed frame."""
         ...
 
-    def trace(self, pairs: Array, stations: Array, driver: float, driven: float) -> Trace:
-        """Flanks and gap at stations (m, n) of the lines of m pairs."""
+    def driven_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
+        """Points of the driven gear's flanks at surface parameters `at`, fixed frame."""
         ...
 
     def margins(
@@ -91,33 +112,22 @@ class Lines(Protocol):
         ...
 
 
-def least_gap(
-    lines: Lines, pairs: Array, start: Array, end: Array, driver: float, driven: float
-) -> tuple[Array, Array]:
+def least_gap(lines: Extents) -> tuple[Array, Array]:
     """Least gap on each line, ends included, and the station where it stands.
 
     A grid finds the place; where the slope of the gap changes sign beside it, the secant of the
     slope gives the station.
-
-    Parameters
-    ----------
-    lines : Lines
-        The pair of gears.
-    pairs, start, end : array (m,)
-        Pairs of teeth with their first and last station.
-    driver, driven : float
-        Rotations [rad].
 
     Returns
     -------
     gap, station : array (m,)
         Both in metres.
     """
-    row = np.arange(len(pairs))
-    low, high = start, end
+    row = np.arange(len(lines.pairs))
+    low, high = lines.start, lines.end
     for grid in (17, 9):
         stations = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, grid)
-        trace = lines.trace(pairs, stations, driver, driven)
+        trace = lines.trace(stations)
         if not np.isfinite(trace.gap).all():
             raise LoadshareError(
                 "the flanks do not face each other along the whole contact line; "
@@ -136,7 +146,7 @@ def least_gap(
         share = before / np.where(turns, before - after, 1.0)
         between = stations[row, left] + share * (stations[row, right] - stations[row, left])
         between = np.where(turns, between, station)
-        found = lines.trace(pairs, between[:, None], driver, driven).gap[:, 0]
+        found = lines.trace(between[:, None]).gap[:, 0]
         better = found < least
         least, station = np.where(better, found, least), np.where(better, between, station)
     return least, station
@@ -147,8 +157,8 @@ def meet(
     pairs: Array,
     driver_at: tuple[Array, Array],
     driven_at: tuple[Array, Array],
-    driver: float,
-    driven: float,
+    driver: Array,
+    driven: Array,
 ) -> tuple[Patch, Patch, tuple[Array, Array], Array]:
     """Follow the driver's normals to the driven flank, by Newton's method.
 
@@ -162,7 +172,7 @@ def meet(
         Points of the driver's flank.
     driven_at : tuple of two arrays (m, n)
         Where to start on the driven flank.
-    driver, driven : float
+    driver, driven : array (m, n)
         Rotations [rad].
 
     Returns
@@ -175,27 +185,15 @@ def meet(
         Distance along the normals [m], NaN where Newton's method found no point.
     """
     a, b = driven_at
-    own, other = lines.patches(pairs, driver_at, (a, b), driver, driven)
+    own = lines.driver_patch(pairs, driver_at, driver)
+    other = lines.driven_patch(pairs, (a, b), driven)
     gap = dot(other.point - own.point, own.normal)
     for _ in range(25):
         apart = own.point + gap[..., None] * own.normal - other.point
-        columns = np.stack([other.point_a, other.point_b, -own.normal], axis=-1)
-        step = solve(columns, apart)
-        a, b, gap = a + step[..., 0], b + step[..., 1], gap + step[..., 2]
-        _, other = lines.patches(pairs, driver_at, (a, b), driver, driven)
-        moved = np.abs(np.einsum("...ij,...j->...i", columns, step)).max(axis=-1)
-        if moved.max() < LAST_STEP:
+        step = solve_3(other.point_a, other.point_b, -own.normal, apart)
+        a, b, gap = a + step[0], b + step[1], gap + step[2]
+        other = lines.driven_patch(pairs, (a, b), driven)
+        moved = np.abs(apart).max(axis=-1)
+        if moved.max(initial=0.0) < LAST_STEP:
             break
     return own, other, (a, b), np.where(moved < LAST_STEP, gap, np.nan)
-
-
-def solve(matrix: Array, right: Array) -> Array:
-    """Solve stacked small systems; a singular one gives NaN instead of stopping the others."""
-    try:
-        answer = np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0], np.float64)
-    except np.linalg.LinAlgError:
-        regular = np.abs(np.linalg.det(matrix)) > 0.0
-        matrix = np.where(regular[..., None, None], matrix, np.eye(matrix.shape[-1]))
-        answer = np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0], np.float64)
-        answer = np.where(regular[..., None], answer, np.nan)
-    return answer

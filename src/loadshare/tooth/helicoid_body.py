@@ -88,10 +88,10 @@ class HelicoidBody:
         up = (square - gear.form_roll**2) / (gear.tip_roll**2 - gear.form_roll**2)
         return self.foot + (1.0 - self.foot) * up, points[..., 2] / gear.face_width + 0.5
 
-    def to_body(self, points: Array, rotation: float) -> Array:
+    def to_body(self, points: Array, rotation: Array | float) -> Array:
         """Carry points (..., 3) from the fixed frame to the gear turned by `rotation` [rad]."""
         return self.placement.to_body(points, rotation)
 
-    def to_space(self, points: Array, rotation: float) -> Array:
+    def to_space(self, points: Array, rotation: Array | float) -> Array:
         """Carry points (..., 3) from the gear turned by `rotation` [rad] to the fixed frame."""
         return self.placement.to_space(points, rotation)

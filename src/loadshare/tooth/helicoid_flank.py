@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loadshare.tooth.body import Array
-from loadshare.tooth.flank import Patch, dot
+from loadshare.tooth.flank import Patch
 from loadshare.tooth.helicoid import HelicoidGear
 
 
@@ -57,25 +57,23 @@ class HelicoidFlank:
         per_roll = -s * kind
         phi = turn + s * gear.base_half_angle + per_roll * roll + twist * axial
 
-        across = _vector(np.cos(phi), np.sin(phi), 0.0)
-        around = _vector(-across[..., 1], across[..., 0], 0.0)
-        up = np.array([0.0, 0.0, 1.0])
-        plain = s * (cosine * around - sine * up)
-        generator = sine * around + cosine * up
-        point = radius * across - (per_roll * radius * roll)[..., None] * around
-        point[..., 2] += axial
-
+        # Components along e_r, e_t and e_z, which turn with φ: the generator of the helicoid is
+        # (0, sin β_b, cos β_b), the plain normal s (0, cos β_b, −sin β_b).
+        across, up = s * cosine, -s * sine
+        arc = -per_roll * radius * roll
         if gear.deviation.none:
-            # Along ξ only e_r changes the point, along ζ also the generator does.
-            reach = (radius * roll)[..., None] * across
-            tilting = -s * cosine * across
-            return Patch(
-                point,
-                plain,
-                reach,
-                twist * per_roll * reach + generator / cosine,
-                per_roll * tilting,
-                twist * tilting,
+            reach = radius * roll
+            return Patch.spun(
+                [
+                    (radius, arc, axial),
+                    (0.0, across, up),
+                    # Along ξ only e_r changes the point, along ζ also the generator does.
+                    (reach, 0.0, 0.0),
+                    (twist * per_roll * reach, sine / cosine, 1.0),
+                    (-per_roll * across, 0.0, 0.0),
+                    (-twist * across, 0.0, 0.0),
+                ],
+                phi,
             )
 
         taken, by_roll, by_roll2 = gear.deviation.profile(radius * roll)
@@ -86,35 +84,34 @@ class HelicoidFlank:
         reach_roll = radius - kind * cosine * by_roll
         reach_axial = -kind * cosine * by_axial
 
-        # The normal in the frame (e_r, generator, plain normal) is (tilt, lean, 1), made unit.
+        # The normal along e_r, generator and plain normal is (tilt, lean, 1), made unit.
         tilt = by_roll / reach
         tilt_roll = by_roll2 / reach - tilt * reach_roll / reach
         tilt_axial = -tilt * reach_axial / reach
         lean = cosine * (by_axial - twist * per_roll * by_roll)
         lean_roll = -cosine * twist * per_roll * by_roll2
         lean_axial = cosine * by_axial2
-        raw = tilt[..., None] * across + lean[..., None] * generator + plain
-        # Change of that vector with φ alone, its components held.
-        turning = tilt[..., None] * around - (lean * sine + s * cosine)[..., None] * across
-        length = np.sqrt(dot(raw, raw))[..., None]
-        normal = raw / length
+        over = 1.0 / np.sqrt(1.0 + tilt**2 + lean**2)
+        normal = (tilt * over, (lean * sine + across) * over, (lean * cosine + up) * over)
 
-        def change(of_tilt: Array, of_lean: Array, of_phi: float) -> Array:
-            raw_change = of_tilt[..., None] * across + of_lean[..., None] * generator
-            raw_change = (raw_change + of_phi * turning) / length
-            tangential: Array = raw_change - dot(normal, raw_change)[..., None] * normal
-            return tangential
+        def change(of_tilt: Array, of_lean: Array, of_phi: float) -> tuple[Array, ...]:
+            """Change of the unit normal with that of tilt, lean and φ."""
+            raw = (
+                of_tilt * over - of_phi * normal[1],
+                of_lean * sine * over + of_phi * normal[0],
+                of_lean * cosine * over,
+            )
+            along = normal[0] * raw[0] + normal[1] * raw[1] + normal[2] * raw[2]
+            return tuple(r - along * n for n, r in zip(normal, raw, strict=True))
 
-        point_roll = reach[..., None] * across
-        return Patch(
-            point - taken[..., None] * plain,
-            normal,
-            point_roll - by_roll[..., None] * plain,
-            twist * per_roll * point_roll + generator / cosine - by_axial[..., None] * plain,
-            change(tilt_roll, lean_roll, per_roll),
-            change(tilt_axial, lean_axial, twist),
+        return Patch.spun(
+            [
+                (radius, arc - across * taken, axial - up * taken),
+                normal,
+                (reach, -across * by_roll, -up * by_roll),
+                (twist * per_roll * reach, sine / cosine - across * by_axial, 1.0 - up * by_axial),
+                change(tilt_roll, lean_roll, per_roll),
+                change(tilt_axial, lean_axial, twist),
+            ],
+            phi,
         )
-
-
-def _vector(x: Array, y: Array, z: float) -> Array:
-    return np.stack([x, y, np.full_like(x, z)], axis=-1)

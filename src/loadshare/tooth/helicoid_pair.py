@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeVar
@@ -13,13 +13,13 @@ import numpy as np
 from loadshare.tooth.body import Array
 from loadshare.tooth.contact import MeshPosition
 from loadshare.tooth.flank import Patch
-from loadshare.tooth.gap import Trace, meet
+from loadshare.tooth.gap import Extents, Trace, meet
 from loadshare.tooth.helicoid import HelicoidGear
 from loadshare.tooth.helicoid_body import HelicoidBody
 from loadshare.tooth.helicoid_flank import HelicoidFlank
 from loadshare.tooth.involute import inv, inverse_inv
 from loadshare.tooth.placement import Placement, about_x, about_y, fixed
-from loadshare.tooth.positions import position
+from loadshare.tooth.positions import between, positions
 
 Roll = TypeVar("Roll", float, Array)
 
@@ -172,7 +172,7 @@ class HelicoidPair:
     def _flanks(self) -> tuple[HelicoidFlank, HelicoidFlank]:
         return HelicoidFlank(self.driver_gear), HelicoidFlank(self.driven_gear, self.driven_side)
 
-    def ideal(self, phase: float) -> tuple[float, float]:
+    def ideal(self, phase: Array) -> tuple[Array, Array]:
         """Rotations at which the unmodified, parallel pair touches [rad].
 
         At phase 0 pair 0 touches at the pitch point in the middle of the driver's face width.
@@ -188,26 +188,24 @@ class HelicoidPair:
         at_pitch += two.twist * self.misalignment.axial_shift
         return driver, at_pitch - self.kind * turn / self.ratio
 
-    def _roll(self, pairs: Array, axial: Array, driver: float) -> Array:
+    def _roll(self, pairs: Array, axial: Array, driver: Array) -> Array:
         """Driver's angle of roll where its flank crosses the plane of action."""
         gear = self.driver_gear
         phi = driver + 2.0 * math.pi * pairs / gear.teeth + gear.base_half_angle
         return self.working_angle + gear.kind * (phi + gear.twist * axial)
 
-    def extents(self, driver: float, driven: float) -> tuple[Array, Array, Array]:
-        """Pairs on both active flanks, and the axial range of their contact lines [m]."""
-        del driven  # the lines of the plane of action go with the driver
+    def extents(self, driver: Array, driven: Array) -> Extents:
+        """Lines of the pairs on both active flanks at positions (k,), by position and pair."""
         gear = self.driver_gear
         first, last = self._roll_range
         low, high = self.axial_range
         per_tooth = 2.0 * math.pi / gear.teeth
         reach = abs(gear.twist) * max(abs(low), abs(high))
-        middle = float(self._roll(np.zeros(1), np.zeros(1), driver)[0])
+        middle = self._roll(np.zeros(1), np.zeros(1), driver)
         # The pitch at which the roll of pair k is within the range, for either kind of driver.
-        bounds = sorted(
-            gear.kind * (roll - middle) / per_tooth for roll in (first - reach, last + reach)
-        )
-        pairs = np.arange(math.ceil(bounds[0]), math.floor(bounds[1]) + 1, dtype=float)
+        bounds = [gear.kind * (roll - middle) / per_tooth for roll in (first - reach, last + reach)]
+        position, pairs = between(*np.sort(bounds, axis=0))
+        driver, driven = driver[position], driven[position]
         at_middle = self._roll(pairs, np.zeros_like(pairs), driver)
         slope = gear.kind * gear.twist
         if slope == 0.0:
@@ -217,30 +215,35 @@ class HelicoidPair:
             crossing = np.sort([(first - at_middle) / slope, (last - at_middle) / slope], axis=0)
             start, end = np.maximum(crossing[0], low), np.minimum(crossing[1], high)
             inside = start < end
-        return pairs[inside], start[inside], end[inside]
+        rows = pairs[inside], driver[inside], driven[inside]
+        return Extents(
+            position[inside],
+            rows[0],
+            start[inside],
+            end[inside],
+            *rows[1:],
+            lambda stations: self.trace(*rows, stations),
+        )
 
-    def patches(
-        self,
-        pairs: Array,
-        driver_at: tuple[Array, Array],
-        driven_at: tuple[Array, Array],
-        driver: Array | float,
-        driven: float,
-    ) -> tuple[Patch, Patch]:
-        """Points of both flanks of pairs of teeth, fixed frame."""
-        own, other = self._flanks
-        per_tooth = 2.0 * math.pi / self.driver_gear.teeth
-        first = own.patch(*driver_at, driver + per_tooth * pairs)
-        turn = driven + self.driven_step * per_tooth / self.ratio * pairs
+    def driver_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
+        """Points of the driver's flanks at surface parameters `at`, fixed frame."""
+        turn = rotation + 2.0 * math.pi / self.driver_gear.teeth * pairs
+        return self._flanks[0].patch(*at, turn)
+
+    def driven_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
+        """Points of the driven gear's flanks at surface parameters `at`, fixed frame."""
+        turn = rotation + self.driven_step * 2.0 * math.pi / self.driven_gear.teeth * pairs
         place = self.driven.placement
-        return first, other.patch(*driven_at, turn).turned(place.axes, place.origin)
+        return self._flanks[1].patch(*at, turn).turned(place.axes, place.origin)
 
-    def trace(self, pairs: Array, stations: Array, driver: float, driven: float) -> Trace:
-        """Flanks and gap at axial stations (m, n) [m] of the lines of m pairs."""
-        numbers = np.broadcast_to(pairs[:, None], stations.shape)
-        roll = self._roll(numbers, stations, driver)
+    def trace(self, pairs: Array, driver: Array, driven: Array, stations: Array) -> Trace:
+        """Flanks and gap at axial stations (m, n) [m] of the lines of pairs (m,)."""
+        pairs, driver, driven = (
+            np.broadcast_to(part[:, None], stations.shape) for part in (pairs, driver, driven)
+        )
+        roll = self._roll(pairs, stations, driver)
         start = (self.partner_roll(roll), stations - self.misalignment.axial_shift)
-        own, other, driven_at, gap = meet(self, numbers, (roll, stations), start, driver, driven)
+        own, other, driven_at, gap = meet(self, pairs, (roll, stations), start, driver, driven)
         slope = self.driver_gear.kind * self.driver_gear.twist
         tangent = slope * own.point_a + own.point_b
         return Trace(own, other, (roll, stations), driven_at, gap, tangent)
@@ -260,9 +263,9 @@ class HelicoidPair:
             edges[f"{name} face"] = 0.5 * gear.face_width - np.abs(axial)
         return edges
 
-    def position(self, phase: float, points_per_line: int) -> MeshPosition:
-        """Unloaded contact at a phase of the mesh cycle; see `positions.position`."""
-        return position(self, phase, points_per_line)
+    def positions(self, phases: Sequence[float], points_per_line: int) -> tuple[MeshPosition, ...]:
+        """Unloaded contact at phases of the mesh cycle; see `positions.positions`."""
+        return positions(self, phases, points_per_line)
 
 
 def working_angle_without_backlash(one: HelicoidGear, two: HelicoidGear) -> float:

@@ -51,7 +51,7 @@ def pair_compliance(
     teeth: int | None = None,
     layers: int | None = None,
 ) -> PairCompliance:
-    """Compliances of a pair from finite elements or, a hundred times faster, from slices.
+    """Compliances of a pair from finite elements or, hundreds of times faster, from slices.
 
     Parameters
     ----------
@@ -136,12 +136,11 @@ def ltca(
     if isinstance(compliance, str):
         compliance = pair_compliance(pair, compliance)
     torques = torque * np.array(parts)
-    positions, contacts, lines = [], [], []
-    for k, phase in enumerate(places):
-        position = pair.position(phase, points)
+    positions = pair.positions(places, points)
+    contacts, lines = [], []
+    for k, position in enumerate(positions):
         problem = contact_problem(pair, position, compliance)
-        solved = _ladder(problem, torques / (pair.arm * pair.helices), phase)
-        positions.append(position)
+        solved = _ladder(problem, torques / (pair.arm * pair.helices), position.phase)
         contacts.append(solved)
         lines.append(tuple(_line_loads(position, problem, contact) for contact in solved))
         if progress is not None:
@@ -149,7 +148,7 @@ def ltca(
     return Ltca(
         rated=torque,
         torque=torques,
-        positions=tuple(positions),
+        positions=positions,
         arm=pair.arm,
         helices=pair.helices,
         contacts=tuple(contacts),
@@ -177,6 +176,11 @@ def contact_problem(
         )
     driver = tuple(Flank(line.pair, line.driver_uw) for line in lines)
     driven = tuple(Flank(line.pair * pair.driven_step, line.driven_uw) for line in lines)
+    ends = np.cumsum([len(line.length) for line in lines])[:-1]
+    depths = [
+        np.split(gear.depth(np.concatenate([flank.uw for flank in flanks])), ends)
+        for gear, flanks in ((compliance.driver, driver), (compliance.driven, driven))
+    ]
     strips = tuple(
         StripLine(
             length=line.length,
@@ -184,12 +188,9 @@ def contact_problem(
             curvature_along=line.curvature_along,
             modulus=(pair.driver.youngs_modulus, pair.driven.youngs_modulus),
             poisson=(pair.driver.poisson, pair.driven.poisson),
-            depth=(
-                compliance.driver.depth(line.driver_uw),
-                compliance.driven.depth(line.driven_uw),
-            ),
+            depth=depth,
         )
-        for line in lines
+        for line, depth in zip(lines, zip(*depths, strict=True), strict=True)
     )
     return ContactProblem(
         bulk=compliance.driver.bulk(driver) + compliance.driven.bulk(driven),

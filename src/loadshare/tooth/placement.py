@@ -25,14 +25,14 @@ class Placement:
     origin: Array
     axes: Array
 
-    def to_body(self, points: Array, rotation: float) -> Array:
+    def to_body(self, points: Array, rotation: Array | float) -> Array:
         """Carry points (..., 3) from the fixed frame to the gear turned by `rotation` [rad]."""
         placed: Array = (points - self.origin) @ self.axes
-        return placed @ about_z(rotation)
+        return turned(placed, -np.asarray(rotation))
 
-    def to_space(self, points: Array, rotation: float) -> Array:
+    def to_space(self, points: Array, rotation: Array | float) -> Array:
         """Carry points (..., 3) from the gear turned by `rotation` [rad] to the fixed frame."""
-        placed: Array = points @ about_z(rotation).T @ self.axes.T + self.origin
+        placed: Array = turned(points, rotation) @ self.axes.T + self.origin
         return placed
 
 
@@ -41,10 +41,11 @@ def fixed() -> Placement:
     return Placement(np.zeros(3), np.eye(3))
 
 
-def about_z(angle: float) -> Array:
-    """Rotation matrix about z."""
-    c, s = math.cos(angle), math.sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+def turned(points: Array, angle: Array | float) -> Array:
+    """Points (..., 3) turned about z by angles (...) [rad]."""
+    x, y, z = np.moveaxis(points, -1, 0)
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
 
 
 def about_y(angle: float) -> Array:

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from loadshare.errors import LoadshareError
-from loadshare.tooth.body import Array
+from loadshare.tooth.body import Array, ToothBody
 from loadshare.tooth.contact import ContactLine, MeshPosition, PairGeometry
-from loadshare.tooth.flank import dot, relative_curvature, unit
-from loadshare.tooth.gap import Lines, least_gap
+from loadshare.tooth.flank import cross, dot, relative_curvature, unit
+from loadshare.tooth.gap import Extents, Lines, least_gap
 
-# The flanks touch when the least gap is below this [m]: a thousandth of the gap that a
+# The flanks touch when the least gap is below this [m]: a hundredth of the gap that a
 # transmission error of 1e-9 rad makes at a base radius of 0.1 m.
-TOUCHING = 1e-13
+TOUCHING = 1e-12
 
 
 class Pair(Lines, PairGeometry, Protocol):
@@ -27,48 +28,50 @@ class NoContactError(LoadshareError):
 
 
 def position(pair: Pair, phase: float, points_per_line: int) -> MeshPosition:
-    """Unloaded contact at one phase.
+    """Unloaded contact at one phase; see :func:`positions`."""
+    return positions(pair, [phase], points_per_line)[0]
+
+
+def positions(
+    pair: Pair, phases: int | Sequence[float], points_per_line: int
+) -> tuple[MeshPosition, ...]:
+    """Unloaded contact at several phases, all at once.
 
     Parameters
     ----------
     pair : Pair
         The two gears.
-    phase : float
-        0 ≤ phase < 1 of the mesh cycle.
+    phases : int or sequence of float
+        Number of equal steps of the mesh cycle, or phases of it, 0 ≤ phase < 1.
     points_per_line : int
         Points on every contact line.
-
-    Returns
-    -------
-    MeshPosition
-        With index 0.
 
     Raises
     ------
     ValueError
-        If `phase` or `points_per_line` is out of range.
+        If a phase or `points_per_line` is out of range.
     NoContactError
-        If no pair of teeth is within both active flanks.
+        If no pair of teeth is within both active flanks at one of the phases.
     """
-    if not 0.0 <= phase < 1.0:
-        raise ValueError(f"phase = {phase} is not within the mesh cycle: give 0 ≤ phase < 1")
+    if isinstance(phases, int):
+        phases = [index / phases for index in range(phases)]
+    wrong = [phase for phase in phases if not 0.0 <= phase < 1.0]
+    if wrong:
+        raise ValueError(f"phase = {wrong[0]} is not within the mesh cycle: give 0 ≤ phase < 1")
     if points_per_line < 1:
         raise ValueError(f"points_per_line = {points_per_line}: give at least 1")
-    ideal, driven = pair.ideal(phase)
-    error = transmission_error(pair, phase)
-    driver = ideal + error
-    pairs, start, end = pair.extents(driver, driven)
-    part = (end - start) / points_per_line
-    stations = start[:, None] + part[:, None] * (np.arange(points_per_line) + 0.5)
-    trace = pair.trace(pairs, stations, driver, driven)
+    error, found = touching(pair, phases)
+    part = (found.end - found.start) / points_per_line
+    stations = found.start[:, None] + part[:, None] * (np.arange(points_per_line) + 0.5)
+    trace = found.trace(stations)
     along = unit(trace.tangent)
-    across = np.cross(trace.driver.normal, along)
+    across = cross(trace.driver.normal, along)
     length = part[:, None] * np.sqrt(dot(trace.tangent, trace.tangent))
     curvature = relative_curvature(trace.driver, trace.driven, across)
     curvature_along = relative_curvature(trace.driver, trace.driven, along)
-    driver_uw = _located(pair, "driver", trace.driver.point, driver)
-    driven_uw = _located(pair, "driven", trace.driven.point, driven)
-    lines = tuple(
+    driver_uw = _located(pair.driver, trace.driver.point, found.driver)
+    driven_uw = _located(pair.driven, trace.driven.point, found.driven)
+    lines = [
         ContactLine(
             int(number),
             trace.driver.point[i],
@@ -80,47 +83,66 @@ def position(pair: Pair, phase: float, points_per_line: int) -> MeshPosition:
             driver_uw[i],
             driven_uw[i],
         )
-        for i, number in enumerate(pairs)
-    )
-    return MeshPosition(0, phase, driver, driven, error, lines)
-
-
-def positions(pair: Pair, count: int, points_per_line: int) -> tuple[MeshPosition, ...]:
-    """Unloaded contact at `count` equal steps of the mesh cycle, from phase 0."""
-    return tuple(
-        replace(position(pair, index / count, points_per_line), index=index)
-        for index in range(count)
-    )
+        for i, number in enumerate(found.pairs)
+    ]
+    made = []
+    for k, phase in enumerate(phases):
+        own = np.flatnonzero(found.position == k)
+        rotations = float(found.driver[own[0]]), float(found.driven[own[0]])
+        own_lines = tuple(lines[i] for i in own)
+        made.append(MeshPosition(k, phase, *rotations, float(error[k]), own_lines))
+    return tuple(made)
 
 
 def transmission_error(pair: Pair, phase: float) -> float:
     """Lead of the driver over the ideal pair when the first flanks touch [rad].
-
-    The driver turns until the least gap over all lines is zero; each step is the least gap over
-    the arm, and the lines move along.
 
     Raises
     ------
     NoContactError
         If no pair of teeth is within both active flanks.
     """
-    driver, driven = pair.ideal(phase)
-    error = 0.0
+    return float(touching(pair, [phase])[0][0])
+
+
+def touching(pair: Pair, phases: Sequence[float]) -> tuple[Array, Extents]:
+    """Transmission errors (k,) [rad] at which the first flanks touch, and the lines there.
+
+    The driver turns until the least gap over all lines of a position is zero; each step is the
+    least gap over the arm, and the lines move along.
+
+    Raises
+    ------
+    NoContactError
+        If no pair of teeth is within both active flanks at one of the phases.
+    """
+    driver, driven = pair.ideal(np.array(phases))
+    error = np.zeros(len(phases))
     for _ in range(20):
-        pairs, start, end = pair.extents(driver + error, driven)
-        if not len(pairs):
-            raise NoContactError(
-                f"no pair of teeth is in contact at phase {phase:.4g} of the mesh cycle: "
-                "no contact line lies within both active flanks. Make the misalignment smaller, "
-                "or the addenda or the face widths larger"
-            )
-        gap, _ = least_gap(pair, pairs, start, end, driver + error, driven)
-        error += float(gap.min()) / pair.arm
-        if abs(gap.min()) < TOUCHING:
-            break
-    return error
+        found = pair.extents(driver + error, driven)
+        for k, phase in enumerate(phases):
+            if k not in found.position:
+                raise NoContactError(
+                    f"no pair of teeth is in contact at phase {phase:.4g} of the mesh cycle: "
+                    "no contact line lies within both active flanks. Make the misalignment "
+                    "smaller, or the addenda or the face widths larger"
+                )
+        least = np.full(len(phases), np.inf)
+        np.minimum.at(least, found.position, least_gap(found)[0])
+        apart = np.abs(least) >= TOUCHING
+        if not apart.any():
+            return error, found
+        error = error + np.where(apart, least / pair.arm, 0.0)
+    return error, pair.extents(driver + error, driven)
 
 
-def _located(pair: Pair, which: str, points: Array, rotation: float) -> Array:
-    body = pair.driver if which == "driver" else pair.driven
-    return np.stack(body.locate(body.to_body(points, rotation)), axis=-1)
+def between(first: Array, last: Array) -> tuple[NDArray[np.int64], Array]:
+    """Whole numbers from `first` to `last` (k,): the place in them, and the number (m,)."""
+    low, high = np.ceil(first), np.floor(last)
+    numbers = np.arange(low.min(), high.max() + 1.0)
+    place, at = np.nonzero((numbers >= low[:, None]) & (numbers <= high[:, None]))
+    return place, numbers[at]
+
+
+def _located(body: ToothBody, points: Array, rotation: Array) -> Array:
+    return np.stack(body.locate(body.to_body(points, rotation[:, None])), axis=-1)

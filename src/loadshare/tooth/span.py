@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+from numpy.typing import NDArray
 
 from loadshare.tooth.body import Array
 
@@ -15,7 +16,7 @@ FIRST, FINER = 33, 9
 LEVELS = 2
 
 
-def span(margin: Callable[[Array], Array], reach: Array) -> tuple[Array, Array, Array]:
+def span(margin: Callable[[Array], Array], reach: Array) -> tuple[NDArray[np.bool_], Array, Array]:
     """Ends of the stretch on which a margin is positive, on m lines at once.
 
     Parameters

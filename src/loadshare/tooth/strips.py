@@ -31,6 +31,10 @@ FAINT = 1e-12
 """Part of a line's whole load below which a point's strip narrows no further: its effect is 0."""
 
 
+FIRST, LAST = 1e-7, 1e9
+"""First and last knot τ of the table."""
+
+
 def _slope(tau: Array) -> Array:
     """Derivative g'(τ) = (4/π) √(1 + τ²) (K − E), parameter 1/(1 + τ²), for τ > 0."""
     from scipy.special import ellipe, ellipkm1
@@ -44,7 +48,7 @@ def _slope(tau: Array) -> Array:
 @cache
 def _table() -> tuple[Array, Array, Array]:
     """Knots in ln τ with g and dg/d ln τ."""
-    knots = np.linspace(np.log(1e-7), np.log(1e9), 1200)
+    knots = np.linspace(np.log(FIRST), np.log(LAST), 1200)
     nodes, weights = np.polynomial.legendre.leggauss(6)
     middle, half = 0.5 * (knots[1:] + knots[:-1]), 0.5 * np.diff(knots)
     inner = np.exp(middle[:, None] + half[:, None] * nodes)
@@ -61,17 +65,17 @@ def strip_shape(tau: Array) -> tuple[Array, Array]:
     """
     knots, values, slopes = _table()
     size = np.abs(tau)
-    smallest, largest = np.exp(knots[[0, -1]])
-    faded = np.minimum(size / smallest, 1.0) * np.sign(tau)
+    faded = np.sign(tau) * np.minimum(size / FIRST, 1.0)
     step = knots[1] - knots[0]
-    x = (np.log(np.clip(size, smallest, largest)) - knots[0]) / step
+    x = (np.log(np.clip(size, FIRST, LAST)) - knots[0]) / step
     k = np.minimum(x.astype(int), len(knots) - 2)
     s = x - k
-    r = 1.0 - s
-    v0, v1, m0, m1 = values[k], values[k + 1], step * slopes[k], step * slopes[k + 1]
-    g = v0 * r**2 * (1.0 + 2.0 * s) + v1 * s**2 * (1.0 + 2.0 * r) + s * r * (m0 * r - m1 * s)
-    dg = 6.0 * s * r * (v1 - v0) + m0 * r * (1.0 - 3.0 * s) + m1 * s * (1.0 - 3.0 * r)
-    return faded * g, faded * dg / step
+    v0, m0, m1 = values[k], step * slopes[k], step * slopes[k + 1]
+    rise = values[k + 1] - v0
+    bend, lean = m0 + m1 - 2.0 * rise, 3.0 * rise - 2.0 * m0 - m1
+    g = v0 + s * (m0 + s * (lean + s * bend))
+    dg = (m0 + s * (2.0 * lean + 3.0 * s * bend)) / step
+    return faded * g, faded * dg
 
 
 def _below(x: Array, depth: Array, poisson: float) -> Array:
@@ -117,11 +121,9 @@ class StripLine:
             )
 
     @cached_property
-    def _ends(self) -> Array:
-        """Distances (2, n, n) [m] from point i to the far and the near end of strip j."""
-        place = np.cumsum(self.length) - 0.5 * self.length
-        away = place[:, None] - place
-        return np.stack([away + 0.5 * self.length, away - 0.5 * self.length])
+    def place(self) -> Array:
+        """Coordinates (n,) of the points along the line [m]."""
+        return np.asarray(np.cumsum(self.length) - 0.5 * self.length)
 
     @cached_property
     def effective(self) -> float:
@@ -144,36 +146,16 @@ class StripLine:
         safe = np.where(loaded, width, 1.0)
         return np.where(loaded, 2.0 * force / (self.length * pi * safe), 0.0)
 
-    def surface(self, force: Array, least: float) -> tuple[Array, Array]:
-        """Compliance of the two surfaces at the widths that belong to the forces.
-
-        Parameters
-        ----------
-        force : array (n,)
-            [N].
-        least : float
-            Force below which a strip narrows no further [N].
-
-        Returns
-        -------
-        secant, tangent : array (n, n)
-            [m/N]; displacement is secant @ force, its derivative over force is the tangent.
-        """
-        width = self.widths(np.maximum(force, least))
-        value, slope = strip_shape(self._ends / width)
-        scale = 1.0 / (pi * self.effective * self.length)
-        secant = scale * (value[0] - value[1])
-        # b grows as √p, so p ∂S/∂p = −½ Σ ± τ g'(τ).
-        return secant, secant - 0.5 * scale * (slope[0] - slope[1])
-
     @cached_property
     def removed(self) -> Array:
         """Compliance (n, n) [m/N] of two half-spaces at the depths of the middle surfaces."""
         total = np.zeros((len(self.length),) * 2)
         if self.depth is None:
             return total
+        away = self.place[:, None] - self.place
+        ends = np.stack([away + 0.5 * self.length, away - 0.5 * self.length])
         for depth, e, nu in zip(self.depth, self.modulus, self.poisson, strict=True):
             between = 0.5 * (depth[:, None] + depth)
-            far, near = _below(self._ends, between, nu)
+            far, near = _below(ends, between, nu)
             total += (1.0 + nu) / (2.0 * pi * e * self.length) * (far - near)
         return total

@@ -9,7 +9,7 @@ import numpy as np
 from loadshare.tooth.body import Array
 from loadshare.tooth.flank import dot, principal_directions, relative_curvature
 from loadshare.tooth.gap import LAST_STEP, least_gap
-from loadshare.tooth.positions import Pair, transmission_error
+from loadshare.tooth.positions import Pair, touching
 
 # A gap that grows by less than this per length of line [m/m] is level: an unmodified line contact.
 LEVEL = 1e-9
@@ -80,39 +80,40 @@ def contact_points(pair: Pair, phase: float) -> tuple[ContactPoint, ...]:
     NoContactError
         If no pair of teeth is within both active flanks.
     """
-    ideal, driven = pair.ideal(phase)
-    driver = ideal + transmission_error(pair, phase)
-    pairs, start, end = pair.extents(driver, driven)
-    gap, station = least_gap(pair, pairs, start, end, driver, driven)
-    trace = pair.trace(pairs, station[:, None], driver, driven)
-    at_end = np.minimum(np.abs(station - start), np.abs(station - end)) < AT_END
+    error, lines = touching(pair, [phase])
+    gap, station = least_gap(lines)
+    trace = lines.trace(station[:, None])
+    pairs, driver, driven = (x[:, None] for x in (lines.pairs, lines.driver, lines.driven))
+    at_end = np.minimum(np.abs(station - lines.start), np.abs(station - lines.end)) < AT_END
     at_edge = at_end & (np.abs(trace.slope[:, 0]) > LEVEL)
 
     unknowns = np.stack([*trace.driver_at, *trace.driven_at, np.zeros_like(trace.gap)], axis=-1)
     unknowns[..., 4] = gap[:, None] / pair.arm
     inner = ~at_edge
     if inner.any():
-        refined = _newton(pair, pairs[inner, None], unknowns[inner], driver, driven)
+        turned = (rotation[inner] for rotation in (driver, driven))
+        refined = _newton(pair, pairs[inner], unknowns[inner], *turned)
         # Next to a line contact the equations are nearly singular and can lead off the line; the
         # place of the least gap then stands.
         lead = refined[..., 4] - unknowns[inner][..., 4]
         near = np.abs(lead) * pair.arm < NEAR
         unknowns[inner] = np.where(near[..., None], refined, unknowns[inner])
     a, b, c, d, lead = np.moveaxis(unknowns, -1, 0)
-    own, other = pair.patches(pairs[:, None], (a, b), (c, d), driver + lead, driven)
+    own = pair.driver_patch(pairs, (a, b), driver + lead)
+    other = pair.driven_patch(pairs, (c, d), driven)
     major, minor = principal_directions(own, other)
     least = relative_curvature(own, other, major)
     greatest = relative_curvature(own, other, minor)
     margins = {name: margin[:, 0] for name, margin in pair.margins((a, b), (c, d)).items()}
 
     points = []
-    for i, number in enumerate(pairs):
+    for i, number in enumerate(lines.pairs):
         nearest = min(float(margin[i]) for margin in margins.values())
         edge = next(name for name, margin in margins.items() if margin[i] <= nearest + SAME_EDGE)
         points.append(
             ContactPoint(
                 int(number),
-                driver - ideal + float(lead[i, 0]),
+                float(error[0] + lead[i, 0]),
                 own.point[i, 0],
                 own.normal[i, 0],
                 major[i, 0],
@@ -125,11 +126,12 @@ def contact_points(pair: Pair, phase: float) -> tuple[ContactPoint, ...]:
     return tuple(points)
 
 
-def _newton(pair: Pair, pairs: Array, unknowns: Array, driver: float, driven: float) -> Array:
+def _newton(pair: Pair, pairs: Array, unknowns: Array, driver: Array, driven: Array) -> Array:
     """Solve the contact equations; unknowns (m, 1, 5) with the driver's further turn as last."""
     for _ in range(20):
         a, b, c, d, turn = np.moveaxis(unknowns, -1, 0)
-        own, other = pair.patches(pairs, (a, b), (c, d), driver + turn, driven)
+        own = pair.driver_patch(pairs, (a, b), driver + turn)
+        other = pair.driven_patch(pairs, (c, d), driven)
         first = own.point_a / np.sqrt(dot(own.point_a, own.point_a))[..., None]
         second = np.cross(own.normal, first)
         columns = [own.point_a, own.point_b, -other.point_a, -other.point_b, _about_z(own.point)]

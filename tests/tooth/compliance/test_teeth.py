@@ -33,6 +33,11 @@ def thin():
 
 
 @cache
+def deep():
+    return FiniteElements(replace(BODY, rim=0.02), 1, divisions=MESH)
+
+
+@cache
 def slices():
     return Slices(BODY, 1)
 
@@ -45,6 +50,13 @@ def row(u, tooth=0):
 def even(model, u):
     """Mean displacement [m] per load per width [N/m]."""
     return float(model.bulk((row(u),)).mean()) * BODY.face_width
+
+
+def beside(model, u):
+    """The same of the next tooth."""
+    count = len(STATIONS)
+    bulk = model.bulk((row(u), row(u, tooth=1)))
+    return float(bulk[:count, count:].mean()) * BODY.face_width
 
 
 @pytest.mark.parametrize("u", [0.5, 0.7, 0.9])
@@ -143,10 +155,48 @@ def test_a_deeper_rim_yields_more():
     assert even(thin(), 0.8) < even(finite(), 0.8)
 
 
+RIMS = {"thin": (0.045, thin), "middling": (0.035, finite), "deep": (0.02, deep)}
+
+
+@pytest.mark.parametrize("rim", RIMS)
 @pytest.mark.parametrize("u", [0.6, 0.75, 0.9, 1.0])
-def test_slices_against_finite_elements(u):
-    """Even load, on a rim one tooth height deep: 15 %, most of it the root's."""
-    assert even(slices(), u) == pytest.approx(even(thin(), u), rel=0.15)
+def test_slices_against_finite_elements(rim, u):
+    """Even load, on rims of 1 to 3.5 tooth heights: measured 2 to 8 % too stiff. On half-planes the
+    same teeth are 3 % too soft to 43 % too stiff, and loaded neighbours do not move them.
+    """
+    radius, elements = RIMS[rim]
+    body = replace(BODY, rim=radius)
+    own = even(elements(), u)
+    assert even(Slices(body, 1), u) == pytest.approx(0.95 * own, rel=0.05)
+    shares = [beside(model, u) / own for model in (elements(), Slices(body, 1))]
+    assert shares[1] == pytest.approx(shares[0], abs=0.04)
+    assert beside(Slices(body, 1, rigid_body=True), u) == 0.0
+
+
+def test_slices_on_half_planes_miss_a_deep_rim():
+    errors = [
+        abs(even(Slices(replace(BODY, rim=0.02), 1, rigid_body=rigid), 0.6) / even(deep(), 0.6) - 1)
+        for rigid in (True, False)
+    ]
+    assert errors[0] > 5.0 * errors[1]
+
+
+def test_polynomials_keep_to_the_tooth():
+    """Of the outline 1e-3 of the thickness at most, of its slopes 1e-2 of the tooth's height."""
+    middle = slices().middle
+    u, w = np.meshgrid(np.linspace(middle.waist, 1.0, 23), np.linspace(0.0, 1.0, 5))
+    zw = np.column_stack([u.ravel(), w.ravel()])
+    exact = MiddleSurface(BODY, middle.waist)
+    for side in (1, -1):
+        np.testing.assert_allclose(
+            middle.flank(zw, side), exact.flank(zw, side), atol=1e-3 * BODY.module
+        )
+    inner = zw[(zw[:, 0] > middle.waist) & (np.abs(zw[:, 0] - BODY.foot) > 1e-2)]
+    for found, wanted in zip(middle.surface(inner), exact.surface(inner), strict=True):
+        np.testing.assert_allclose(found, wanted, atol=2e-2 * BODY.module)
+    height, slope = middle.height(np.array([middle.waist, 0.7, 0.7 + 1e-6, 1.0]))
+    assert (height[0], height[-1]) == pytest.approx((0.0, 1.0), abs=1e-12)
+    assert slope[1] == pytest.approx((height[2] - height[1]) / 1e-6, rel=1e-5)
 
 
 def test_slices_converge_over_the_width():

@@ -162,19 +162,41 @@ def test_transmission_error_is_within_its_tolerance(monkeypatch, tolerance):
 
 def test_turning_by_one_pitch_gives_the_same_position():
     mesh = face_pair(off=FaceMisalignment(offset=50e-6))
-    driver, driven = mesh.ideal(0.3)
+    driver, driven = mesh.ideal(np.array([0.3]))
     turn = 2.0 * math.pi / 25
-    pairs, start, end = mesh.extents(driver, driven)
+    found = mesh.extents(driver, driven)
     moved = mesh.extents(driver + turn, driven + turn / mesh.ratio)
-    np.testing.assert_array_equal(moved[0], pairs - 1)
-    np.testing.assert_allclose(moved[1:], [start, end], atol=1e-12)
+    np.testing.assert_array_equal(moved.pairs, found.pairs - 1)
+    np.testing.assert_allclose(moved.start, found.start, atol=1e-12)
+    np.testing.assert_allclose(moved.end, found.end, atol=1e-12)
+
+
+def test_many_positions_at_once_are_those_one_by_one():
+    mesh = face_pair(off=FaceMisalignment(shaft_angle=3e-4, offset=50e-6))
+    for at in positions(mesh, 4, 9):
+        one = position(mesh, at.phase, 9)
+        assert at.transmission_error == pytest.approx(one.transmission_error, abs=1e-14)
+        assert [line.pair for line in at.lines] == [line.pair for line in one.lines]
+        for two, line in zip(one.lines, at.lines, strict=True):
+            np.testing.assert_allclose(line.gap, two.gap, atol=1e-14)
+            np.testing.assert_allclose(line.driven_uw, two.driven_uw, atol=1e-12)
+
+
+def test_what_is_known_of_a_line_does_not_change_it():
+    mesh = face_pair(off=FaceMisalignment(offset=50e-6))
+    found = mesh.extents(*mesh.ideal(np.array([0.1, 0.6])))
+    stations = np.linspace(found.start, found.end, 11, axis=1)
+    cold = mesh.valleys(found.pairs, found.driver, found.driven).trace(stations)
+    warm = found.trace(stations)
+    np.testing.assert_allclose(warm.gap, cold.gap, atol=1e-15)
+    np.testing.assert_allclose(warm.driver.point, cold.driver.point, atol=1e-15)
+    np.testing.assert_allclose(warm.tangent, cold.tangent, atol=1e-12)
 
 
 def test_ends_of_the_lines_lie_on_edges():
     mesh = face_pair(off=FaceMisalignment(offset=50e-6))
-    driver, driven = mesh.ideal(0.3)
-    pairs, start, end = mesh.extents(driver, driven)
-    trace = mesh.trace(pairs, np.stack([start, end], axis=1), driver, driven)
+    found = mesh.extents(*mesh.ideal(np.array([0.3])))
+    trace = found.trace(np.stack([found.start, found.end], axis=1))
     margins = np.min(list(mesh.margins(trace.driver_at, trace.driven_at).values()), axis=0)
     # Interpolated between stations 0.1 mm apart.
     np.testing.assert_allclose(margins, 0.0, atol=2e-8)

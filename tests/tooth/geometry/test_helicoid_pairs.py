@@ -98,7 +98,8 @@ def test_contact_ratio(distance):
     assert mesh.contact_ratio == pytest.approx(expected, rel=1e-13)
     # The share of positions with two pairs is the fractional part.
     count = 400
-    two_pairs = np.mean([len(mesh.extents(*mesh.ideal(i / count))[0]) for i in range(count)])
+    found = mesh.extents(*mesh.ideal(np.arange(count) / count))
+    two_pairs = np.bincount(found.position, minlength=count).mean()
     assert two_pairs == pytest.approx(expected, abs=2.0 / count)
 
 
@@ -133,10 +134,10 @@ def test_gap_of_a_lead_crowned_pair(crowning, phase, helix):
     # normal, whose slope of up to 4 C_β/b makes it longer by half the slope squared.
     mesh = pair(helix=helix, modification=Modification(lead_crowning=crowning))
     at = position(mesh, phase, 31)
-    ends = [mesh.extents(at.driver_rotation, at.driven_rotation)[i] for i in (1, 2)]
+    found = mesh.extents(np.array([at.driver_rotation]), np.array([at.driven_rotation]))
     nearest = min(
         0.0 if low <= 0.0 <= high else min(abs(low), abs(high))
-        for low, high in zip(*ends, strict=True)
+        for low, high in zip(found.start, found.end, strict=True)
     )
     least = crowning * (nearest / 10e-3) ** 2
     second_order = crowning * (4.0 * crowning / 20e-3) ** 2 + 1e-13
@@ -201,16 +202,16 @@ def test_gap_of_misaligned_spur_gears(off, slope):
 @ALL
 def test_turning_by_one_pitch_gives_the_same_position(data):
     mesh = pair(**data | {"modification": RELIEVED})
-    driver, driven = mesh.ideal(0.3)
+    driver, driven = mesh.ideal(np.array([0.3]))
     turn = 2.0 * math.pi / mesh.driver_gear.teeth
     back = mesh.driven_step * turn / mesh.ratio
-    pairs, start, end = mesh.extents(driver, driven)
+    found = mesh.extents(driver, driven)
     moved = mesh.extents(driver + turn, driven + back)
-    np.testing.assert_array_equal(moved[0], pairs - 1)
-    np.testing.assert_allclose(moved[1:], [start, end], atol=1e-15)
-    stations = np.linspace(start, end, 9, axis=1)
-    one = mesh.trace(pairs, stations, driver, driven)
-    two = mesh.trace(pairs - 1, stations, driver + turn, driven + back)
+    np.testing.assert_array_equal(moved.pairs, found.pairs - 1)
+    np.testing.assert_allclose(moved.start, found.start, atol=1e-15)
+    np.testing.assert_allclose(moved.end, found.end, atol=1e-15)
+    stations = np.linspace(found.start, found.end, 9, axis=1)
+    one, two = found.trace(stations), moved.trace(stations)
     np.testing.assert_allclose(two.gap, one.gap, atol=1e-15)
     np.testing.assert_allclose(two.driver.point, one.driver.point, atol=1e-15)
 

@@ -16,6 +16,7 @@ from loadshare.tooth.hertz import (
     width_factor,
 )
 from loadshare.tooth.strips import StripLine, strip_shape
+from loadshare.tooth.surface import Surface
 
 STEEL = ((206e9, 206e9), (0.3, 0.3))
 E_STAR = contact_modulus(*STEEL)
@@ -130,7 +131,7 @@ def test_a_long_row_of_strips_is_the_compression_to_the_depth():
         depth=(np.full(n, depth), np.full(n, depth)),
     )
     force = q * line.length
-    moved = (line.surface(force, 0.0)[0] - line.removed) @ force
+    moved = (Surface((line,)).compliance(force, 0.0)[0] - line.removed) @ force
     width = float(half_width(q, 90.0, E_STAR))
     closed = 2.0 * float(compression(q, width, depth, 206e9, 0.3))
     # The plane formula reads the depth's field at the edge of a contact of width b, the strips at
@@ -143,21 +144,43 @@ def test_strip_tangent_is_the_derivative_of_the_yielding():
     n = 9
     line = StripLine(np.full(n, 4e-4), np.full(n, 90.0), np.full(n, 20.0), *STEEL)
     force = 50.0 + 10.0 * np.arange(n) % 37
-    tangent = line.surface(force, 0.0)[1]
+    surface = Surface((line,))
+    tangent = surface.compliance(force, 0.0)[1]
     numeric = np.empty((n, n))
-    for j in range(n):
-        step = np.zeros(n)
-        step[j] = 1e-3
-        up, down = (
-            f @ g
-            for f, g in (
-                (line.surface(force + step, 0.0)[0], force + step),
-                (line.surface(force - step, 0.0)[0], force - step),
-            )
-        )
+    for j, step in enumerate(1e-3 * np.eye(n)):
+        up, down = (surface.compliance(f, 0.0)[0] @ f for f in (force + step, force - step))
         numeric[:, j] = (up - down) / 2e-3
     # The table's slope is good to 1e-7 of a strip's own compliance.
     np.testing.assert_allclose(tangent, numeric, atol=1e-6 * tangent.max())
+
+
+@pytest.mark.parametrize("load", [1e-3, 1.0, 1e2, 1e4])
+def test_surfaces_of_lines_are_those_of_their_strips(load):
+    """The series far from a strip against the table, as tight as that is: from strips a thousand
+    half-widths apart to overlapping ones. Lines do not feel one another.
+    """
+    rng = np.random.default_rng(2)
+    lines = [
+        StripLine(rng.uniform(2e-4, 6e-4, n), rng.uniform(40.0, 90.0, n), np.zeros(n), *STEEL)
+        for n in (17, 12)
+    ]
+    force = load * rng.uniform(0.5, 1.5, 29)
+    secant, tangent = Surface(lines).compliance(force, 0.0)
+    start = 0
+    for line in lines:
+        part = slice(start, start := start + len(line.length))
+        width = line.widths(force[part])
+        away = line.place[:, None] - line.place
+        ends = [away + 0.5 * line.length, away - 0.5 * line.length]
+        (far, far_slope), (near, near_slope) = (strip_shape(end / width) for end in ends)
+        scale = 1.0 / (np.pi * line.effective * line.length)
+        wanted = scale * (far - near)
+        tight = 1e-9 * wanted.max()
+        np.testing.assert_allclose(secant[part, part], wanted, atol=tight)
+        wanted = wanted - 0.5 * scale * (far_slope - near_slope)
+        # The table's slope is good to 1e-7.
+        np.testing.assert_allclose(tangent[part, part], wanted, atol=1e2 * tight)
+    assert not secant[:17, 17:].any()
 
 
 def test_flanks_that_do_not_part_are_refused():

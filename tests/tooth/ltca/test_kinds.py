@@ -77,8 +77,8 @@ def test_one_helix_of_two_carries_half():
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["herringbone", "internal", "face gear"])
 def test_slices_against_finite_elements(kind):
-    """Measured: slices stiffer by 13 % (herringbone), 2 to 9 % (internal), 5 % (face gear)."""
+    """Measured: slices stiffer by 6 % (herringbone), 3 % (internal), 1 to 3 % (face gear)."""
     _, _, fast = analysed(kind)
     _, _, slow = analysed(kind, "finite elements")
     ratio = fast.secant() / slow.secant()
-    np.testing.assert_allclose(ratio, 1.07, atol=0.08)
+    np.testing.assert_allclose(ratio, 1.035, atol=0.04)

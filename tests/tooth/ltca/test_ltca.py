@@ -79,15 +79,12 @@ def test_tangent_is_the_slope_of_the_angle():
 
 @pytest.mark.parametrize("crowned", [False, True])
 def test_the_law_goes_through_its_three_loads_and_near_the_others(crowned):
-    """Measured: 0.23 % at 0.25 T for plain flanks. With crowning the contact spreads, so that the
-    angle grows more slowly than T^(2/3): b = 0 is the bound, and the law is off by 0.4 %.
-    """
+    """Measured: 0.21 % at most for plain flanks, 0.15 % for crowned ones."""
     found = analysed(crowned=crowned)
     at_fit = np.isclose(found.torque[:, None], TORQUE * np.array([0.1, 0.5, 0.9])).any(axis=1)
-    exact = ~found.law.bounded
-    assert exact.all() != crowned
-    assert np.abs(found.misfit[np.ix_(exact, at_fit)]).max(initial=0.0) < 1e-12
-    assert np.abs(found.misfit).max() < 1e-2
+    assert not found.law.bounded.any()
+    assert np.abs(found.misfit[:, at_fit]).max() < 1e-12
+    assert np.abs(found.misfit).max() < 4e-3
     assert np.all(found.law.b >= 0.0)
     assert np.all(found.law.c >= 0.0)
     np.testing.assert_allclose(found.law.secant(0.9 * TORQUE), found.secant(0.9), rtol=1e-2)

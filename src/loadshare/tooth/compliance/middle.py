@@ -7,9 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from loadshare.tooth.body import Array, ToothBody
+from loadshare.tooth.flank import dot, solve_2
 
 STEP = 1e-5
 """Step in u and w of the differences that give normals and slopes."""
+LAST_MOVE = 1e-7
+"""Step in u and w that is the last of Newton's method: about its square is left."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,6 +60,18 @@ class MiddleSurface:
         below = np.clip((self.waist - z) / (1.0 + self.waist), 0.0, None)
         return top + below[:, None] * (under(self.body, top) - top)
 
+    def flank(self, uw: Array, side: int) -> Array:
+        """Points (n, 3) of the flank `side` [m]."""
+        return self.body.outline(uw[:, 0], uw[:, 1], side)
+
+    def surface(self, zw: Array) -> tuple[Array, Array, Array]:
+        """Points (n, 3) [m] of the middle surface, and their derivatives over z and w."""
+        over_z, over_w = (
+            (self.points(zw + shift) - self.points(zw - shift)) / (2.0 * STEP)
+            for shift in STEP * np.eye(2)
+        )
+        return self.points(zw), over_z, over_w
+
     def inward(self, uw: Array, side: int) -> Array:
         """Unit normals (n, 3) of the flank `side`, into the tooth."""
         u, w = uw[:, 0], uw[:, 1]
@@ -77,29 +92,23 @@ class MiddleSurface:
         A normal that leaves the tooth through its face end before it meets the middle surface has
         its foot on the end.
         """
-        flank = self.body.outline(uw[:, 0], uw[:, 1], side)
+        flank = self.flank(uw, side)
         inward = self.inward(uw, side)
         zw = uw.copy()
-        depth = np.zeros(len(uw))
         for _ in range(30):
-            here = self.points(zw)
-            depth = np.sum((here - flank) * inward, axis=1)
-            miss = flank + depth[:, None] * inward - here
-            slopes = [
-                (self.points(zw + shift) - self.points(zw - shift)) / (2.0 * STEP)
-                for shift in STEP * np.eye(2)
-            ]
+            here, *slopes = self.surface(zw)
+            miss = flank - here
             # The foot moves in the surface until what is left lies along the normal.
-            flat = [s - np.sum(s * inward, axis=1)[:, None] * inward for s in slopes]
-            a = np.stack(flat, axis=2)
-            move = np.einsum("nij,nj->ni", np.linalg.pinv(a), miss)
-            new = zw + np.clip(move, -0.3, 0.3)
+            a, b = (s - dot(s, inward)[:, None] * inward for s in slopes)
+            ab = dot(a, b)
+            move = solve_2((dot(a, a), ab), (ab, dot(b, b)), dot(a, miss), dot(b, miss))
+            new = zw + np.clip(np.column_stack(move), -0.3, 0.3)
             new = np.column_stack([np.clip(new[:, 0], -1.0, 1.0), np.clip(new[:, 1], 0.0, 1.0)])
-            done = float(np.abs(new - zw).max()) < 1e-10
+            done = float(np.abs(new - zw).max()) < LAST_MOVE
             zw = new
             if done:
                 break
-        return Foot(zw, np.sum((self.points(zw) - flank) * inward, axis=1), inward)
+        return Foot(zw, dot(self.points(zw) - flank, inward), inward)
 
 
 def under(body: ToothBody, points: Array) -> Array:

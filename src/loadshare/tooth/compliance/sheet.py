@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.tooth.body import Array
-
-if TYPE_CHECKING:
-    from scipy.sparse import csr_matrix
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +24,7 @@ class Sheet:
     levels: Array
     stations: Array
 
-    @property
+    @cached_property
     def present(self) -> NDArray[np.bool_]:
         """Which grid nodes the element has: all but the middles of the quadrilaterals."""
         i, j = np.indices((len(self.levels), len(self.stations)))
@@ -39,25 +36,24 @@ class Sheet:
         i, j = np.nonzero(self.present)
         return np.column_stack([self.levels[i], self.stations[j]])
 
-    def weights(self, points: Array) -> csr_matrix:
+    @cached_property
+    def _number(self) -> NDArray[np.int64]:
+        """Numbers of the grid nodes, meaningful for those present."""
+        return np.asarray(np.cumsum(self.present).reshape(self.present.shape) - 1)
+
+    def weights(self, points: Array) -> Array:
         """Weights (n, nodes) that interpolate values of the nodes present to points (n, 2).
 
         Points beyond the sheet take the value of its edge.
         """
-        from scipy.sparse import csr_matrix
-
-        number = np.cumsum(self.present).reshape(self.present.shape) - 1
+        number = self._number
         a, x = _cell(self.levels, points[:, 0])
         b, y = _cell(self.stations, points[:, 1])
-        columns, values = [], []
+        rows = np.arange(len(points))
+        weights = np.zeros((len(points), number[-1, -1] + 1))
         for i, j, value in _serendipity(x, y):
-            columns.append(number[a + i, b + j])
-            values.append(value)
-        rows = np.tile(np.arange(len(points)), len(columns))
-        return csr_matrix(
-            (np.concatenate(values), (rows, np.concatenate(columns))),
-            shape=(len(points), int(self.present.sum())),
-        )
+            weights[rows, number[a + i, b + j]] = value
+        return weights
 
 
 def _cell(grid: Array, at: Array) -> tuple[NDArray[np.int64], Array]:

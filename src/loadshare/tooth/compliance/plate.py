@@ -1,0 +1,205 @@
+"""One tooth as a plate of coupled slices on an elastic root, by Ritz's method."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import numpy as np
+from numpy.polynomial.legendre import legder, leggauss, legvander
+
+from loadshare.tooth.body import Array
+from loadshare.tooth.compliance.smooth import SmoothMiddle
+from loadshare.tooth.flank import cross, dot
+
+HEIGHT_DEGREE = 6
+"""Degree of the polynomials along the tooth's height."""
+ROOT_TANGENT = 60.0
+"""Angle [degrees] between fillet and chord at the root section: the standard's 30° tangent."""
+SHEAR_FACTOR = 5.0 / 6.0
+FLAT = 0.01
+"""Least rise of the middle surface per unit of u, over the tooth's height."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Station:
+    """The middle surface at some places: unit vectors (n, 3), slopes and thickness (n,).
+
+    `up` points to the tip, `out` to side +1; `rise` and `run` are lengths per unit of u and of w.
+    """
+
+    up: Array
+    out: Array
+    rise: Array
+    run: Array
+    thickness: Array
+
+
+def root_compliance(poisson: float) -> Array:
+    """Weber and Banaschek's half-plane under the root of a slice, in Cornell's form.
+
+    Returns
+    -------
+    array (3, 3)
+        In units of (1 − ν²)/E per width: deflection, lean times thickness, and lift, for shear
+        force, moment over thickness, and pull.
+    """
+    slip = (1.0 - 2.0 * poisson) / (1.0 - poisson)
+    lift = 1.534 / (2.4 * (1.0 + poisson))
+    return np.array([[1.534, slip, 0.0], [slip, 16.67 / np.pi, 0.0], [0.0, 0.0, lift]])
+
+
+class Plate:
+    """Deflection and compression of a tooth between root section and tip.
+
+    Parameters
+    ----------
+    middle : SmoothMiddle
+        From the root section up.
+    width_degree : int, optional
+        Degree of the polynomials over the width; by default the width over the height decides.
+    """
+
+    def __init__(self, middle: SmoothMiddle, width_degree: int | None = None) -> None:
+        self.middle = middle
+        ends = middle.points(np.array([[middle.waist, 0.0], [middle.waist, 1.0]]))
+        slenderness = float(np.linalg.norm(ends[1] - ends[0])) / middle.whole_height
+        default = int(np.clip(np.ceil(3.0 + 2.0 * slenderness), 6, 18))
+        self._degrees = HEIGHT_DEGREE, width_degree or default
+        self.bending, self.compression = self._yielding()
+
+    def station(self, zw: Array) -> Station:
+        """The middle surface and the thickness across it at places (n, 2)."""
+        at = self.middle.sample(zw)
+        up, rise = at.middle_u, np.linalg.norm(at.middle_u, axis=1)
+        flat = rise < FLAT * self.middle.whole_height
+        if flat.any():
+            # Where the outline still runs along a flat root the tooth has no height, which a very
+            # stiff slice stands for; it points to where the flank begins and ends.
+            w, foot = zw[flat, 1], self.middle.body.foot
+            ends = (
+                self.middle.points(np.column_stack([np.full_like(w, u), w])) for u in (1.0, foot)
+            )
+            whole = np.subtract(*ends) / (1.0 - foot)
+            up, rise = up.copy(), rise.copy()
+            up[flat], rise[flat] = FLAT * whole, FLAT * np.linalg.norm(whole, axis=1)
+        normal = cross(at.middle_w, up)
+        normal = normal / np.linalg.norm(normal, axis=1)[:, None]
+        thickness = 2.0 * dot(at.half, normal)
+        return Station(
+            up=up / rise[:, None],
+            out=np.sign(thickness)[:, None] * normal,
+            rise=rise,
+            run=np.linalg.norm(at.middle_w, axis=1),
+            thickness=np.abs(thickness),
+        )
+
+    def fields(self, height: Array, w: Array, across: Array, along: Array) -> Array:
+        """Rows X (n, m) of the compliance X Xᵀ [m/N] between places at parts of the height and w.
+
+        `across` and `along` (n,) are the parts of unit forces across and along the tooth.
+        """
+        over_height, over_width = (
+            legvander(2.0 * place - 1.0, degree)
+            for place, degree in zip((height, w), self._degrees, strict=True)
+        )
+        value = (over_height[:, :, None] * over_width[:, None, :]).reshape(len(w), -1)
+        return np.hstack(
+            [across[:, None] * (value @ self.bending), along[:, None] * (value @ self.compression)]
+        )
+
+    @cached_property
+    def width(self) -> float:
+        """Length of the root section along the tooth [m]."""
+        _, length = self._over_width
+        return float(length @ self.root.run)
+
+    @cached_property
+    def root(self) -> Station:
+        """The root section at Gauss points over the width."""
+        w, _ = self._over_width
+        return self.station(np.column_stack([np.full_like(w, self.middle.waist), w]))
+
+    @cached_property
+    def _over_width(self) -> tuple[Array, Array]:
+        return _gauss(0.0, 1.0, self._degrees[1] + 2)
+
+    def _yielding(self) -> tuple[Array, Array]:
+        """Factors X of the compliances X Xᵀ of deflection and of compression."""
+        from scipy.linalg import cholesky, solve_triangular
+
+        e, nu = self.middle.body.youngs_modulus, self.middle.body.poisson
+        plane, shear = e / (1.0 - nu**2), 0.5 * e / (1.0 + nu)
+        foot = self.middle.body.foot
+        z, over_z = np.hstack([_gauss(self.middle.waist, foot, 5), _gauss(foot, 1.0, 8)])
+        w, over_w = self._over_width
+        at = self.station(np.stack(np.meshgrid(z, w, indexing="ij"), axis=-1).reshape(-1, 2))
+        rise, run, t = (x.reshape(len(z), len(w)) for x in (at.rise, at.run, at.thickness))
+        area = np.outer(over_z, over_w) * rise * run
+        bend, stiff = area * plane * t**3 / 12.0, area * SHEAR_FACTOR * shear * t
+        place, slope = self.middle.height(z)
+        f, df = _legendre(place, self._degrees[0])
+        df *= slope[:, None]
+        g, dg = _legendre(w, self._degrees[1])
+
+        # Fields: deflection v, rotation p about the tooth line, rotation q about the height, with
+        # the strain energy ½ bend (p_z² + q_w² + 2ν p_z q_w + ½(1 − ν)(p_w + q_z)²) and
+        # ½ stiff ((v_z − p)² + (v_w − q)²).
+        twist = 0.5 * (1.0 - nu)
+        zz = _product(bend / rise**2, df, df, g, g)
+        ww = _product(bend / run**2, f, f, dg, dg)
+        square = _product(stiff, f, f, g, g)
+        both = bend / (rise * run)
+        vv = _product(stiff / rise**2, df, df, g, g) + _product(stiff / run**2, f, f, dg, dg)
+        pp, qq = zz + twist * ww + square, ww + twist * zz + square
+        pq = nu * _product(both, df, f, g, dg) + twist * _product(both, f, df, dg, g)
+        pv, qv = -_product(stiff / rise, f, df, g, g), -_product(stiff / run, f, f, g, dg)
+        axial = _product(area * plane * t / rise**2, df, df, g, g)
+        axial += _product(area * shear * t / run**2, f, f, dg, dg)
+
+        springs = np.linalg.inv(root_compliance(nu))
+        f, _ = _legendre(np.zeros(1), self._degrees[0])
+        unit, t = (plane * over_w * self.root.run)[None], self.root.thickness
+        vv += _product(springs[0, 0] * unit, f, f, g, g)
+        pv += _product(springs[0, 1] * unit * t, f, f, g, g)
+        pp += _product(springs[1, 1] * unit * t**2, f, f, g, g)
+        axial += _product(springs[2, 2] * unit, f, f, g, g)
+
+        count = len(vv)
+        plate = np.block([[qq, pq.T, qv], [pq, pp, pv], [qv.T, pv.T, vv]])
+        # Forces act on the deflection alone: elimination of the rotations leaves its block.
+        roots = (cholesky(plate, lower=True)[-count:, -count:], cholesky(axial, lower=True))
+        bending, compression = (
+            solve_triangular(root, np.eye(count), lower=True).T for root in roots
+        )
+        return bending, compression
+
+
+def _gauss(low: float, high: float, count: int) -> tuple[Array, Array]:
+    """Gauss points and weights on an interval."""
+    nodes, weights = _leggauss(count)
+    half = 0.5 * (high - low)
+    return np.asarray(low + half * (nodes + 1.0)), np.asarray(half * weights)
+
+
+@cache
+def _leggauss(count: int) -> tuple[Array, Array]:
+    nodes, weights = leggauss(count)
+    return np.asarray(nodes), np.asarray(weights)
+
+
+def _legendre(place: Array, degree: int) -> tuple[Array, Array]:
+    """Legendre polynomials (n, degree + 1) at places 0 to 1, and their slopes."""
+    values = np.asarray(legvander(2.0 * place - 1.0, degree), np.float64)
+    return values, 2.0 * values[:, :degree] @ legder(np.eye(degree + 1))
+
+
+def _product(weight: Array, a: Array, b: Array, c: Array, d: Array) -> Array:
+    """Sum over points of weight times products of functions over the height and over the width.
+
+    Entry (ij, kl) is Σ weight(z, w) a_i(z) c_j(w) b_k(z) d_l(w), summed over w first.
+    """
+    width = (c[:, :, None] * d[:, None, :]).reshape(len(c), -1)
+    height = (a[:, :, None] * b[:, None, :]).reshape(len(a), -1)
+    found = (height.T @ (weight @ width)).reshape(a.shape[1], b.shape[1], c.shape[1], d.shape[1])
+    return np.asarray(found.transpose(0, 2, 1, 3).reshape(a.shape[1] * c.shape[1], -1))

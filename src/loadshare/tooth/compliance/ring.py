@@ -1,0 +1,185 @@
+r"""The body of a gear as an elastic ring, loaded by the roots of its teeth.
+
+The ring is held at one radius; at the other a tooth's root carries a shear force Q, a moment M and
+a pull N, as tractions over the root's thickness t that are even (Q, N) or linear (M). Every
+harmonic of the tractions, :math:`\sigma_r\cos n\theta` and :math:`\tau\sin n\theta`, has a closed
+form of N. I. Muskhelishvili (*Some Basic Problems of the Mathematical Theory of Elasticity*),
+
+.. math:: 2G(u_r + iu_\theta) = e^{-i\theta}\left(\kappa\varphi - z\overline{\varphi'}
+    - \overline\psi\right),\qquad \kappa = 3 - 4\nu,
+
+with powers of z as φ and ψ, so what a root does is a sum over n. P. Sainsot, P. Velex and
+O. Duverger (J. Mech. Des. 126 (2004), 748) fitted it by polynomials. The sum holds for thin and
+thick, external and internal bodies alike, and tells how far a loaded tooth moves its neighbours.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import ceil, log, pi
+
+import numpy as np
+
+from loadshare.tooth.body import Array
+
+FINEST = 12.0
+"""Last harmonic, in radians over half a root; of the others only the mean over a wave counts."""
+FELT = 1e-8
+"""Part of a harmonic that the held circle sends back, below which the ring counts as solid."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ring:
+    """A ring under the roots of teeth.
+
+    Parameters
+    ----------
+    loaded, held : float
+        Radii of the teeth's roots and of where the ring is held [m]; `held` is the greater of the
+        two for an internal gear.
+    thickness : float
+        Thickness t of the teeth at the root [m].
+    width : float
+        Face width [m].
+    teeth : float
+        Pitches around the whole ring.
+    poisson : float
+        ν.
+    """
+
+    loaded: float
+    held: float
+    thickness: float
+    width: float
+    teeth: float
+    poisson: float
+
+    def root(self, k: int) -> Array:
+        """Compliance of a root for loads on the root `k` teeth before it.
+
+        Returns
+        -------
+        array (3, 3)
+            In units of (1 − ν²)/E over the face width. Rows are deflection along the tooth's side
+            +1, lean that way times t, and lift; columns Q, M/t and N in the same senses.
+        """
+        even, odd = self._shares
+        angle = 2.0 * pi * k / self.teeth * self._orders
+        here, beside = np.cos(angle), np.sin(angle)
+        (rr, rt), (tr, tt) = self._harmonics
+        found = np.array(
+            [
+                [tt * even * even * here, tr * even * odd * here, tr * even * even * beside],
+                [rt * odd * even * here, rr * odd * odd * here, rr * odd * even * beside],
+                [-rt * even * even * beside, -rr * even * odd * beside, rr * even * even * here],
+            ]
+        ).sum(axis=-1)
+        twisted, swollen = self._mean
+        found[0, 0] += 0.5 * twisted
+        found[2, 2] += 0.5 * swollen
+        if k == 0:
+            # Harmonics 2/n of a half-plane, times 1/2x² and 18/x² for even and linear tractions.
+            found += np.diag([1.0, 36.0, 1.0]) / (2.0 * FINEST**2)
+        if self.held > self.loaded:  # teeth that point inwards lean and lift the other way
+            found[0, 1:] *= -1.0
+            found[1:, 0] *= -1.0
+        return np.asarray(found / pi)
+
+    @cached_property
+    def _orders(self) -> Array:
+        """Harmonics n from 1."""
+        half = 0.5 * self.thickness / self.loaded
+        return np.arange(1.0, ceil(FINEST / half) + 1.0)
+
+    @cached_property
+    def _shares(self) -> tuple[Array, Array]:
+        """Harmonics of an even and of a linear traction over a root, over those of a point load."""
+        x = 0.5 * self.thickness / self.loaded * self._orders
+        even = np.sin(x) / x
+        return even, 6.0 * (even - np.cos(x)) / x
+
+    @cached_property
+    def _harmonics(self) -> Array:
+        """Displacements u_r, u_θ (first index) for tractions σ, τ of every order (2, 2, n).
+
+        Poisson's strain across the width is held back where a harmonic reaches less deep than half
+        the width, and free where it reaches deeper: plane strain and plane stress.
+        """
+        n, ratio = self._orders, self.held / self.loaded
+        found = np.empty((2, 2, len(n)))
+        free = self.loaded / n > 0.5 * self.width
+        felt = (n * abs(log(ratio)) < -0.5 * log(FELT)) & ~free
+        solid = ~free & ~felt
+        found[..., solid] = _solid(n[solid], ratio, self.poisson)
+        found[..., felt] = _thick(n[felt], ratio, self.poisson)
+        found[..., free] = _thick(n[free], ratio, self._in_plane_stress) / (1.0 - self.poisson**2)
+        return found
+
+    @property
+    def _in_plane_stress(self) -> float:
+        """The ν with which plane strain is this material's plane stress, (1 − ν'²)/E' = 1/E."""
+        return self.poisson / (1.0 + self.poisson)
+
+    @cached_property
+    def _mean(self) -> tuple[float, float]:
+        """Displacements u_θ, u_r for even tractions all around, in plane stress: torsion, Lamé."""
+        ratio, nu = self.held / self.loaded, self._in_plane_stress
+        outwards = 1.0 if ratio < 1.0 else -1.0
+        scale = outwards / ((1.0 - nu) * (1.0 - self.poisson**2))
+        twisted = (1.0 - ratio**2) / ratio**2
+        rise, pull = 1.0 - ratio**2, 1.0 + ratio**2
+        swollen = rise / (nu / (1.0 - 2.0 * nu) * 2.0 + pull)
+        return scale * twisted, scale * swollen
+
+
+def _thick(n: Array, ratio: float, poisson: float) -> Array:
+    """Displacements (2, 2, n) at radius 1 for tractions there, held at the radius `ratio`."""
+    own, far = _fields(n, 1.0, ratio, poisson), _fields(n, ratio, ratio, poisson)
+    matrix = np.concatenate([own[2:], far[:2]]).transpose(2, 0, 1)
+    scale = np.abs(matrix).max(axis=1, keepdims=True)
+    loads = np.zeros((len(n), 4, 2))
+    loads[:, 0, 0] = loads[:, 1, 1] = 1.0
+    parts = np.linalg.solve(matrix / scale, loads) / scale.transpose(0, 2, 1)
+    return np.asarray(np.einsum("ujn,njt->utn", own[:2], parts))
+
+
+def _solid(n: Array, ratio: float, poisson: float) -> Array:
+    """The same where the held circle is out of reach."""
+    (u, v, sigma, tau) = _fields(n, 1.0, ratio, poisson)[:, :2]
+    over = 1.0 / (sigma[0] * tau[1] - sigma[1] * tau[0])
+    return np.asarray(
+        [
+            [(x[0] * tau[1] - x[1] * tau[0]) * over, (x[1] * sigma[0] - x[0] * sigma[1]) * over]
+            for x in (u, v)
+        ]
+    )
+
+
+def _fields(n: Array, radius: float, ratio: float, poisson: float) -> Array:
+    """Fields of order n at a radius: u_r, u_θ and the tractions σ, τ on the loaded side (4, 4, n).
+
+    Displacements are in units of (1 − ν²)/E. The first two fields fade from radius 1 into the ring,
+    the others from the held circle towards it.
+    """
+    kappa, one = 3.0 - 4.0 * poisson, np.ones_like(n)
+    grow = [(n + 1.0, kappa - n - 1.0, kappa + n + 1.0), (n - 1.0, one, -one)]
+    fade = [(1.0 - n, kappa - 1.0 + n, n - 1.0 - kappa), (-1.0 - n, one, one)]
+    outwards = ratio < 1.0
+    both = [(powers, 1.0) for powers in (grow if outwards else fade)]
+    both += [(powers, ratio) for powers in (fade if outwards else grow)]
+    fields = []
+    for (power, u, v), start in both:
+        size = (radius / start) ** power
+        fields.append([u * size, v * size, power * u * size, power * v * size])
+    u, v, u_slope, v_slope = np.array(fields).transpose(1, 0, 2)
+    # Of order 1 both r^(1 − n) and r^(n − 1) are translations; the force needs a logarithm.
+    one_of, first = (2 if outwards else 0), n == 1.0
+    turn = 2.0 * kappa * log(radius)
+    u[one_of, first], v[one_of, first] = turn - 1.0, -turn - 1.0
+    u_slope[one_of, first], v_slope[one_of, first] = 2.0 * kappa, -2.0 * kappa
+    dilation = poisson / (1.0 - 2.0 * poisson) * (u_slope + u + n * v)
+    side = (1.0 if outwards else -1.0) / radius
+    sigma, tau = side * (dilation + u_slope), 0.5 * side * (v_slope - v - n * u)
+    unit = 1.0 / (1.0 - poisson)
+    return np.array([unit * u, unit * v, sigma, tau])

@@ -1,0 +1,150 @@
+"""A tooth between root section and tip as polynomials: quick to read, with exact slopes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from loadshare.tooth.body import Array, ToothBody
+from loadshare.tooth.compliance.middle import MiddleSurface, under
+from loadshare.tooth.flank import cross
+
+DEGREE = 9
+"""Degree of the polynomials, in u on either side of the end of the fillet and in w."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sample:
+    """The tooth at n places of its middle surface.
+
+    Attributes
+    ----------
+    middle, half : array (n, 3)
+        Point half-way between the two sides, and what leads from it to side +1 [m].
+    middle_u, half_u, middle_w, half_w : array (n, 3)
+        Their derivatives over u and w.
+    """
+
+    middle: Array
+    half: Array
+    middle_u: Array
+    half_u: Array
+    middle_w: Array
+    half_w: Array
+
+
+class SmoothMiddle(MiddleSurface):
+    """Middle surface from one sampling of the outline at Chebyshev points.
+
+    Of the shipped pairs the polynomials miss the outline by 3 µm at most (next to the end of the
+    fillet, where involute or envelope begin with a square root), a thousandth of the thickness.
+
+    Parameters
+    ----------
+    body : ToothBody
+    waist : float
+        As for :class:`MiddleSurface`; the polynomials begin there.
+    """
+
+    def __init__(self, body: ToothBody, waist: float) -> None:
+        super().__init__(body, waist)
+        count = DEGREE + 1
+        unit = chebyshev.chebpts1(count)
+        self._pieces = ((waist, body.foot), (body.foot, 1.0))
+        u = np.concatenate([_spread(unit, *piece) for piece in self._pieces])[:, None]
+        sides = [body.outline(u, _spread(unit, 0.0, 1.0), side) for side in (1, -1)]
+        values = 0.5 * np.concatenate([sides[0] + sides[1], sides[0] - sides[1]], axis=-1)
+        fit = np.linalg.inv(chebyshev.chebvander(unit, DEGREE))
+        over_w = np.einsum("jb,abk->ajk", fit, values)
+        pieces = [np.tensordot(fit, part, 1) for part in np.split(over_w, 2)]
+        slopes = [
+            _slopes(part, 2.0 / (high - low))
+            for part, (low, high) in zip(pieces, self._pieces, strict=True)
+        ]
+        whole = np.concatenate(pieces)
+        across = np.swapaxes(_slopes(np.swapaxes(whole, 0, 1), 2.0), 0, 1)
+        self._coefficients = np.concatenate([whole, np.concatenate(slopes), across], axis=-1)
+
+        # Length of the middle line half-way over the width, integrated from its exact slope.
+        rise = self._read(u[:, 0], np.full(2 * count, 0.5)).middle_u
+        speed = np.linalg.norm(rise, axis=1).reshape(2, count)
+        self._height, start = [], 0.0
+        for part, domain in zip(speed, self._pieces, strict=True):
+            slope = chebyshev.Chebyshev(fit @ part, domain)
+            line = slope.integ(lbnd=domain[0]) + start
+            self._height.append((line, slope))
+            start = float(line(domain[1]))
+        self.whole_height = start
+
+    def sample(self, zw: Array) -> Sample:
+        """Read the tooth at places (n, 2), none of them below the waist."""
+        return self._read(zw[:, 0], zw[:, 1])
+
+    def height(self, z: Array) -> tuple[Array, Array]:
+        """Height above the root section half-way over the width, over the whole; its slope."""
+        upper = z > self.body.foot
+        (low, low_slope), (high, high_slope) = self._height
+        value, slope = (
+            np.where(upper, high(z), low(z)),
+            np.where(upper, high_slope(z), low_slope(z)),
+        )
+        return value / self.whole_height, slope / self.whole_height
+
+    def points(self, zw: Array) -> Array:
+        """See :meth:`MiddleSurface.points`."""
+        return self.surface(zw)[0]
+
+    def surface(self, zw: Array) -> tuple[Array, Array, Array]:
+        """See :meth:`MiddleSurface.surface`."""
+        z, w = zw[:, 0], zw[:, 1]
+        at = self._read(np.maximum(z, self.waist), w)
+        below = np.maximum(self.waist - z, 0.0) / (1.0 + self.waist)
+        if not below.any():
+            return at.middle, at.middle_u, at.middle_w
+        down = under(self.body, at.middle) - at.middle
+        sunk = below[:, None]
+        over_z = np.where(sunk > 0.0, -down / (1.0 + self.waist), at.middle_u)
+        return at.middle + sunk * down, over_z, at.middle_w
+
+    def flank(self, uw: Array, side: int) -> Array:
+        """See :meth:`MiddleSurface.flank`."""
+        at = self.sample(uw)
+        return at.middle + side * at.half
+
+    def inward(self, uw: Array, side: int) -> Array:
+        """See :meth:`MiddleSurface.inward`."""
+        at = self.sample(uw)
+        normal = cross(at.middle_u + side * at.half_u, at.middle_w + side * at.half_w)
+        normal /= np.linalg.norm(normal, axis=1)[:, None]
+        inside = -side * np.sum(normal * at.half, axis=1)
+        return np.asarray(np.sign(inside)[:, None] * normal)
+
+    def _read(self, u: Array, w: Array) -> Sample:
+        upper = u > self.body.foot
+        parts = []
+        for above, (low, high) in zip((False, True), self._pieces, strict=True):
+            inside = np.clip(2.0 * (u - low) / (high - low) - 1.0, -1.0, 1.0)
+            parts.append(_basis(inside) * (upper == above)[:, None])
+        shape = self._coefficients.shape
+        lines = np.hstack(parts) @ self._coefficients.reshape(shape[0], -1)
+        found = np.einsum("nj,njk->nk", _basis(2.0 * w - 1.0), lines.reshape(-1, *shape[1:]))
+        return Sample(*(found[:, k : k + 3] for k in range(0, 18, 3)))
+
+
+def _basis(x: Array) -> Array:
+    """Chebyshev polynomials (n, DEGREE + 1) at places −1 to 1."""
+    return np.asarray(np.cos(np.arccos(x)[:, None] * np.arange(DEGREE + 1)))
+
+
+def _spread(unit: Array, low: float, high: float) -> Array:
+    """Places −1 to 1 carried to an interval."""
+    return low + (high - low) * 0.5 * (unit + 1.0)
+
+
+def _slopes(coefficients: Array, scale: float) -> Array:
+    """Coefficients of the derivative along the first axis, kept as long as the polynomial's."""
+    found = np.zeros_like(coefficients)
+    found[:-1] = scale * chebyshev.chebder(coefficients)
+    return found
