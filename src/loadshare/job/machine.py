@@ -90,10 +90,10 @@ class Answers:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Start:
-    """Where samples begin: contacts and forces as in the machine's own situation.
+    """Where samples begin: contacts and forces as in an equilibrium that is near.
 
-    Radial elements begin on their first piece all the same: a slip is found from stick more surely
-    than from another sample's slip.
+    One row for all samples, or one for each. Radial elements begin on their first piece all the
+    same: a slip is found from stick more surely than from another sample's slip.
     """
 
     code: Codes
@@ -106,10 +106,18 @@ class Machine:
     Parameters
     ----------
     train : Train
+    near : Machine, optional
+        Of a case that differs little: where it has the same elements, positions begin at what it
+        found for as many.
     """
 
-    def __init__(self, train: Train) -> None:
+    def __init__(self, train: Train, near: Machine | None = None) -> None:
         self.train = train
+        self._near: tuple[tuple[str, ...], _Start] | None = None
+        if near is not None and near._last is not None:
+            # Not the machine itself: along a sweep each would hold all those before it.
+            self._near = near._names, near._last
+        self._last: _Start | None = None
         self._starts: dict[int, _Start | None] = {}
         self._own: tuple[tuple[int, ...], Situations] | None = None
 
@@ -151,6 +159,9 @@ class Machine:
         """
         data = data_of(self.elements, situations)
         state, code = at_rest(self.elements, data), first_sets(self.elements, data)
+        beside = None if starts else self._beside(data.count)
+        if beside is not None:
+            self._begin(slice(None), beside, data, state, code)
         parts = _parts(data.count, len(starts))
         for part, index in zip(parts, starts, strict=True):
             begin = self._start(index, engine)
@@ -169,6 +180,8 @@ class Machine:
             other, more = again(~found.solved)
             state = state.completed(other, more.solved & ~found.solved)
             found = found.completed(more)
+        if not starts and found.solved.all():
+            self._last = self._as_start(data, state, found)
         answers = equilibria(self.elements, state)
         verdicts = self.judge.judge(situations, answers, tolerance)
         return Answers(
@@ -200,8 +213,8 @@ class Machine:
             apart = closed.sum(axis=1) - 2.0 * closed @ closed.mean(axis=0)
             middle = pilots[apart.argmin()]
             alike = pilots[(found.code[pilots] == found.code[middle]).all(axis=1)]
-            share = np.abs(state.force[alike]).mean(axis=0) / pushes(data)[alike].mean()
-            begin = _Start(found.code[middle, : self.elements.rows], share)
+            every = self._as_start(data, state, found)
+            begin = _Start(every.code[middle], every.share[alike].mean(axis=0))
             for part in parts:
                 self._begin(slice(part.start + PILOTS, part.stop), begin, data, state, code)
         return found
@@ -240,7 +253,22 @@ class Machine:
             data = data_of(self.elements, situation_of(self.train, index))
             state = at_rest(self.elements, data)
             found = exchange(self.elements, data, state, engine)
-            code = found.code[0, : self.elements.rows]
-            start = _Start(code, np.abs(state.force[0]) / pushes(data)[0])
+            start = self._as_start(data, state, found)
             self._starts[index] = start if found.solved[0] else None
         return self._starts[index]
+
+    def _beside(self, count: int) -> _Start | None:
+        """What a machine near by did in as many samples; None if nothing is known."""
+        if self._near is None:
+            return None
+        names, start = self._near
+        return start if names == self._names and len(start.code) == count else None
+
+    def _as_start(self, data: Data, state: State, found: Found) -> _Start:
+        share = np.abs(state.force) / pushes(data)[:, None]
+        return _Start(found.code[:, : self.elements.rows], share)
+
+    @property
+    def _names(self) -> tuple[str, ...]:
+        """Contacts and forces, in order."""
+        return (*self.elements.row_names, *self.elements.kinds)

@@ -37,6 +37,7 @@ def solve(
     tolerance: float = TOLERANCE,
     positions: Iterable[int] | None = None,
     engine: str = "vectorised",
+    near: Case | None = None,
     progress: Progress | None = None,
 ) -> Result:
     """Find and certify the equilibrium of a case at every position.
@@ -58,6 +59,9 @@ def solve(
     engine : {"vectorised", "compiled"}
         Of the hot path: NumPy, or Numba, which takes a second to load and is several times faster
         for those who solve many cases in one process.
+    near : Case, optional
+        A case that differs little and was solved just before: the search begins at what was found
+        there. It takes less time and leads to the same answer, but for round-off.
     progress : Progress, optional
         Called after every position.
 
@@ -82,7 +86,7 @@ def solve(
     >>> result.passed
     True
     """
-    case, machine = prepared(case)
+    case, machine = prepared(case, near)
     options, hot = _options(solver, method, reduce)
     settle = engine if hot else None
     wanted = wanted_positions(machine.train, positions)
@@ -162,15 +166,20 @@ RECENT = 16
 """Cases whose reduced machines are kept, for those who solve one again and again."""
 
 
-def prepared(case: Case | str | Path) -> tuple[Case, Machine]:
-    """Return a case, its mesh laws computed where it asks for them, and its machine; built once."""
+def prepared(case: Case | str | Path, near: Case | None = None) -> tuple[Case, Machine]:
+    """Return a case, its mesh laws computed where it asks for them, and its machine; built once.
+
+    The machine begins at what that of `near` found, if that is still known.
+    """
     if not isinstance(case, Case):
         case = load_case(case)
     known = _recent.get(id(case))
     if known is None:
         # The case is kept with its machine, so that its id is not given to another.
         solved = resolve(case)
-        known = _recent[id(case)] = (case, solved, Machine(build_train(solved)))
+        beside = _recent.get(id(near))
+        machine = Machine(build_train(solved), near=beside[2] if beside else None)
+        known = _recent[id(case)] = (case, solved, machine)
         if len(_recent) > RECENT:
             _recent.popitem(last=False)
     return known[1:]

@@ -150,7 +150,7 @@ def sweep(
     positions: Sequence[int] | None = None,
     progress: Progress | None = None,
 ) -> Sweep:
-    """Solve a case at every point of a grid.
+    """Solve a case at every point of a grid, each from the one before.
 
     Parameters
     ----------
@@ -196,10 +196,13 @@ def sweep(
     _check_apart(chosen)
     points: list[Point] = []
     unusable: list[CaseError] = []
+    near: Case | None = None
     total = prod(len(values) for values in grids)
     for values in product(*grids):
         try:
-            points.append(_solved(case, tuple(chosen), values, positions))
+            changed = _changed(case, chosen, values)
+            points.append(_solved(changed, values, positions, near))
+            near = changed
         except CaseError as error:
             unusable.append(error)
             points.append(Point(values, INVALID, str(error), None))
@@ -226,17 +229,18 @@ def _count(case: Case, points: Sequence[Point]) -> int:
     return max(found, default=build_train(case).count)
 
 
-def _solved(
-    case: Case,
-    parameters: tuple[Parameter, ...],
-    values: tuple[float, ...],
-    positions: Sequence[int] | None,
-) -> Point:
+def _changed(case: Case, parameters: Sequence[Parameter], values: tuple[float, ...]) -> Case:
     changes: dict[str, object] = {}
     for parameter, value in zip(parameters, values, strict=True):
         changes |= parameter.changes(value)
+    return case.replace(changes)
+
+
+def _solved(
+    case: Case, values: tuple[float, ...], positions: Sequence[int] | None, near: Case | None
+) -> Point:
     try:
-        result = solve(case.replace(changes), positions=positions)
+        result = solve(case, positions=positions, near=near)
     except Refused as refusal:
         partial = refusal.partial
         return Point(values, PARTLY if partial else REFUSED, str(refusal), partial)
