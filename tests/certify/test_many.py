@@ -1,4 +1,5 @@
-"""The certificate of many answers gives the figures of the single one, on right and wrong answers.
+"""The certificate of many answers gives the figures of the single one, on right and wrong answers,
+with NumPy and compiled.
 
 Source: formulation, section 8. `Judge` and `certify` share the train's laws but sum up in another
 order, so that they differ by round-off: 1e-9 of a figure, or 1e-12 of the case where a figure is
@@ -18,7 +19,7 @@ import loadshare as ls
 from loadshare.case import families
 from loadshare.certify import certify
 from loadshare.certify.certificate import TOLERANCE
-from loadshare.certify.many import RESIDUALS, Judge
+from loadshare.certify.many import RESIDUALS, Judge, Verdicts
 from loadshare.train import Train, build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations, situation_of, stack
@@ -111,8 +112,19 @@ def figures(train: Train, index: int, found: Equilibria, row: int) -> np.ndarray
     return np.array([single.residuals[name].scaled for name in RESIDUALS])
 
 
+def alike(train: Train, situations: Situations, found: Equilibria) -> Verdicts:
+    """Verdicts of NumPy; the compiled ones must be the same."""
+    judge = Judge(train)
+    many, compiled = (judge.judge(situations, found, compiled=way) for way in (False, True))
+    np.testing.assert_allclose(compiled.residuals, many.residuals, rtol=RELATIVE, atol=ABSOLUTE)
+    np.testing.assert_allclose(compiled.load, many.load, rtol=RELATIVE)
+    np.testing.assert_allclose(compiled.deflection, many.deflection, rtol=RELATIVE)
+    assert compiled.passed.tolist() == many.passed.tolist()
+    return many
+
+
 def agree(train: Train, indices: list[int], situations: Situations, found: Equilibria) -> None:
-    many = Judge(train).judge(situations, found)
+    many = alike(train, situations, found)
     single = np.array([figures(train, k, found, row) for row, k in enumerate(indices)])
     np.testing.assert_allclose(many.residuals, single, rtol=RELATIVE, atol=ABSOLUTE)
     passed = [certify(train, found.one(row, k)).passed for row, k in enumerate(indices)]
@@ -149,7 +161,7 @@ def test_wrong_answers(name):
     scales = scales_of(train, float(right.load[0]), float(right.deflection[0]))
     spoilt = damaged(taken(found, rows), scales, seed=len(name))
     agree(train, indices, situations.take(rows), spoilt)
-    many = Judge(train).judge(situations.take(rows), spoilt)
+    many = alike(train, situations.take(rows), spoilt)
     assert not many.passed.all()
     if "all_elements" in name:
         assert (many.residuals > TOLERANCE).any(axis=0).all(), (
@@ -187,7 +199,7 @@ def test_a_figure_that_is_not_a_number(bad):
     spoilt = taken(found, rows)
     for row, name in enumerate(names):
         getattr(spoilt, name)[row].flat[-1] = bad
-    many = Judge(train).judge(situations.take(rows), spoilt)
+    many = alike(train, situations.take(rows), spoilt)
     for row, name in enumerate(names):
         assert np.isinf(many.residuals[row]).all(), name
     assert many.passed.tolist() == [False] * len(names) + [True]
@@ -202,7 +214,7 @@ def test_a_spline_whose_law_drops():
     situations, found = claims(train, [1])
     spoilt = taken(found, np.zeros(2, dtype=int))
     spoilt.flank_force[0] *= 1e-3
-    many = Judge(train).judge(situations.take(np.zeros(2, dtype=int)), spoilt)
+    many = alike(train, situations.take(np.zeros(2, dtype=int)), spoilt)
     single = certify(train, spoilt.one(0, 1))
     assert "drop" in single.residuals["cone_membership"].where
     assert np.isinf(many.residuals[0]).all()
@@ -225,7 +237,7 @@ def test_a_squeeze_between_opposed_arcs():
             spoilt.ring_force[row, found.names.contacts.index(ring.arc_name(neighbour))] += (
                 1e6 * load
             )
-    many = Judge(train).judge(situations.take(rows), spoilt)
+    many = alike(train, situations.take(rows), spoilt)
     cone = RESIDUALS.index("cone_membership")
     for row, ring in enumerate(rings):
         single = certify(train, spoilt.one(row, 1)).failing["cone_membership"]
@@ -242,7 +254,7 @@ def test_a_wrong_shaft_torque_is_caught():
     spoilt = taken(found, rows)
     for row, shaft in enumerate(elastic):
         spoilt.shaft_torque[row, shaft] *= 1.0 + 1e-6
-    many = Judge(train).judge(situations.take(rows), spoilt)
+    many = alike(train, situations.take(rows), spoilt)
     assert elastic
     for row in range(len(elastic)):
         failing = certify(train, spoilt.one(row, 1)).failing
@@ -259,7 +271,7 @@ def test_a_wrong_support_force_is_caught():
     load = float(Judge(train).judge(situations, found).load[0])
     for row, gear in enumerate(held):
         spoilt.support_force[row, gear, 0] += 1e-6 * load
-    many = Judge(train).judge(situations.take(rows), spoilt)
+    many = alike(train, situations.take(rows), spoilt)
     assert len(held) > 1
     for row, k in enumerate(held):
         gear = list(train.gears.values())[k]

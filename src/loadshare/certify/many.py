@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.certificate import BAND, TOLERANCE
+from loadshare.certify.mechanics import Mechanics, judged, mechanics
 from loadshare.certify.state import turned
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.radial import ROUNDING
@@ -32,6 +34,8 @@ RESIDUALS = (
     "cone_membership",
     "energy_gap",
 )
+TOGETHER = 2048
+"""Answers judged together: as many as a processor's own memory holds."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,8 +111,22 @@ class Judge:
             (e, k) for e, (k, m, _) in enumerate(self.flanks) if hasattr(m.laws[0], "forces")
         ]
 
+    def squeezed(self, ring: DrumRing) -> bool:
+        """Whether nothing gives way between the arcs of a ring (see `State.squeezes`)."""
+        return math.isinf(ring.stiffness) and not any(
+            self.train.gears[n].moves for n in ring.neighbours
+        )
+
+    @cached_property
+    def _mechanics(self) -> Mechanics:
+        return mechanics(self)
+
     def judge(
-        self, situations: Situations, answers: Equilibria, tolerance: float = TOLERANCE
+        self,
+        situations: Situations,
+        answers: Equilibria,
+        tolerance: float = TOLERANCE,
+        compiled: bool = False,
     ) -> Verdicts:
         """Judge S claimed equilibria.
 
@@ -118,9 +136,26 @@ class Judge:
         answers : Equilibria
         tolerance : float
             Largest scaled residual of a certified answer.
+        compiled : bool
+            With Numba, one answer after another, instead of NumPy: the same figures up to
+            round-off, several times as fast once it is compiled.
         """
+        if compiled:
+            residuals, load, deflection = judged(self._mechanics, situations, answers)
+            return Verdicts(residuals, tolerance, load, deflection)
+        count = len(answers.rotation)
+        parts = [slice(at, at + TOGETHER) for at in range(0, count, TOGETHER)]
         with np.errstate(all="ignore"):
-            return _Bench(self, situations, answers).verdicts(tolerance)
+            if len(parts) <= 1:
+                return _Bench(self, situations, answers).verdicts(tolerance)
+            every = [
+                _Bench(self, situations.take(p), answers.part(p)).verdicts(tolerance) for p in parts
+            ]
+        residuals, load, deflection = (
+            np.concatenate([getattr(v, name) for v in every])
+            for name in ("residuals", "load", "deflection")
+        )
+        return Verdicts(residuals, tolerance, load, deflection)
 
 
 class _Bench:
@@ -148,45 +183,43 @@ class _Bench:
         self.bending = situations.bending[:, judge.mesh_of]
         self.hertz = situations.hertz[:, judge.mesh_of]
         positive = np.maximum(self.force, 0.0)
-        root = np.cbrt(positive) if self.hertz.any() else np.zeros_like(positive)
-        self.compression = self.bending * positive + self.hertz * root**2
-        self.dual = 0.5 * self.bending * positive**2 + 0.6 * self.hertz * root**5
-        self.primal = self._strain(positive)
+        root = np.zeros_like(positive)
+        if self.hertz.any():
+            np.cbrt(positive, out=root, where=positive > 0.0)
+        square = root * root
+        self.compression = self.bending * positive + self.hertz * square
+        self.dual = 0.5 * self.bending * positive**2 + 0.6 * self.hertz * (square * square * root)
+        self.primal = self._strain(root)
         for e, k in judge.tabled:
             self._tabulate(e, k, positive[:, e])
         self._scales(offset)
         self._ring_contacts()
         self._pulls()
 
-    def _strain(self, force: Array) -> Array:
-        """Strain energy at the approach, from the force nearest to the law's.
+    def _strain(self, root: Array) -> Array:
+        """Strain energy at the approach, from the cube roots of the claimed forces.
 
-        The energy is ∫F dδ at the claimed approach; around the claimed force it is expanded to
-        second order, which is exact for a linear law and exact to round-off where the deformation
-        law holds. Elsewhere the true force is found first.
+        The energy is ∫F dδ at the claimed approach, so the force there has to be found. Where the
+        deformation law holds, one step of Newton's method from the claimed force arrives at it;
+        elsewhere it is found from above.
         """
         b, c = self.bending, self.hertz
         approach = np.maximum(self.approach, 0.0)
-        rigid = (b == 0.0) & (c == 0.0)
         linear = np.where(b > 0.0, approach / np.where(b > 0.0, b, 1.0), 0.0)
+        energy = 0.5 * linear * approach
         if c.any():
-            y = np.sqrt(approach / np.where(c > 0.0, c, 1.0))
-            y = np.where(b > 0.0, np.minimum(y, np.cbrt(linear)), y)
-            y = np.where(c > 0.0, y, np.cbrt(linear))
-            start = np.cbrt(force)
-            close = (c > 0.0) & (np.abs(start - y) <= 0.5 * y)
-            y = np.where(close, np.minimum(np.maximum(start, 0.2 * y), y), y)
-            for _ in range(60):
-                slope = (3.0 * b * y + 2.0 * c) * y
-                step = np.where(slope > 0.0, ((b * y + c) * y**2 - approach) / slope, 0.0)
-                y = y - step
-                if (np.abs(step) <= 1e-15 * y).all():
-                    break
-            found = np.where(c > 0.0, y**3, linear)
-            energy = 0.5 * b * found**2 + 0.4 * c * np.where(c > 0.0, y, 0.0) ** 5
-        else:
-            energy = 0.5 * b * linear**2
-        return np.asarray(np.where(rigid | (self.approach <= 0.0), 0.0, energy))
+            curve, rise = (b * root + c) * root * root, (3.0 * b * root + 2.0 * c) * root
+            step = (curve - approach) / rise
+            y = root - step
+            powers = c > 0.0
+            far = powers & (approach > 0.0) & ~(np.abs(step) <= 1e-8 * root)
+            if far.any():
+                wide = (np.broadcast_to(v, far.shape)[far] for v in (b, c, approach))
+                y[far] = _root(*wide)
+            square = y * y
+            curved = (0.5 * b * y + 0.4 * c) * (square * square * y)
+            energy = np.where(powers, curved, energy)
+        return np.asarray(np.where(self.approach <= 0.0, 0.0, energy))
 
     def _tabulate(self, e: int, mesh: int, force: Array) -> None:
         """Compression and energies of a tabulated flank."""
@@ -436,8 +469,7 @@ class _Bench:
         """What the squeeze of opposed rigid arcs leaves open (see `State.squeezes`)."""
         worst = np.zeros(self.count)
         for d, ring in enumerate(self.of.drums):
-            gives = any(self.train.gears[n].moves for n in ring.neighbours)
-            if gives or not math.isinf(ring.stiffness):
+            if not self.of.squeezed(ring):
                 continue
             nominal = self.of.nominal[d]
             start = nominal + self.situations.arc_shift[:, d]
@@ -510,6 +542,18 @@ def _turning_as_one(train: Train) -> list[list[int]]:
             a, b = group[order[shaft.first]], group[order[shaft.second]]
             group = [a if g == b else g for g in group]
     return [[k for k, g in enumerate(group) if g == which] for which in sorted(set(group))]
+
+
+def _root(b: Array, c: Array, compression: Array) -> Array:
+    """F^(1/3) of the law b F + c F^(2/3), c > 0, by Newton's method from above."""
+    y = np.sqrt(compression / c)
+    y = np.where(b > 0.0, np.minimum(y, np.cbrt(compression / np.where(b > 0.0, b, 1.0))), y)
+    for _ in range(60):
+        step = ((b * y + c) * y * y - compression) / ((3.0 * b * y + 2.0 * c) * y)
+        y = y - step
+        if (np.abs(step) <= 1e-15 * y).all():
+            break
+    return np.asarray(y)
 
 
 def _interpolated(axis: Array, values: Array, at: Array) -> Array:

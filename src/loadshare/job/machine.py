@@ -163,13 +163,13 @@ class Machine:
         if beside is not None:
             self._begin(slice(None), beside, data, state, code)
         parts = _parts(data.count, len(starts))
+        many = bool(parts) and parts[0].stop >= WORTH * PILOTS
         for part, index in zip(parts, starts, strict=True):
             begin = self._start(index, engine)
             if begin is not None:
-                self._begin(part, begin, data, state, code)
-        found = None
-        if parts and parts[0].stop >= WORTH * PILOTS:
-            found = self._pilots(parts, data, state, code, engine)
+                first = slice(part.start, part.start + PILOTS) if many else part
+                self._begin(first, begin, data, state, code)
+        found = self._pilots(parts, data, state, code, engine) if many else None
         more = exchange(
             self.elements, data, state, engine, code, only=~found.solved if found else None
         )
@@ -183,7 +183,8 @@ class Machine:
         if not starts and found.solved.all():
             self._last = self._as_start(data, state, found)
         answers = equilibria(self.elements, state)
-        verdicts = self.judge.judge(situations, answers, tolerance)
+        quick = engine is not vectorised.settle
+        verdicts = self.judge.judge(situations, answers, tolerance, compiled=quick)
         return Answers(
             answers,
             verdicts,
@@ -213,8 +214,8 @@ class Machine:
             apart = closed.sum(axis=1) - 2.0 * closed @ closed.mean(axis=0)
             middle = pilots[apart.argmin()]
             alike = pilots[(found.code[pilots] == found.code[middle]).all(axis=1)]
-            every = self._as_start(data, state, found)
-            begin = _Start(every.code[middle], every.share[alike].mean(axis=0))
+            share = np.abs(state.force[alike]) / pushes(data)[alike, None]
+            begin = _Start(found.code[middle, : self.elements.rows], share.mean(axis=0))
             for part in parts:
                 self._begin(slice(part.start + PILOTS, part.stop), begin, data, state, code)
         return found

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loadshare.tooth.body import Array
-from loadshare.tooth.contact_problem import ContactProblem
+from loadshare.tooth.contact_problem import ContactBatch, ContactProblem
 
 TOLERANCE = 1e-9
 """Largest scaled residual of a certified contact."""
@@ -56,16 +56,35 @@ def certify_contact(
 
     Nothing is raised for a wrong answer; figures that are not numbers fail.
     """
-    if not (np.isfinite(force).all() and np.isfinite(approach)):
-        names = ("pull", "penetration", "complementarity", "balance")
-        return ContactCertificate(dict.fromkeys(names, np.inf), tolerance)
-    yielded = problem.yielded(force)
-    distance = yielded + problem.gap - approach
-    deflection = float(np.abs(yielded).max()) or 1e-6
-    found = {
-        "pull": float(np.max(-force)) / load,
-        "penetration": float(np.max(-distance)) / deflection,
-        "complementarity": float(np.sum(np.abs(force * distance))) / (load * deflection),
-        "balance": abs(float(np.sum(force)) - load) / load,
-    }
-    return ContactCertificate({n: max(v, 0.0) for n, v in found.items()}, tolerance)
+    return certify_contacts(
+        problem.alone, np.array([load]), force[None], np.array([approach]), tolerance
+    )[0]
+
+
+def certify_contacts(
+    batch: ContactBatch,
+    load: Array,
+    force: Array,
+    approach: Array,
+    tolerance: float = TOLERANCE,
+) -> tuple[ContactCertificate, ...]:
+    """Judge forces (K, N) [N] and approaches (K,) [m] claimed for loads (K,) [N]."""
+    with np.errstate(invalid="ignore"):
+        yielded = batch.yielded(force)
+        distance = yielded + batch.gap - approach[:, None]
+        deflection = np.abs(yielded).max(axis=1)
+        deflection = np.where(deflection > 0.0, deflection, 1e-6)
+        found = {
+            "pull": np.max(-force, axis=1) / load,
+            "penetration": np.max(-distance, axis=1) / deflection,
+            "complementarity": np.sum(np.abs(force * distance), axis=1) / (load * deflection),
+            "balance": np.abs(np.sum(force, axis=1) - load) / load,
+        }
+    finite = np.isfinite(force).all(axis=1) & np.isfinite(approach)
+    return tuple(
+        ContactCertificate(
+            {n: max(float(v[k]), 0.0) if finite[k] else np.inf for n, v in found.items()},
+            tolerance,
+        )
+        for k in range(len(approach))
+    )

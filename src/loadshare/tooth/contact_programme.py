@@ -30,8 +30,8 @@ from loadshare.solver.backend import Backend, backend
 from loadshare.solver.findings import Unsolved
 from loadshare.solver.inner import solve_programme
 from loadshare.tooth.body import Array
-from loadshare.tooth.contact_certificate import ContactCertificate, certify_contact
-from loadshare.tooth.contact_problem import ContactProblem
+from loadshare.tooth.contact_certificate import ContactCertificate, certify_contacts
+from loadshare.tooth.contact_problem import ContactBatch, ContactProblem, times
 
 Mask = NDArray[np.bool_]
 
@@ -98,69 +98,165 @@ def solve_contact(
     Refused
         If no contact is found that its certificate passes.
     """
-    if not (load > 0.0 and np.isfinite(load)):
-        raise ValueError(f"load = {load}: the flanks are pressed together; allowed: above 0 N")
-    force = np.full(len(problem.gap), load / len(problem.gap))
-    newton = warm is not None
-    if warm is not None:
-        force = warm * (load / float(np.sum(warm)))
-    last = np.inf
+    begun = None if warm is None else warm[None]
+    return solve_contacts(problem.alone, np.array([load]), begun, solver)[0]
+
+
+def solve_contacts(
+    batch: ContactBatch,
+    load: Array,
+    warm: Array | None = None,
+    solver: str = "clarabel",
+) -> tuple[Contact, ...]:
+    """Solve several contacts at once, each for itself.
+
+    Parameters
+    ----------
+    batch : ContactBatch
+    load : array (K,)
+        P [N] of each, positive.
+    warm : array (K, N), optional
+        Forces under another load, to begin from.
+    solver : str
+        Back-end for programmes that the exchange does not solve.
+
+    Raises
+    ------
+    ValueError
+        If the load is not positive.
+    Refused
+        If one of the contacts is not found, or not passed by its certificate.
+    """
+    wrong = load[~((load > 0.0) & np.isfinite(load))]
+    if len(wrong):
+        raise ValueError(f"load = {wrong[0]}: the flanks are pressed together; allowed: above 0 N")
+    if warm is None:
+        real = np.arange(batch.gap.shape[1]) < batch.count[:, None]
+        force = np.where(real, (load / batch.count)[:, None], 0.0)
+    else:
+        force = warm * (load / np.sum(warm, axis=1))[:, None]
+    count = len(force)
+    found = _Settled.empty(batch)
+    going, part, wanted = np.arange(count), batch, load
+    newton, last = np.full(count, warm is not None), np.full(count, np.inf)
     for passes in range(PASSES):
-        secant, tangent = problem.compliance(force)
-        yielded = secant @ force
-        approach = float((yielded + problem.gap) @ force) / load
-        distance = yielded + problem.gap - approach
+        secant, tangent = part.compliance(force)
+        yielded = times(secant, force)
+        approach = np.sum((yielded + part.gap) * force, axis=1) / wanted
+        distance = yielded + part.gap - approach[:, None]
         closed = force > 0.0
-        missed = float(np.max(np.where(closed, np.abs(distance), -distance)))
+        missed = np.max(np.where(closed, np.abs(distance), -distance), axis=1)
         # Light loads yield less than the gaps that they close; those have their own round-off.
-        least = ROUND_OFF * float(problem.gap[closed].max())
-        if missed < SETTLED * float(np.abs(yielded).max()) + least:
-            certificate = certify_contact(problem, load, force, approach)
-            if not certificate.passed:
-                raise Refused(_told(load, certificate), certificate.failing)
-            _, slope = _saddle(tangent, np.zeros_like(force), 1.0, closed)
-            distance = np.where(closed, 0.0, distance)
-            return Contact(force, approach, distance, slope, passes, certificate)
-        matrix, gap = secant, problem.gap
-        if newton:
-            # The law at the last forces by its tangent: a linear contact with a shifted gap.
-            matrix, gap = tangent, problem.gap + yielded - tangent @ force
-        found = exchange(matrix, gap, load, closed)
-        if found is None:
-            found = by_interface(matrix, gap, load, force, backend(solver))
-        step = float(np.abs(found - force).max())
+        least = ROUND_OFF * np.max(np.where(closed, part.gap, 0.0), axis=1)
+        settled = missed < SETTLED * np.abs(yielded).max(axis=1) + least
+        if settled.any():
+            found.keep(
+                going[settled],
+                passes,
+                *(values[settled] for values in (force, approach, distance, tangent)),
+            )
+            left = np.flatnonzero(~settled)
+            if not len(left):
+                return found.contacts(batch, load)
+            going, part = going[left], part.rows(left)
+            force, yielded, closed = force[left], yielded[left], closed[left]
+            newton, last, wanted = newton[left], last[left], wanted[left]
+            secant, tangent = secant[left], tangent[left]
+        # The law at the last forces by its tangent: a linear contact with a shifted gap.
+        shift = np.where(newton[:, None], yielded - times(tangent, force), 0.0)
+        matrix = np.where(newton[:, None, None], tangent, secant)
+        gap = part.gap + shift
+        new, solved = exchanges(matrix, gap, wanted, closed)
+        for k in np.flatnonzero(~solved):
+            n = part.count[k]
+            linear = matrix[k, :n, :n], gap[k, :n], float(wanted[k]), force[k, :n]
+            try:
+                new[k] = 0.0
+                new[k, :n] = by_interface(*linear, backend(solver))
+            except Refused as refusal:
+                raise Refused(_called(part.names[k]) + str(refusal), refusal.figures) from refusal
+        step = np.abs(new - force).max(axis=1)
         # Where Newton's method does not draw in, a pass at fixed widths does.
-        newton = not newton or step < last
-        force, last = found, step
+        newton = ~newton | (step < last)
+        force, last = new, step
     raise Refused(
-        f"the contact under {load:.6g} N did not settle in {PASSES} passes; more points a line, or "
-        "a smoother gap, may help",
+        f"{_called(part.names[0])}the contact under {wanted[0]:.6g} N did not settle in {PASSES} "
+        "passes; more points a line, or a smoother gap, may help",
     )
 
 
-def _told(load: float, certificate: ContactCertificate) -> str:
+@dataclass(eq=False)
+class _Settled:
+    """What has settled of a batch; `tangent` is du/dp (K, N, N)."""
+
+    force: Array
+    approach: Array
+    distance: Array
+    tangent: Array
+    passes: NDArray[np.int64]
+
+    @classmethod
+    def empty(cls, batch: ContactBatch) -> _Settled:
+        flat, count = np.zeros_like(batch.gap), len(batch.gap)
+        passes = np.zeros(count, dtype=np.int64)
+        return cls(flat, np.zeros(count), flat.copy(), np.zeros_like(batch.fixed), passes)
+
+    def keep(
+        self, rows: NDArray[np.int64], passes: int, force: Array, approach: Array,
+        distance: Array, tangent: Array,
+    ) -> None:  # fmt: skip
+        self.passes[rows] = passes
+        self.force[rows], self.approach[rows] = force, approach
+        self.distance[rows], self.tangent[rows] = distance, tangent
+
+    def contacts(self, batch: ContactBatch, load: Array) -> tuple[Contact, ...]:
+        """The contacts with their slopes, all certified."""
+        certificates = certify_contacts(batch, load, self.force, self.approach)
+        closed = self.force > 0.0
+        _, slope = _saddles(self.tangent, np.zeros_like(self.force), np.ones_like(load), closed)
+        distance = np.where(closed, 0.0, self.distance)
+        for name, part, certificate in zip(batch.names, load, certificates, strict=True):
+            if not certificate.passed:
+                raise Refused(_told(name, float(part), certificate), certificate.failing)
+        return tuple(
+            Contact(
+                self.force[k, :n], float(self.approach[k]), distance[k, :n], float(slope[k]),
+                int(self.passes[k]), certificates[k],
+            )
+            for k, n in enumerate(batch.count)
+        )  # fmt: skip
+
+
+def _called(name: str) -> str:
+    return f"{name}: " if name else ""
+
+
+def _told(name: str, load: float, certificate: ContactCertificate) -> str:
     figures = ", ".join(f"{n} {v:.1e}" for n, v in certificate.failing.items())
     return (
-        f"the contact under {load:.6g} N does not pass its certificate: {figures}, allowed "
-        f"{certificate.tolerance:.0e}"
+        f"{_called(name)}the contact under {load:.6g} N does not pass its certificate: {figures}, "
+        f"allowed {certificate.tolerance:.0e}"
     )
 
 
-def _saddle(matrix: Array, gap: Array, load: float, closed: Mask) -> tuple[Array, float]:
-    """Forces (N,) and approach with the closed points in touch, whatever the signs."""
-    inner = matrix if closed.all() else matrix[closed][:, closed]
-    count = len(inner)
+def _saddles(matrix: Array, gap: Array, load: Array, closed: Mask) -> tuple[Array, Array]:
+    """Forces (K, N) and approaches (K,) with the closed points in touch, whatever the signs."""
+    count = gap.shape[1]
     # The compliance's size keeps the bordered matrix well scaled.
-    unit = float(inner.max(initial=0.0)) or 1.0
-    system = np.zeros((count + 1, count + 1))
-    system[:count, :count] = inner / unit
-    system[count, :count] = 1.0
-    system[:count, count] = -1.0
-    right = np.append(-gap[closed] / unit, load)
-    solved = np.linalg.solve(system, right)
-    force = np.zeros(len(gap))
-    force[closed] = solved[:count]
-    return force, float(solved[count]) * unit
+    unit = matrix.max(axis=(1, 2))
+    unit = np.where(unit > 0.0, unit, 1.0)[:, None]
+    system = np.zeros((len(gap), count + 1, count + 1))
+    both = closed[:, :, None] & closed[:, None, :]
+    np.divide(matrix, unit[..., None], out=system[:, :count, :count], where=both)
+    point = np.arange(count)
+    system[:, point, point] += ~closed  # open points carry nothing
+    system[:, count, :count] = closed
+    system[:, :count, count] = -1.0 * closed
+    right = np.empty((len(gap), count + 1, 1))
+    right[:, :count, 0] = np.where(closed, -gap / unit, 0.0)
+    right[:, count, 0] = load
+    solved = np.linalg.solve(system, right)[..., 0]
+    return solved[:, :count], solved[:, count] * unit[:, 0]
 
 
 def exchange(matrix: Array, gap: Array, load: float, closed: Mask) -> Array | None:
@@ -182,20 +278,41 @@ def exchange(matrix: Array, gap: Array, load: float, closed: Mask) -> Array | No
     array (N,) or None
         Forces [N]; None if the exchange comes back to a set.
     """
-    seen = set()
+    force, solved = exchanges(matrix[None], gap[None], np.array([load]), closed[None])
+    return force[0] if solved[0] else None
+
+
+def exchanges(matrix: Array, gap: Array, load: Array, closed: Mask) -> tuple[Array, Mask]:
+    """Solve K linear contacts (K, N, N) by exchanging closed points; see :func:`exchange`.
+
+    Returns
+    -------
+    force : array (K, N)
+        [N].
+    solved : array (K,) of bool
+        Where the exchange did not come back to a set.
+    """
+    force, solved = np.zeros_like(gap), np.zeros(len(gap), dtype=bool)
+    seen: list[set[bytes]] = [set() for _ in gap]
+    closed, going = closed.copy(), list(range(len(gap)))
     for _ in range(EXCHANGES):
-        if not closed.any() or closed.tobytes() in seen:
-            return None
-        seen.add(closed.tobytes())
-        force, approach = _saddle(matrix, gap, load, closed)
-        yielded = matrix @ force
-        distance = yielded + gap - approach
-        pulled = force < -BAND * load
-        pressed = ~closed & (distance < -BAND * float(np.abs(yielded).max()))
-        if not pulled.any() and not pressed.any():
-            return np.maximum(force, 0.0)
-        closed = (closed & ~pulled) | pressed
-    return None
+        going = [k for k in going if closed[k].any() and closed[k].tobytes() not in seen[k]]
+        if not going:
+            break
+        for k in going:
+            seen[k].add(closed[k].tobytes())
+        now, inner = closed[going], matrix if len(going) == len(gap) else matrix[going]
+        found, approach = _saddles(inner, gap[going], load[going], now)
+        yielded = times(inner, found)
+        distance = yielded + gap[going] - approach[:, None]
+        pulled = found < -BAND * load[going, None]
+        pressed = ~now & (distance < -BAND * np.abs(yielded).max(axis=1, keepdims=True))
+        left = (pulled | pressed).any(axis=1)
+        force[going] = np.maximum(found, 0.0)
+        solved[going] = ~left
+        closed[going] = (now & ~pulled) | pressed
+        going = [k for k, more in zip(going, left, strict=True) if more]
+    return force, solved
 
 
 def contact_rows(matrix: Array, gap: Array, load: float) -> tuple[Programme, Array]:

@@ -29,6 +29,9 @@ from loadshare.tooth.valley import Valleys, anchor
 
 Roll = TypeVar("Roll", float, Array)
 
+# Where a line leaves the flanks, a Newton step below this [m] is the last: picometres are left.
+NEAR_EDGE = 1e-7
+
 
 @dataclass(frozen=True)
 class FaceMisalignment:
@@ -244,7 +247,7 @@ class FaceGearPair:
 
         def margin(stations: Array) -> Array:
             nonlocal valleys
-            found = valleys.find(stations)
+            found = valleys.find(stations, NEAR_EDGE)
             if valleys.known is None:
                 valleys = valleys.knowing(stations, found)
             a, b, c, d, gap = found

@@ -5,8 +5,9 @@ Source: formulation, section 9.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from math import ceil
 from typing import Literal
 
@@ -15,17 +16,20 @@ import numpy as np
 from loadshare.errors import Refused
 from loadshare.tooth.body import Array
 from loadshare.tooth.compliance.interface import Compliance, Flank
-from loadshare.tooth.contact import MeshPosition, PairGeometry
-from loadshare.tooth.contact_problem import ContactProblem
-from loadshare.tooth.contact_programme import Contact, solve_contact
+from loadshare.tooth.contact import ContactLine, MeshPosition, PairGeometry
+from loadshare.tooth.contact_problem import ContactBatch, ContactProblem
+from loadshare.tooth.contact_programme import Contact, solve_contacts
+from loadshare.tooth.hertz import width_factor
 from loadshare.tooth.law_fit import FIT_LOADS
 from loadshare.tooth.ltca_result import LineLoad, Ltca
 from loadshare.tooth.strips import StripLine
 
 LOADS = (0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 1.0)
 """Parts of the rated torque: those of the fit, others to see its misfit, and the seed's three."""
-POINTS = 32
-"""Points on a contact line."""
+POINTS: dict[str, int] = {"finite elements": 32, "slices": 16}
+"""Points on a contact line by model: more would refine what the slices do not tell."""
+BATCH = 2**16
+"""Entries of the compliance matrices of positions that are solved at once: a few megabytes."""
 Model = Literal["finite elements", "slices"]
 
 
@@ -96,7 +100,7 @@ def ltca(
     phases: int | Sequence[float] = 5,
     loads: Sequence[float] = LOADS,
     compliance: PairCompliance | Model = "finite elements",
-    points: int = POINTS,
+    points: int | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Ltca:
     """Analyse the loaded contact of a pair over its mesh cycle.
@@ -112,8 +116,8 @@ def ltca(
         Parts of T; 0.1, 0.5 and 0.9 are added where they are missing.
     compliance : PairCompliance or {"finite elements", "slices"}
         Compliances that are already there, or the model to make them with.
-    points : int
-        Points on each contact line.
+    points : int, optional
+        Points on each contact line; by default 32 with finite elements, 16 with slices.
     progress : callable, optional
         Told after each position how many are done, and how many there are.
 
@@ -130,29 +134,34 @@ def ltca(
             f"torque {torque} N·m, parts {parts}: allowed: both above 0; turn the driver round to "
             "load the other flanks"
         )
-    if points < 3:
+    if points is not None and points < 3:
         raise ValueError(f"points = {points} on a contact line; allowed: 3 or more")
     places = [k / phases for k in range(phases)] if isinstance(phases, int) else list(phases)
     if isinstance(compliance, str):
         compliance = pair_compliance(pair, compliance)
     torques = torque * np.array(parts)
-    positions = pair.positions(places, points)
-    contacts, lines = [], []
-    for k, position in enumerate(positions):
-        problem = contact_problem(pair, position, compliance)
-        solved = _ladder(problem, torques / (pair.arm * pair.helices), position.phase)
-        contacts.append(solved)
-        lines.append(tuple(_line_loads(position, problem, contact) for contact in solved))
-        if progress is not None:
-            progress(k + 1, len(places))
+    count = POINTS.get(compliance.model, 32) if points is None else points
+    positions = pair.positions(places, count)
+    found: dict[int, tuple[ContactProblem, tuple[Contact, ...]]] = {}
+    for group in _groups(positions, len(parts)):
+        problems = contact_problems(pair, [positions[k] for k in group], compliance)
+        solved = _under_all(problems, torques / (pair.arm * pair.helices))
+        for k, problem, contacts in zip(group, problems, solved, strict=True):
+            found[k] = problem, contacts
+            if progress is not None:
+                progress(len(found), len(places))
+    in_order = [found[k] for k in range(len(positions))]
     return Ltca(
         rated=torque,
         torque=torques,
         positions=positions,
         arm=pair.arm,
         helices=pair.helices,
-        contacts=tuple(contacts),
-        lines=tuple(lines),
+        contacts=tuple(contacts for _, contacts in in_order),
+        lines=tuple(
+            tuple(_line_loads(position, problem, contact) for contact in contacts)
+            for position, (problem, contacts) in zip(positions, in_order, strict=True)
+        ),
         compliance=compliance.model,
     )
 
@@ -160,54 +169,98 @@ def ltca(
 def contact_problem(
     pair: PairGeometry, position: MeshPosition, compliance: PairCompliance
 ) -> ContactProblem:
-    """Contact problem of a position: every point of every line that may close.
+    """Contact problem of one position; see :func:`contact_problems`."""
+    return contact_problems(pair, (position,), compliance)[0]
+
+
+def contact_problems(
+    pair: PairGeometry, positions: Sequence[MeshPosition], compliance: PairCompliance
+) -> tuple[ContactProblem, ...]:
+    """Contact problems of positions: every point of every line that may close.
 
     Raises
     ------
     Refused
-        If the position has no contact line.
+        If a position has no contact line.
     """
-    lines = position.lines
-    if not lines:
-        raise Refused(
-            f"no pair of teeth meets at phase {position.phase:.4g} of the mesh cycle (transverse "
-            f"contact ratio {pair.contact_ratio:.4g}); longer teeth, or a smaller centre distance, "
-            "bring them into contact"
+    for position in positions:
+        if not position.lines:
+            raise Refused(
+                f"no pair of teeth meets at phase {position.phase:.4g} of the mesh cycle "
+                f"(transverse contact ratio {pair.contact_ratio:.4g}); longer teeth, or a smaller "
+                "centre distance, bring them into contact"
+            )
+    driver, driven = (
+        tuple(tuple(Flank(line.pair * step, at(line)) for line in p.lines) for p in positions)
+        for step, at in ((1, _driver_uw), (pair.driven_step, _driven_uw))
+    )
+    bulks = zip(compliance.driver.bulks(driver), compliance.driven.bulks(driven), strict=True)
+    strips = _strips(pair, [line for position in positions for line in position.lines], compliance)
+    return tuple(
+        ContactProblem(
+            bulk=one + other,
+            gap=np.concatenate([line.gap for line in position.lines]),
+            lines=tuple(islice(strips, len(position.lines))),
+            name=f"phase {position.phase:.4g}",
         )
-    driver = tuple(Flank(line.pair, line.driver_uw) for line in lines)
-    driven = tuple(Flank(line.pair * pair.driven_step, line.driven_uw) for line in lines)
+        for position, (one, other) in zip(positions, bulks, strict=True)
+    )
+
+
+def _driver_uw(line: ContactLine) -> Array:
+    return line.driver_uw
+
+
+def _driven_uw(line: ContactLine) -> Array:
+    return line.driven_uw
+
+
+def _strips(
+    pair: PairGeometry, lines: Sequence[ContactLine], compliance: PairCompliance
+) -> Iterator[StripLine]:
+    """Local contact of lines, what can be computed for all of them at once done so."""
     ends = np.cumsum([len(line.length) for line in lines])[:-1]
-    depths = [
-        np.split(gear.depth(np.concatenate([flank.uw for flank in flanks])), ends)
-        for gear, flanks in ((compliance.driver, driver), (compliance.driven, driven))
-    ]
-    strips = tuple(
-        StripLine(
+    along, across = (
+        np.concatenate([getattr(line, name) for line in lines])
+        for name in ("curvature_along", "curvature")
+    )
+    depths = (
+        np.split(gear.depth(np.concatenate([at(line) for line in lines])), ends)
+        for gear, at in ((compliance.driver, _driver_uw), (compliance.driven, _driven_uw))
+    )
+    factors = np.split(width_factor(along, across), ends)
+    for line, factor, *depth in zip(lines, factors, *depths, strict=True):
+        yield StripLine(
             length=line.length,
             curvature=line.curvature,
             curvature_along=line.curvature_along,
             modulus=(pair.driver.youngs_modulus, pair.driven.youngs_modulus),
             poisson=(pair.driver.poisson, pair.driven.poisson),
-            depth=depth,
+            depth=(depth[0], depth[1]),
+            factor=factor,
         )
-        for line, depth in zip(lines, zip(*depths, strict=True), strict=True)
-    )
-    return ContactProblem(
-        bulk=compliance.driver.bulk(driver) + compliance.driven.bulk(driven),
-        gap=np.concatenate([line.gap for line in lines]),
-        lines=strips,
-    )
 
 
-def _ladder(problem: ContactProblem, loads: Array, phase: float) -> tuple[Contact, ...]:
-    """Contacts under rising loads, each begun from the one before."""
-    found: list[Contact] = []
-    for load in loads:
-        try:
-            found.append(solve_contact(problem, load, found[-1].force if found else None))
-        except Refused as refusal:
-            raise Refused(f"phase {phase:.4g}: {refusal}", refusal.figures) from refusal
-    return tuple(found)
+def _groups(positions: Sequence[MeshPosition], loads: int) -> Iterator[list[int]]:
+    """Numbers of the positions that are solved at once: equally many points, and not too many."""
+    sizes = [sum(len(line.length) for line in position.lines) for position in positions]
+    for size in sorted(set(sizes)):
+        alike = [k for k, own in enumerate(sizes) if own == size]
+        most = max(1, BATCH // (loads * max(1, size) ** 2))
+        for start in range(0, len(alike), most):
+            yield alike[start : start + most]
+
+
+def _under_all(problems: Sequence[ContactProblem], loads: Array) -> Iterator[tuple[Contact, ...]]:
+    """Contacts of every problem under every load, solved together.
+
+    From even forces a contact settles in no more passes than from those under another load.
+    """
+    every = np.repeat(np.arange(len(problems)), len(loads))
+    batch = ContactBatch(problems).rows(every)
+    found = iter(solve_contacts(batch, np.tile(loads, len(problems))))
+    for _ in problems:
+        yield tuple(islice(found, len(loads)))
 
 
 def _line_loads(

@@ -21,7 +21,7 @@ from loadshare.case.words import as_given, choices, did_you_mean
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.tooth.face_pair import FaceGearPair, FaceMisalignment
 from loadshare.tooth.helicoid_pair import HelicoidPair, Misalignment
-from loadshare.tooth.ltca import LOADS, Model, ltca, pair_compliance
+from loadshare.tooth.ltca import LOADS, POINTS, Model, ltca, pair_compliance
 from loadshare.tooth.ltca_result import Ltca
 from loadshare.tooth.pairfile_build import built
 from loadshare.tooth.pairfile_model import (
@@ -114,6 +114,9 @@ class PairFile:
             if compliance == "slices":
                 analysis |= {"teeth": None, "layers": None}
         changed = content.analysis.model_copy(update=analysis)
+        if compliance is not None and "points" not in content.analysis.model_fields_set:
+            changed = changed.model_copy(update={"points": POINTS[compliance]})
+            changed.model_fields_set.discard("points")  # it follows the model
         return replace(self, content=content.model_copy(update={"analysis": changed}))
 
     def analyse(self, progress: Tick | None = None) -> Ltca:

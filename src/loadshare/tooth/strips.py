@@ -99,6 +99,8 @@ class StripLine:
     depth : tuple of array (n,), optional
         Distance from flank to middle surface [m] in the driver and in the driven tooth; without
         it the bodies are half-spaces and the approach is that of distant points.
+    factor : array (n,), optional
+        κ of the points, where it is known already.
 
     Raises
     ------
@@ -112,6 +114,7 @@ class StripLine:
     modulus: tuple[float, float]
     poisson: tuple[float, float]
     depth: tuple[Array, Array] | None = None
+    factor: Array | None = None
 
     def __post_init__(self) -> None:
         if np.any(self.curvature <= 0.0):
@@ -133,7 +136,10 @@ class StripLine:
     @cached_property
     def _bend(self) -> Array:
         """Curvature of the line contact that has the strips' width [1/m]."""
-        return self.curvature / width_factor(self.curvature_along, self.curvature)
+        factor = self.factor
+        if factor is None:
+            factor = width_factor(self.curvature_along, self.curvature)
+        return self.curvature / factor
 
     def widths(self, force: Array) -> Array:
         """Half-widths b (n,) [m] under the points' forces (n,) [N]."""

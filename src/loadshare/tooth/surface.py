@@ -1,4 +1,4 @@
-r"""The surfaces of all contact lines of a position, at any load.
+r"""The surfaces of all contact lines of several positions, at any load.
 
 Far from a strip its width hardly matters. There the displacement of
 :mod:`loadshare.tooth.strips` is the series
@@ -13,9 +13,11 @@ b² with coefficients that geometry fixes. Only next to a strip g itself is need
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from math import comb, pi
 
 import numpy as np
+from numpy.typing import NDArray
 
 from loadshare.tooth.body import Array
 from loadshare.tooth.strips import StripLine, strip_shape
@@ -27,29 +29,29 @@ FAR = 4.0
 
 
 class Surface:
-    """Compliance of the surfaces under the strips of several lines.
+    """Compliance of the surfaces under the strips of K positions, each with several lines.
+
+    Positions with fewer points than the largest, N, are filled up with points that yield nothing.
 
     Parameters
     ----------
-    lines : sequence of StripLine
+    positions : sequence of sequence of StripLine
         Lines do not feel one another here: that is what the bulk compliance is for.
     """
 
-    def __init__(self, lines: Sequence[StripLine]) -> None:
-        number = np.repeat(np.arange(len(lines)), [len(line.length) for line in lines])
-        together = number[:, None] == number
-        place = np.concatenate([line.place for line in lines])
-        half = 0.5 * np.concatenate([line.length for line in lines])
-        away = place[:, None] - place
+    def __init__(self, positions: Sequence[Sequence[StripLine]]) -> None:
+        count = max(sum(len(line.length) for line in lines) for lines in positions)
+        strips = np.stack([_strips(lines, count) for lines in positions], axis=1)
+        number, place, half, self._scale, self._square = strips
+        real = number >= 0.0
+        together = (number[:, :, None] == number[:, None, :]) & real[:, None, :]
+        away = place[:, :, None] - place[:, None, :]
+        half = half[:, None, :]
         self._ends = np.stack([away + half, away - half])
         self._nearest = np.where(together, np.abs(self._ends).min(axis=0), np.inf)
-        np.fill_diagonal(self._nearest, 0.0)
-        self._scale = np.concatenate([1.0 / (pi * a.effective * a.length) for a in lines])
-        # b² per force: half-width of line contact at the strip's load per length.
-        self._square = np.concatenate(
-            [line.widths(np.ones_like(line.length)) ** 2 for line in lines]
-        )
-        side = self._scale * np.sign(away) * together  # g is odd
+        diagonal = np.arange(count)
+        self._nearest[:, diagonal, diagonal] = np.where(real, 0.0, np.inf)
+        side = self._scale[:, None, :] * np.sign(away) * together  # g is odd
         ends = np.where(side != 0.0, self._ends, 1.0)
         inverse = power = 1.0 / ends**2
         self._series = np.empty((TERMS + 1, *away.shape))
@@ -59,33 +61,59 @@ class Surface:
             self._series[k] = coefficient * side * (power[0] - power[1])
             power = power * inverse
 
-    def compliance(self, force: Array, least: float) -> tuple[Array, Array]:
+    def compliance(self, force: Array, least: Array | float) -> tuple[Array, Array]:
         """Compliance of the two surfaces at the widths that belong to the forces.
 
         Parameters
         ----------
-        force : array (N,)
+        force : array (K, N)
             [N].
-        least : float
+        least : array (K,) or float
             Force below which a strip narrows no further [N].
 
         Returns
         -------
-        secant, tangent : array (N, N)
+        secant, tangent : array (K, N, N)
             [m/N]; displacement is secant @ force, its derivative over force is the tangent.
         """
-        square = np.maximum(force, least) * self._square
-        order = np.arange(TERMS + 1.0)[:, None]
+        square = np.maximum(force, np.asarray(least)[..., None]) * self._square
+        order = np.arange(TERMS + 1.0)[:, None, None]
         powers = square**order
-        secant = np.einsum("kij,kj->ij", self._series, powers)
+        secant = np.einsum("knij,knj->nij", self._series, powers)
         # b² grows as p, so p ∂S/∂p counts every power of b² by its exponent.
-        tangent = np.einsum("kij,kj->ij", self._series, (1.0 + order) * powers)
+        tangent = np.einsum("knij,knj->nij", self._series, (1.0 + order) * powers)
         width = np.sqrt(square)
-        i, j = np.nonzero(self._nearest < FAR * width)
-        value, slope = strip_shape(self._ends[:, i, j] / width[j])
-        scale = self._scale[j]
+        n, i, j = np.nonzero(self._nearest < FAR * width[:, None, :])
+        value, slope = strip_shape(self._ends[:, n, i, j] / width[n, j])
+        scale = self._scale[n, j]
         near = scale * (value[0] - value[1])
-        secant[i, j] = near
+        secant[n, i, j] = near
         # b grows as √p, so p ∂S/∂p = −½ Σ ± τ g'(τ).
-        tangent[i, j] = near - 0.5 * scale * (slope[0] - slope[1])
+        tangent[n, i, j] = near - 0.5 * scale * (slope[0] - slope[1])
         return secant, tangent
+
+    def rows(self, chosen: NDArray[np.int64]) -> Surface:
+        """The surfaces of some of the positions."""
+        part = copy(self)
+        part._ends, part._series = self._ends[:, chosen], self._series[:, chosen]
+        part._nearest = self._nearest[chosen]
+        part._scale, part._square = self._scale[chosen], self._square[chosen]
+        return part
+
+
+def _strips(lines: Sequence[StripLine], count: int) -> Array:
+    """Number of the line, place, half length, scale and b² per force of `count` strips (5, count).
+
+    Those that fill up have the number −1.
+    """
+    table = np.zeros((5, count))
+    table[0] = -1.0
+    start = 0
+    for number, line in enumerate(lines):
+        part = slice(start, start := start + len(line.length))
+        # b² per force: half-width of line contact at the strip's load per length.
+        square = line.widths(np.ones_like(line.length)) ** 2
+        scale = 1.0 / (pi * line.effective * line.length)
+        table[0, part], table[1, part] = number, line.place
+        table[2, part], table[3, part], table[4, part] = 0.5 * line.length, scale, square
+    return table

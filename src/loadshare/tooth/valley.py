@@ -16,6 +16,8 @@ from loadshare.tooth.gap import LAST_STEP, Lines, Trace
 # two or three; what takes longer lies beyond the edge of regression of the driven flank or inside
 # the driver's base circle.
 NEWTON_STEPS = 10
+# After so many steps each is a quarter of the one before, or Newton's method gets nowhere in time.
+SURE = 3
 
 Index: TypeAlias = NDArray[np.int64] | NDArray[np.bool_]
 Vector: TypeAlias = tuple[Array, Array, Array, Array, Array]
@@ -97,25 +99,29 @@ class Valleys:
         """The same valleys with what was found (5, m, g) at evenly spaced stations (m, g)."""
         return replace(self, known=(stations, found))
 
-    def find(self, stations: Array) -> Array:
+    def find(self, stations: Array, last: float = LAST_STEP) -> Array:
         """Surface parameters on both flanks and gap (5, m, n) at stations (m, n) [m].
 
-        The gap is NaN where Newton's method finds no point.
+        The gap is NaN where Newton's method finds no point. A step below `last` [m] is the last.
         """
         unknowns = self._begin(stations).reshape(5, -1)
         line = np.repeat(np.arange(len(stations)), stations.shape[1])
         found = np.full_like(unknowns, np.nan)
         left = np.arange(len(line))
         here, wanted = self._points(line), stations.ravel()
-        for _ in range(NEWTON_STEPS):
+        before = np.full(len(line), np.inf)
+        for number in range(NEWTON_STEPS):
             step, moved = here._step(unknowns, wanted)
             unknowns = unknowns + step
-            done = moved <= LAST_STEP
+            done = moved <= last
             found[:, left[done]] = unknowns[:, done]
             going = ~done & np.isfinite(moved)
+            if number >= SURE:
+                going &= moved < 0.25 * before
             if not going.any():
                 break
             left, unknowns, wanted = left[going], unknowns[:, going], wanted[going]
+            before = moved[going]
             here = here.rows(going)
         return found.reshape(5, *stations.shape)
 

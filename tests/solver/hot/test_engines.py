@@ -1,4 +1,4 @@
-"""NumPy for all samples of a set together, Numba for one after another: the same passes.
+"""NumPy for all samples of a set, Numba in lanes and for one after another: the same passes.
 
 Each is the other's check: every formula stands in both. They may take another number of passes, as
 NumPy ends when the last sample of a set has settled; so they differ by round-off, and 1e-12 of the
@@ -63,16 +63,33 @@ def contact_forces(machine: Machine, found: Answers) -> np.ndarray:
     return np.pad(rows, ((0, 0), (0, radials)), constant_values=np.nan)
 
 
-def both(machine: Machine, situations: Situations) -> tuple[Answers, Answers]:
-    return tuple(
-        machine.answer(situations, TOLERANCE, engine)
-        for engine in (vectorised.settle, compiled.settle)
-    )
+def in_lanes(*given):
+    """Plain sets in lanes however few samples there are; the others one by one."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(compiled, "FEW", 0)
+        return compiled.settle(*given)
+
+
+def one_by_one(*given):
+    """All sets one by one."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(compiled, "FEW", len(given[4]))
+        return compiled.settle(*given)
 
 
 def agree(machine: Machine, situations: Situations) -> Answers:
-    """Both engines certify the same samples, with the same elements and the same figures."""
-    one, other = both(machine, situations)
+    """All engines certify the same samples, with the same elements and the same figures."""
+    one, *others = (
+        machine.answer(situations, TOLERANCE, engine)
+        for engine in (vectorised.settle, in_lanes, one_by_one)
+    )
+    for other in others:
+        same(machine, one, other)
+    return one
+
+
+def same(machine: Machine, one: Answers, other: Answers) -> None:
+    """Two engines agree on what they certify."""
     assert one.passed.tolist() == other.passed.tolist()
     rows = one.passed
     apart_at = np.argwhere(one.code[rows] != other.code[rows])
@@ -85,7 +102,6 @@ def agree(machine: Machine, situations: Situations) -> Answers:
     for figures, these in ((forces, rows), (moves, determined)):
         mine, others = (figures(machine, a.equilibria)[these] for a in (one, other))
         assert apart(mine, others) < SAME, figures.__name__
-    return one
 
 
 @pytest.mark.parametrize("name", SHIPPED)

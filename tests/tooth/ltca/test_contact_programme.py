@@ -12,8 +12,8 @@ from loadshare.errors import Refused
 from loadshare.solver.backend import SOLVERS, backend
 from loadshare.tooth import contact_programme
 from loadshare.tooth.contact_certificate import certify_contact
-from loadshare.tooth.contact_problem import ContactProblem
-from loadshare.tooth.contact_programme import by_interface, exchange, solve_contact
+from loadshare.tooth.contact_problem import ContactBatch, ContactProblem
+from loadshare.tooth.contact_programme import by_interface, exchange, solve_contact, solve_contacts
 from loadshare.tooth.hertz import PointContact, compression, contact_modulus, half_width
 from loadshare.tooth.strips import StripLine
 
@@ -122,6 +122,29 @@ def test_more_load_more_approach_and_the_tangent_is_the_slope(seed):
     assert middle.tangent == pytest.approx(slope, rel=1e-3)
 
 
+def test_contacts_solved_together_are_those_solved_alone():
+    """Of unequal sizes and loads, so that the smaller are filled up; round-off of one solution."""
+    problems, loads = [uneven(1), crowned(21, 3e-3, 1 / RADIUS, 0.3 / RADIUS)], [900.0, 200.0]
+    batch = ContactBatch(problems)
+    for problem, load, found in zip(
+        problems, loads, solve_contacts(batch, np.array(loads)), strict=True
+    ):
+        alone = solve_contact(problem, load)
+        np.testing.assert_allclose(found.force, alone.force, atol=1e-11 * load)
+        assert found.approach == pytest.approx(alone.approach, rel=1e-12)
+        assert found.tangent == pytest.approx(alone.tangent, rel=1e-10)
+        assert certify_contact(problem, load, found.force, found.approach).passed
+
+
+def test_a_refused_contact_of_several_is_named(monkeypatch):
+    problems = [replace(uneven(k), name=f"phase {k}") for k in (1, 2)]
+    with pytest.raises(ValueError, match="load = 0"):
+        solve_contacts(ContactBatch(problems), np.array([900.0, 0.0]))
+    monkeypatch.setattr(contact_programme, "PASSES", 1)
+    with pytest.raises(Refused, match=r"^phase 1: the contact under 900 N did not settle"):
+        solve_contacts(ContactBatch(problems), np.array([900.0, 800.0]))
+
+
 def test_a_warm_start_does_not_change_the_answer():
     problem = uneven(7)
     cold = solve_contact(problem, 900.0)
@@ -153,7 +176,11 @@ def test_the_solver_interface_takes_over_from_the_exchange(monkeypatch, solver):
     """Every programme of the whole contact by a back-end: the same answer, as tightly settled."""
     problem = uneven(9)
     ours = solve_contact(problem, 700.0)
-    monkeypatch.setattr(contact_programme, "exchange", lambda *_: None)
+    monkeypatch.setattr(
+        contact_programme,
+        "exchanges",
+        lambda matrix, gap, load, closed: (np.full_like(gap, np.nan), np.zeros(len(gap), bool)),
+    )
     theirs = solve_contact(problem, 700.0, solver=solver)
     np.testing.assert_allclose(theirs.force, ours.force, atol=1e-10 * 700.0)
     assert theirs.approach == pytest.approx(ours.approach, rel=1e-11)

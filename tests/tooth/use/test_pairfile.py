@@ -152,6 +152,21 @@ def test_a_revised_pair_is_the_one_that_a_file_would_give(tmp_path):
     assert fast.hash == pair.hash
 
 
+def test_points_follow_the_model_where_the_file_does_not_tell_them(tmp_path):
+    text = SPUR.replace("points = 8\n", "")
+    fast = load_pair(written(tmp_path, text))
+    exact = load_pair(written(tmp_path, text.replace("slices", "finite elements")))
+    assert (fast.analysis.points, exact.analysis.points) == (16, 32)
+    there = fast.revised(compliance="finite elements", positions=1)
+    assert there.analysis.points == 32
+    assert there.revised(compliance="slices").analysis.points == 16
+    assert exact.revised(compliance="slices").hash == fast.hash
+    found = there.revised(compliance="slices").analyse()
+    assert len(found.positions[0].lines[0].length) == 16
+    told = load_pair(written(tmp_path, SPUR)).revised(compliance="finite elements")
+    assert told.analysis.points == 8
+
+
 def test_options_of_the_finite_elements_reach_them(tmp_path):
     text = SPUR.replace('"slices"', '"finite elements"\nteeth = 1\nlayers = 2')
     coarse = load_pair(written(tmp_path, text)).revised(positions=1).analyse()

@@ -98,7 +98,8 @@ def speed_report(
         "",
         "| method | how it is used |",
         "|---|---|",
-        f"| {OURS[0]} | `solve_many`, compiled, one core; samples in, labelled arrays out |",
+        f"| {OURS[0]} | `solve_many`, compiled, one core, all positions; samples in, "
+        "labelled arrays out; median of three runs |",
         f"| {OURS[1]} | the same algorithm in NumPy |",
         f"| {OURS[2]} | `solve` of a case known before, all its positions (five), certificates "
         "and result included |",

@@ -95,7 +95,7 @@ def tied(elements: Elements, state: State, code: NDArray[np.int8]) -> NDArray[np
 
     One that is closed without force ties no displacement, although the set says so.
     """
-    rows = state.force[:, elements.springs : elements.springs + elements.rows]
-    largest = np.maximum(np.abs(rows).max(axis=1, initial=0.0), np.finfo(float).tiny)
-    idle = (code[:, : elements.rows] != 0) & (np.abs(rows) <= CARRIES * largest[:, None])
+    rows = np.abs(state.force[:, elements.springs : elements.springs + elements.rows])
+    largest = np.maximum(rows.max(axis=1, initial=0.0), np.finfo(float).tiny)
+    idle = (code[:, : elements.rows] != 0) & (rows <= CARRIES * largest[:, None])
     return np.asarray(~idle.any(axis=1))

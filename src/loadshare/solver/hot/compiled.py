@@ -1,5 +1,7 @@
 """One sample of a set after another, compiled with Numba: the same passes as `vectorised`.
 
+Many samples of a plain set go to `lanes`, which come back with what is out of the ordinary.
+
 The compiled code is kept on disk, so that only the first use of a new version waits for it. It
 holds no lock of the interpreter: threads share the samples.
 """
@@ -45,6 +47,8 @@ SETTLED, STALLED, LAW, SIGN, SHRINK, DRIFT = (
     at.SHRINK,
     at.DRIFT,
 )
+FEW = 4
+"""Samples up to which lanes would stand empty for the most part."""
 compiled = njit(
     cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"}
 )
@@ -97,7 +101,7 @@ def settle(
 
     Parameters and return values are those of :func:`loadshare.solver.hot.vectorised.settle`.
     """
-    if is_plain(elements, data):
+    if len(rows) > FEW and is_plain(elements, data):
         verdict, proposal = lanes.settle(elements, data, basis, code, rows, state, one_only)
         left = np.flatnonzero(verdict == lanes.UNDECIDED)
         if len(left):

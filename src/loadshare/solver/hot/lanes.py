@@ -23,10 +23,8 @@ from loadshare.solver.hot.state import State
 Rows = NDArray[np.intp]
 Codes = NDArray[np.int8]
 
-LANES = 64
-"""Samples side by side."""
-FEW = 16
-"""The same where there are no more samples than that."""
+WIDTHS = (16, 64, 128)
+"""Samples side by side: the first number that is enough, or the last."""
 PASSES = 30
 """Passes after which a sample is left to `compiled`."""
 UNDECIDED = -1
@@ -35,7 +33,11 @@ UNDECIDED = -1
 OPEN, CLOSED, DONE, OTHER = at.OPEN, at.CLOSED, at.DONE, at.OTHER
 SETTLED, STALLED, LAW, SIGN = at.SETTLED, at.STALLED, at.LAW, at.SIGN
 HURRY, NEARLY, PATIENCE = at.HURRY, at.NEARLY, at.PATIENCE
-SHRINK, BURST, DRIFT, SMALL = at.SHRINK, at.BURST, at.DRIFT, at.SMALL
+SHRINK, BURST, DRIFT = at.SHRINK, at.BURST, at.DRIFT
+CLOSED_BY = 1e-12
+"""Misfit of compatibility, over the largest compression, from which on a sample is left."""
+DOUBTFUL = 1e-8
+"""Pivot, over the largest, below which a sample is left to `compiled`."""
 HASTE = 2
 """Patience with sets that are exchanged all at once (see `places.PATIENCE`)."""
 YOUNG = 3
@@ -45,6 +47,13 @@ CLOSE = 1e-9
 
 compiled = njit(
     cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz", "arcp"}
+)
+
+inlined = njit(
+    inline="always",
+    nogil=True,
+    error_model="numpy",
+    fastmath={"reassoc", "contract", "nsz", "arcp"},
 )
 
 
@@ -61,7 +70,10 @@ class _Plain(NamedTuple):
     inverse: Array  # (r, r) of the redundants' matrix where it never changes, else (0, 0)
     yields: Array  # (s,): compliances of the springs
     springs_matrix: Array  # (r, r): what the springs add to the redundants' matrix
-    springs_moved: Array  # (n, r + n): displacements that the springs add per redundant, per load
+    springs_moved: Array  # (n, r + t): displacements that the springs add, per redundant and load
+    across: Array  # (r, k): the redundants, transposed
+    products: Array  # (r, r, p): of the redundants at the power laws
+    turned: Array  # (k, t): forces per turned load
     loose: Array  # (n, l)
     power: Rows  # (p,), among the contacts
     arcs: Rows  # (a, 2): acting contact, number of the arc
@@ -96,11 +108,14 @@ class _Found(NamedTuple):
     stretch: Array
     spring: Array  # (springs, lanes): the same without redundants and turned loads
     held: Array  # (springs, lanes): forces, at first without them
+    moved: Array  # (springs, lanes): gaps and compressions
     root: Array  # (p, lanes)
     z: Array  # (r, lanes)
     load: Array  # (turning, lanes)
-    push: Array
-    largest: Array
+    push: Array  # largest force but for those of the contacts
+    largest: Array  # compression
+    yielded: Array  # compression of contacts
+    closed: NDArray[np.bool_]  # whether the redundants close the gaps
     sign: Array  # band of the signs; infinite for a sample that has not settled
     samples: Rows
     row: Rows
@@ -141,7 +156,7 @@ def settle(
         one_only,
         verdict,
         proposal,
-        LANES if len(rows) > FEW else FEW,
+        next((width for width in WIDTHS if width >= len(rows)), WIDTHS[-1]),
     )
     return verdict, proposal
 
@@ -197,7 +212,10 @@ def _structure(elements: Elements, data: Data, basis: Basis, code: Codes) -> tup
         inverse,
         yields,
         n[:springs].T * yields @ n[:springs],
-        np.hstack([held @ n[:springs], held @ basis.particular[:springs]]),
+        np.hstack([held @ n[:springs], (held @ basis.particular[:springs])[:, turning]]),
+        np.ascontiguousarray(n.T),
+        np.ascontiguousarray((n[springs + power, :, None] * n[springs + power, None, :]).T),
+        np.ascontiguousarray(basis.particular[:, turning]),
         np.ascontiguousarray(basis.loose),
         power,
         arcs,
@@ -214,6 +232,31 @@ def _structure(elements: Elements, data: Data, basis: Basis, code: Codes) -> tup
         springs,
         flanks,
     )
+
+
+@inlined
+def _add(total, weights, table, lanes):  # type: ignore[no-untyped-def]
+    """Add weights (q,) times table (q, lanes) to total (lanes,), four rows at a time."""
+    q = weights.shape[0]
+    whole = q - q % 4
+    for e in range(0, whole, 4):
+        w0, w1, w2, w3 = weights[e], weights[e + 1], weights[e + 2], weights[e + 3]
+        for m in range(lanes):
+            total[m] += (w0 * table[e, m] + w1 * table[e + 1, m]) + (
+                w2 * table[e + 2, m] + w3 * table[e + 3, m]
+            )
+    if q - whole == 3:
+        w0, w1, w2 = weights[whole], weights[whole + 1], weights[whole + 2]
+        for m in range(lanes):
+            total[m] += w0 * table[whole, m] + w1 * table[whole + 1, m] + w2 * table[whole + 2, m]
+    elif q - whole == 2:
+        w0, w1 = weights[whole], weights[whole + 1]
+        for m in range(lanes):
+            total[m] += w0 * table[whole, m] + w1 * table[whole + 1, m]
+    elif q - whole == 1:
+        w0 = weights[whole]
+        for m in range(lanes):
+            total[m] += w0 * table[whole, m]
 
 
 @compiled
@@ -263,7 +306,7 @@ def _solve(matrix, right, lanes, singular):  # type: ignore[no-untyped-def]
         for m in range(lanes):
             p = matrix[c, c, m]
             largest[m] = p if p > largest[m] else largest[m]
-            if not p > SMALL * largest[m]:
+            if not p > DOUBTFUL * largest[m]:
                 singular[m] = True
             pivot[m] = 1.0 / p
         for d in range(c + 1, r):
@@ -355,29 +398,44 @@ def _coordinates(s, contact, spring, z, load, x, lanes):  # type: ignore[no-unty
     for d in range(x.shape[0]):
         for m in range(lanes):
             x[d, m] = 0.0
-        for e in range(springs):
-            weight = s.particular[d, e]
-            if weight != 0.0:
-                for m in range(lanes):
-                    x[d, m] += weight * spring[e, m]
-        for e in range(contact.shape[0]):
-            weight = s.particular[d, springs + e]
-            if weight != 0.0:
-                for m in range(lanes):
-                    x[d, m] += weight * contact[e, m]
-        for c in range(r):
-            weight = s.springs_moved[d, c]
-            for m in range(lanes):
-                x[d, m] += weight * z[c, m]
-        for w in range(s.turning.shape[0]):
-            weight = s.springs_moved[d, r + s.turning[w]]
-            for m in range(lanes):
-                x[d, m] += weight * load[w, m]
+        _add(x[d], s.particular[d, :springs], spring, lanes)
+        _add(x[d], s.particular[d, springs:], contact, lanes)
+        _add(x[d], s.springs_moved[d, :r], z, lanes)
+        _add(x[d], s.springs_moved[d, r:], load, lanes)
 
 
 @compiled
 def _conclude(s, found, filled, xs, forces, roots, one_only, verdict, proposal, lanes):  # type: ignore[no-untyped-def]
     """Judge the signs of samples that have settled, and store them."""
+    misfit, total, more, _, _ = found.work
+    yielded = found.yielded
+    for m in range(lanes):
+        yielded[m] = found.largest[m]
+        misfit[m] = 0.0
+    for e in range(s.springs):
+        for m in range(lanes):
+            more[m] = 0.0
+        _add(more, s.redundant[e], found.z, lanes)
+        _add(more, s.turned[e], found.load, lanes)
+        compliance = s.yields[e]
+        for m in range(lanes):
+            found.moved[e, m] = found.spring[e, m] + compliance * more[m]
+            found.held[e, m] += more[m]
+            f = abs(found.held[e, m])
+            y = compliance * f
+            found.largest[m] = y if y > found.largest[m] else found.largest[m]
+            found.push[m] = f if f > found.push[m] else found.push[m]
+    for c in range(found.z.shape[0]):
+        for m in range(lanes):
+            total[m] = 0.0
+        _add(total, s.across[c, : s.springs], found.moved, lanes)
+        _add(total, s.across[c, s.springs :], found.stretch, lanes)
+        for m in range(lanes):
+            y = abs(total[m])
+            misfit[m] = y if y > misfit[m] else misfit[m]
+    for m in range(filled):
+        # What the matrix of the redundants was too stiff or too flat for.
+        found.closed[m] = misfit[m] <= CLOSED_BY * yielded[m] or found.sign[m] != SIGN
     _coordinates(s, found.stretch, found.spring, found.z, found.load, found.x, lanes)
     _signs(
         s,
@@ -392,17 +450,10 @@ def _conclude(s, found, filled, xs, forces, roots, one_only, verdict, proposal, 
         found.mistakes,
         found.work,
     )
-    for e in range(s.springs):
-        for c in range(found.z.shape[0]):
-            weight = s.redundant[e, c]
-            for m in range(lanes):
-                found.held[e, m] += weight * found.z[c, m]
-        for t in range(s.turning.shape[0]):
-            weight = s.particular[s.turning[t], e]
-            for m in range(lanes):
-                found.held[e, m] += weight * found.load[t, m]
     for m in range(filled):
         i, row = found.samples[m], found.row[m]
+        if not found.closed[m]:
+            continue
         if found.sign[m] == SIGN:
             verdict[row] = OTHER if found.mistakes[m] > 0 else DONE
         else:
@@ -444,13 +495,14 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
     )
     before = np.zeros((s.arcs.shape[0], lanes))
     # Per power law.
-    bending, hertz, root, inverse_hertz = (
+    bending, hertz, root, inverse_hertz, yields = (
+        np.ones((powers, lanes)),
         np.ones((powers, lanes)),
         np.ones((powers, lanes)),
         np.ones((powers, lanes)),
         np.ones((powers, lanes)),
     )
-    loose = np.zeros((powers, lanes), dtype=np.int64)
+    loose = np.zeros((powers, lanes))
     # Per spring, coordinate, redundant.
     spring, statics = np.zeros((springs, lanes)), np.zeros((springs, lanes))
     x, load = np.zeros((n, lanes)), np.zeros((turning, lanes))
@@ -470,8 +522,8 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
         np.zeros((3, lanes)),
     )
 
-    singular, lost = np.zeros(lanes, dtype=np.bool_), np.zeros(lanes, dtype=np.bool_)
-    live, waits = np.zeros(lanes, dtype=np.bool_), np.zeros(lanes, dtype=np.bool_)
+    singular, live = np.zeros(lanes, dtype=np.bool_), np.zeros(lanes, dtype=np.bool_)
+    waits, longest = np.zeros(lanes), np.zeros(lanes)
     patience = np.zeros(lanes, dtype=np.int64)
     number, at_row = np.zeros(lanes, dtype=np.int64), np.zeros(lanes, dtype=np.int64)
     samples = np.full(lanes, rows[0])
@@ -481,11 +533,14 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
         np.zeros((contacts, lanes)),
         np.zeros((springs, lanes)),
         np.zeros((springs, lanes)),
+        np.zeros((springs, lanes)),
         np.ones((powers, lanes)),
         np.zeros((r, lanes)),
         np.zeros((turning, lanes)),
         np.ones(lanes),
         np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes, dtype=np.bool_),
         np.zeros(lanes),
         samples.copy(),
         np.zeros(lanes, dtype=np.int64),
@@ -545,7 +600,7 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
                         hertz[p, m] = s.hertz[h, column]
                         inverse_hertz[p, m] = 1.0 / hertz[p, m]
                         root[p, m] = roots[i, column]
-                        loose[p, m] = 0
+                        loose[p, m] = 0.0
                         tangent[s.power[p], m] = 0.0
                     for w in s.turning:
                         x[w, m] = xs[i, w]
@@ -566,7 +621,8 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
             e = s.power[p]
             for m in range(lanes):
                 y, c_hertz = root[p, m], hertz[p, m]
-                tangent[e, m] = bending[p, m] + 2.0 / 3.0 * c_hertz / y
+                yields[p, m] = bending[p, m] + 2.0 / 3.0 * c_hertz / y
+                tangent[e, m] = yields[p, m]
                 shift[e, m] = c_hertz * y * y / 3.0
         # Forces without the next step of the redundants.
         for w in range(s.arcs.shape[0]):
@@ -575,17 +631,11 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
         for e in range(contacts):
             for m in range(lanes):
                 force[e, m] = fixed[e, m]
-            for c in range(r):
-                weight = s.redundant[springs + e, c]
-                for m in range(lanes):
-                    force[e, m] += weight * z[c, m]
+            _add(force[e], s.redundant[springs + e], z, lanes)
         for c in range(r):
             for m in range(lanes):
-                right[c, m] = base[c, m]
-            for d in range(r):
-                weight = s.springs_matrix[c, d]
-                for m in range(lanes):
-                    right[c, m] -= weight * z[d, m]
+                right[c, m] = -base[c, m]
+            _add(right[c], s.springs_matrix[c], z, lanes)
         if turning > 0:
             for w in range(turning):
                 for m in range(lanes):
@@ -604,24 +654,21 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
                         for c in range(3):
                             face += normal[c, m] * s.relative[a, c, d]
                         load[t, m] += before[w, m] * face
-            for t in range(turning):
-                d = s.turning[t]
-                for e in range(contacts):
-                    weight = s.particular[d, springs + e]
+            for e in range(contacts):
+                _add(force[e], s.turned[springs + e], load, lanes)
+            for c in range(r):
+                for t in range(turning):
+                    weight = s.springs_moved[s.turning[t], c]
                     for m in range(lanes):
-                        force[e, m] += weight * load[t, m]
-                for c in range(r):
-                    weight = s.springs_moved[d, c]
-                    for m in range(lanes):
-                        right[c, m] -= weight * load[t, m]
+                        right[c, m] += weight * load[t, m]
         # Redundants from compatibility.
         for e in range(contacts):
             for m in range(lanes):
-                top[m] = gap[e, m] + shift[e, m] + tangent[e, m] * force[e, m]
-            for c in range(r):
-                weight = s.redundant[springs + e, c]
-                for m in range(lanes):
-                    right[c, m] -= weight * top[m]
+                stretch[e, m] = gap[e, m] + shift[e, m] + tangent[e, m] * force[e, m]
+        for c in range(r):
+            _add(right[c], s.across[c, springs:], stretch, lanes)
+            for m in range(lanes):
+                right[c, m] = -right[c, m]
         if constant:
             for c in range(r):
                 for m in range(lanes):
@@ -638,30 +685,23 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
                 for d in range(c + 1):
                     for m in range(lanes):
                         matrix[c, d, m] = linear[c, d, m]
-                    for p in range(powers):
-                        e = s.power[p]
-                        weight = s.redundant[springs + e, c] * s.redundant[springs + e, d]
-                        for m in range(lanes):
-                            matrix[c, d, m] += weight * tangent[e, m]
+                    _add(matrix[c, d], s.products[c, d], yields, lanes)
             _solve(matrix, right, lanes, singular)
         for m in range(lanes):
             largest[m] = 0.0
             strongest[m] = 0.0
             weakest[m] = 0.0
-            waits[m] = False
+            waits[m] = 0.0
             step[m] = 0.0
             law_misfit[m] = 0.0
-            lost[m] = False
+            longest[m] = 0.0
         for c in range(r):
             for m in range(lanes):
                 z[c, m] += right[c, m]
                 y = abs(right[c, m])
                 step[m] = y if y > step[m] else step[m]
         for e in range(contacts):
-            for c in range(r):
-                weight = s.redundant[springs + e, c]
-                for m in range(lanes):
-                    force[e, m] += weight * right[c, m]
+            _add(force[e], s.redundant[springs + e], right, lanes)
             for m in range(lanes):
                 y = shift[e, m] + tangent[e, m] * force[e, m]
                 stretch[e, m] = gap[e, m] + y
@@ -676,11 +716,11 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
             for m in range(lanes):
                 f, moved = force[e, m], stretch[e, m] - gap[e, m]
                 b, c_hertz = bending[p, m], hertz[p, m]
-                touching = f > 0.0 and moved > 0.0
+                touching = (f > 0.0) & (moved > 0.0)
                 target = moved if touching else 1.0
                 bound = np.sqrt(target * inverse_hertz[p, m])
-                y = root[p, m]
-                y = y if y < bound else bound
+                now = root[p, m]
+                y = now if now < bound else bound
                 more = ((b * y + c_hertz) * y * y - target) / ((3.0 * b * y + 2.0 * c_hertz) * y)
                 y -= more
                 y = y if y < bound else bound
@@ -688,19 +728,20 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
                 y -= more
                 # What the tangent leaves: the law's true compression, expanded about the root.
                 gone = abs(f - y * y * y) * (b + 2.0 / 3.0 * c_hertz / y)
-                more = abs(more)
-                gone = gone if more <= CLOSE * y else target
+                gone = gone if abs(more) <= CLOSE * y else target
                 gone = gone if touching else 0.0
-                waits[m] = waits[m] or (not touching and root[p, m] > floor[m])
                 law_misfit[m] = gone if gone > law_misfit[m] else law_misfit[m]
-                carries = abs(f) > SIGN * push[m]
-                loose[p, m] = 0 if touching or not carries else loose[p, m] + 1
-                lost[m] = lost[m] or loose[p, m] >= patience[m]
-                y = y if touching else SHRINK * root[p, m]
+                waiting = 0.0 if touching | (now <= floor[m]) else 1.0
+                waits[m] = waiting if waiting > waits[m] else waits[m]
+                idle = abs(f) <= SIGN * push[m]
+                since = 0.0 if touching | idle else loose[p, m] + 1.0
+                loose[p, m] = since
+                longest[m] = since if since > longest[m] else longest[m]
+                y = y if touching else SHRINK * now
                 root[p, m] = y if y > floor[m] else floor[m]
         for m in range(lanes):
             law_misfit[m] /= largest[m] if largest[m] > 0.0 else 1.0
-            misfit[m] = 1.0 if waits[m] else law_misfit[m] * (SETTLED / LAW)
+            misfit[m] = 1.0 if waits[m] > 0.0 else law_misfit[m] * (SETTLED / LAW)
         if turning > 0:
             # Arcs turn as their centres move: both have to stand still.
             for m in range(lanes):
@@ -712,24 +753,10 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
                 d = s.turning[t]
                 for m in range(lanes):
                     margin[m] = 0.0
-                for e in range(springs):
-                    weight = s.particular[d, e]
-                    if weight != 0.0:
-                        for m in range(lanes):
-                            margin[m] += weight * spring[e, m]
-                for e in range(contacts):
-                    weight = s.particular[d, springs + e]
-                    if weight != 0.0:
-                        for m in range(lanes):
-                            margin[m] += weight * stretch[e, m]
-                for c in range(r):
-                    weight = s.springs_moved[d, c]
-                    for m in range(lanes):
-                        margin[m] += weight * z[c, m]
-                for w in range(turning):
-                    weight = s.springs_moved[d, r + s.turning[w]]
-                    for m in range(lanes):
-                        margin[m] += weight * load[w, m]
+                _add(margin, s.particular[d, :springs], spring, lanes)
+                _add(margin, s.particular[d, springs:], stretch, lanes)
+                _add(margin, s.springs_moved[d, :r], z, lanes)
+                _add(margin, s.springs_moved[d, r:], load, lanes)
                 for m in range(lanes):
                     y, moved = abs(margin[m]), abs(margin[m] - x[d, m])
                     step[m] = moved if moved > step[m] else step[m]
@@ -755,7 +782,7 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
             # A set that is clearly wrong need not be settled.
             pulled = number[m] <= YOUNG and law_misfit[m] <= NEARLY and not one_only[i]
             pulled = pulled and weakest[m] < -HURRY * strongest[m]
-            if not (settled or pulled or lost[m]):
+            if not (settled or pulled or longest[m] >= patience[m]):
                 continue
             live[m], lives = False, lives - 1
             for e in range(contacts):

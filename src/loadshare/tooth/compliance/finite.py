@@ -95,6 +95,10 @@ class FiniteElements:
         # Reading at a depth leaves a small skew part, which Betti's theorem says is not real.
         return 0.5 * (total + total.T)
 
+    def bulks(self, positions: Sequence[tuple[Flank, ...]]) -> list[Array]:
+        """See :meth:`loadshare.tooth.compliance.interface.Compliance.bulks`."""
+        return [self.bulk(flanks) for flanks in positions]
+
     def depth(self, uw: Array) -> Array:
         """See :meth:`loadshare.tooth.compliance.interface.Compliance.depth`."""
         return np.asarray(self._flank.weights(uw) @ self._feet.depth)

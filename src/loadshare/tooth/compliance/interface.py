@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -40,6 +41,9 @@ class Compliance(Protocol):
         Entry (i, j) is the displacement of the middle surface under point i, along the inward
         normal there, for a unit force on point j.
         """
+
+    def bulks(self, positions: Sequence[tuple[Flank, ...]]) -> Sequence[Array]:
+        """`bulk` of the flanks of every position."""
 
     def depth(self, uw: Array) -> Array:
         """Distance (n,) [m] from flank points (n, 2) to the middle surface, along the normal."""

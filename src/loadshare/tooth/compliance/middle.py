@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -51,14 +52,22 @@ class MiddleSurface:
 
     def between(self, u: Array, w: Array) -> Array:
         """Points (n, 3) half-way between the two sides [m]."""
-        return 0.5 * (self.body.outline(u, w, 1) + self.body.outline(u, w, -1))
+        return 0.5 * np.add(*both_sides(self.body, u, w))
 
     def points(self, zw: Array) -> Array:
         """Points (n, 3) [m] of the middle surface at places (n, 2)."""
         z, w = zw[:, 0], zw[:, 1]
         top = self.between(np.maximum(z, self.waist), w)
         below = np.clip((self.waist - z) / (1.0 + self.waist), 0.0, None)
-        return top + below[:, None] * (under(self.body, top) - top)
+        return top + below[:, None] * (self.under(top) - top)
+
+    def under(self, points: Array) -> Array:
+        """Points (..., 3) of the rim's free side that lie under `points` [m]."""
+        return under(self.body, points, self._floor)
+
+    @cached_property
+    def _floor(self) -> float | None:
+        return floor_of(self.body) if self.body.shape == "face" else None
 
     def flank(self, uw: Array, side: int) -> Array:
         """Points (n, 3) of the flank `side` [m]."""
@@ -111,12 +120,22 @@ class MiddleSurface:
         return Foot(zw, dot(self.points(zw) - flank, inward), inward)
 
 
-def under(body: ToothBody, points: Array) -> Array:
-    """Points (..., 3) of the rim's free side that lie under `points` [m]."""
+def both_sides(body: ToothBody, u: Array, w: Array) -> tuple[Array, Array]:
+    """Points (..., 3) of the outline on side +1 and on side −1 [m]."""
+    first = body.outline(u, w, 1)
+    if body.shape == "face":  # its tooth is its own mirror image
+        return first, first * np.array([1.0, -1.0, 1.0])
+    return first, body.outline(u, w, -1)
+
+
+def under(body: ToothBody, points: Array, floor: float | None = None) -> Array:
+    """Points (..., 3) of the rim's free side that lie under `points` [m].
+
+    `floor` is what `floor_of` finds for the body of a face gear, where it is known.
+    """
     if body.shape == "face":
-        floor = float(np.min(body.outline(np.zeros(3), np.array([0.0, 0.5, 1.0]), 1)[..., 2]))
         moved = points.copy()
-        moved[..., 2] = floor - body.rim
+        moved[..., 2] = (floor_of(body) if floor is None else floor) - body.rim
         return moved
     radius = np.hypot(points[..., 0], points[..., 1])
     scale = np.ones_like(points)
@@ -124,11 +143,16 @@ def under(body: ToothBody, points: Array) -> Array:
     return points * scale
 
 
+def floor_of(body: ToothBody) -> float:
+    """The z of the deepest root of a face gear [m]."""
+    return float(np.min(body.outline(np.zeros(3), np.array([0.0, 0.5, 1.0]), 1)[..., 2]))
+
+
 def waist_of(body: ToothBody, angle: float = 50.0) -> float:
     """The u on the fillet where the outline makes `angle` [degrees] with the chord of the tooth."""
     u = np.linspace(0.0, body.foot, 61)
     middle = np.full_like(u, 0.5)
-    sides = [body.outline(u, middle, side) for side in (1, -1)]
+    sides = both_sides(body, u, middle)
     chord = sides[0] - sides[1]
     chord /= np.linalg.norm(chord, axis=1)[:, None]
     tangent = -np.gradient(sides[0], u, axis=0)

@@ -64,17 +64,9 @@ class Ring:
             In units of (1 − ν²)/E over the face width. Rows are deflection along the tooth's side
             +1, lean that way times t, and lift; columns Q, M/t and N in the same senses.
         """
-        even, odd = self._shares
         angle = 2.0 * pi * k / self.teeth * self._orders
-        here, beside = np.cos(angle), np.sin(angle)
-        (rr, rt), (tr, tt) = self._harmonics
-        found = np.array(
-            [
-                [tt * even * even * here, tr * even * odd * here, tr * even * even * beside],
-                [rt * odd * even * here, rr * odd * odd * here, rr * odd * even * beside],
-                [-rt * even * even * beside, -rr * even * odd * beside, rr * even * even * here],
-            ]
-        ).sum(axis=-1)
+        here, beside = self._weights
+        found = (here @ np.cos(angle) + beside @ np.sin(angle)).reshape(3, 3)
         twisted, swollen = self._mean
         found[0, 0] += 0.5 * twisted
         found[2, 2] += 0.5 * swollen
@@ -85,6 +77,18 @@ class Ring:
             found[0, 1:] *= -1.0
             found[1:, 0] *= -1.0
         return np.asarray(found / pi)
+
+    @cached_property
+    def _weights(self) -> tuple[Array, Array]:
+        """What every order adds (9, n) where the load's wave is at its crest, and beside it."""
+        even, odd = self._shares
+        (rr, rt), (tr, tt) = self._harmonics
+        still = np.zeros_like(even)
+        here = [tt * even * even, tr * even * odd, still]
+        here += [rt * odd * even, rr * odd * odd, still, still, still, rr * even * even]
+        beside = [still, still, tr * even * even, still, still, rr * odd * even]
+        beside += [-rt * even * even, -rr * even * odd, still]
+        return np.array(here), np.array(beside)
 
     @cached_property
     def _orders(self) -> Array:

@@ -19,13 +19,14 @@ gear teeth as Mindlin plates; for the ring see :mod:`loadshare.tooth.compliance.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cache, cached_property
 
 import numpy as np
 
 from loadshare.tooth.body import Array, ToothBody
 from loadshare.tooth.compliance.interface import Flank
-from loadshare.tooth.compliance.middle import under, waist_of
+from loadshare.tooth.compliance.middle import waist_of
 from loadshare.tooth.compliance.plate import ROOT_TANGENT, Plate, root_compliance
 from loadshare.tooth.compliance.ring import Ring
 from loadshare.tooth.compliance.sheet import Sheet
@@ -70,15 +71,28 @@ class Slices:
 
     def bulk(self, flanks: tuple[Flank, ...]) -> Array:
         """See :meth:`loadshare.tooth.compliance.interface.Compliance.bulk`."""
-        loads = self._flank.weights(np.concatenate([f.uw for f in flanks])) @ self._loads
-        fields, carried = self._plate.fields(*loads[:, :4].T), loads[:, 4:]
-        tooth = np.repeat([f.tooth for f in flanks], [len(f.uw) for f in flanks])
-        apart = tooth[:, None] - tooth
-        total = np.where(apart == 0, fields @ fields.T, 0.0)
-        if not self.rigid_body:
-            for k in {int(a - b) for a in set(tooth) for b in set(tooth)}:
-                total += np.where(apart == k, carried @ self._moved(k) @ carried.T, 0.0)
-        return 0.5 * (total + total.T)
+        return self.bulks((flanks,))[0]
+
+    def bulks(self, positions: Sequence[tuple[Flank, ...]]) -> list[Array]:
+        """See :meth:`loadshare.tooth.compliance.interface.Compliance.bulks`."""
+        uw = np.concatenate([flank.uw for flanks in positions for flank in flanks])
+        loads = self._flank.weights(uw) @ self._loads
+        fields, start, found = self._plate.fields(*loads[:, :4].T), 0, []
+        for flanks in positions:
+            lengths = [len(flank.uw) for flank in flanks]
+            part = slice(start, start := start + sum(lengths))
+            tooth = np.array([flank.tooth for flank in flanks])
+            line = np.repeat(np.arange(len(flanks)), lengths)
+            same = tooth[line][:, None] == tooth[line]
+            total = np.where(same, fields[part] @ fields[part].T, 0.0)
+            if not self.rigid_body:
+                carried = loads[part, 4:, None] * (line[:, None, None] == np.arange(len(flanks)))
+                carried = carried.reshape(len(line), -1)
+                moved = np.array([[self._moved(int(a - b)) for b in tooth] for a in tooth])
+                moved = moved.transpose(2, 0, 3, 1).reshape(carried.shape[1], -1)
+                total += carried @ moved @ carried.T
+            found.append(0.5 * (total + total.T))
+        return found
 
     def depth(self, uw: Array) -> Array:
         """See :meth:`loadshare.tooth.compliance.interface.Compliance.depth`."""
@@ -111,7 +125,7 @@ class Slices:
         middle = np.array([[self.middle.waist, 0.5]])
         root = self.middle.points(middle)
         radius = float(np.hypot(root[0, 0], root[0, 1]))
-        depth = float(np.linalg.norm(under(self.body, root) - root))
+        depth = float(np.linalg.norm(self.middle.under(root) - root))
         loaded = ROUND * depth if self.body.shape == "face" else radius
         return Ring(
             loaded=loaded,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from loadshare.tooth.body import Array, ToothBody
-from loadshare.tooth.compliance.middle import MiddleSurface, under
+from loadshare.tooth.compliance.middle import MiddleSurface, both_sides
 from loadshare.tooth.flank import cross
 
 DEGREE = 9
@@ -54,7 +54,7 @@ class SmoothMiddle(MiddleSurface):
         unit = chebyshev.chebpts1(count)
         self._pieces = ((waist, body.foot), (body.foot, 1.0))
         u = np.concatenate([_spread(unit, *piece) for piece in self._pieces])[:, None]
-        sides = [body.outline(u, _spread(unit, 0.0, 1.0), side) for side in (1, -1)]
+        sides = both_sides(body, u, _spread(unit, 0.0, 1.0))
         values = 0.5 * np.concatenate([sides[0] + sides[1], sides[0] - sides[1]], axis=-1)
         fit = np.linalg.inv(chebyshev.chebvander(unit, DEGREE))
         over_w = np.einsum("jb,abk->ajk", fit, values)
@@ -103,7 +103,7 @@ class SmoothMiddle(MiddleSurface):
         below = np.maximum(self.waist - z, 0.0) / (1.0 + self.waist)
         if not below.any():
             return at.middle, at.middle_u, at.middle_w
-        down = under(self.body, at.middle) - at.middle
+        down = self.under(at.middle) - at.middle
         sunk = below[:, None]
         over_z = np.where(sunk > 0.0, -down / (1.0 + self.waist), at.middle_u)
         return at.middle + sunk * down, over_z, at.middle_w

@@ -1,0 +1,161 @@
+"""The compiled certificate gives the figures of NumPy's, whatever claim is wrong and by how much.
+
+Source: formulation, section 8. Both sum up the same products in another order; tolerances are those
+of `test_many`, whose tests put the compiled certificate beside the single one as well.
+"""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from tests.certify.test_independence import modules_after
+from tests.certify.test_many import (
+    ABSOLUTE,
+    CLAIMS,
+    RELATIVE,
+    WAYS,
+    alike,
+    claims,
+    positions,
+    scales_of,
+    taken,
+)
+from tests.support import shipped
+
+from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify.compiled import judge_all
+from loadshare.certify.many import RESIDUALS, Judge
+from loadshare.train import build_train
+from loadshare.train.situations import Situations
+
+SIZES = (1e-12, 1e-9, 1e-6, 1e-3, 1.0, 1e3)
+"""Of what is added to every figure of a claim, in loads and deflections of the case."""
+
+
+@pytest.mark.parametrize("name", WAYS)
+def test_one_wrong_claim(name):
+    train = build_train(WAYS[name]())
+    situations, found = claims(train, positions(train)[:1])
+    right = Judge(train).judge(situations, found)
+    scales = scales_of(train, float(right.load[0]), float(right.deflection[0]))
+    wrong = [claim for claim in CLAIMS if getattr(found, claim)[0].size]
+    rows = np.zeros(len(wrong) * len(SIZES), dtype=int)
+    spoilt = taken(found, rows)
+    rng = np.random.default_rng(len(name))
+    for k, claim in enumerate(wrong):
+        for m, size in enumerate(SIZES):
+            figures = getattr(spoilt, claim)[k * len(SIZES) + m]
+            figures += size * scales[claim] * rng.normal(size=figures.shape)
+    many = alike(train, situations, spoilt)
+    refused = dict(zip(wrong, ~many.passed.reshape(-1, len(SIZES)), strict=True))
+    # Rigid shafts and bearings carry what they must: nobody reads what is claimed for them.
+    for claim in set(wrong) - {"shaft_torque", "support_force"}:
+        assert refused[claim][-1], claim
+
+
+@pytest.mark.parametrize("name", ["fgfbstts/all_elements", "elastic round ring", "tables"])
+def test_one_row_holds_for_all_answers(name):
+    """Situations that do not vary give what they give when written out."""
+    train = build_train(WAYS[name]())
+    situations, found = claims(train, [1])
+    answers = taken(found, np.zeros(5, dtype=int))
+    answers.flank_force[:] *= 1.0 + 1e-4 * np.arange(5)[:, None]
+    written = {
+        f.name: np.repeat(getattr(situations, f.name), 5, axis=0)
+        for f in fields(Situations)
+        if f.name not in ("train", "count")
+    }
+    once = alike(train, situations, answers)
+    each = alike(train, replace(situations, count=5, **written), answers)
+    np.testing.assert_array_equal(once.residuals, each.residuals)
+
+
+def test_a_set_of_several_parts():
+    """NumPy judges it part by part."""
+    train = build_train(shipped("fgfbstts/all_elements"))
+    situations, found = claims(train, [1])
+    answers = taken(found, np.zeros(5000, dtype=int))
+    answers.rotation[:] *= 1.0 + 1e-6 * np.linspace(0.0, 1.0, 5000)[:, None]
+    assert 0 < alike(train, situations, answers).passed.sum() < 5000
+
+
+@pytest.mark.parametrize(
+    ("field", "place"),
+    [
+        ("offset", (5, 0)),
+        ("torque", (0,)),
+        ("gap", (0,)),
+        ("bending", (0,)),
+        ("hertz", (0,)),
+        ("clocking", (0,)),
+        ("torsion", (0,)),
+        ("support", (3, 0)),
+        ("arc_clearance", (0, 1)),
+        ("arc_shift", (0, 0, 0)),
+        ("stop", (0, 0)),
+        ("wall", (0,)),
+        ("spline", (0, 0)),
+        ("spline", (0, 2)),
+    ],
+)
+def test_no_answer_passes_where_a_situation_is_not_a_number(field, place):
+    train = build_train(shipped("fgfbstts/all_elements"))
+    situations, found = claims(train, [1])
+    assert alike(train, situations, found).passed.all()
+    values = getattr(situations, field).copy()
+    values[(0, *place)] = np.nan
+    compiled = Judge(train).judge(replace(situations, **{field: values}), found, compiled=True)
+    assert np.isinf(compiled.residuals).all()
+
+
+def test_arrays_of_any_kind_are_judged_by_the_same_code():
+    """Strided, transposed, read-only or single precision: nothing is compiled once more."""
+    train = build_train(shipped("fgfbstts/all_elements"))
+    situations, found = claims(train, [1])
+    answers = taken(found, np.zeros(4, dtype=int))
+    expected = Judge(train).judge(situations, answers, compiled=True)
+
+    def strided(array: np.ndarray) -> np.ndarray:
+        return np.repeat(array, 2, axis=-1)[..., ::2]
+
+    def read_only(array: np.ndarray) -> np.ndarray:
+        copy = array.copy()
+        copy.flags.writeable = False
+        return copy
+
+    for lay in (strided, np.asfortranarray, read_only):
+        laid = Judge(train).judge(situations, answers.laid(lay), compiled=True)
+        np.testing.assert_array_equal(laid.residuals, expected.residuals)
+    single = answers.laid(lambda array: array.astype(np.float32))
+    assert not Judge(train).judge(situations, single, compiled=True).passed.any()
+    assert len(judge_all.signatures) == 1
+
+
+def test_no_answer_at_all():
+    train = build_train(shipped("fgfbstts/all_elements"))
+    situations, found = claims(train, [1])
+    none = taken(found, np.zeros(0, dtype=int))
+    verdicts = Judge(train).judge(situations, none, tolerance=TOLERANCE, compiled=True)
+    assert verdicts.residuals.shape == (0, len(RESIDUALS))
+
+
+def test_numba_is_imported_only_when_asked_for():
+    assert "numba" not in modules_after("import loadshare.certify.many")
+
+
+def test_a_contact_that_pulls():
+    """Half the tolerance passes its residual, twice the tolerance does not."""
+    train = build_train(shipped("fgfbstts/all_elements"))
+    situations, found = claims(train, [1])
+    load = float(Judge(train).judge(situations, found).load[0])
+    spoilt = taken(found, np.zeros(2, dtype=int))
+    idle = int(np.argmin(found.flank_force[0]))
+    spoilt.flank_force[:, idle] = (-0.5 * TOLERANCE * load, -2.0 * TOLERANCE * load)
+    verdicts = alike(train, situations, spoilt)
+    cone = RESIDUALS.index("cone_membership")
+    np.testing.assert_allclose(
+        verdicts.residuals[:, cone],
+        (0.5 * TOLERANCE, 2.0 * TOLERANCE),
+        rtol=RELATIVE,
+        atol=ABSOLUTE,
+    )
