@@ -139,8 +139,8 @@ def _one_by_one(
 
 def _set(elements: Elements, data: Data, basis: Basis, code: Codes) -> _Set:
     """Arrays of a set; what does not vary from sample to sample is kept for the next block."""
-    bends: NDArray[np.bool_] = np.asarray(data.hertz.any(axis=0))
-    key = (code.tobytes(), bends.tobytes(), data.bending[0].tobytes(), len(data.bending) == 1)
+    bends = data.curved
+    key = (code.tobytes(), data.laws, len(data.bending) == 1)
     known = elements.kept.get(key)
     if known is None:
         known = elements.kept[key] = _structure(elements, data, basis, code, bends)

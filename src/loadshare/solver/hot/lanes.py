@@ -34,6 +34,8 @@ OPEN, CLOSED, DONE, OTHER = at.OPEN, at.CLOSED, at.DONE, at.OTHER
 SETTLED, STALLED, LAW, SIGN = at.SETTLED, at.STALLED, at.LAW, at.SIGN
 HURRY, NEARLY, PATIENCE = at.HURRY, at.NEARLY, at.PATIENCE
 SHRINK, BURST, DRIFT = at.SHRINK, at.BURST, at.DRIFT
+TURNED = 10.0
+"""Weight of the angle by which arcs still turn among what has to settle."""
 CLOSED_BY = 1e-12
 """Misfit of compatibility, over the largest compression, from which on a sample is left."""
 DOUBTFUL = 1e-8
@@ -45,16 +47,15 @@ YOUNG = 3
 CLOSE = 1e-9
 """Newton's last step on a root, relative, from which on the root counts as found."""
 
-compiled = njit(
-    cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz", "arcp"}
-)
-
-inlined = njit(
-    inline="always",
-    nogil=True,
-    error_model="numpy",
-    fastmath={"reassoc", "contract", "nsz", "arcp"},
-)
+_how = {
+    "nogil": True,
+    "error_model": "numpy",
+    "fastmath": {"reassoc", "contract", "nsz", "arcp"},
+}
+compiled = njit(cache=True, **_how)
+# Without counted references, which would cost more than the sums: nothing is allocated in these.
+bare = njit(_nrt=False, **_how)
+inlined = njit(_nrt=False, **_how)
 
 
 class _Plain(NamedTuple):
@@ -98,6 +99,53 @@ class _Plain(NamedTuple):
     shift: Array
     clearance: Array
     relative: Array
+
+
+class _Room(NamedTuple):
+    """Samples side by side while they are solved; the last axis runs along the lanes."""
+
+    force: Array
+    stretch: Array
+    tangent: Array
+    shift: Array
+    fixed: Array
+    gap: Array
+    before: Array
+    bending: Array
+    hertz: Array
+    root: Array
+    inverse_hertz: Array
+    yields: Array
+    loose: Array
+    spring: Array
+    statics: Array
+    x: Array
+    load: Array
+    z: Array
+    base: Array
+    right: Array
+    linear: Array
+    matrix: Array
+    push: Array
+    floor: Array
+    previous: Array
+    misfit: Array
+    law_misfit: Array
+    step: Array
+    largest: Array
+    strongest: Array
+    weakest: Array
+    top: Array
+    margin: Array
+    waits: Array
+    longest: Array
+    normal: Array
+    patience: Rows
+    number: Rows
+    at_row: Rows
+    samples: Rows
+    singular: NDArray[np.bool_]
+    live: NDArray[np.bool_]
 
 
 class _Found(NamedTuple):
@@ -259,7 +307,7 @@ def _add(total, weights, table, lanes):  # type: ignore[no-untyped-def]
             total[m] += w0 * table[whole, m]
 
 
-@compiled
+@inlined
 def _arc(s, samples, a, x, lanes, normal, margin, work):  # type: ignore[no-untyped-def]
     """Margins (lanes,) of an arc at x, and its normals (3, lanes)."""
     varying = s.shift.shape[0] > 1
@@ -297,11 +345,12 @@ def _arc(s, samples, a, x, lanes, normal, margin, work):  # type: ignore[no-unty
         margin[m] += s.clearance[samples[m] if varying_clearance else 0, a]
 
 
-@compiled
-def _solve(matrix, right, lanes, singular):  # type: ignore[no-untyped-def]
+@inlined
+def _solve(matrix, right, lanes, singular, largest, pivot):  # type: ignore[no-untyped-def]
     """Solve symmetric definite systems (r, r, lanes) in place, lower triangles given."""
     r = right.shape[0]
-    largest, pivot = np.zeros(lanes), np.empty(lanes)
+    for m in range(lanes):
+        largest[m] = 0.0
     for c in range(r):
         for m in range(lanes):
             p = matrix[c, c, m]
@@ -326,7 +375,7 @@ def _solve(matrix, right, lanes, singular):  # type: ignore[no-untyped-def]
                 right[c, m] -= matrix[c, d, m] * right[d, m]
 
 
-@compiled
+@inlined
 def _signs(s, samples, x, force, reference, push, sign, lanes, wrong, count, work):  # type: ignore[no-untyped-def]
     """Mark what has the wrong sign, (rows, lanes), and count it."""
     force_band, length_band, approach, spare, normal = work
@@ -375,7 +424,7 @@ def _signs(s, samples, x, force, reference, push, sign, lanes, wrong, count, wor
             count[m] += off
 
 
-@compiled
+@inlined
 def _propose(s, wrong, m, one_only, proposal):  # type: ignore[no-untyped-def]
     """Write the set that mends what is wrong in a lane."""
     for row in range(s.code.shape[0]):
@@ -387,7 +436,7 @@ def _propose(s, wrong, m, one_only, proposal):  # type: ignore[no-untyped-def]
                 break
 
 
-@compiled
+@inlined
 def _coordinates(s, contact, spring, z, load, x, lanes):  # type: ignore[no-untyped-def]
     """Write all coordinates x = Pᵀ(g + δ).
 
@@ -404,7 +453,7 @@ def _coordinates(s, contact, spring, z, load, x, lanes):  # type: ignore[no-unty
         _add(x[d], s.springs_moved[d, r:], load, lanes)
 
 
-@compiled
+@bare
 def _conclude(s, found, filled, xs, forces, roots, one_only, verdict, proposal, lanes):  # type: ignore[no-untyped-def]
     """Judge the signs of samples that have settled, and store them."""
     misfit, total, more, _, _ = found.work
@@ -479,41 +528,54 @@ def _conclude(s, found, filled, xs, forces, roots, one_only, verdict, proposal, 
 
 @compiled
 def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal, lanes):  # type: ignore[no-untyped-def]
-    """Settle every sample of `rows`, `lanes` at a time; a lane that is done takes the next one."""
+    """Settle every sample of `rows`, `lanes` at a time."""
     r, springs, contacts = s.redundant.shape[1], s.springs, s.contacts.shape[0]
     n, powers, switches = xs.shape[1], s.power.shape[0], s.code.shape[0]
-    turning = s.turning.shape[0]
-    constant = s.inverse.shape[0] > 0 or r == 0
-    # Per contact.
-    force, stretch, tangent, shift, fixed, gap = (
+    turning, arcs = s.turning.shape[0], s.arcs.shape[0]
+    room = _Room(
         np.zeros((contacts, lanes)),
         np.zeros((contacts, lanes)),
         np.zeros((contacts, lanes)),
         np.zeros((contacts, lanes)),
         np.zeros((contacts, lanes)),
         np.zeros((contacts, lanes)),
+        np.zeros((arcs, lanes)),
+        np.ones((powers, lanes)),
+        np.ones((powers, lanes)),
+        np.ones((powers, lanes)),
+        np.ones((powers, lanes)),
+        np.ones((powers, lanes)),
+        np.ones((powers, lanes)),
+        np.zeros((springs, lanes)),
+        np.zeros((springs, lanes)),
+        np.zeros((n, lanes)),
+        np.zeros((turning, lanes)),
+        np.zeros((r, lanes)),
+        np.zeros((r, lanes)),
+        np.zeros((r, lanes)),
+        np.zeros((r, r, lanes)),
+        np.zeros((r, r, lanes)),
+        np.ones(lanes),
+        np.ones(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros((3, lanes)),
+        np.zeros(lanes, dtype=np.int64),
+        np.zeros(lanes, dtype=np.int64),
+        np.zeros(lanes, dtype=np.int64),
+        np.full(lanes, rows[0]),
+        np.zeros(lanes, dtype=np.bool_),
+        np.zeros(lanes, dtype=np.bool_),
     )
-    before = np.zeros((s.arcs.shape[0], lanes))
-    # Per power law.
-    bending, hertz, root, inverse_hertz, yields = (
-        np.ones((powers, lanes)),
-        np.ones((powers, lanes)),
-        np.ones((powers, lanes)),
-        np.ones((powers, lanes)),
-        np.ones((powers, lanes)),
-    )
-    loose = np.zeros((powers, lanes))
-    # Per spring, coordinate, redundant.
-    spring, statics = np.zeros((springs, lanes)), np.zeros((springs, lanes))
-    x, load = np.zeros((n, lanes)), np.zeros((turning, lanes))
-    z, base, right = np.zeros((r, lanes)), np.zeros((r, lanes)), np.zeros((r, lanes))
-    linear, matrix = np.zeros((r, r, lanes)), np.zeros((r, r, lanes))
-    # Per sample.
-    push, floor, previous = np.ones(lanes), np.ones(lanes), np.zeros(lanes)
-    misfit, law_misfit, step = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    largest, strongest, top = np.zeros(lanes), np.zeros(lanes), np.zeros(lanes)
-    weakest = np.zeros(lanes)
-    normal, margin = np.zeros((3, lanes)), np.zeros(lanes)
     work = (
         np.zeros(lanes),
         np.zeros(lanes),
@@ -521,12 +583,6 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
         np.zeros(lanes),
         np.zeros((3, lanes)),
     )
-
-    singular, live = np.zeros(lanes, dtype=np.bool_), np.zeros(lanes, dtype=np.bool_)
-    waits, longest = np.zeros(lanes), np.zeros(lanes)
-    patience = np.zeros(lanes, dtype=np.int64)
-    number, at_row = np.zeros(lanes, dtype=np.int64), np.zeros(lanes, dtype=np.int64)
-    samples = np.full(lanes, rows[0])
     found = _Found(
         np.zeros((n, lanes)),
         np.zeros((contacts, lanes)),
@@ -542,12 +598,71 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
         np.zeros(lanes),
         np.zeros(lanes, dtype=np.bool_),
         np.zeros(lanes),
-        samples.copy(),
+        np.full(lanes, rows[0]),
         np.zeros(lanes, dtype=np.int64),
         np.zeros((switches, lanes), dtype=np.bool_),
         np.zeros(lanes, np.int64),
         work,
     )
+    _run(s, rows, xs, forces, roots, floors, one_only, verdict, proposal, lanes, room, found)
+
+
+@bare
+def _run(s, rows, xs, forces, roots, floors, one_only, verdict, proposal, lanes, room, found):  # type: ignore[no-untyped-def]
+    """Pass until every sample is settled; a lane that is done takes the next one."""
+    r, springs, contacts = s.redundant.shape[1], s.springs, s.contacts.shape[0]
+    powers, turning = s.power.shape[0], s.turning.shape[0]
+    constant = s.inverse.shape[0] > 0 or r == 0
+    distance = np.inf
+    for w in range(s.arcs.shape[0]):
+        square = 0.0
+        for c in range(3):
+            square += s.nominal[s.arcs[w, 1], c] ** 2
+        distance = min(distance, np.sqrt(square))
+    (
+        force,
+        stretch,
+        tangent,
+        shift,
+        fixed,
+        gap,
+        before,
+        bending,
+        hertz,
+        root,
+        inverse_hertz,
+        yields,
+        loose,
+        spring,
+        statics,
+        x,
+        load,
+        z,
+        base,
+        right,
+        linear,
+        matrix,
+        push,
+        floor,
+        previous,
+        misfit,
+        law_misfit,
+        step,
+        largest,
+        strongest,
+        weakest,
+        top,
+        margin,
+        waits,
+        longest,
+        normal,
+        patience,
+        number,
+        at_row,
+        samples,
+        singular,
+        live,
+    ) = room
     one_load, one_gap = s.load.shape[0] == 1, s.gap.shape[0] == 1
     one_bending, one_hertz = s.bending.shape[0] == 1, s.hertz.shape[0] == 1
     filled, following, lives = 0, 0, 0
@@ -686,7 +801,7 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
                     for m in range(lanes):
                         matrix[c, d, m] = linear[c, d, m]
                     _add(matrix[c, d], s.products[c, d], yields, lanes)
-            _solve(matrix, right, lanes, singular)
+            _solve(matrix, right, lanes, singular, step, law_misfit)
         for m in range(lanes):
             largest[m] = 0.0
             strongest[m] = 0.0
@@ -698,8 +813,6 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
         for c in range(r):
             for m in range(lanes):
                 z[c, m] += right[c, m]
-                y = abs(right[c, m])
-                step[m] = y if y > step[m] else step[m]
         for e in range(contacts):
             _add(force[e], s.redundant[springs + e], right, lanes)
             for m in range(lanes):
@@ -743,12 +856,9 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
             law_misfit[m] /= largest[m] if largest[m] > 0.0 else 1.0
             misfit[m] = 1.0 if waits[m] > 0.0 else law_misfit[m] * (SETTLED / LAW)
         if turning > 0:
-            # Arcs turn as their centres move: both have to stand still.
+            # Arcs turn as their centres move: these have to stand still, as seen along the arc.
             for m in range(lanes):
-                y = step[m] / (strongest[m] if strongest[m] > 0.0 else 1.0)
-                misfit[m] = y if y > misfit[m] else misfit[m]
                 step[m] = 0.0
-                top[m] = 0.0
             for t in range(turning):
                 d = s.turning[t]
                 for m in range(lanes):
@@ -758,12 +868,11 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
                 _add(margin, s.springs_moved[d, :r], z, lanes)
                 _add(margin, s.springs_moved[d, r:], load, lanes)
                 for m in range(lanes):
-                    y, moved = abs(margin[m]), abs(margin[m] - x[d, m])
+                    moved = abs(margin[m] - x[d, m])
                     step[m] = moved if moved > step[m] else step[m]
-                    top[m] = y if y > top[m] else top[m]
                     x[d, m] = margin[m]
             for m in range(lanes):
-                y = step[m] / (top[m] if top[m] > 0.0 else 1.0)
+                y = step[m] * (TURNED / distance)
                 misfit[m] = y if y > misfit[m] else misfit[m]
         for m in range(lanes):
             if not live[m]:
