@@ -131,6 +131,10 @@ class Machine:
         """Its certificate."""
         return Judge(self.train)
 
+    def share(self, other: Machine) -> None:
+        """Take over what is reduced of a machine that differs in its situations only."""
+        self.__dict__["elements"], self.__dict__["judge"] = other.elements, other.judge
+
     def situations(self, indices: Sequence[int]) -> Situations:
         """Return the train's own situations at some positions, kept for the next time."""
         key = tuple(indices)

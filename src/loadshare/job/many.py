@@ -1,8 +1,8 @@
 """Solve one case again and again with other inputs: `loadshare.solve_many`.
 
-Samples are taken in blocks of a fixed size, so that an answer depends neither on the number of
-workers nor on how many samples there are. Every block goes down the hot path at once and is
-certified at once; single samples that it leaves climb the ladder.
+Samples are taken in blocks of a fixed size, so that an answer does not depend on the number of
+workers. Every block goes down the hot path at once, all positions together, and is certified at
+once; single samples that it leaves climb the ladder.
 """
 
 from __future__ import annotations
@@ -137,12 +137,15 @@ def _machine(case: Case, samples: Samples) -> Machine:
     """Return the machine of samples that share one; what varies in them is no part of it."""
     fixed = [(c.path, c.text(0)) for c in samples.columns if c.path not in samples.values]
     key = (id(case), frozenset(samples.values), *fixed)
-    if key not in _recent:
+    machine = Machine(samples.train)
+    if key in _recent:
+        machine.share(_recent[key][1])
+    else:
         # The case is kept with its machine, so that its id is not given to another.
-        _recent[key] = case, Machine(samples.train)
+        _recent[key] = case, machine
         if len(_recent) > RECENT:
             _recent.popitem(last=False)
-    return _recent[key][1]
+    return machine
 
 
 def solve_many(

@@ -32,6 +32,8 @@ from loadshare.train.train import Spline
 
 OPPOSED = 1e-4
 """Angle [rad] to which two arcs of a ring must be opposed for a squeeze between them to be sham."""
+SETS = 2000
+"""Sets of which the statics are kept; with more, all are forgotten, so that memory is bounded."""
 RANK = 1e-10
 """Singular values of directions below this, relative to the largest, count as zero."""
 
@@ -77,7 +79,8 @@ class Elements:
     kinds : tuple of str, length m
         "shaft", "support", or the kind of the row or "radial".
     force, length : float
-        Units in which programmes are written [N], [m].
+        Units [N], [m], rounded to powers of 8 and of 2: scaling by them is exact, cube roots
+        included, so that answers do not depend on them.
     """
 
     scene: Scene
@@ -128,6 +131,13 @@ class Elements:
         """Room for what an engine keeps of a set."""
         return {}
 
+    def keep(self, key: tuple[Any, ...], value: Any) -> Any:
+        """Keep what an engine needs of a set, and return it."""
+        if len(self.kept) >= SETS:
+            self.kept.clear()
+        self.kept[key] = value
+        return value
+
     @cached_property
     def _bases(self) -> dict[bytes, Basis]:
         return {}
@@ -142,7 +152,8 @@ class Elements:
         """
         acts = np.ascontiguousarray(code != 0)
         key = acts.tobytes()
-        if key not in self._bases:
+        known = self._bases.get(key)
+        if known is None:
             columns = np.concatenate(
                 [
                     np.arange(self.springs),
@@ -150,8 +161,10 @@ class Elements:
                     self.springs + self.rows + np.flatnonzero(np.repeat(acts[self.rows :], 2)),
                 ]
             ).astype(np.intp)
-            self._bases[key] = _basis(columns, self.vectors[columns])
-        return self._bases[key]
+            if len(self._bases) >= SETS:
+                self._bases.clear()
+            known = self._bases[key] = _basis(columns, self.vectors[columns])
+        return known
 
 
 def elements_of(scene: Scene) -> Elements:
@@ -168,8 +181,8 @@ def elements_of(scene: Scene) -> Elements:
         vectors,
         len(springs),
         tuple(kinds),
-        scene.force_unit(),
-        scene.length_unit(),
+        8.0 ** round(math.log(scene.force_unit(), 8.0)),
+        2.0 ** round(math.log2(scene.length_unit())),
     )
 
 

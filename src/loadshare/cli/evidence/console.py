@@ -1,4 +1,4 @@
-"""What the two commands of the evidence share: a line per step, and their packages."""
+"""What the commands of the evidence share: a line per step, and their packages."""
 
 from __future__ import annotations
 

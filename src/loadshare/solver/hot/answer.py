@@ -86,7 +86,7 @@ def _map(elements: Elements, names: Names) -> _Map:
         torque * elements.force,
         support.reshape(m, -1) * elements.force,
     )
-    elements.kept["map",] = found
+    elements.keep(("map",), found)
     return found
 
 

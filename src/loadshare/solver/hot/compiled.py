@@ -143,7 +143,7 @@ def _set(elements: Elements, data: Data, basis: Basis, code: Codes) -> _Set:
     key = (code.tobytes(), data.laws, len(data.bending) == 1)
     known = elements.kept.get(key)
     if known is None:
-        known = elements.kept[key] = _structure(elements, data, basis, code, bends)
+        known = elements.keep(key, _structure(elements, data, basis, code, bends))
     varying = (
         np.ascontiguousarray(data.load),
         np.ascontiguousarray(data.gap),

@@ -36,6 +36,8 @@ HURRY, NEARLY, PATIENCE = at.HURRY, at.NEARLY, at.PATIENCE
 SHRINK, BURST, DRIFT = at.SHRINK, at.BURST, at.DRIFT
 TURNED = 10.0
 """Weight of the angle by which arcs still turn among what has to settle."""
+STEEPEST = 1e-2
+"""Angle by which no arc turns: 1 mm over 0.1 m."""
 CLOSED_BY = 1e-12
 """Misfit of compatibility, over the largest compression, from which on a sample is left."""
 DOUBTFUL = 1e-8
@@ -47,7 +49,7 @@ YOUNG = 3
 CLOSE = 1e-9
 """Newton's last step on a root, relative, from which on the root counts as found."""
 
-_how = {
+_how: dict[str, Any] = {
     "nogil": True,
     "error_model": "numpy",
     "fastmath": {"reassoc", "contract", "nsz", "arcp"},
@@ -55,7 +57,7 @@ _how = {
 compiled = njit(cache=True, **_how)
 # Without counted references, which would cost more than the sums: nothing is allocated in these.
 bare = njit(_nrt=False, **_how)
-inlined = njit(_nrt=False, **_how)
+inlined = bare
 
 
 class _Plain(NamedTuple):
@@ -214,7 +216,7 @@ def _plain(elements: Elements, data: Data, basis: Basis, code: Codes) -> _Plain:
     key = ("plain", code.tobytes(), data.laws)
     known = elements.kept.get(key)
     if known is None:
-        known = elements.kept[key] = _structure(elements, data, basis, code)
+        known = elements.keep(key, _structure(elements, data, basis, code))
     return _Plain._make(
         (
             *known,
@@ -874,6 +876,12 @@ def _run(s, rows, xs, forces, roots, floors, one_only, verdict, proposal, lanes,
             for m in range(lanes):
                 y = step[m] * (TURNED / distance)
                 misfit[m] = y if y > misfit[m] else misfit[m]
+            for w in range(s.arcs.shape[0]):
+                # The push of the pass before was turned.
+                for m in range(lanes):
+                    f = abs(force[s.arcs[w, 0], m] - before[w, m]) * STEEPEST
+                    y = f / (strongest[m] if strongest[m] > 0.0 else 1.0)
+                    misfit[m] = y if y > misfit[m] else misfit[m]
         for m in range(lanes):
             if not live[m]:
                 continue
