@@ -56,8 +56,8 @@ _how: dict[str, Any] = {
 }
 compiled = njit(cache=True, **_how)
 # Without counted references, which would cost more than the sums: nothing is allocated in these.
-bare = njit(_nrt=False, **_how)
-inlined = bare
+_uncounted: dict[str, Any] = {**_how, "_nrt": False}
+bare = njit(**_uncounted)
 
 
 class _Plain(NamedTuple):
@@ -284,7 +284,7 @@ def _structure(elements: Elements, data: Data, basis: Basis, code: Codes) -> tup
     )
 
 
-@inlined
+@bare
 def _add(total, weights, table, lanes):  # type: ignore[no-untyped-def]
     """Add weights (q,) times table (q, lanes) to total (lanes,), four rows at a time."""
     q = weights.shape[0]
@@ -309,7 +309,7 @@ def _add(total, weights, table, lanes):  # type: ignore[no-untyped-def]
             total[m] += w0 * table[whole, m]
 
 
-@inlined
+@bare
 def _arc(s, samples, a, x, lanes, normal, margin, work):  # type: ignore[no-untyped-def]
     """Margins (lanes,) of an arc at x, and its normals (3, lanes)."""
     varying = s.shift.shape[0] > 1
@@ -347,7 +347,7 @@ def _arc(s, samples, a, x, lanes, normal, margin, work):  # type: ignore[no-unty
         margin[m] += s.clearance[samples[m] if varying_clearance else 0, a]
 
 
-@inlined
+@bare
 def _solve(matrix, right, lanes, singular, largest, pivot):  # type: ignore[no-untyped-def]
     """Solve symmetric definite systems (r, r, lanes) in place, lower triangles given."""
     r = right.shape[0]
@@ -377,7 +377,7 @@ def _solve(matrix, right, lanes, singular, largest, pivot):  # type: ignore[no-u
                 right[c, m] -= matrix[c, d, m] * right[d, m]
 
 
-@inlined
+@bare
 def _signs(s, samples, x, force, reference, push, sign, lanes, wrong, count, work):  # type: ignore[no-untyped-def]
     """Mark what has the wrong sign, (rows, lanes), and count it."""
     force_band, length_band, approach, spare, normal = work
@@ -426,7 +426,7 @@ def _signs(s, samples, x, force, reference, push, sign, lanes, wrong, count, wor
             count[m] += off
 
 
-@inlined
+@bare
 def _propose(s, wrong, m, one_only, proposal):  # type: ignore[no-untyped-def]
     """Write the set that mends what is wrong in a lane."""
     for row in range(s.code.shape[0]):
@@ -438,7 +438,7 @@ def _propose(s, wrong, m, one_only, proposal):  # type: ignore[no-untyped-def]
                 break
 
 
-@inlined
+@bare
 def _coordinates(s, contact, spring, z, load, x, lanes):  # type: ignore[no-untyped-def]
     """Write all coordinates x = Pᵀ(g + δ).
 
