@@ -186,14 +186,14 @@ class Machine:
             found = found.completed(more)
         if not starts and found.solved.all():
             self._last = self._as_start(data, state, found)
-        answers = equilibria(self.elements, state)
         quick = engine is not vectorised.settle
+        answers = equilibria(self.elements, state, quick)
         verdicts = self.judge.judge(situations, answers, tolerance, compiled=quick)
         return Answers(
             answers,
             verdicts,
             found.solved & verdicts.passed,
-            tied(self.elements, state, found.code),
+            tied(self.elements, state, found.code, quick),
             found.held,
             found.code,
             found.turns,

@@ -9,5 +9,6 @@ has the wrong sign is exchanged, all at once first and one at a time when that g
 sample that finds no consistent set is left to the next rung of the ladder.
 
 `vectorised` does this with NumPy for all samples of a set together, `compiled` with Numba for one
-after another; `exchange` leads either of them from set to set.
+after another, and `lanes` with Numba for samples of a plain set side by side; `exchange` leads any
+of them from set to set.
 """

@@ -17,36 +17,61 @@ CARRIES = 1e-12
 """Force, over the largest, below which a contact ties no displacement (see `least_norm`)."""
 
 
-def equilibria(elements: Elements, state: State) -> Equilibria:
-    """Return displacements and forces of all samples in SI units."""
+def equilibria(elements: Elements, state: State, compiled: bool = False) -> Equilibria:
+    """Return displacements and forces of all samples in SI units.
+
+    With `compiled`, products are those of Numba, which pass over zeros: the same but for round-off.
+    """
     names = Names(elements.scene.train)
-    map_ = _map(elements, names)
-    x, force = state.x, state.force
-    count, gears, radials = len(x), len(names.gears), len(names.radials)
-    rows = np.maximum(force[:, elements.springs : elements.springs + elements.rows], 0.0)
-    rows *= elements.force
-    flanks = len(names.flanks)
+    to = _map(elements, names)
+    force, tables = state.force, (state.x, state.x, state.force, state.force, state.force)
+    if compiled:
+        from loadshare.solver.hot.products import entries, times
+
+        known = elements.kept.get(("entries",))
+        if known is None:
+            known = elements.keep(("entries",), [entries(matrix) for matrix in to.matrices])
+        products = [times(table, few) for table, few in zip(tables, known, strict=True)]
+    else:
+        products = [table @ matrix for table, matrix in zip(tables, to.matrices, strict=True)]
+    rotation, displacement, reaction, torque, support = products
+    rotation += to.turned
+    count, gears, radials = len(force), len(names.gears), len(names.radials)
+    first, last = elements.springs, elements.springs + elements.rows
+    ring = first + len(names.flanks)
     return Equilibria(
         names,
-        x @ map_.rotation + map_.turned,
-        (x @ map_.displacement).reshape(count, gears, 3),
-        rows[:, :flanks],
-        rows[:, flanks:],
-        (force @ map_.reaction).reshape(count, radials, 3),
-        force @ map_.torque,
-        (force @ map_.support).reshape(count, gears, 2),
+        rotation,
+        displacement.reshape(count, gears, 3),
+        _pushes(force[:, first:ring], elements.force),
+        _pushes(force[:, ring:last], elements.force),
+        reaction.reshape(count, radials, 3),
+        torque,
+        support.reshape(count, gears, 2),
     )
 
 
-class _Map(NamedTuple):
-    """Matrices from coordinates (n) and forces (m) to physical quantities in SI units."""
+def _pushes(force: Array, unit: float) -> Array:
+    """Forces of contacts [N]; round-off may let one pull by a hair."""
+    pushes = np.maximum(force, 0.0)
+    pushes *= unit
+    return pushes
 
-    rotation: Array  # (n, gears)
-    turned: Array  # (gears,)
-    displacement: Array  # (n, 3 gears)
-    reaction: Array  # (m, 3 radial elements)
-    torque: Array  # (m, shafts)
-    support: Array  # (m, 2 gears)
+
+class _Map(NamedTuple):
+    """From coordinates (n) and forces (m) to physical quantities in SI units.
+
+    Attributes
+    ----------
+    matrices : tuple of ndarray
+        To rotations (n, gears) and displacements (n, 3 gears); to reactions of radial elements
+        (m, 3 radials), shafts' torques (m, shafts) and supports' forces (m, 2 gears).
+    turned : ndarray, shape (gears,)
+        Rotations where the coordinates are zero.
+    """
+
+    matrices: tuple[Array, ...]
+    turned: Array
 
 
 def _map(elements: Elements, names: Names) -> _Map:
@@ -79,22 +104,31 @@ def _map(elements: Elements, names: Names) -> _Map:
         column = elements.radial_column(j)
         reaction[column : column + 2, j] = -train.gears[name].frame
     found = _Map(
-        rotation * elements.length,
+        (
+            rotation * elements.length,
+            displacement.reshape(n, -1) * elements.length,
+            reaction.reshape(m, -1) * elements.force,
+            torque * elements.force,
+            support.reshape(m, -1) * elements.force,
+        ),
         turned,
-        displacement.reshape(n, -1) * elements.length,
-        reaction.reshape(m, -1) * elements.force,
-        torque * elements.force,
-        support.reshape(m, -1) * elements.force,
     )
     elements.keep(("map",), found)
     return found
 
 
-def tied(elements: Elements, state: State, code: NDArray[np.int8]) -> NDArray[np.bool_]:
+def tied(
+    elements: Elements, state: State, code: NDArray[np.int8], compiled: bool = False
+) -> NDArray[np.bool_]:
     """Whether every closed contact of a sample carries a force, shape (S,).
 
     One that is closed without force ties no displacement, although the set says so.
     """
+    if compiled:
+        from loadshare.solver.hot import products
+
+        tied = products.tied(state.force, elements.springs, code[:, : elements.rows], CARRIES)
+        return np.asarray(tied)
     rows = np.abs(state.force[:, elements.springs : elements.springs + elements.rows])
     largest = np.maximum(rows.max(axis=1, initial=0.0), np.finfo(float).tiny)
     idle = (code[:, : elements.rows] != 0) & (rows <= CARRIES * largest[:, None])

@@ -18,7 +18,7 @@ from loadshare.scene.elements import Basis, Data, Elements
 from loadshare.scene.scene import Array
 from loadshare.solver.hot import lanes
 from loadshare.solver.hot import places as at
-from loadshare.solver.hot.lanes import is_plain
+from loadshare.solver.hot.plain import is_plain
 from loadshare.solver.hot.state import State
 from loadshare.train.radial import ROUNDING as WRITTEN
 

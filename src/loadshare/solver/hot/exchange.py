@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from heapq import heappop, heappush
 
 import numpy as np
 from numpy.typing import NDArray
@@ -132,16 +133,17 @@ def exchange(
     waiting.add(code[rows], rows)
     while waiting:
         here, rows = waiting.most()
-        turns[rows] += 1
+        visited = turns[rows] + 1
+        turns[rows] = visited
         basis = elements.basis(here[:switches])
         verdict, proposal = engine(elements, data, basis, here[:switches], rows, state, one_only)
-        code[rows] = here
-        done = rows[verdict == at.DONE]
-        solved[done], held[done] = True, not basis.loose.shape[1]
-        onward = np.flatnonzero((verdict == at.OTHER) & (turns[rows] < limit))
-        if len(onward):
-            rows = rows[onward]
-            one_only[rows] |= turns[rows] >= TOGETHER
+        onward = (verdict == at.OTHER) & (visited < limit)
+        stay, done = rows[~onward], verdict[~onward] == at.DONE
+        code[stay], solved[stay] = here, done
+        held[stay] = done & (not basis.loose.shape[1])
+        if onward.any():
+            rows, visited = rows[onward], visited[onward]
+            one_only[rows[visited >= TOGETHER]] = True
             other = np.zeros((len(rows), code.shape[1]), dtype=np.int8)
             other[:, :switches] = proposal[onward]
             waiting.add(_without_wedges(elements, data, here, other), rows)
@@ -155,13 +157,17 @@ class _Waiting:
         self.sets: dict[int, Codes] = {}
         self.parts: dict[int, list[NDArray[np.intp]]] = {}
         self.sizes: dict[int, int] = {}
+        # Sizes once more, the largest first; one that is out of date is passed over.
+        self.largest: list[tuple[int, int]] = []
 
     def __bool__(self) -> bool:
         return bool(self.sizes)
 
     def most(self) -> tuple[Codes, NDArray[np.intp]]:
         """Take the set to which most samples go, and them."""
-        key = max(self.sizes, key=self.sizes.__getitem__)
+        size, key = heappop(self.largest)
+        while self.sizes.get(key) != -size:
+            size, key = heappop(self.largest)
         del self.sizes[key]
         parts = self.parts.pop(key)
         return self.sets[key], parts[0] if len(parts) == 1 else np.concatenate(parts)
@@ -186,7 +192,8 @@ class _Waiting:
     def _put(self, key: int, code: Codes, rows: NDArray[np.intp]) -> None:
         self.sets.setdefault(key, code)
         self.parts.setdefault(key, []).append(rows)
-        self.sizes[key] = self.sizes.get(key, 0) + len(rows)
+        size = self.sizes[key] = self.sizes.get(key, 0) + len(rows)
+        heappush(self.largest, (-size, key))
 
 
 def _without_wedges(elements: Elements, data: Data, here: Codes, proposal: Codes) -> Codes:

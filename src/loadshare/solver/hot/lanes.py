@@ -1,10 +1,12 @@
 """Samples of a plain set side by side, compiled with Numba: the passes of `vectorised` in lanes.
 
-A set is plain if all that can act is a spring, a flank with a linear or a power law, a stop or an
-arc. Every loop that costs runs along the samples, so that the processor works on several of them
-at a time. What is out of the ordinary (a drift, a singular matrix, forces without bound, passes
-that do not settle) is left undecided, and `compiled` takes it up one by one. No lane knows of its
-neighbours: an answer does not depend on the company it was found in.
+Every loop that costs runs along the samples, so that the processor works on several of them at a
+time. Lanes are filled together and emptied together; the few samples that take longer than the
+others begin again beside one another, where they stand. Tangents are taken at the forces, which
+here takes fewer passes than at the compressions. What is out of the ordinary (a drift, a singular
+matrix, forces without bound, passes that do not settle) is left undecided, and `compiled` takes it
+up one by one. No lane knows of its neighbours but for when a pass ends, so that an answer depends
+on the company it was found in by no more than round-off.
 """
 
 from __future__ import annotations
@@ -18,13 +20,15 @@ from numpy.typing import NDArray
 from loadshare.scene.elements import Basis, Data, Elements
 from loadshare.scene.scene import Array
 from loadshare.solver.hot import places as at
+from loadshare.solver.hot.plain import Codes, Rows, plain_set
 from loadshare.solver.hot.state import State
 
-Rows = NDArray[np.intp]
-Codes = NDArray[np.int8]
-
-WIDTHS = (16, 64, 128)
+WIDTHS = (16, 32, 64)
 """Samples side by side: the first number that is enough, or the last."""
+ROUNDS = 4
+"""Times that samples begin again beside those that took as long."""
+FEW = 0.125
+"""Share of the lanes that is not waited for, but in the last round."""
 PASSES = 30
 """Passes after which a sample is left to `compiled`."""
 UNDECIDED = -1
@@ -36,6 +40,8 @@ HURRY, NEARLY, PATIENCE = at.HURRY, at.NEARLY, at.PATIENCE
 SHRINK, BURST, DRIFT = at.SHRINK, at.BURST, at.DRIFT
 TURNED = 10.0
 """Weight of the angle by which arcs still turn among what has to settle."""
+LEAST = 1e-4
+"""Share of a turn that is expected of the next pass at least."""
 STEEPEST = 1e-2
 """Angle by which no arc turns: 1 mm over 0.1 m."""
 CLOSED_BY = 1e-12
@@ -44,10 +50,8 @@ DOUBTFUL = 1e-8
 """Pivot, over the largest, below which a sample is left to `compiled`."""
 HASTE = 2
 """Patience with sets that are exchanged all at once (see `places.PATIENCE`)."""
-YOUNG = 3
-"""Passes in which a set is given up when a contact pulls."""
-CLOSE = 1e-9
-"""Newton's last step on a root, relative, from which on the root counts as found."""
+CLOSE = 1e-5
+"""Halley's last step on a root, relative, from which on the root counts as found."""
 
 _how: dict[str, Any] = {
     "nogil": True,
@@ -60,124 +64,54 @@ _uncounted: dict[str, Any] = {**_how, "_nrt": False}
 bare = njit(**_uncounted)
 
 
-class _Plain(NamedTuple):
-    """Numbers of a plain set and of the samples.
-
-    k elements act on n coordinates with r redundants. The s springs among them never change, so
-    that what they add is written down once; a of the others are arcs, p have a power law.
-    """
-
-    contacts: Rows  # (k − s,): columns of what is not a spring
-    particular: Array  # (n, k), transposed
-    redundant: Array  # (k, r)
-    inverse: Array  # (r, r) of the redundants' matrix where it never changes, else (0, 0)
-    yields: Array  # (s,): compliances of the springs
-    springs_matrix: Array  # (r, r): what the springs add to the redundants' matrix
-    springs_moved: Array  # (n, r + t): displacements that the springs add, per redundant and load
-    across: Array  # (r, k): the redundants, transposed
-    products: Array  # (r, r, p): of the redundants at the power laws
-    turned: Array  # (k, t): forces per turned load
-    loose: Array  # (n, l)
-    power: Rows  # (p,), among the contacts
-    arcs: Rows  # (a, 2): acting contact, number of the arc
-    turning: Rows  # coordinates that acting arcs know of
-    open_arcs: Rows  # numbers of the arcs that do not act
-    starts: Rows  # of the rows that do not act: CSR of A, first the rows' own numbers
-    open_rows: Rows
-    coordinates: Rows
-    entries: Array
-    arc_starts: Rows  # coordinates that an arc knows of
-    arc_coordinates: Rows
-    base: Array  # (a, n): rows of A of the acting arcs
-    code: Codes
-    springs: int
-    flanks: int  # rows before the first arc
-    loaded: Rows  # coordinates with a load
-    load: Array
-    gap: Array
-    bending: Array
-    hertz: Array
-    nominal: Array
-    shift: Array
-    clearance: Array
-    relative: Array
-
-
 class _Room(NamedTuple):
-    """Samples side by side while they are solved; the last axis runs along the lanes."""
+    """Samples side by side; the last axis runs along the lanes."""
 
+    samples: Rows
+    at_row: Rows
+    patience: Rows
+    live: NDArray[np.bool_]
+    go: Array  # 1 for a lane that is live, 0 for one that stands
+    sign: Array  # band of the signs by which a lane is judged; 0 for one that is not
+    push: Array  # largest load
+    floor: Array
+    weight: Array  # (loads, lanes)
+    statics: Array  # (springs, lanes): forces without redundants and turned loads
+    spring: Array  # (springs, lanes): gaps and compressions without them
+    moved: Array  # (springs, lanes): gaps and compressions
+    fixed: Array  # (contacts, lanes): as statics; so are the following
+    gap: Array
     force: Array
-    stretch: Array
     tangent: Array
     shift: Array
-    fixed: Array
-    gap: Array
-    before: Array
-    bending: Array
+    stretch: Array  # gap and compression together
+    bending: Array  # (p, lanes), as are the following
     hertz: Array
     root: Array
-    inverse_hertz: Array
-    yields: Array
-    loose: Array
-    spring: Array
-    statics: Array
-    x: Array
-    load: Array
-    z: Array
+    loose: Array  # passes in a row without contact
+    before: Array  # (arcs, lanes): forces of the pass before
+    load: Array  # (turning, lanes): what the turned arcs add
+    x: Array  # (n, lanes)
+    z: Array  # (r, lanes)
     base: Array
     right: Array
-    linear: Array
+    linear: Array  # (r, r, lanes)
     matrix: Array
-    push: Array
-    floor: Array
+    normal: Array  # (3, lanes)
+    wrong: NDArray[np.bool_]  # (switches, lanes)
+    mistakes: Rows
+    singular: NDArray[np.bool_]
     previous: Array
+    turn: Array
     misfit: Array
-    law_misfit: Array
-    step: Array
-    largest: Array
+    largest: Array  # compression
     strongest: Array
     weakest: Array
-    top: Array
-    margin: Array
-    waits: Array
     longest: Array
-    normal: Array
-    patience: Rows
-    number: Rows
-    at_row: Rows
-    samples: Rows
-    singular: NDArray[np.bool_]
-    live: NDArray[np.bool_]
-
-
-class _Found(NamedTuple):
-    """Samples that have settled, side by side, until their signs are judged."""
-
-    x: Array  # (n, lanes)
-    force: Array  # (contacts, lanes), as are the gaps and compressions together:
-    stretch: Array
-    spring: Array  # (springs, lanes): the same without redundants and turned loads
-    held: Array  # (springs, lanes): forces, at first without them
-    moved: Array  # (springs, lanes): gaps and compressions
-    root: Array  # (p, lanes)
-    z: Array  # (r, lanes)
-    load: Array  # (turning, lanes)
-    push: Array  # largest force but for those of the contacts
-    largest: Array  # compression
-    yielded: Array  # compression of contacts
-    closed: NDArray[np.bool_]  # whether the redundants close the gaps
-    sign: Array  # band of the signs; infinite for a sample that has not settled
-    samples: Rows
-    row: Rows
-    wrong: NDArray[np.bool_]
-    mistakes: Rows  # how many signs are wrong
-    work: tuple[Array, ...]
-
-
-def is_plain(elements: Elements, data: Data) -> bool:
-    """Whether all sets of some samples are plain."""
-    constant = data.steady[: elements.springs].all()
-    return bool(elements.switches == elements.rows and constant and (data.tabulated < 0).all())
+    waits: Array
+    one: Array  # (lanes,) for passing use, as are the following
+    two: Array
+    three: Array
 
 
 def settle(
@@ -197,7 +131,7 @@ def settle(
     verdict = np.empty(len(rows), dtype=np.int8)
     proposal = np.empty((len(rows), len(code)), dtype=np.int8)
     _settle_all(
-        _plain(elements, data, basis, code),
+        plain_set(elements, data, basis, code),
         rows,
         state.x,
         state.force,
@@ -209,79 +143,6 @@ def settle(
         next((width for width in WIDTHS if width >= len(rows)), WIDTHS[-1]),
     )
     return verdict, proposal
-
-
-def _plain(elements: Elements, data: Data, basis: Basis, code: Codes) -> _Plain:
-    """Arrays of a set; what does not vary from sample to sample is kept for the next block."""
-    key = ("plain", code.tobytes(), data.laws)
-    known = elements.kept.get(key)
-    if known is None:
-        known = elements.keep(key, _structure(elements, data, basis, code))
-    return _Plain._make(
-        (
-            *known,
-            data.loaded,
-            data.load,
-            data.gap,
-            data.bending,
-            data.hertz,
-            data.nominal,
-            data.shift,
-            data.clearance,
-            data.relative,
-        )
-    )
-
-
-def _structure(elements: Elements, data: Data, basis: Basis, code: Codes) -> tuple[Any, ...]:
-    """The first fields of `_Plain`."""
-    columns, n = basis.columns, np.ascontiguousarray(basis.redundant)
-    springs, flanks = elements.springs, len(elements.scene.rows)
-    first_arc = springs + flanks
-    contacts = columns[springs:]
-    power = np.flatnonzero(data.curved[contacts])
-    acting = np.flatnonzero(contacts >= first_arc)
-    arcs = np.stack([acting, contacts[acting] - first_arc], axis=1).astype(np.intp)
-    idle = np.flatnonzero(code == OPEN)
-    open_rows, open_arcs = idle[idle < flanks], idle[idle >= flanks] - flanks
-    entries = elements.vectors[springs + open_rows]
-    row, coordinates = np.nonzero(entries)
-    known = (data.relative != 0.0).any(axis=1)
-    known |= elements.vectors[first_arc : first_arc + len(known)] != 0.0
-    arc, arc_coordinates = np.nonzero(known)
-    turning = np.flatnonzero(known[arcs[:, 1]].any(axis=0))
-    yields = np.array(data.bending[0, :springs])
-    inverse = np.zeros((0, 0))
-    if not len(power) and data.steady[columns].all() and n.shape[1]:
-        inverse = np.linalg.pinv(n.T * data.bending[0, columns] @ n)
-    held = basis.particular[:springs].T * yields
-    return (
-        contacts,
-        np.ascontiguousarray(basis.particular.T),
-        n,
-        inverse,
-        yields,
-        n[:springs].T * yields @ n[:springs],
-        np.hstack([held @ n[:springs], (held @ basis.particular[:springs])[:, turning]]),
-        np.ascontiguousarray(n.T),
-        np.ascontiguousarray((n[springs + power, :, None] * n[springs + power, None, :]).T),
-        np.ascontiguousarray(basis.particular[:, turning]),
-        np.ascontiguousarray(basis.loose),
-        power,
-        arcs,
-        turning,
-        open_arcs,
-        np.searchsorted(row, np.arange(len(open_rows) + 1)),
-        open_rows,
-        coordinates,
-        entries[row, coordinates],
-        np.searchsorted(arc, np.arange(len(known) + 1)),
-        arc_coordinates,
-        np.ascontiguousarray(basis.directions[springs + acting]),
-        np.array(code),
-        springs,
-        flanks,
-    )
 
 
 @bare
@@ -378,11 +239,12 @@ def _solve(matrix, right, lanes, singular, largest, pivot):  # type: ignore[no-u
 
 
 @bare
-def _signs(s, samples, x, force, reference, push, sign, lanes, wrong, count, work):  # type: ignore[no-untyped-def]
+def _signs(s, room, lanes):  # type: ignore[no-untyped-def]
     """Mark what has the wrong sign, (rows, lanes), and count it."""
-    force_band, length_band, approach, spare, normal = work
+    samples, x, force, wrong, count = room.samples, room.x, room.force, room.wrong, room.mistakes
+    force_band, length_band, approach = room.strongest, room.weakest, room.waits
     for m in range(lanes):
-        force_band[m] = push[m]
+        force_band[m] = room.push[m]
         length_band[m] = 0.0
         count[m] = 0
     for e in range(force.shape[0]):
@@ -394,9 +256,10 @@ def _signs(s, samples, x, force, reference, push, sign, lanes, wrong, count, wor
             y = abs(x[d, m])
             length_band[m] = y if y > length_band[m] else length_band[m]
     for m in range(lanes):
-        force_band[m] *= sign[m]
+        force_band[m] *= room.sign[m]
         y = 1e-3 * length_band[m]
-        length_band[m] = sign[m] * (y if y > reference[m] else reference[m])
+        y = y if y > room.largest[m] else room.largest[m]
+        length_band[m] = room.sign[m] * y
     for e in range(s.contacts.shape[0]):
         row = s.contacts[e] - s.springs
         for m in range(lanes):
@@ -419,7 +282,7 @@ def _signs(s, samples, x, force, reference, push, sign, lanes, wrong, count, wor
     for o in range(s.open_arcs.shape[0]):
         a = s.open_arcs[o]
         row = s.flanks + a
-        _arc(s, samples, a, x, lanes, normal, approach, spare)
+        _arc(s, samples, a, x, lanes, room.normal, approach, room.one)
         for m in range(lanes):
             off = -approach[m] > length_band[m]
             wrong[row, m] = off
@@ -439,487 +302,419 @@ def _propose(s, wrong, m, one_only, proposal):  # type: ignore[no-untyped-def]
 
 
 @bare
-def _coordinates(s, contact, spring, z, load, x, lanes):  # type: ignore[no-untyped-def]
-    """Write all coordinates x = Pᵀ(g + δ).
-
-    `contact` is g + δ of the contacts; `spring` is that of the springs without redundants and
-    turned loads.
-    """
-    springs, r = s.springs, z.shape[0]
-    for d in range(x.shape[0]):
-        for m in range(lanes):
-            x[d, m] = 0.0
-        _add(x[d], s.particular[d, :springs], spring, lanes)
-        _add(x[d], s.particular[d, springs:], contact, lanes)
-        _add(x[d], s.springs_moved[d, :r], z, lanes)
-        _add(x[d], s.springs_moved[d, r:], load, lanes)
-
-
-@bare
-def _conclude(s, found, filled, xs, forces, roots, one_only, verdict, proposal, lanes):  # type: ignore[no-untyped-def]
-    """Judge the signs of samples that have settled, and store them."""
-    misfit, total, more, _, _ = found.work
-    yielded = found.yielded
+def _fill(s, room, rows, waiting, first, count, lanes, xs, forces, roots, floors, one_only):  # type: ignore[no-untyped-def]
+    """Put samples into the lanes; lanes that are left over repeat the last of them."""
+    r, springs, powers = s.redundant.shape[1], s.springs, s.powers
+    samples, tangent, weight = room.samples, room.tangent, room.weight
+    one_load, one_gap = s.load.shape[0] == 1, s.gap.shape[0] == 1
+    one_bending, one_hertz = s.bending.shape[0] == 1, s.hertz.shape[0] == 1
     for m in range(lanes):
-        yielded[m] = found.largest[m]
-        misfit[m] = 0.0
-    for e in range(s.springs):
+        row = waiting[first + min(m, count - 1)]
+        room.at_row[m], samples[m] = row, rows[row]
+    for m in range(lanes):
+        i = samples[m]
+        room.floor[m] = floors[i]
+        room.patience[m] = PATIENCE if one_only[i] else HASTE
+        room.live[m], room.go[m], room.sign[m], room.singular[m] = m < count, 1.0, 0.0, False
+        room.push[m], room.previous[m], room.turn[m] = 0.0, np.inf, np.inf
+    for k in range(s.loaded.shape[0]):
+        d = s.loaded[k]
         for m in range(lanes):
-            more[m] = 0.0
-        _add(more, s.redundant[e], found.z, lanes)
-        _add(more, s.turned[e], found.load, lanes)
+            f = s.load[0 if one_load else samples[m], d]
+            weight[k, m] = f
+            room.push[m] = max(room.push[m], abs(f))
+    for c in range(s.loose.shape[1]):
+        for m in range(lanes):
+            drift = 0.0
+            for k in range(s.loaded.shape[0]):
+                drift += s.loose[s.loaded[k], c] * weight[k, m]
+            if abs(drift) > DRIFT * room.push[m]:
+                room.live[m] = False
+    for e in range(springs):
+        for m in range(lanes):
+            room.statics[e, m] = 0.0
+        for k in range(s.loaded.shape[0]):
+            per_load = s.particular[s.loaded[k], e]
+            for m in range(lanes):
+                room.statics[e, m] += per_load * weight[k, m]
         compliance = s.yields[e]
         for m in range(lanes):
-            found.moved[e, m] = found.spring[e, m] + compliance * more[m]
-            found.held[e, m] += more[m]
-            f = abs(found.held[e, m])
-            y = compliance * f
-            found.largest[m] = y if y > found.largest[m] else found.largest[m]
-            found.push[m] = f if f > found.push[m] else found.push[m]
-    for c in range(found.z.shape[0]):
+            gap = s.gap[0 if one_gap else samples[m], e]
+            room.spring[e, m] = gap + compliance * room.statics[e, m]
+    for e in range(s.contacts.shape[0]):
+        column = s.contacts[e]
         for m in range(lanes):
-            total[m] = 0.0
-        _add(total, s.across[c, : s.springs], found.moved, lanes)
-        _add(total, s.across[c, s.springs :], found.stretch, lanes)
+            room.fixed[e, m] = 0.0
+            room.shift[e, m] = 0.0
+            room.gap[e, m] = s.gap[0 if one_gap else samples[m], column]
+            tangent[e, m] = s.bending[0 if one_bending else samples[m], column]
+        for k in range(s.loaded.shape[0]):
+            per_load = s.particular[s.loaded[k], springs + e]
+            for m in range(lanes):
+                room.fixed[e, m] += per_load * weight[k, m]
+    for c in range(r):
         for m in range(lanes):
-            y = abs(total[m])
-            misfit[m] = y if y > misfit[m] else misfit[m]
-    for m in range(filled):
-        # What the matrix of the redundants was too stiff or too flat for.
-        found.closed[m] = misfit[m] <= CLOSED_BY * yielded[m] or found.sign[m] != SIGN
-    _coordinates(s, found.stretch, found.spring, found.z, found.load, found.x, lanes)
-    _signs(
-        s,
-        found.samples,
-        found.x,
-        found.force,
-        found.largest,
-        found.push,
-        found.sign,
-        lanes,
-        found.wrong,
-        found.mistakes,
-        found.work,
-    )
-    for m in range(filled):
-        i, row = found.samples[m], found.row[m]
-        if not found.closed[m]:
-            continue
-        if found.sign[m] == SIGN:
-            verdict[row] = OTHER if found.mistakes[m] > 0 else DONE
-        else:
-            verdict[row] = OTHER
-            if found.mistakes[m] == 0:
-                # What does not settle may still say which flank is open.
-                for p in range(s.power.shape[0]):
-                    contact = s.power[p]
-                    if found.force[contact, m] <= 0.0:
-                        found.wrong[s.contacts[contact] - s.springs, m] = True
-        _propose(s, found.wrong, m, one_only[i], proposal[row])
-        for d in range(found.x.shape[0]):
-            xs[i, d] = found.x[d, m]
-        for column in range(s.springs, forces.shape[1]):
-            forces[i, column] = 0.0
-        for e in range(s.springs):
-            forces[i, e] = found.held[e, m]
-        for e in range(s.contacts.shape[0]):
-            forces[i, s.contacts[e]] = found.force[e, m]
-        for p in range(s.power.shape[0]):
-            roots[i, s.contacts[s.power[p]]] = found.root[p, m]
-
-
-@compiled
-def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal, lanes):  # type: ignore[no-untyped-def]
-    """Settle every sample of `rows`, `lanes` at a time."""
-    r, springs, contacts = s.redundant.shape[1], s.springs, s.contacts.shape[0]
-    n, powers, switches = xs.shape[1], s.power.shape[0], s.code.shape[0]
-    turning, arcs = s.turning.shape[0], s.arcs.shape[0]
-    room = _Room(
-        np.zeros((contacts, lanes)),
-        np.zeros((contacts, lanes)),
-        np.zeros((contacts, lanes)),
-        np.zeros((contacts, lanes)),
-        np.zeros((contacts, lanes)),
-        np.zeros((contacts, lanes)),
-        np.zeros((arcs, lanes)),
-        np.ones((powers, lanes)),
-        np.ones((powers, lanes)),
-        np.ones((powers, lanes)),
-        np.ones((powers, lanes)),
-        np.ones((powers, lanes)),
-        np.ones((powers, lanes)),
-        np.zeros((springs, lanes)),
-        np.zeros((springs, lanes)),
-        np.zeros((n, lanes)),
-        np.zeros((turning, lanes)),
-        np.zeros((r, lanes)),
-        np.zeros((r, lanes)),
-        np.zeros((r, lanes)),
-        np.zeros((r, r, lanes)),
-        np.zeros((r, r, lanes)),
-        np.ones(lanes),
-        np.ones(lanes),
-        np.zeros(lanes),
-        np.zeros(lanes),
-        np.zeros(lanes),
-        np.zeros(lanes),
-        np.zeros(lanes),
-        np.zeros(lanes),
-        np.zeros(lanes),
-        np.zeros(lanes),
-        np.zeros(lanes),
-        np.zeros(lanes),
-        np.zeros(lanes),
-        np.zeros((3, lanes)),
-        np.zeros(lanes, dtype=np.int64),
-        np.zeros(lanes, dtype=np.int64),
-        np.zeros(lanes, dtype=np.int64),
-        np.full(lanes, rows[0]),
-        np.zeros(lanes, dtype=np.bool_),
-        np.zeros(lanes, dtype=np.bool_),
-    )
-    work = (
-        np.zeros(lanes),
-        np.zeros(lanes),
-        np.zeros(lanes),
-        np.zeros(lanes),
-        np.zeros((3, lanes)),
-    )
-    found = _Found(
-        np.zeros((n, lanes)),
-        np.zeros((contacts, lanes)),
-        np.zeros((contacts, lanes)),
-        np.zeros((springs, lanes)),
-        np.zeros((springs, lanes)),
-        np.zeros((springs, lanes)),
-        np.ones((powers, lanes)),
-        np.zeros((r, lanes)),
-        np.zeros((turning, lanes)),
-        np.ones(lanes),
-        np.zeros(lanes),
-        np.zeros(lanes),
-        np.zeros(lanes, dtype=np.bool_),
-        np.zeros(lanes),
-        np.full(lanes, rows[0]),
-        np.zeros(lanes, dtype=np.int64),
-        np.zeros((switches, lanes), dtype=np.bool_),
-        np.zeros(lanes, np.int64),
-        work,
-    )
-    _run(s, rows, xs, forces, roots, floors, one_only, verdict, proposal, lanes, room, found)
+            room.z[c, m] = 0.0
+            room.base[c, m] = 0.0
+        _add(room.base[c], s.across[c, :springs], room.spring, lanes)
+        for d in range(c + 1):
+            for m in range(lanes):
+                room.linear[c, d, m] = s.springs_matrix[c, d]
+            _add(room.linear[c, d], s.products[c, d, powers:], tangent[powers:], lanes)
+    for p in range(powers):
+        column = s.contacts[p]
+        for m in range(lanes):
+            b, c_hertz = tangent[p, m], s.hertz[0 if one_hertz else samples[m], column]
+            y = roots[samples[m], column]
+            room.bending[p, m], room.hertz[p, m] = b, c_hertz
+            room.root[p, m], room.loose[p, m] = y, 0.0
+            tangent[p, m] = b + 2.0 / 3.0 * c_hertz / y
+            room.shift[p, m] = c_hertz * y * y / 3.0
+    for w in range(s.arcs.shape[0]):
+        contact = s.arcs[w, 0]
+        for m in range(lanes):
+            room.force[contact, m] = forces[samples[m], s.contacts[contact]]
+    for d in s.turning:
+        for m in range(lanes):
+            room.x[d, m] = xs[samples[m], d]
 
 
 @bare
-def _run(s, rows, xs, forces, roots, floors, one_only, verdict, proposal, lanes, room, found):  # type: ignore[no-untyped-def]
-    """Pass until every sample is settled; a lane that is done takes the next one."""
-    r, springs, contacts = s.redundant.shape[1], s.springs, s.contacts.shape[0]
-    powers, turning = s.power.shape[0], s.turning.shape[0]
-    constant = s.inverse.shape[0] > 0 or r == 0
+def _turn_arcs(s, room, lanes):  # type: ignore[no-untyped-def]
+    """Gaps of the arcs where the coordinates are, and the load of what their faces have turned."""
+    load, x, gap, before = room.load, room.x, room.gap, room.before
+    for t in range(s.turning.shape[0]):
+        for m in range(lanes):
+            load[t, m] = 0.0
+    for w in range(s.arcs.shape[0]):
+        contact, a = s.arcs[w, 0], s.arcs[w, 1]
+        _arc(s, room.samples, a, x, lanes, room.normal, room.one, room.two)
+        for m in range(lanes):
+            before[w, m] = room.force[contact, m]
+            gap[contact, m] = room.one[m]
+        for t in range(s.turning.shape[0]):
+            d = s.turning[t]
+            along = s.base[w, d]
+            for m in range(lanes):
+                gap[contact, m] += along * x[d, m]
+                face = along
+                for c in range(3):
+                    face += room.normal[c, m] * s.relative[a, c, d]
+                load[t, m] += before[w, m] * face
+
+
+@bare
+def _pass(s, room, lanes):  # type: ignore[no-untyped-def]
+    """One Newton pass: redundants from compatibility, then forces and compressions."""
+    r, springs, powers = s.redundant.shape[1], s.springs, s.powers
+    force, stretch, tangent, shift = room.force, room.stretch, room.tangent, room.shift
+    z, right, matrix = room.z, room.right, room.matrix
+    turning = s.turning.shape[0]
+    if turning > 0:
+        _turn_arcs(s, room, lanes)
+    for c in range(r):
+        for m in range(lanes):
+            right[c, m] = room.base[c, m]
+        _add(right[c], s.springs_matrix[c], z, lanes)
+        for t in range(turning):
+            weight = s.springs_moved[s.turning[t], c]
+            for m in range(lanes):
+                right[c, m] += weight * room.load[t, m]
+    for e in range(s.contacts.shape[0]):
+        for m in range(lanes):
+            force[e, m] = room.fixed[e, m]
+        _add(force[e], s.redundant[springs + e], z, lanes)
+        _add(force[e], s.turned[springs + e], room.load, lanes)
+        for m in range(lanes):
+            stretch[e, m] = room.gap[e, m] + shift[e, m] + tangent[e, m] * force[e, m]
+    for c in range(r):
+        _add(right[c], s.across[c, springs:], stretch, lanes)
+        for m in range(lanes):
+            right[c, m] *= -room.go[m]
+    if s.inverse.shape[0] > 0:
+        for c in range(r):
+            for m in range(lanes):
+                matrix[0, c, m] = right[c, m]
+        for c in range(r):
+            for m in range(lanes):
+                right[c, m] = 0.0
+            _add(right[c], s.inverse[c], matrix[0], lanes)
+    else:
+        for c in range(r):
+            for d in range(c + 1):
+                for m in range(lanes):
+                    matrix[c, d, m] = room.linear[c, d, m]
+                _add(matrix[c, d], s.products[c, d, :powers], tangent, lanes)
+        _solve(matrix, right, lanes, room.singular, room.one, room.two)
+    for m in range(lanes):
+        room.largest[m] = 0.0
+        room.strongest[m] = 0.0
+        room.weakest[m] = 0.0
+    for c in range(r):
+        for m in range(lanes):
+            z[c, m] += right[c, m]
+    for e in range(s.contacts.shape[0]):
+        _add(force[e], s.redundant[springs + e], right, lanes)
+        for m in range(lanes):
+            f = force[e, m]
+            y = shift[e, m] + tangent[e, m] * f
+            stretch[e, m] = room.gap[e, m] + y
+            y = abs(y)
+            room.largest[m] = y if y > room.largest[m] else room.largest[m]
+            room.weakest[m] = f if f < room.weakest[m] else room.weakest[m]
+            f = abs(f)
+            room.strongest[m] = f if f > room.strongest[m] else room.strongest[m]
+
+
+@bare
+def _renew_laws(s, room, misfit, lanes):  # type: ignore[no-untyped-def]
+    """Take the next tangents at the forces; write the laws' misfit, relative, (lanes,)."""
+    for m in range(lanes):
+        misfit[m] = 0.0
+        room.waits[m] = 0.0
+        room.longest[m] = 0.0
+    for p in range(s.powers):
+        for m in range(lanes):
+            f, moved = room.force[p, m], room.stretch[p, m] - room.gap[p, m]
+            b, c_hertz, now = room.bending[p, m], room.hertz[p, m], room.root[p, m]
+            touching = (f > 0.0) & (moved > 0.0)
+            target = f if touching else 1.0
+            # Halley's method, twice, for the cube root of the force.
+            cube = now * now * now
+            y = now * (cube + 2.0 * target) / (2.0 * cube + target)
+            cube = y * y * y
+            more = y
+            y *= (cube + 2.0 * target) / (2.0 * cube + target)
+            more = abs(more - y)
+            # What the tangent leaves of the law.
+            gone = abs((b * y + c_hertz) * y * y - moved)
+            gone += 0.0 if more <= CLOSE * y else 2.0 * c_hertz * y * more
+            gone = gone if touching else 0.0
+            misfit[m] = gone if gone > misfit[m] else misfit[m]
+            waiting = 0.0 if touching | (now <= room.floor[m]) else 1.0
+            room.waits[m] = waiting if waiting > room.waits[m] else room.waits[m]
+            idle = abs(f) <= SIGN * room.push[m]
+            since = 0.0 if touching | idle else room.loose[p, m] + 1.0
+            room.loose[p, m] = since
+            room.longest[m] = since if since > room.longest[m] else room.longest[m]
+            y = y if touching else SHRINK * now
+            y = y if y > room.floor[m] else room.floor[m]
+            y = y if room.go[m] > 0.0 else now
+            room.root[p, m] = y
+            room.tangent[p, m] = b + 2.0 / 3.0 * c_hertz / y
+            room.shift[p, m] = c_hertz * y * y / 3.0
+    for m in range(lanes):
+        misfit[m] /= room.largest[m] if room.largest[m] > 0.0 else 1.0
+
+
+@bare
+def _follow_arcs(s, room, distance, lanes):  # type: ignore[no-untyped-def]
+    """Move the coordinates that arcs know of; add what arcs still turn to the misfit."""
+    r, springs = s.redundant.shape[1], s.springs
+    step, moved = room.one, room.two
+    for m in range(lanes):
+        step[m] = 0.0
+    for d in s.turning:
+        for m in range(lanes):
+            moved[m] = 0.0
+        _add(moved, s.particular[d, :springs], room.spring, lanes)
+        _add(moved, s.particular[d, springs:], room.stretch, lanes)
+        _add(moved, s.springs_moved[d, :r], room.z, lanes)
+        _add(moved, s.springs_moved[d, r:], room.load, lanes)
+        for m in range(lanes):
+            y = abs(moved[m] - room.x[d, m])
+            step[m] = y if y > step[m] else step[m]
+            room.x[d, m] = moved[m] if room.go[m] > 0.0 else room.x[d, m]
+    for w in range(s.arcs.shape[0]):
+        # The push of the pass before was turned.
+        for m in range(lanes):
+            f = abs(room.force[s.arcs[w, 0], m] - room.before[w, m])
+            strongest = room.strongest[m] if room.strongest[m] > 0.0 else 1.0
+            y = f / strongest * (STEEPEST / TURNED * distance)
+            step[m] = y if y > step[m] else step[m]
+    for m in range(lanes):
+        # Every pass turns them by about the same share of what the pass before did.
+        y = step[m] * (TURNED / distance)
+        rest = y * min(max(y / room.turn[m], LEAST), 1.0)
+        room.turn[m] = y
+        room.misfit[m] = rest if rest > room.misfit[m] else room.misfit[m]
+
+
+@bare
+def _run(s, room, one_only, enough, lanes):  # type: ignore[no-untyped-def]
+    """Pass until no more than `enough` lanes are live."""
     distance = np.inf
     for w in range(s.arcs.shape[0]):
         square = 0.0
         for c in range(3):
             square += s.nominal[s.arcs[w, 1], c] ** 2
         distance = min(distance, np.sqrt(square))
-    (
-        force,
-        stretch,
-        tangent,
-        shift,
-        fixed,
-        gap,
-        before,
-        bending,
-        hertz,
-        root,
-        inverse_hertz,
-        yields,
-        loose,
-        spring,
-        statics,
-        x,
-        load,
-        z,
-        base,
-        right,
-        linear,
-        matrix,
-        push,
-        floor,
-        previous,
-        misfit,
-        law_misfit,
-        step,
-        largest,
-        strongest,
-        weakest,
-        top,
-        margin,
-        waits,
-        longest,
-        normal,
-        patience,
-        number,
-        at_row,
-        samples,
-        singular,
-        live,
-    ) = room
-    one_load, one_gap = s.load.shape[0] == 1, s.gap.shape[0] == 1
-    one_bending, one_hertz = s.bending.shape[0] == 1, s.hertz.shape[0] == 1
-    filled, following, lives = 0, 0, 0
-    while True:
-        # Lanes that are done take the next samples.
-        for m in range(lanes):
-            while not live[m] and following < rows.shape[0]:
-                i = rows[following]
-                g, b = 0 if one_gap else i, 0 if one_bending else i
-                h, f = 0 if one_hertz else i, 0 if one_load else i
-                verdict[following] = UNDECIDED
-                pushed = 0.0
-                for d in s.loaded:
-                    pushed = max(pushed, abs(s.load[f, d]))
-                adrift = False
-                for c in range(s.loose.shape[1]):
-                    drift = 0.0
-                    for d in s.loaded:
-                        drift += s.loose[d, c] * s.load[f, d]
-                    adrift = adrift or abs(drift) > DRIFT * pushed
-                if not adrift:
-                    live[m], singular[m], lives = True, False, lives + 1
-                    samples[m], at_row[m], number[m] = i, following, 0
-                    push[m], floor[m], previous[m] = pushed, floors[i], np.inf
-                    patience[m] = PATIENCE if one_only[i] else HASTE
-                    for c in range(r):
-                        z[c, m] = 0.0
-                        base[c, m] = 0.0
-                    for e in range(springs):
-                        fixed_force = 0.0
-                        for d in s.loaded:
-                            fixed_force += s.particular[d, e] * s.load[f, d]
-                        statics[e, m] = fixed_force
-                        spring[e, m] = s.gap[g, e] + s.yields[e] * fixed_force
-                        for c in range(r):
-                            base[c, m] -= s.redundant[e, c] * spring[e, m]
-                    for e in range(contacts):
-                        column = s.contacts[e]
-                        gap[e, m] = s.gap[g, column]
-                        tangent[e, m] = s.bending[b, column]
-                        shift[e, m] = 0.0
-                        force[e, m] = forces[i, column]
-                        fixed_force = 0.0
-                        for d in s.loaded:
-                            fixed_force += s.particular[d, springs + e] * s.load[f, d]
-                        fixed[e, m] = fixed_force
-                    for p in range(powers):
-                        column = s.contacts[s.power[p]]
-                        bending[p, m] = s.bending[b, column]
-                        hertz[p, m] = s.hertz[h, column]
-                        inverse_hertz[p, m] = 1.0 / hertz[p, m]
-                        root[p, m] = roots[i, column]
-                        loose[p, m] = 0.0
-                        tangent[s.power[p], m] = 0.0
-                    for w in s.turning:
-                        x[w, m] = xs[i, w]
-                    for c in range(r):
-                        for d in range(c + 1):
-                            total = s.springs_matrix[c, d]
-                            for e in range(contacts):
-                                total += (
-                                    s.redundant[springs + e, c]
-                                    * s.redundant[springs + e, d]
-                                    * tangent[e, m]
-                                )
-                            linear[c, d, m] = total
-                following += 1
-        if lives == 0:
+    lives = 0
+    for m in range(lanes):
+        lives += room.live[m]
+    law_misfit, misfit = room.three, room.misfit
+    for number in range(PASSES):
+        if lives <= enough:
             break
-        for p in range(powers):
-            e = s.power[p]
-            for m in range(lanes):
-                y, c_hertz = root[p, m], hertz[p, m]
-                yields[p, m] = bending[p, m] + 2.0 / 3.0 * c_hertz / y
-                tangent[e, m] = yields[p, m]
-                shift[e, m] = c_hertz * y * y / 3.0
-        # Forces without the next step of the redundants.
-        for w in range(s.arcs.shape[0]):
-            for m in range(lanes):
-                before[w, m] = force[s.arcs[w, 0], m]
-        for e in range(contacts):
-            for m in range(lanes):
-                force[e, m] = fixed[e, m]
-            _add(force[e], s.redundant[springs + e], z, lanes)
-        for c in range(r):
-            for m in range(lanes):
-                right[c, m] = -base[c, m]
-            _add(right[c], s.springs_matrix[c], z, lanes)
-        if turning > 0:
-            for w in range(turning):
-                for m in range(lanes):
-                    load[w, m] = 0.0
-            for w in range(s.arcs.shape[0]):
-                contact, a = s.arcs[w, 0], s.arcs[w, 1]
-                _arc(s, samples, a, x, lanes, normal, margin, top)
-                for m in range(lanes):
-                    gap[contact, m] = margin[m]
-                for t in range(turning):
-                    d = s.turning[t]
-                    along = s.base[w, d]
-                    for m in range(lanes):
-                        gap[contact, m] += along * x[d, m]
-                        face = along
-                        for c in range(3):
-                            face += normal[c, m] * s.relative[a, c, d]
-                        load[t, m] += before[w, m] * face
-            for e in range(contacts):
-                _add(force[e], s.turned[springs + e], load, lanes)
-            for c in range(r):
-                for t in range(turning):
-                    weight = s.springs_moved[s.turning[t], c]
-                    for m in range(lanes):
-                        right[c, m] += weight * load[t, m]
-        # Redundants from compatibility.
-        for e in range(contacts):
-            for m in range(lanes):
-                stretch[e, m] = gap[e, m] + shift[e, m] + tangent[e, m] * force[e, m]
-        for c in range(r):
-            _add(right[c], s.across[c, springs:], stretch, lanes)
-            for m in range(lanes):
-                right[c, m] = -right[c, m]
-        if constant:
-            for c in range(r):
-                for m in range(lanes):
-                    matrix[0, c, m] = right[c, m]
-            for c in range(r):
-                for m in range(lanes):
-                    right[c, m] = 0.0
-                for d in range(r):
-                    weight = s.inverse[c, d]
-                    for m in range(lanes):
-                        right[c, m] += weight * matrix[0, d, m]
-        else:
-            for c in range(r):
-                for d in range(c + 1):
-                    for m in range(lanes):
-                        matrix[c, d, m] = linear[c, d, m]
-                    _add(matrix[c, d], s.products[c, d], yields, lanes)
-            _solve(matrix, right, lanes, singular, step, law_misfit)
+        _pass(s, room, lanes)
+        _renew_laws(s, room, law_misfit, lanes)
         for m in range(lanes):
-            largest[m] = 0.0
-            strongest[m] = 0.0
-            weakest[m] = 0.0
-            waits[m] = 0.0
-            step[m] = 0.0
-            law_misfit[m] = 0.0
-            longest[m] = 0.0
-        for c in range(r):
-            for m in range(lanes):
-                z[c, m] += right[c, m]
-        for e in range(contacts):
-            _add(force[e], s.redundant[springs + e], right, lanes)
-            for m in range(lanes):
-                y = shift[e, m] + tangent[e, m] * force[e, m]
-                stretch[e, m] = gap[e, m] + y
-                y, f = abs(y), abs(force[e, m])
-                largest[m] = y if y > largest[m] else largest[m]
-                strongest[m] = f if f > strongest[m] else strongest[m]
-                f = force[e, m]
-                weakest[m] = f if f < weakest[m] else weakest[m]
-        # The next tangents.
-        for p in range(powers):
-            e = s.power[p]
-            for m in range(lanes):
-                f, moved = force[e, m], stretch[e, m] - gap[e, m]
-                b, c_hertz = bending[p, m], hertz[p, m]
-                touching = (f > 0.0) & (moved > 0.0)
-                target = moved if touching else 1.0
-                bound = np.sqrt(target * inverse_hertz[p, m])
-                now = root[p, m]
-                y = now if now < bound else bound
-                more = ((b * y + c_hertz) * y * y - target) / ((3.0 * b * y + 2.0 * c_hertz) * y)
-                y -= more
-                y = y if y < bound else bound
-                more = ((b * y + c_hertz) * y * y - target) / ((3.0 * b * y + 2.0 * c_hertz) * y)
-                y -= more
-                # What the tangent leaves: the law's true compression, expanded about the root.
-                gone = abs(f - y * y * y) * (b + 2.0 / 3.0 * c_hertz / y)
-                gone = gone if abs(more) <= CLOSE * y else target
-                gone = gone if touching else 0.0
-                law_misfit[m] = gone if gone > law_misfit[m] else law_misfit[m]
-                waiting = 0.0 if touching | (now <= floor[m]) else 1.0
-                waits[m] = waiting if waiting > waits[m] else waits[m]
-                idle = abs(f) <= SIGN * push[m]
-                since = 0.0 if touching | idle else loose[p, m] + 1.0
-                loose[p, m] = since
-                longest[m] = since if since > longest[m] else longest[m]
-                y = y if touching else SHRINK * now
-                root[p, m] = y if y > floor[m] else floor[m]
+            misfit[m] = 1.0 if room.waits[m] > 0.0 else law_misfit[m] * (SETTLED / LAW)
+        if s.turning.shape[0] > 0:
+            _follow_arcs(s, room, distance, lanes)
         for m in range(lanes):
-            law_misfit[m] /= largest[m] if largest[m] > 0.0 else 1.0
-            misfit[m] = 1.0 if waits[m] > 0.0 else law_misfit[m] * (SETTLED / LAW)
-        if turning > 0:
-            # Arcs turn as their centres move: these have to stand still, as seen along the arc.
-            for m in range(lanes):
-                step[m] = 0.0
-            for t in range(turning):
-                d = s.turning[t]
-                for m in range(lanes):
-                    margin[m] = 0.0
-                _add(margin, s.particular[d, :springs], spring, lanes)
-                _add(margin, s.particular[d, springs:], stretch, lanes)
-                _add(margin, s.springs_moved[d, :r], z, lanes)
-                _add(margin, s.springs_moved[d, r:], load, lanes)
-                for m in range(lanes):
-                    moved = abs(margin[m] - x[d, m])
-                    step[m] = moved if moved > step[m] else step[m]
-                    x[d, m] = margin[m]
-            for m in range(lanes):
-                y = step[m] * (TURNED / distance)
-                misfit[m] = y if y > misfit[m] else misfit[m]
-            for w in range(s.arcs.shape[0]):
-                # The push of the pass before was turned.
-                for m in range(lanes):
-                    f = abs(force[s.arcs[w, 0], m] - before[w, m]) * STEEPEST
-                    y = f / (strongest[m] if strongest[m] > 0.0 else 1.0)
-                    misfit[m] = y if y > misfit[m] else misfit[m]
-        for m in range(lanes):
-            if not live[m]:
+            if not room.live[m]:
                 continue
             settled = misfit[m] <= SETTLED or (
-                number[m] > 2 and misfit[m] <= STALLED and misfit[m] >= 0.5 * previous[m]
+                number > 2 and misfit[m] <= STALLED and misfit[m] >= 0.5 * room.previous[m]
             )
-            previous[m] = misfit[m]
-            number[m] += 1
-            # Forces without bound and what is not a number are left undecided.
-            burst = not strongest[m] <= BURST * (push[m] if push[m] > 0.0 else 1.0)
-            if singular[m] or burst or (number[m] >= PASSES and not settled):
-                live[m], lives = False, lives - 1
-                continue
-            i, row = samples[m], at_row[m]
+            room.previous[m] = misfit[m]
             # A set that is clearly wrong need not be settled.
-            pulled = number[m] <= YOUNG and law_misfit[m] <= NEARLY and not one_only[i]
-            pulled = pulled and weakest[m] < -HURRY * strongest[m]
-            if not (settled or pulled or longest[m] >= patience[m]):
-                continue
-            live[m], lives = False, lives - 1
-            for e in range(contacts):
-                found.force[e, filled] = force[e, m]
-                found.stretch[e, filled] = stretch[e, m]
-            for e in range(springs):
-                found.spring[e, filled] = spring[e, m]
-                found.held[e, filled] = statics[e, m]
-            for p in range(powers):
-                found.root[p, filled] = root[p, m]
-            for c in range(r):
-                found.z[c, filled] = z[c, m]
-            for t in range(turning):
-                found.load[t, filled] = load[t, m]
-            found.push[filled], found.largest[filled] = push[m], largest[m]
-            found.samples[filled], found.row[filled] = i, row
-            found.sign[filled] = SIGN if settled else (HURRY if pulled else np.inf)
-            filled += 1
-            if filled == lanes:
-                _conclude(s, found, filled, xs, forces, roots, one_only, verdict, proposal, lanes)
-                filled = 0
-    if filled > 0:
-        _conclude(s, found, filled, xs, forces, roots, one_only, verdict, proposal, lanes)
+            pulled = law_misfit[m] <= NEARLY and not one_only[room.samples[m]]
+            pulled = pulled and room.weakest[m] < -HURRY * room.strongest[m]
+            # Forces without bound and what is not a number are left undecided.
+            burst = not room.strongest[m] <= BURST * (room.push[m] if room.push[m] > 0.0 else 1.0)
+            undecided = room.singular[m] or burst
+            if settled or pulled or undecided or room.longest[m] >= room.patience[m]:
+                room.live[m], room.go[m], lives = False, 0.0, lives - 1
+                sign = SIGN if settled else (HURRY if pulled else np.inf)
+                room.sign[m] = 0.0 if undecided else sign
+
+
+@bare
+def _conclude(s, room, count, lanes, xs, forces, roots, one_only, verdict, proposal):  # type: ignore[no-untyped-def]
+    """Judge the signs of samples that have settled, and store where every sample stands."""
+    springs, r = s.springs, s.redundant.shape[1]
+    yielded, misfit, total = room.one, room.two, room.three
+    for m in range(lanes):
+        yielded[m] = room.largest[m]
+        misfit[m] = 0.0
+    for e in range(springs):
+        held, moved, compliance = room.statics[e], room.moved[e], s.yields[e]
+        for m in range(lanes):
+            total[m] = 0.0
+        _add(total, s.redundant[e], room.z, lanes)
+        _add(total, s.turned[e], room.load, lanes)
+        for m in range(lanes):
+            moved[m] = room.spring[e, m] + compliance * total[m]
+            held[m] += total[m]
+            f = abs(held[m])
+            y = compliance * f
+            room.largest[m] = y if y > room.largest[m] else room.largest[m]
+            room.push[m] = f if f > room.push[m] else room.push[m]
+    for c in range(r):
+        for m in range(lanes):
+            total[m] = 0.0
+        _add(total, s.across[c, :springs], room.moved, lanes)
+        _add(total, s.across[c, springs:], room.stretch, lanes)
+        for m in range(lanes):
+            y = abs(total[m])
+            misfit[m] = y if y > misfit[m] else misfit[m]
+    for m in range(lanes):
+        if misfit[m] > CLOSED_BY * yielded[m] and room.sign[m] == SIGN:
+            # What the matrix of the redundants was too stiff or too flat for.
+            room.sign[m] = 0.0
+    for d in range(room.x.shape[0]):
+        for m in range(lanes):
+            room.x[d, m] = 0.0
+        _add(room.x[d], s.particular[d, :springs], room.moved, lanes)
+        _add(room.x[d], s.particular[d, springs:], room.stretch, lanes)
+    _signs(s, room, lanes)
+    for m in range(count):
+        i, row, sign = room.samples[m], room.at_row[m], room.sign[m]
+        if sign == 0.0 and not room.live[m]:
+            continue
+        for d in range(room.x.shape[0]):
+            xs[i, d] = room.x[d, m]
+        for column in range(springs, forces.shape[1]):
+            forces[i, column] = 0.0
+        for e in range(springs):
+            forces[i, e] = room.statics[e, m]
+        for e in range(s.contacts.shape[0]):
+            forces[i, s.contacts[e]] = room.force[e, m]
+        for p in range(s.powers):
+            roots[i, s.contacts[p]] = room.root[p, m]
+        if room.live[m]:
+            continue
+        verdict[row] = DONE if sign == SIGN and room.mistakes[m] == 0 else OTHER
+        if sign > SIGN and room.mistakes[m] == 0:
+            # What does not settle may still say which flank is open.
+            for p in range(s.powers):
+                if room.force[p, m] <= 0.0:
+                    room.wrong[s.contacts[p] - springs, m] = True
+        _propose(s, room.wrong, m, one_only[i], proposal[row])
+
+
+@compiled
+def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal, lanes):  # type: ignore[no-untyped-def]
+    """Settle every sample of `rows`, `lanes` at a time."""
+    r, springs, contacts, powers = s.redundant.shape[1], s.springs, s.contacts.shape[0], s.powers
+    room = _Room(
+        np.zeros(lanes, dtype=np.int64),
+        np.zeros(lanes, dtype=np.int64),
+        np.zeros(lanes, dtype=np.int64),
+        np.zeros(lanes, dtype=np.bool_),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros((s.loaded.shape[0], lanes)),
+        np.zeros((springs, lanes)),
+        np.zeros((springs, lanes)),
+        np.zeros((springs, lanes)),
+        np.zeros((contacts, lanes)),
+        np.zeros((contacts, lanes)),
+        np.zeros((contacts, lanes)),
+        np.zeros((contacts, lanes)),
+        np.zeros((contacts, lanes)),
+        np.zeros((contacts, lanes)),
+        np.zeros((powers, lanes)),
+        np.zeros((powers, lanes)),
+        np.zeros((powers, lanes)),
+        np.zeros((powers, lanes)),
+        np.zeros((s.arcs.shape[0], lanes)),
+        np.zeros((s.turning.shape[0], lanes)),
+        np.zeros((xs.shape[1], lanes)),
+        np.zeros((r, lanes)),
+        np.zeros((r, lanes)),
+        np.zeros((r, lanes)),
+        np.zeros((r, r, lanes)),
+        np.zeros((r, r, lanes)),
+        np.zeros((3, lanes)),
+        np.zeros((s.code.shape[0], lanes), dtype=np.bool_),
+        np.zeros(lanes, dtype=np.int64),
+        np.zeros(lanes, dtype=np.bool_),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+        np.zeros(lanes),
+    )
+    verdict[:] = UNDECIDED
+    waiting = np.arange(rows.shape[0])
+    total = rows.shape[0]
+    for number in range(ROUNDS):
+        kept = 0
+        last = number == ROUNDS - 1 or total <= lanes
+        for first in range(0, total, lanes):
+            count = min(lanes, total - first)
+            width = min(lanes, (count + 7) // 8 * 8)
+            _fill(s, room, rows, waiting, first, count, width, xs, forces, roots, floors, one_only)
+            _run(s, room, one_only, 0 if last else int(FEW * count), width)
+            if last:
+                for m in range(count):
+                    room.live[m] = False
+            _conclude(s, room, count, width, xs, forces, roots, one_only, verdict, proposal)
+            for m in range(count):
+                if room.live[m]:
+                    waiting[kept] = room.at_row[m]
+                    kept += 1
+        total = kept
+        if total == 0:
+            break

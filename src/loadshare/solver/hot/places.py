@@ -28,7 +28,7 @@ SETTLED = 1e-14
 """Change of forces and coordinates between passes, relative to the largest, that ends them."""
 STALLED = 1e-11
 """The same for passes that no longer improve."""
-LAW = 1e-15
+LAW = 1e-13
 """Misfit of a law, relative to the largest compression, that ends the passes."""
 CREEP = 1e-8
 """Change from pass to pass below which what does not settle is left to the certificate."""

@@ -42,17 +42,19 @@ class State:
     def begin(self, samples: slice, share: Array, data: Data) -> None:
         """Take the laws of some samples first at forces in these shares (m,) of the load."""
         roots = np.cbrt(pushes(data)[samples])
-        self.root[samples] = roots[:, None] * np.cbrt(np.maximum(share, 1e-6))
+        np.multiply(roots[:, None], np.cbrt(np.maximum(share, 1e-6)), out=self.root[samples])
 
 
 def at_rest(elements: Elements, data: Data) -> State:
     """Return the state before anything has moved; laws are first taken at half the load."""
     push = pushes(data)
     count, width = data.count, len(elements.kinds)
+    root = np.empty((count, width))
+    root[:] = np.cbrt(0.5 * push)[:, None]
     return State(
         x=np.zeros((count, elements.scene.size)),
         force=np.zeros((count, width)),
-        root=np.repeat(np.cbrt(0.5 * push)[:, None], width, axis=1),
+        root=root,
         floor=FLOOR * np.cbrt(push),
     )
 

@@ -1,0 +1,62 @@
+"""Products of tall tables with matrices of few entries, compiled with Numba.
+
+A coordinate belongs to one gear or two, and a force to one element: a dense product would spend
+nearly all its time on zeros.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from loadshare.scene.scene import Array
+
+
+class Entries(NamedTuple):
+    """Entries of a matrix (n, q) that are not zero, column by column."""
+
+    starts: NDArray[np.intp]
+    rows: NDArray[np.intp]
+    values: Array
+
+
+def entries(matrix: Array) -> Entries:
+    """Return the entries of a matrix of shape (n, q)."""
+    columns, rows = np.nonzero(matrix.T)
+    starts = np.searchsorted(columns, np.arange(matrix.shape[1] + 1))
+    return Entries(starts, rows, matrix[rows, columns])
+
+
+def times(table: Array, matrix: Entries) -> Array:
+    """Return a table (S, n) times the matrix, shape (S, q)."""
+    product = np.empty((len(table), len(matrix.starts) - 1))
+    _times(table, *matrix, product)
+    return product
+
+
+@njit(cache=True, nogil=True)
+def _times(table, starts, rows, values, product):  # type: ignore[no-untyped-def]
+    for s in range(product.shape[0]):
+        for column in range(product.shape[1]):
+            total = 0.0
+            for k in range(starts[column], starts[column + 1]):
+                total += values[k] * table[s, rows[k]]
+            product[s, column] = total
+
+
+@njit(cache=True, nogil=True)
+def tied(force, first, code, carries):  # type: ignore[no-untyped-def]
+    """Whether every closed contact carries a force; see `answer.tied`."""
+    found = np.empty(code.shape[0], dtype=np.bool_)
+    for s in range(code.shape[0]):
+        largest = np.finfo(np.float64).tiny
+        for k in range(code.shape[1]):
+            largest = max(largest, abs(force[s, first + k]))
+        found[s] = True
+        for k in range(code.shape[1]):
+            if code[s, k] != 0 and abs(force[s, first + k]) <= carries * largest:
+                found[s] = False
+    return found
