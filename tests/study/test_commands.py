@@ -4,26 +4,11 @@ import csv
 from pathlib import Path
 
 import pytest
-from tests.cli.conftest import CASES
-from typer.testing import CliRunner
+from tests.cli.conftest import CASES, on_a_screen_of
 
 import loadshare as ls
-from loadshare.cli.main import app
 
 RING = CASES / "fgfbstts/limit_ring.toml"
-
-
-def on_a_screen_of(columns: int):
-    runner = CliRunner(env={"COLUMNS": f"{columns}", "FORCE_COLOR": None, "TTY_COMPATIBLE": None})
-
-    def run(*words: object):
-        result = runner.invoke(app, [str(word) for word in words], prog_name="loadshare")
-        if result.exception is not None and not isinstance(result.exception, SystemExit):
-            raise result.exception
-        assert "Traceback" not in result.output
-        return result
-
-    return run
 
 
 @pytest.fixture
@@ -239,6 +224,8 @@ def test_studies_are_listed(command, measured):
         (("sweep", RING, "--set", "rings.4.flot=0 um:1 um:2"), "Did you mean float"),
         (("sweep", RING, "--set", "a=0:1:2", "-o", "x.txt"), "must end in"),
         (("critical", RING, "rings.4.float", "--from", "0 um", "--to", "1 N"), "cannot be told"),
+        (("critical", RING, "rings.4.float", "--from", "0", "--to", "1 um"), "0 has no unit"),
+        (("critical", RING, "rings.4.float", "--from", "0 kg", "--to", "1 kg"), '"0 kg" cannot be'),
         (("critical", RING, "a", "--from", "0", "--to", "1", "--position", 9), "unknown key"),
         (
             *[("sweep", RING, "--set", "rings.4.float=0 um:1 um:2", "--position", 9)],

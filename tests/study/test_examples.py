@@ -6,7 +6,16 @@ from importlib import import_module
 import pytest
 from tests.support import CASES
 
-ROOMS = ("compare", "critical", "fit", "march", "named", "sensitivity", "sweep", "tolerance.study")
+ROOMS = (
+    "compare",
+    "critical",
+    "fit",
+    "march",
+    "named",
+    "sensitivity.study",
+    "sweep",
+    "tolerance.study",
+)
 
 
 @pytest.mark.parametrize("room", ROOMS)

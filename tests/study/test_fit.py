@@ -110,6 +110,25 @@ def test_inputs_that_the_data_cannot_tell_apart_are_named():
     assert found.singular_values[-1] < 1e-6 * found.singular_values[0]
 
 
+def test_an_input_that_a_weak_one_can_move_is_not_determined():
+    """One share, two unknowns: whatever the second is, the first can make up for it.
+
+    The second bears on the share about a tenth as much as the first. Held at either end, the first
+    is fitted to values many standard deviations apart, so no finite deviation may be told for it.
+    """
+    base = shipped("fgfbstts/installation_error")
+    one = {"position": 1, "pair_share": {"6-10": 0.8}, "uncertainty": 0.01}
+    case = base.replace({"measured.bench": one})
+    keys = [f"errors.6.installation[{k}]" for k in (0, 1)]
+    bounds = ("-90 um", "100 um")
+    found = ls.fit(case, dict.fromkeys(keys, bounds))
+    assert found.warnings == (f"The data cannot tell {keys[0]}, {keys[1]} apart.",)
+    assert [math.isinf(u.deviation) for u in found.unknowns] == [True, True]
+    held = [ls.fit(case.replace({keys[1]: end}), {keys[0]: bounds}).unknowns[0] for end in bounds]
+    apart = abs(held[0].value - held[1].value)
+    assert apart > 5.0 * max(unknown.deviation for unknown in held)
+
+
 def test_tied_keys_are_one_unknown():
     base = shipped("fgfbstts/limit_ring")
     truth = {"rings.4.float": "2 um", "rings.5.float": "2 um"}

@@ -51,6 +51,16 @@ def test_each_point_begins_where_the_last_one_ended():
     )
 
 
+def test_the_picture_shows_only_gears_that_can_move():
+    case = shipped("fgfbstts/limit_ring")
+    over = {f"rings.{gear}.float": "0 um:2 um:2" for gear in (4, 5)}
+    found = ls.sweep(case, over, positions=[1])
+    panels = found.plot("displacement").spec["concat"]
+    assert [panel["title"]["text"] for panel in panels] == ["Gear 1", "Gear 4", "Gear 5"]
+    named = found.plot("displacement", names=["6"]).spec["concat"]
+    assert [panel["title"]["text"] for panel in named] == ["Gear 6"]
+
+
 def test_the_picture_is_that_of_the_arrays(tmp_path):
     case = shipped("fgfbstts/limit_ring")
     found = ls.sweep(case, {"rings.*.float": "0 um:12 um:4"}, positions=[1])
@@ -60,7 +70,7 @@ def test_the_picture_is_that_of_the_arrays(tmp_path):
     shown = {r["x"]: r["y"] for r in rows if "y" in r}
     arrays = found.dataset["pair_omega"].sel(stage="II")
     assert shown == dict(zip([0.0, 4.0, 8.0, 12.0], arrays.values.tolist(), strict=True))
-    told = {r["event"]: r["x"] for r in rows if "event" in r}
+    told = {r["text"]: r["x"] for r in rows if "text" in r}
     assert told == {event: value for value, event in events}
     assert set(told) == {"gear 4: float leaves boundary", "gear 5: float leaves boundary"}
     text = found.plot().save(tmp_path / "sweep.svg").read_text(encoding="utf-8")

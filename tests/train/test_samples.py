@@ -14,7 +14,8 @@ from tests.support import loaded, round_ring, shipped
 import loadshare as ls
 from loadshare.errors import CaseError
 from loadshare.train import build_train
-from loadshare.train.samples import columns_of, samples_of
+from loadshare.train.columns import columns_of
+from loadshare.train.samples import samples_of
 from loadshare.train.situations import Situations, situation_of
 
 DIGITS = 1e-13

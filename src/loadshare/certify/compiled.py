@@ -4,6 +4,11 @@ It follows `many` step by step, with numbers in place of columns, from the same 
 train. `of` is the `Mechanics` of the train, `here` the situations, `claim` the answers, of which
 number `s` lies on the bench, and `sheet` what is found on the way. The compiled code is kept on
 disk, so that only the first use of a new version waits for it; it holds no lock of the interpreter.
+
+All of it stands in this one file, because Numba looks at no other to tell whether what is kept is
+still valid: a law changed in a file of its own would go on being judged by the old one. It shares
+nothing with the compiled solver either, though both find the root of a law: what the solver gets
+wrong must not be wrong here too.
 """
 
 from __future__ import annotations
@@ -12,8 +17,6 @@ from typing import Any
 
 import numpy as np
 from numba import njit
-
-from loadshare.certify.state import turned
 
 # Nothing is allocated in here, so Numba need not count who holds an array: counting would take
 # twice as long as judging. A call would hand over every array of the tuples below, and cost more
@@ -26,7 +29,6 @@ _how: dict[str, Any] = {
 }
 compiled = njit(cache=True, **_how)
 inlined = njit(forceinline=True, **_how)
-_turned = inlined(turned)
 
 
 @compiled
@@ -442,8 +444,8 @@ def _squeeze(of, here, claim, s, d, band):  # type: ignore[no-untyped-def]
         unit = (nominal[d, 0, k] + start[r, d, 0, k]) / np.sqrt(one)
         unit += (nominal[d, 1, k] + start[r, d, 1, k]) / np.sqrt(other)
         wedge += unit * unit
-    wedge = np.sqrt(wedge)
-    return squeeze * _turned(wedge, band, min(of.distance[d, 0], of.distance[d, 1]))
+    across = 2.0 * band / min(of.distance[d, 0], of.distance[d, 1])
+    return squeeze * across / (np.sqrt(wedge) + np.sqrt(wedge + across))
 
 
 @inlined

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from collections import namedtuple
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.certificate import BAND
-from loadshare.train.equilibria import Equilibria
+from loadshare.train.equilibria import CLAIMED, Equilibria
 from loadshare.train.radial import ROUNDING
-from loadshare.train.situations import Situations
+from loadshare.train.situations import VARYING, Situations
 
 if TYPE_CHECKING:
-    from loadshare.certify.many import Judge
+    from loadshare.certify.many.judge import Judge
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.uintp]
@@ -56,38 +57,10 @@ class Mechanics(NamedTuple):
     rounding: float
 
 
-class Here(NamedTuple):
-    """What a position brings (see `Situations`), one row or one per answer."""
-
-    offset: Array
-    torque: Array
-    gap: Array
-    backlash: Array
-    bending: Array
-    hertz: Array
-    table: Array
-    clocking: Array
-    torsion: Array
-    support: Array
-    arc_shift: Array
-    arc_clearance: Array
-    stop: Array
-    wall: Array
-    round_radius: Array
-    round_stiffness: Array
-    spline: Array
-
-
-class Claim(NamedTuple):
-    """What is claimed (see `Equilibria`)."""
-
-    rotation: Array
-    displacement: Array
-    flank_force: Array
-    ring_force: Array
-    radial_reaction: Array
-    shaft_torque: Array
-    support_force: Array
+Here = namedtuple("Here", VARYING)  # type: ignore[misc]
+"""What a position brings, one row or one per answer: the arrays of `Situations`."""
+Claim = namedtuple("Claim", CLAIMED)  # type: ignore[misc]
+"""What is claimed: the arrays of `Equilibria`."""
 
 
 class Sheet(NamedTuple):
@@ -120,9 +93,9 @@ def mechanics(judge: Judge) -> Mechanics:
     tabled[[e for e, _ in judge.tabled]] = True
     shafts = list(train.shafts.values())
     nominal = np.array(judge.nominal).reshape(-1, 2, 3)
-    pulled = [order[r.gear] for r in judge.rounds] + [order[g] for g in train.splines]
+    pulled = [order[r.gear] for r in train.rounds] + [order[g] for g in train.splines]
     centre = np.zeros((len(pulled), 3))
-    for q, ring in enumerate(judge.rounds):
+    for q, ring in enumerate(train.rounds):
         centre[q] = ring.offset
     return Mechanics(
         driver=driver,
@@ -147,15 +120,15 @@ def mechanics(judge: Judge) -> Mechanics:
         ),
         is_elastic=np.array([np.isfinite(w.stiffness) for w in shafts], dtype=np.bool_),
         drum=np.array(
-            [[order[g] for g in (r.gear, *r.neighbours)] for r in judge.drums], np.uintp
+            [[order[g] for g in (r.gear, *r.neighbours)] for r in train.drums], np.uintp
         ).reshape(-1, 3),
-        across=np.array([r.across for r in judge.drums]).reshape(-1, 3),
+        across=np.array([r.across for r in train.drums]).reshape(-1, 3),
         nominal=nominal,
         distance=np.sqrt((nominal**2).sum(axis=2)),
-        is_squeezed=np.array([judge.squeezed(r) for r in judge.drums], dtype=np.bool_),
+        is_squeezed=np.array([judge.squeezed(r) for r in train.drums], dtype=np.bool_),
         pull_gear=np.array(pulled, dtype=np.uintp),
         pull_centre=centre,
-        rounds=len(judge.rounds),
+        rounds=len(train.rounds),
         band=BAND,
         rounding=ROUNDING,
     )
@@ -180,9 +153,9 @@ def judged(
     """
     from loadshare.certify.compiled import judge_all
 
-    here = Here(*(_plain(getattr(situations, name)) for name in Here._fields))
-    claim = Claim(*(_plain(getattr(answers, name)) for name in Claim._fields))
-    count = len(claim.rotation)
+    here = Here(*(_plain(getattr(situations, name)) for name in VARYING))
+    claim = Claim(*(_plain(array) for array in answers.arrays))
+    count = len(answers.rotation)
     found = np.empty((count, 7)), np.empty(count), np.empty(count)
     judge_all(of, here, claim, _sheet(of), *found)
     return found

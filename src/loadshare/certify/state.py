@@ -20,7 +20,6 @@ from loadshare.train.gear import Vector
 from loadshare.train.law import RIGID, Law, PowerLaw
 from loadshare.train.memory import SlipFriction, SlipStop
 from loadshare.train.radial import RadialLaw, round_ring_law
-from loadshare.train.ring import DrumRing, RoundRing
 from loadshare.train.train import Situation, Spline, Train
 
 Scalars = TypeVar("Scalars", float, NDArray[np.float64])
@@ -145,9 +144,7 @@ class State:
                 )
 
     def _ring_contacts(self) -> Iterator[Push]:
-        for ring in self.train.rings.values():
-            if not isinstance(ring, DrumRing):
-                continue
+        for ring in self.train.drums:
             law = RIGID if math.isinf(ring.stiffness) else PowerLaw(1.0 / ring.stiffness)
             for side, neighbour in enumerate(ring.neighbours):
                 arc = self.train.arc(ring, side, self.situation)
@@ -191,10 +188,9 @@ class State:
         """
         forces = self.answer.ring_force
         found = {}
-        for ring in self.train.rings.values():
-            if not isinstance(ring, DrumRing) or not math.isinf(ring.stiffness):
-                continue
-            if any(self.train.gears[n].moves for n in ring.neighbours):
+        for ring in self.train.drums:
+            gives_way = any(self.train.gears[n].moves for n in ring.neighbours)
+            if gives_way or not math.isinf(ring.stiffness):
                 continue
             arcs = [self.train.arc(ring, side, self.situation) for side in (0, 1)]
             wedge = float(np.linalg.norm(sum(a.normal(np.zeros(3)) for a in arcs)))
@@ -216,12 +212,11 @@ class State:
             reaction = np.asarray(self.answer.radial_reaction[spline.name])
             moved = self.moved(gear)
             found.append(Pull(spline.name, gear, law, moved, np.zeros(3), reaction, False))
-        for gear, ring in self.train.rings.items():
-            if isinstance(ring, RoundRing):
-                law = round_ring_law(ring.radius, ring.stiffness)
-                reaction = np.asarray(self.answer.radial_reaction[ring.name])
-                offset = self.moved(gear) - ring.offset
-                found.append(Pull(ring.name, gear, law, offset, ring.offset, reaction, True))
+        for ring in self.train.rounds:
+            law = round_ring_law(ring.radius, ring.stiffness)
+            reaction = np.asarray(self.answer.radial_reaction[ring.name])
+            offset = self.moved(ring.gear) - ring.offset
+            found.append(Pull(ring.name, ring.gear, law, offset, ring.offset, reaction, True))
         return tuple(found)
 
     def _slipping(self, spline: Spline, before: Vector) -> list[Pull]:

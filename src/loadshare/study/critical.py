@@ -23,7 +23,7 @@ from loadshare.scene.scene import Array
 from loadshare.study.branch import ActiveSet
 from loadshare.study.branch.system import BranchLost, Gauge
 from loadshare.study.event import Event, told
-from loadshare.study.parameter import STUDY, Parameter, grid, named, read_parameter
+from loadshare.study.parameter import RANGE, STUDY, Parameter, grid, named, read_parameter
 from loadshare.study.path import End, Path, Trains
 from loadshare.study.positions import alike, loaded
 
@@ -126,7 +126,7 @@ def critical(
     {'5': '2.98 um', '4': '8.35 um'}
     """
     case = loaded(case)
-    numbers, unit = grid([start, stop], "start, stop")
+    numbers, unit = grid([start, stop], "start, stop", RANGE)
     low, high = numbers
     if not low < high:
         message = f"start {low:g} {unit} is not below stop {high:g} {unit}"

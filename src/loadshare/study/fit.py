@@ -17,6 +17,7 @@ from loadshare.results import Result
 from loadshare.scene.scene import Array
 from loadshare.study.compare import Comparison, Deviation, Target, computed, needed, slope, targets
 from loadshare.study.parameter import (
+    RANGE,
     STUDY,
     Parameter,
     Value,
@@ -30,9 +31,7 @@ from loadshare.study.sensitivity import Sensitivity, sensitivity
 
 TELL_APART = 1e-6
 """Singular value of the scaled sensitivities, over the largest, below which inputs are not told
-apart."""
-SHARE_OF = 0.1
-"""Part of an input in an undetermined combination from which on it belongs to it."""
+apart; and part of an input in what is left open, below which it is round-off."""
 AT_BOUND = 1e-9
 """Distance to a bound, over the range, that counts as none."""
 
@@ -191,11 +190,10 @@ class _Problem:
         self.parameters: list[Parameter] = []
         lows, highs = [], []
         for key, bounds in unknowns.items():
-            numbers, unit = grid(list(bounds), named(key))
+            numbers, unit = grid(list(bounds), named(key), RANGE)
             if len(numbers) != 2 or not numbers[0] < numbers[1]:
-                allowed = 'lowest and highest value, as ("0 um", "100 um")'
-                given = str(tuple(bounds))
-                raise CaseError([Problem(STUDY, named(key), given, "is no range", allowed)])
+                given = ", ".join(map(str, bounds))
+                raise CaseError([Problem(STUDY, named(key), given, "is no range", RANGE)])
             self.parameters.append(read_parameter(case, key, unit))
             lows.append(numbers[0])
             highs.append(numbers[1])
@@ -373,11 +371,12 @@ def _groups(loose: Array) -> list[list[int]]:
         Orthonormal directions that change no figure. Their projector, unlike themselves, does not
         depend on how they were chosen.
     """
-    shared = np.abs(loose.T @ loose) > SHARE_OF**2
+    shared = np.abs(loose.T @ loose)
     groups: list[list[int]] = []
     for k in range(len(shared)):
-        near = [g for g in groups if any(shared[k, m] for m in g)]
-        if shared[k, k]:
+        near = [g for g in groups if any(shared[k, m] > TELL_APART for m in g)]
+        # However small its part, an input that has one is not determined: another can move it.
+        if shared[k, k] > TELL_APART**2:
             groups = [g for g in groups if g not in near]
             groups.append(sorted([*(m for g in near for m in g), k]))
     return groups

@@ -17,6 +17,10 @@ from loadshare.case.words import did_you_mean
 from loadshare.errors import CaseError, Problem
 
 STUDY = "study"
+GRID = 'a grid "0 um:12 um:61" (first, last, how many), or a list of values with units'
+"""Values of a sweep, as messages name what is allowed."""
+RANGE = 'lowest and highest value, as ("0 um", "100 um")'
+"""Ends of an interval, likewise."""
 _QUANTITY = re.compile(rf"\s*({NUMBER})\s*(.*?)\s*", re.DOTALL)
 
 
@@ -222,7 +226,7 @@ def leaves(data: Any, above: Path = ()) -> Iterator[Path]:
         yield above
 
 
-def grid(given: object, place: str) -> tuple[tuple[float, ...], str]:
+def grid(given: object, place: str, allowed: str = GRID) -> tuple[tuple[float, ...], str]:
     """Read the values of a parameter.
 
     Parameters
@@ -230,8 +234,8 @@ def grid(given: object, place: str) -> tuple[tuple[float, ...], str]:
     given : object
         ``"0 um:12 um:61"`` (first, last, how many), or values: physical ones or plain numbers. The
         unit is that of the first value that has one.
-    place : str
-        What is read, for messages.
+    place, allowed : str
+        What is read, and what may stand there; for messages.
 
     Returns
     -------
@@ -245,7 +249,6 @@ def grid(given: object, place: str) -> tuple[tuple[float, ...], str]:
     CaseError
         If the values cannot be read or differ in kind.
     """
-    allowed = 'a grid "0 um:12 um:61" (first, last, how many), or a list of values with units'
     count = 0
     if isinstance(given, str) and ":" in given:
         first, last, *rest = given.split(":")
@@ -259,15 +262,24 @@ def grid(given: object, place: str) -> tuple[tuple[float, ...], str]:
         unit = getattr(given, "units", None)
         listed = as_text(given) if unit is not None else given
         items = list(listed) if isinstance(listed, Iterable) else [listed]
-    values = [read_value(_plain(item)) for item in items]
-    if not values or any(v is None for v in values):
-        raise _unusable(place, "has values that cannot be read", allowed, given=str(given))
-    known = [v for v in values if v is not None]
+    shown = given if isinstance(given, str) else ", ".join(map(str, items))
+    known: list[Value] = []
+    for item in items:
+        value = read_value(_plain(item))
+        if value is None:
+            message = f'"{item}" cannot be read: it is no number with a unit that inputs have'
+            raise _unusable(place, message, allowed, given=shown)
+        known.append(value)
+    if not known:
+        raise _unusable(place, "holds no value", allowed)
     unit = next((v.unit for v in known if v.unit), "")
+    if unit and not all(v.unit for v in known):
+        bare = next(v for v in known if not v.unit)
+        raise _unusable(place, f"{bare.number:g} has no unit", allowed, given=shown)
     try:
         numbers = [v.in_unit(unit).number for v in known]
     except ValueError as error:
-        raise _unusable(place, str(error), allowed, given=str(given)) from None
+        raise _unusable(place, str(error), allowed, given=shown) from None
     if count:
         low, high = numbers
         numbers = [low + (high - low) * k / (count - 1) for k in range(count - 1)] + [high]

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.ring import DrumRing, RoundRing
 from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
@@ -41,16 +40,17 @@ class Names:
     @cached_property
     def contacts(self) -> tuple[str, ...]:
         """Contacts of drums: all stops, then all arcs."""
-        drums = [r for r in self.train.rings.values() if isinstance(r, DrumRing)]
-        stops = [n for r in drums for n in r.stop_names]
-        return (*stops, *(r.arc_name(n) for r in drums for n in r.neighbours))
+        drums = self.train.drums
+        return (
+            *(name for r in drums for name in r.stop_names),
+            *(r.arc_name(n) for r in drums for n in r.neighbours),
+        )
 
     @cached_property
     def radials(self) -> tuple[tuple[str, str], ...]:
         """Round rings, then splines: name and gear."""
-        rounds = [r for r in self.train.rings.values() if isinstance(r, RoundRing)]
         return (
-            *((r.name, r.gear) for r in rounds),
+            *((r.name, r.gear) for r in self.train.rounds),
             *((s.name, g) for g, s in self.train.splines.items()),
         )
 
@@ -87,12 +87,14 @@ class Equilibria:
     shaft_torque: Array
     support_force: Array
 
+    @property
+    def arrays(self) -> tuple[Array, ...]:
+        """All of them, in the order above."""
+        return tuple(getattr(self, name) for name in CLAIMED)
+
     def laid(self, lay: Callable[[Array], Array]) -> Equilibria:
         """Return the same answers, their arrays laid out anew."""
-        return Equilibria(
-            self.names,
-            *(lay(getattr(self, f.name)) for f in fields(self) if f.name != "names"),
-        )
+        return Equilibria(self.names, *(lay(array) for array in self.arrays))
 
     def part(self, samples: slice) -> Equilibria:
         """Return some of the samples, as a view."""
@@ -152,16 +154,8 @@ class Equilibria:
 
     def forget(self, sample: int) -> None:
         """Let a sample be not a number throughout."""
-        for values in (
-            self.rotation,
-            self.displacement,
-            self.flank_force,
-            self.ring_force,
-            self.radial_reaction,
-            self.shaft_torque,
-            self.support_force,
-        ):
-            values[sample] = np.nan
+        for array in self.arrays:
+            array[sample] = np.nan
 
     def put(self, sample: int, answer: Equilibrium) -> None:
         """Write an equilibrium in the place of a sample."""
@@ -185,3 +179,7 @@ class Equilibria:
                 moved = gear.frame @ answer.displacement[name]
                 force = answer.support_force.get(name, gear.support * moved)
             self.support_force[sample, g] = force
+
+
+CLAIMED = tuple(f.name for f in fields(Equilibria) if f.name != "names")
+"""Names of the arrays of an answer."""

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class SlipFriction:
-    """Friction of a spline against a change of its slip.
+class _Part:
+    """A part of a spline that remembers its slip.
 
     Attributes
     ----------
@@ -36,6 +36,12 @@ class SlipFriction:
     def friction_force(self) -> float | None:
         """Friction bound F_m [N] where it is fixed."""
         return self.spline.friction_force
+
+
+class SlipFriction(_Part):
+    """Friction of a spline against a change of its slip."""
+
+    __slots__ = ()
 
     def law(self, torque: float) -> RadialLaw:
         """Law about the slip of the position before: F_m in whatever direction it slips.
@@ -57,21 +63,10 @@ class SlipFriction:
         return RadialLaw((Piece(bound, 0.0, math.inf, "slip"),))
 
 
-@dataclass(frozen=True, slots=True)
-class SlipStop:
-    """Clearance of a spline, which limits its slip.
+class SlipStop(_Part):
+    """Clearance of a spline, which limits its slip."""
 
-    Attributes
-    ----------
-    spline : Spline
-    """
-
-    spline: Spline
-
-    @property
-    def friction_force(self) -> float | None:
-        """Friction bound F_m [N] where it is fixed."""
-        return self.spline.friction_force
+    __slots__ = ()
 
     def law(self, torque: float) -> RadialLaw:
         """Rigid stop at S2 − F_m/K_w about the unloaded place; at zero if friction needs it all."""

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.train.law import PowerLaw, TableLaw
-from loadshare.train.ring import DrumRing, RoundRing
 from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
@@ -100,15 +99,17 @@ class Situations:
         return replace(self, **varying)
 
     def _arrays(self) -> dict[str, Any]:
-        names = (f.name for f in fields(self) if f.name not in ("train", "count"))
-        return {name: getattr(self, name) for name in names}
+        return {name: getattr(self, name) for name in ("index", *VARYING)}
+
+
+VARYING = tuple(f.name for f in fields(Situations) if f.name not in ("train", "count", "index"))
+"""Names of the arrays that a position brings."""
 
 
 def situation_of(train: Train, index: int) -> Situations:
     """Return the situation of a train at position `index` (1-based), as a single sample."""
     here = train.situation(index)
-    drums = [r for r in train.rings.values() if isinstance(r, DrumRing)]
-    rounds = [r for r in train.rings.values() if isinstance(r, RoundRing)]
+    drums, rounds = train.drums, train.rounds
     laws = [m.law(here.mesh_position[m.name]) for m in train.meshes.values()]
     powers = [law if isinstance(law, PowerLaw) else PowerLaw(0.0) for law in laws]
     arcs = [[train.arc(r, side, here) for side in (0, 1)] for r in drums]
@@ -175,11 +176,10 @@ def stack(situations: Sequence[Situations]) -> Situations:
 
 def arcs_from(train: Train, offset: Array) -> Array:
     """Return the shifts of every drum's arcs (S or 1, drums, 2, 3) [m] at given centre offsets."""
-    drums = [r for r in train.rings.values() if isinstance(r, DrumRing)]
     order = {g: k for k, g in enumerate(train.gears)}
-    some = any(r.with_errors for r in drums)
-    shifts = np.zeros((len(offset) if some else 1, len(drums), 2, 3))
-    for d, ring in enumerate(drums):
+    some = any(r.with_errors for r in train.drums)
+    shifts = np.zeros((len(offset) if some else 1, len(train.drums), 2, 3))
+    for d, ring in enumerate(train.drums):
         gear = train.gears[ring.gear]
         for side, name in enumerate(ring.neighbours):
             if ring.with_errors:

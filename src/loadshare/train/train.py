@@ -13,7 +13,7 @@ from loadshare.train.gear import Gear, Vector
 from loadshare.train.mesh import Mesh
 from loadshare.train.offset import Offset
 from loadshare.train.radial import RadialLaw, spline_law
-from loadshare.train.ring import Arc, DrumRing, Ring, transverse
+from loadshare.train.ring import Arc, DrumRing, Ring, RoundRing, transverse
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,6 +184,16 @@ class Train:
         return tuple(
             n for n, g in self.gears.items() if g.floats or n in self.splines or n in self.rings
         )
+
+    @cached_property
+    def drums(self) -> tuple[DrumRing, ...]:
+        """Rings that roll on the rings of two neighbours."""
+        return tuple(r for r in self.rings.values() if isinstance(r, DrumRing))
+
+    @cached_property
+    def rounds(self) -> tuple[RoundRing, ...]:
+        """Round rings."""
+        return tuple(r for r in self.rings.values() if isinstance(r, RoundRing))
 
     def situation(self, index: int) -> Situation:
         """Describe position `index` (1-based).

@@ -4,10 +4,9 @@ import io
 
 import pytest
 from rich.console import Console
+from tests.cli.conftest import on_a_screen_of
 from tests.support import CASES
-from typer.testing import CliRunner
 
-from loadshare.cli.main import app
 from loadshare.cli.study import tolerance as room
 
 PATHS = CASES / "two_path/clocking_error.toml"
@@ -15,16 +14,7 @@ PATHS = CASES / "two_path/clocking_error.toml"
 
 @pytest.fixture
 def command():
-    runner = CliRunner(env={"COLUMNS": "120", "FORCE_COLOR": None, "TTY_COMPATIBLE": None})
-
-    def run(*words: object):
-        result = runner.invoke(app, [str(word) for word in words], prog_name="loadshare")
-        if result.exception is not None and not isinstance(result.exception, SystemExit):
-            raise result.exception
-        assert "Traceback" not in result.output
-        return result
-
-    return run
+    return on_a_screen_of(120)
 
 
 @pytest.fixture

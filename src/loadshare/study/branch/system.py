@@ -12,16 +12,18 @@ Source: formulation, sections 3 to 6.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from loadshare.scene.scene import ArcRow, Array, Radial, Row, Scene
-from loadshare.study.branch.active import ActiveSet, Place, corner, index_of, is_rigid, read_set
+from loadshare.study.branch.active import ActiveSet, Place, index_of, is_rigid, read_set
+from loadshare.study.branch.elements import Hold, Touch, pressed, pulled
+from loadshare.study.branch.gauges import LOOSE, Gauge, contact_gauges, radial_gauges
+from loadshare.study.branch.units import Units
 from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.law import Law
-from loadshare.train.radial import RadialLaw
+
+__all__ = ["RANK", "Branch", "BranchLost", "Gauge", "Units", "identified"]
 
 RANK = 1e-14
 """Singular values of the Jacobian below this, relative to the largest, count as zero."""
@@ -29,66 +31,8 @@ SOLVED = 1e-10
 """Residual up to which a branch that no longer improves is an answer, in loads and deflections."""
 
 
-class Units(NamedTuple):
-    """Force [N] and length [m] that a branch is measured by."""
-
-    force: float
-    length: float
-
-    @classmethod
-    def of(cls, scene: Scene) -> Units:
-        """Units of a scene."""
-        return cls(scene.force_unit(), scene.length_unit())
-
-
 class BranchLost(RuntimeError):  # noqa: N818 -- a finding, not a fault
     """A branch has no point where it was looked for; the message says why."""
-
-
-@dataclass(slots=True)
-class _Touch:
-    """A contact at a point: gradient of its approach (n,), approach [m], force [N], dF/dδ [N/m]."""
-
-    row: Row | ArcRow
-    vector: Array
-    approach: float
-    force: float
-    slope: float
-    unknown: int | None
-
-
-@dataclass(slots=True)
-class _Hold:
-    """A radial element at a point: law, place, offset (2,), radius, force along the offset (2,)."""
-
-    radial: Radial
-    law: RadialLaw
-    piece: int
-    place: Place
-    offset: Array
-    radius: float
-    force: Array
-    unknown: slice | None
-
-
-class Gauge(NamedTuple):
-    """How far an element is from leaving its state: positive as long as the state holds.
-
-    Attributes
-    ----------
-    element : str
-    value : float
-        In deflections (an approach, a radius) or loads (a force).
-    to : Place or None
-        Where a radial element goes when it turns negative; None flips a contact.
-    gradient : ndarray, shape (n,) or None
-        Of an open contact's gauge with respect to the coordinates; for undetermined ones.
-    """
-
-    element: str
-    value: float
-    to: Place | None
-    gradient: Array | None = None
 
 
 class Branch:
@@ -146,7 +90,7 @@ class Branch:
         """Coordinates [m]."""
         return np.asarray(z[: self.scene.size] * self.units.length)
 
-    def _touches(self, z: Array) -> list[_Touch]:
+    def _touches(self, z: Array) -> list[Touch]:
         x = self.x(z)
         touches = []
         for row in self._contacts:
@@ -161,13 +105,13 @@ class Branch:
             if unknown is not None:
                 force = float(z[unknown]) * self.units.force
             elif row.name in self.active.closed:
-                force, slope = _pressed(row.law, approach)
-            touches.append(_Touch(row, vector, approach, force, slope, unknown))
+                force, slope = pressed(row.law, approach)
+            touches.append(Touch(row, vector, approach, force, slope, unknown))
         return touches
 
-    def _holds(self, z: Array, touches: list[_Touch]) -> list[_Hold]:
+    def _holds(self, z: Array, touches: list[Touch]) -> list[Hold]:
         x, holds = self.x(z), []
-        flanks = {t.row.name: t.force for t in touches if not isinstance(t.row, ArcRow)}
+        flanks = _forces(touches)
         for radial in self.scene.radials:
             try:
                 law = radial.law(self.scene.train.transmitted(radial.gear, flanks))
@@ -178,17 +122,14 @@ class Branch:
             if k is None:
                 raise BranchLost(f"{radial.name} can no longer {place.label}")
             offset = radial.matrix @ x - radial.centre
-            radius = float(np.linalg.norm(offset))
             unknown = self._steps.get(radial.name)
-            if unknown is not None:
-                free = z[unknown] * self.units.force
-                force = free if len(free) == 2 else free[0] * offset / (radius or 1.0)
-            elif _springs(law, k):
-                force = law.pieces[k].stiffness * offset
+            if unknown is None:
+                force = pulled(law, k, offset)
             else:
-                size = law.pieces[k].force + law.pieces[k].stiffness * (radius - law.start(k))
-                force = size * offset / (radius or 1.0)
-            holds.append(_Hold(radial, law, k, place, offset, radius, np.asarray(force), unknown))
+                force = z[unknown] * self.units.force
+                if len(force) == 1:
+                    force = force[0] * offset / (float(np.linalg.norm(offset)) or 1.0)
+            holds.append(Hold(radial, law, k, offset, force, unknown))
         return holds
 
     def residual(self, z: Array) -> Array:
@@ -199,22 +140,18 @@ class Branch:
         BranchLost
             If a spline's law has lost the piece on which the branch stands.
         """
-        touches = self._touches(z)
-        return self._residual(z, touches, self._holds(z, touches))
-
-    def _residual(self, z: Array, touches: list[_Touch], holds: list[_Hold]) -> Array:
         n, scene = self.scene.size, self.scene
+        touches = self._touches(z)
         found = np.zeros(self.size)
         balance = scene.stiffness @ self.x(z) - scene.load
         for touch in touches:
             balance += touch.vector * touch.force
             if touch.unknown is not None:
                 found[touch.unknown] = touch.approach / self.units.length
-        for hold in holds:
+        for hold in self._holds(z, touches):
             balance += hold.radial.matrix.T @ hold.force
             if hold.unknown is not None:
-                limit = hold.law.start(hold.piece)
-                off = hold.offset if limit == 0.0 else hold.radius - limit
+                off = hold.offset if hold.limit == 0.0 else hold.radius - hold.limit
                 found[hold.unknown] = off / self.units.length
         found[:n] = balance / self.units.force
         return found
@@ -229,48 +166,35 @@ class Branch:
         for touch in touches:
             stiffness += touch.slope * np.outer(touch.vector, touch.vector)
             if isinstance(touch.row, ArcRow) and touch.force:
-                stiffness -= touch.force * _turning(touch.row, self.x(z))
+                stiffness -= touch.force * touch.turning(self.x(z))
             if touch.unknown is not None:
                 found[:n, touch.unknown] = touch.vector
                 found[touch.unknown, :n] = touch.vector
         for hold in holds:
             matrix = hold.radial.matrix
-            along = hold.offset / (hold.radius or 1.0)
-            across = np.eye(2) - np.outer(along, along)
             if hold.unknown is None:
-                stiffness += matrix.T @ self._yield(hold, along, across) @ matrix
-                self._friction(hold, along, touches, found, stiffness)
-            elif hold.law.start(hold.piece) == 0.0:
+                stiffness += matrix.T @ hold.stiffness() @ matrix
+                self._friction(hold, touches, found, stiffness)
+            elif hold.limit == 0.0:
                 found[:n, hold.unknown] = matrix.T
                 found[hold.unknown, :n] = matrix
             else:
+                along = hold.along
                 found[:n, hold.unknown] = (along @ matrix)[:, None]
                 found[hold.unknown, :n] = along @ matrix
                 size = float(along @ hold.force)
-                stiffness += size / hold.radius * (matrix.T @ across @ matrix)
+                stiffness += size / hold.radius * (matrix.T @ hold.across @ matrix)
         found[:n, :n] = stiffness * length / force
         return found
 
-    @staticmethod
-    def _yield(hold: _Hold, along: Array, across: Array) -> Array:
-        """Derivative (2, 2) of a radial force with respect to its offset, on a piece."""
-        stiffness = hold.law.pieces[hold.piece].stiffness
-        if _springs(hold.law, hold.piece) or hold.radius == 0.0:
-            return np.asarray(stiffness * np.eye(2))
-        size = float(along @ hold.force)
-        return np.asarray(stiffness * np.outer(along, along) + size / hold.radius * across)
-
-    def _friction(
-        self, hold: _Hold, along: Array, touches: list[_Touch], found: Array, stiffness: Array
-    ) -> None:
+    def _friction(self, hold: Hold, touches: list[Touch], found: Array, stiffness: Array) -> None:
         """Add what a friction bound that follows the torque makes of the flank forces, in place."""
-        if not hold.radial.follows_torque or _springs(hold.law, hold.piece):
+        if not hold.radial.follows_torque or hold.springs:
             return
         train, n = self.scene.train, self.scene.size
         spline = train.splines[hold.radial.gear]
-        flanks = {t.row.name: t.force for t in touches if not isinstance(t.row, ArcRow)}
-        sense = np.sign(train.transmitted(hold.radial.gear, flanks))
-        pull = hold.radial.matrix.T @ along * spline.friction_per_torque * sense
+        sense = np.sign(train.transmitted(hold.radial.gear, _forces(touches)))
+        pull = hold.radial.matrix.T @ hold.along * spline.friction_per_torque * sense
         for touch in touches:
             arm = train.transmitted(hold.radial.gear, {touch.row.name: 1.0})
             if arm and touch.unknown is not None:
@@ -305,45 +229,13 @@ class Branch:
 
     def gauges(self, z: Array) -> list[Gauge]:
         """How far every element is from leaving its state; what is undetermined is left out."""
-        force, length = self.units
-        touches = self._touches(z)
+        touches, loose = self._touches(z), self.undetermined(z)
         found: list[Gauge] = []
-        loose = self.undetermined(z)
         for touch in touches:
-            name = touch.row.name
-            if touch.unknown is not None:
-                found.append(Gauge(name, touch.force / force, None))
-            elif name in self.active.closed:
-                found.append(Gauge(name, touch.approach / length, None))
-            elif touch.vector.any() and not np.abs(touch.vector @ loose).max(initial=0.0) > 1e-9:
-                found.append(Gauge(name, -touch.approach / length, None, touch.vector))
+            is_closed = touch.row.name in self.active.closed
+            found += contact_gauges(touch, is_closed, loose, self.units)
         for hold in self._holds(z, touches):
-            found += self._radial_gauges(hold)
-        return found
-
-    def _radial_gauges(self, hold: _Hold) -> list[Gauge]:
-        law, k, name = hold.law, hold.piece, hold.radial.name
-        found = []
-        if hold.unknown is not None:
-            low, high = law.step(k)
-            size = float(np.linalg.norm(hold.force))
-            if hold.radius > 0.0 and hold.unknown.stop - hold.unknown.start == 1:
-                size = float(hold.force @ hold.offset) / hold.radius
-            if k > 0:
-                back = Place(law.pieces[k - 1].name)
-                found.append(Gauge(name, (size - low) / self.units.force, back))
-            if k < len(law.pieces):
-                onward = Place(law.pieces[k].name)
-                found.append(Gauge(name, (high - size) / self.units.force, onward))
-            return found
-        begin, end = law.start(k), law.start(k + 1)
-        if k > 0:
-            to = corner(law, k) if _jumps(law, k) else Place(law.pieces[k - 1].name)
-            found.append(Gauge(name, (hold.radius - begin) / self.units.length, to))
-        if np.isfinite(end):
-            last = k + 1 == len(law.pieces)
-            to = corner(law, k + 1) if last or _jumps(law, k + 1) else Place(law.pieces[k + 1].name)
-            found.append(Gauge(name, (end - hold.radius) / self.units.length, to))
+            found += radial_gauges(hold, self.units)
         return found
 
     def catching(self, z: Array) -> list[str]:
@@ -352,7 +244,7 @@ class Branch:
         ways: dict[str, float] = {}
         for touch in self._touches(z):
             closing = float(np.linalg.norm(touch.vector @ loose))
-            if touch.row.name not in self.active.closed and closing > 1e-9:
+            if touch.row.name not in self.active.closed and closing > LOOSE:
                 ways[touch.row.name] = -touch.approach / closing
         return sorted(ways, key=ways.__getitem__)
 
@@ -363,7 +255,6 @@ class Branch:
         forces = {t.row.name: max(t.force, 0.0) for t in touches}
         flanks = {t.row.name for t in touches if getattr(t.row, "kind", "arc").endswith("flank")}
         gears = scene.train.gears
-        loose = np.abs(self.undetermined(z)).max(axis=1, initial=0.0) > 1e-9
         return Equilibrium(
             index=scene.situation.index,
             rotation={g: scene.angle(g, x) for g in gears},
@@ -374,7 +265,9 @@ class Branch:
                 h.radial.name: -h.force @ gears[h.radial.gear].frame
                 for h in self._holds(z, touches)
             },
-            undetermined=tuple(n for n, free in zip(scene.coordinates, loose, strict=True) if free),
+            undetermined=tuple(
+                n for n, free in zip(scene.coordinates, self.loose(z), strict=True) if free
+            ),
         )
 
     def undetermined(self, z: Array) -> Array:
@@ -382,6 +275,10 @@ class Branch:
         _, sizes, right = np.linalg.svd(self.jacobian(z))
         rank = int((sizes > RANK * sizes.max(initial=0.0)).sum())
         return np.asarray(right[rank:, : self.scene.size].T)
+
+    def loose(self, z: Array) -> NDArray[np.bool_]:
+        """Which coordinates (n,) are undetermined."""
+        return np.asarray(np.abs(self.undetermined(z)).max(axis=1, initial=0.0) > LOOSE)
 
     def pulls(self, z: Array) -> dict[str, Array]:
         """Force of every radial element along its offset [N], shape (2,)."""
@@ -416,30 +313,6 @@ def identified(
     return branch, branch.solve(branch.start(x, forces, pulls))
 
 
-def _springs(law: RadialLaw, piece: int) -> bool:
-    """Whether the force on a piece is proportional to the offset."""
-    here = law.pieces[piece]
-    return here.force == here.stiffness * law.start(piece)
-
-
-def _jumps(law: RadialLaw, k: int) -> bool:
-    low, high = law.step(k)
-    return high > low
-
-
-def _pressed(law: Law, approach: float) -> tuple[float, float]:
-    """Force [N] of a closed contact and its slope [N/m], continued oddly below zero."""
-    if approach == 0.0:
-        # Both one-sided slopes agree: the law is continued oddly.
-        return 0.0, 1.0 / law.tangent(0.0)[0]
-    force = law.force(abs(approach))
-    return float(np.copysign(force, approach)), 1.0 / law.tangent(force)[0]
-
-
-def _turning(row: ArcRow, x: Array) -> Array:
-    """How the gradient of an arc's margin turns with the coordinates, shape (n, n) [1/m]."""
-    relative = row.relative @ x
-    normal = row.arc.normal(relative)
-    across = np.eye(3) - np.outer(normal, normal)
-    distance = float(np.linalg.norm(row.arc.start + relative))
-    return np.asarray(row.relative.T @ across @ row.relative / distance)
+def _forces(touches: list[Touch]) -> dict[str, float]:
+    """Forces [N] of all contacts but arcs."""
+    return {t.row.name: t.force for t in touches if not isinstance(t.row, ArcRow)}

@@ -1,0 +1,83 @@
+"""Deformation laws of flanks (formulation, section 3), for many samples.
+
+A certificate shares no code with a solver: the roots and tables here are not those of the hot path,
+so that a slip in one of them shows in the other.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def strain_energy(b: Array, c: Array, approach: Array, root: Array) -> Array:
+    """Strain energy [J] of power laws at an approach, from the cube roots of the claimed forces.
+
+    The energy is ∫F dδ at the claimed approach, so the force there has to be found. Where the
+    deformation law holds, one step of Newton's method from the claimed force arrives at it;
+    elsewhere it is found from above.
+
+    Parameters
+    ----------
+    b, c : ndarray, shape (S or 1, flanks)
+        [m/N], [m/N^(2/3)].
+    approach, root : ndarray, shape (S, flanks)
+        [m], [N^(1/3)].
+    """
+    pressed = np.maximum(approach, 0.0)
+    linear = np.where(b > 0.0, pressed / np.where(b > 0.0, b, 1.0), 0.0)
+    energy = 0.5 * linear * pressed
+    if c.any():
+        curve, rise = (b * root + c) * root * root, (3.0 * b * root + 2.0 * c) * root
+        step = (curve - pressed) / rise
+        y = root - step
+        powers = c > 0.0
+        far = powers & (pressed > 0.0) & ~(np.abs(step) <= 1e-8 * root)
+        if far.any():
+            wide = (np.broadcast_to(v, far.shape)[far] for v in (b, c, pressed))
+            y[far] = _root(*wide)
+        square = y * y
+        curved = (0.5 * b * y + 0.4 * c) * (square * square * y)
+        energy = np.where(powers, curved, energy)
+    return np.asarray(np.where(approach <= 0.0, 0.0, energy))
+
+
+def _root(b: Array, c: Array, compression: Array) -> Array:
+    """F^(1/3) of the law b F + c F^(2/3), c > 0, by Newton's method from above."""
+    y = np.sqrt(compression / c)
+    y = np.where(b > 0.0, np.minimum(y, np.cbrt(compression / np.where(b > 0.0, b, 1.0))), y)
+    for _ in range(60):
+        step = ((b * y + c) * y * y - compression) / ((3.0 * b * y + 2.0 * c) * y)
+        y = y - step
+        if (np.abs(step) <= 1e-15 * y).all():
+            break
+    return np.asarray(y)
+
+
+def interpolated(axis: Array, values: Array, at: Array) -> Array:
+    """Values of tables (S, points) at `at` (S,), straight beyond the last point."""
+    last = (~np.isnan(axis)).sum(axis=1) - 2
+    k = np.clip((axis <= at[:, None]).sum(axis=1) - 1, 0, last)[:, None]
+    x0, x1, y0, y1 = (
+        np.take_along_axis(a, k + step, 1)[:, 0] for a in (axis, values) for step in (0, 1)
+    )
+    return np.asarray(y0 + (y1 - y0) / (x1 - x0) * (at - x0))
+
+
+def area(forces: Array, compressions: Array, force: Array) -> Array:
+    """∫δ dF of tables (S, points) up to `force` (S,)."""
+    total = np.zeros(len(force))
+    points = (~np.isnan(forces)).sum(axis=1)
+    for k in range(forces.shape[1] - 1):
+        inside = k + 1 < points
+        start = forces[:, k]
+        end = np.where(k + 2 < points, forces[:, k + 1], np.inf)
+        upper = np.minimum(force, end)
+        low = compressions[:, k]
+        slope = (compressions[:, k + 1] - low) / (forces[:, k + 1] - start)
+        width = np.where(inside, np.maximum(upper - start, 0.0), 0.0)
+        part = width * (low + 0.5 * slope * width)
+        total += np.where(inside & (width > 0.0), part, 0.0)
+    return total

@@ -1,0 +1,60 @@
+"""What a judge says of many answers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+RESIDUALS = (
+    "force_balance",
+    "moment_balance",
+    "penetration",
+    "complementarity",
+    "deformation_law",
+    "cone_membership",
+    "energy_gap",
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Verdicts:
+    """Certificates of S answers.
+
+    Attributes
+    ----------
+    residuals : ndarray, shape (S, 7)
+        Scaled, in the order of `RESIDUALS`; infinite where an answer cannot be judged.
+    tolerance : float
+    load, deflection : ndarray, shape (S,)
+        Scales [N], [m].
+    """
+
+    residuals: Array
+    tolerance: float
+    load: Array
+    deflection: Array
+
+    @classmethod
+    def joined(cls, parts: Sequence[Verdicts]) -> Verdicts:
+        """Return the verdicts of parts, one after another."""
+        return cls(
+            np.concatenate([v.residuals for v in parts]),
+            parts[0].tolerance,
+            np.concatenate([v.load for v in parts]),
+            np.concatenate([v.deflection for v in parts]),
+        )
+
+    @property
+    def worst(self) -> Array:
+        """Largest scaled residual of every answer."""
+        return np.asarray(self.residuals.max(axis=1))
+
+    @property
+    def passed(self) -> NDArray[np.bool_]:
+        """Whether every scaled residual is within the tolerance."""
+        return np.asarray(self.worst <= self.tolerance)

@@ -1,0 +1,113 @@
+"""Coordinates of a scene: which there are, and how gears move with them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from loadshare.scene.scene import Array, Rotation
+from loadshare.train.train import Train
+
+
+@dataclass(frozen=True, slots=True)
+class Coordinates:
+    """Coordinates of a train, and what never became one.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Rotations, displacements, slips; every coordinate is a length [m].
+    rotation : mapping of gear to Rotation
+    displacement : mapping of gear to slice
+        Where the two displacement components of a moving gear stand.
+    slip : mapping of gear to slice
+        Where those of a slip stand, of every spline that remembers it.
+    frame : mapping of gear to ndarray, shape (2, 3)
+        In which the components are taken.
+    removed : tuple of (str, str)
+        What is no coordinate, and why.
+    """
+
+    names: tuple[str, ...]
+    rotation: dict[str, Rotation]
+    displacement: dict[str, slice]
+    slip: dict[str, slice]
+    frame: dict[str, Array]
+    removed: tuple[tuple[str, str], ...]
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates n."""
+        return len(self.names)
+
+    def components(self, where: slice) -> Array:
+        """Matrix (2, n) that picks two components."""
+        return np.asarray(np.eye(self.size)[where])
+
+    def moved(self, gear: str) -> Array:
+        """Displacement of a gear as a matrix (3, n); zero for one that cannot move."""
+        matrix = np.zeros((3, self.size))
+        if gear in self.displacement:
+            matrix[:, self.displacement[gear]] = self.frame[gear].T
+        return matrix
+
+
+def coordinates_of(train: Train) -> Coordinates:
+    """Give every gear that can turn, move or slip its coordinates."""
+    names: list[str] = []
+    removed: list[tuple[str, str]] = []
+
+    def pair(what: str) -> slice:
+        names.extend((f"{what} x", f"{what} y"))
+        return slice(len(names) - 2, len(names))
+
+    rotation = _rotations(train, names, removed)
+    displacement: dict[str, slice] = {}
+    for name, gear in train.gears.items():
+        if gear.moves:
+            displacement[name] = pair(f"gear {name}")
+        else:
+            removed.append((f"gear {name} x, y", "its bearing is rigid"))
+    remembering = train.splines if train.slip is not None else ()
+    slip = {gear: pair(f"spline {gear} slip") for gear in remembering}
+    frame = {name: gear.frame for name, gear in train.gears.items()}
+    return Coordinates(tuple(names), rotation, displacement, slip, frame, tuple(removed))
+
+
+def _rotations(
+    train: Train, names: list[str], removed: list[tuple[str, str]]
+) -> dict[str, Rotation]:
+    """One rotation coordinate per set of gears on rigid shafts; none for the output's set."""
+    offset = {train.output: 0.0}
+    sets = {train.output: train.output}
+    for seed in (train.output, *train.gears):
+        if seed in sets and seed != train.output:
+            continue
+        sets[seed], offset[seed] = seed, 0.0
+        queue = [seed]
+        while queue:
+            here = queue.pop()
+            for shaft in train.shafts.values():
+                ends = (shaft.first, shaft.second)
+                if not math.isinf(shaft.stiffness) or here not in ends:
+                    continue
+                forward = here == ends[0]
+                other = ends[1] if forward else ends[0]
+                lag = -shaft.clocking if forward else shaft.clocking
+                if other not in sets:
+                    sets[other], offset[other] = seed, offset[here] + lag
+                    removed.append((f"gear {other} rotation", f"rigid shaft {shaft.name}"))
+                    queue.append(other)
+    removed.append((f"gear {train.output} rotation", "the output gear is held"))
+    where: dict[str, int] = {}
+    for name in train.gears:
+        root = sets[name]
+        if root not in where and root != train.output:
+            where[root] = len(names)
+            names.append(f"gear {root} rotation")
+    return {
+        name: Rotation(where.get(root), 1.0 / train.gears[root].base_radius, offset[name])
+        for name, root in sets.items()
+    }

@@ -1,0 +1,71 @@
+"""Inputs of a case that can be differentiated by: its numbers, but no counts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from loadshare.case import Case
+from loadshare.case.keys import Path, dotted, look_up, parse
+from loadshare.errors import CaseError, Problem
+from loadshare.study.parameter import STUDY, Value, leaves, matches, read_value
+from loadshare.study.sensitivity.result import Input
+
+
+def inputs_of(case: Case, wanted: str | Sequence[str] | None) -> list[Input]:
+    """Return the inputs meant; all numbers that are no counts by default.
+
+    Parameters
+    ----------
+    case : Case
+    wanted : str or sequence of str, optional
+        Key paths or patterns, as `sensitivity` takes them.
+
+    Raises
+    ------
+    CaseError
+        If nothing in the case is meant; all problems are listed.
+    """
+    data = case.to_dict()
+    if wanted is None:
+        return _below(data, ())
+    inputs: list[Input] = []
+    problems = []
+    for pattern in [wanted] if isinstance(wanted, str) else wanted:
+        meant = [item for key in matches(case, pattern) for item in _meant(data, key)]
+        if not meant:
+            given = look_up(data, parse(pattern))
+            what = "is not in the case" if given is None else "is no number with a unit"
+            shown = "" if given is None else str(given)
+            problems.append(Problem(STUDY, pattern, shown, what, "an input that the case gives"))
+        inputs += meant
+    if problems:
+        raise CaseError(problems)
+    return list(dict.fromkeys(inputs))
+
+
+def _meant(data: object, key: str) -> list[Input]:
+    """Return the number at a key, or all numbers below it."""
+    path = parse(key)
+    given = look_up(data, path)
+    if isinstance(given, dict | list):
+        return _below(given, path)
+    value = _number(given)
+    return [] if value is None else [Input(key, value)]
+
+
+def _below(data: object, above: Path) -> list[Input]:
+    """Return all numbers of a table or list that are no counts."""
+    found = []
+    for path in leaves(data):
+        value = _number(look_up(data, path))
+        if value is not None:
+            found.append(Input(dotted((*above, *path)), value))
+    return found
+
+
+def _number(given: object) -> Value | None:
+    """Return a physical value or a plain number; counts and names are none."""
+    if isinstance(given, int):
+        return None
+    value = read_value(given)
+    return None if value is None or (isinstance(given, str) and not value.unit) else value

@@ -1,0 +1,101 @@
+"""What a sensitivity study finds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from loadshare.scene.scene import Array
+from loadshare.study.parameter import Value
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+SIDES = ("falling", "rising")
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """An input that is varied.
+
+    Attributes
+    ----------
+    key : str
+        Dotted key path.
+    value : Value
+        As the case says it.
+    """
+
+    key: str
+    value: Value
+
+
+@dataclass(frozen=True, slots=True)
+class Kink:
+    """An equilibrium on the verge of another active set: its derivatives hold to one side each.
+
+    Attributes
+    ----------
+    position : int
+    elements : tuple of str
+        What has neither gap nor force, or stands at a corner of its law; and contacts that catch a
+        body which floats free, as soon as an input loads it.
+    """
+
+    position: int
+    elements: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rates:
+    """Derivatives of one position with respect to one input, to one side, per SI unit.
+
+    Attributes
+    ----------
+    torque, share, pair_share : mapping of mesh to float
+        [N·m], [-]; NaN where nothing can follow to that side, or a group carries nothing.
+    displacement : mapping of gear to ndarray, shape (2,)
+        [m], in the gear's transverse frame; NaN where the equilibrium leaves it undetermined.
+    """
+
+    torque: dict[str, float]
+    share: dict[str, float]
+    pair_share: dict[str, float]
+    displacement: dict[str, Array]
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """Derivatives of the certified equilibria of a case.
+
+    Attributes
+    ----------
+    inputs : tuple of Input
+    positions : tuple of int
+    rates : mapping of (position, key, side) to Rates
+        Side is "falling" or "rising"; both agree where there is no kink.
+    omega, pair_omega : mapping of (key, side) to mapping of stage to float
+        Derivative of the largest Ω of each stage and of the system.
+    kinks : tuple of Kink
+    error : mapping of key to float
+        Estimated relative error of the derivative of the equations.
+    skipped : tuple of (str, str)
+        Inputs that cannot be varied on their own, and why.
+    """
+
+    inputs: tuple[Input, ...]
+    positions: tuple[int, ...]
+    rates: dict[tuple[int, str, str], Rates]
+    omega: dict[tuple[str, str], dict[str, float]]
+    pair_omega: dict[tuple[str, str], dict[str, float]]
+    kinks: tuple[Kink, ...]
+    error: dict[str, float]
+    skipped: tuple[tuple[str, str], ...]
+
+    @cached_property
+    def dataset(self) -> xr.Dataset:
+        """The derivatives as labelled arrays, per SI unit of the input."""
+        from loadshare.study.tables import sensitivity_dataset
+
+        return sensitivity_dataset(self)

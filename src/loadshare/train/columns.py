@@ -1,0 +1,125 @@
+"""A table of samples as it is given: columns of values by key path."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from loadshare.case.keys import Path, dotted, parse
+from loadshare.case.units import si_factor
+from loadshare.errors import CaseError, Problem
+
+_UNIT = re.compile(r"(?P<key>.*\S)\s+\[(?P<unit>[^\]]*)\]")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Column:
+    """Values of one key.
+
+    Attributes
+    ----------
+    path : tuple of str or int
+        The key.
+    unit : str
+        Of the values; empty for a bare number.
+    values : ndarray, shape (S,)
+        Numbers, or texts for a key that takes words.
+    """
+
+    path: Path
+    unit: str
+    values: NDArray[np.generic]
+
+    @property
+    def has_numbers(self) -> bool:
+        """Whether the values are numbers, not texts."""
+        return self.values.dtype.kind in "fiu"
+
+    @property
+    def is_positive(self) -> bool:
+        """Whether the values are numbers, and all above zero."""
+        return self.has_numbers and bool((self.values.astype(np.float64) > 0.0).all())
+
+    def text(self, sample: int) -> str | float:
+        """Value of a sample as a case file has it."""
+        value = self.values[sample].item()
+        return f"{value!r} {self.unit}" if self.unit else value
+
+    def in_si(self, unit: str) -> NDArray[np.float64]:
+        """Values (S,) in an SI unit, empty for bare numbers.
+
+        Raises
+        ------
+        CaseError
+            If a text is no value with a unit of that kind.
+        """
+        if self.has_numbers:
+            factor = si_factor(self.unit, unit) if unit else 1.0
+            assert factor is not None
+            return self.values.astype(np.float64) * factor
+        from pydantic_core import PydanticCustomError
+
+        from loadshare.case.quantity import Dimension
+
+        reader = Dimension(unit, "a value", f"1 {unit}")
+        try:
+            return np.array([float(reader.read(str(v))) for v in self.values])
+        except PydanticCustomError as error:
+            told = (error.context or {}).get("said", str(error))
+            problem = Problem("samples", dotted(self.path), "", f"holds a value that {told}")
+            raise CaseError([problem]) from error
+
+
+def columns_of(samples: Mapping[str, ArrayLike]) -> list[Column]:
+    """Read a table of samples.
+
+    Parameters
+    ----------
+    samples : mapping of str to array_like
+        Values by key path, all of one length. The unit stands in brackets after the key, as in
+        ``"rings.4.float [um]"``; texts with their units, as in a case file, may stand instead.
+
+    Raises
+    ------
+    CaseError
+        If lengths differ or a key is no key path; all problems are listed.
+    """
+    columns: list[Column] = []
+    problems = []
+    for key, given in samples.items():
+        match = _UNIT.fullmatch(key)
+        text, unit = (match["key"], match["unit"]) if match else (key, "")
+        try:
+            path = parse(text)
+        except ValueError:
+            problems.append(Problem("samples", key, "", "is not a key path"))
+            continue
+        column = Column(path, unit, np.atleast_1d(np.asarray(given)))
+        fault = _fault(column, len(columns[0].values) if columns else None)
+        if fault:
+            problems.append(Problem("samples", key, "", fault))
+        else:
+            columns.append(column)
+    if not samples:
+        problems.append(Problem("samples", "", "", "there is no key", "at least one key"))
+    if problems:
+        raise CaseError(problems)
+    return columns
+
+
+def _fault(column: Column, count: int | None) -> str:
+    """What is wrong with a column beside columns of `count` values; empty where nothing is."""
+    values = column.values
+    if values.ndim != 1 or not len(values):
+        return "is not a list of values"
+    if count is not None and len(values) != count:
+        return f"has {len(values)} values, the keys before it have {count}"
+    if column.unit and not column.has_numbers:
+        return "has a unit, but its values are texts"
+    if column.has_numbers and not np.isfinite(values.astype(float)).all():
+        return "holds a value that is not finite"
+    return ""
