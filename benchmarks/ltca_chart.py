@@ -51,7 +51,7 @@ def measured(name: str) -> dict[str, tuple[float, float]]:
             lambda model=model: float(
                 ltca(gears, pair.torque, POSITIONS, FIT_LOADS, compliance(model)).secant(0.9).mean()
             ),
-            1 if model.startswith("elements") else 10,
+            2 if model.startswith("elements") else 40,
         )
         found[model] = spent, mean
     return found

@@ -79,25 +79,7 @@ def solve_contact(
     warm: Array | None = None,
     solver: str = "clarabel",
 ) -> Contact:
-    """Solve the contact under a load.
-
-    Parameters
-    ----------
-    problem : ContactProblem
-    load : float
-        P [N], positive.
-    warm : array (N,), optional
-        Forces under another load, to begin from.
-    solver : str
-        Back-end for programmes that the exchange does not solve.
-
-    Raises
-    ------
-    ValueError
-        If the load is not positive.
-    Refused
-        If no contact is found that its certificate passes.
-    """
+    """Solve one contact under a load P [N] from `warm` (N,) [N]; see :func:`solve_contacts`."""
     begun = None if warm is None else warm[None]
     return solve_contacts(problem.alone, np.array([load]), begun, solver)[0]
 
@@ -293,14 +275,14 @@ def exchanges(matrix: Array, gap: Array, load: Array, closed: Mask) -> tuple[Arr
         Where the exchange did not come back to a set.
     """
     force, solved = np.zeros_like(gap), np.zeros(len(gap), dtype=bool)
-    seen: list[set[bytes]] = [set() for _ in gap]
+    seen: set[tuple[int, bytes]] = set()
     closed, going = closed.copy(), list(range(len(gap)))
     for _ in range(EXCHANGES):
-        going = [k for k in going if closed[k].any() and closed[k].tobytes() not in seen[k]]
+        sets = {k: (k, closed[k].tobytes()) for k in going if closed[k].any()}
+        going = [k for k, own in sets.items() if own not in seen]
         if not going:
             break
-        for k in going:
-            seen[k].add(closed[k].tobytes())
+        seen.update(sets.values())
         now, inner = closed[going], matrix if len(going) == len(gap) else matrix[going]
         found, approach = _saddles(inner, gap[going], load[going], now)
         yielded = times(inner, found)

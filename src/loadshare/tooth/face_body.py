@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar, Literal
 
@@ -14,52 +13,24 @@ from loadshare.tooth.body import Array
 from loadshare.tooth.face_flank import FaceFlank
 from loadshare.tooth.face_gear import FaceGear
 from loadshare.tooth.gap import LAST_STEP
-from loadshare.tooth.placement import Placement, fixed, turned
+from loadshare.tooth.placed_tooth import PlacedTooth
+from loadshare.tooth.placement import turned
 
 
-@dataclass(frozen=True)
-class FaceBody:
+class FaceBody(PlacedTooth[FaceGear]):
     """`ToothBody` of a face gear.
 
     Width stations are equal steps of the length along the shaper's axis (at 90°: coaxial
     cylinders). The fillet is the path of the shaper's tip corner; between two fillets the root is
     the path of the shaper's tip land.
-
-    Parameters
-    ----------
-    gear : FaceGear
-        The gear.
-    placement : Placement
-        Where it stands.
-    foot : float
-        The u at which the fillet ends.
     """
 
-    gear: FaceGear
-    placement: Placement = field(default_factory=fixed)
-    foot: float = 0.4
-
     shape: ClassVar[Literal["face"]] = "face"
-
-    @property
-    def teeth(self) -> int:
-        """Number of teeth."""
-        return self.gear.teeth
 
     @property
     def rim(self) -> float:
         """Thickness of the body below the root [m]."""
         return self.gear.rim_thickness
-
-    @property
-    def youngs_modulus(self) -> float:
-        """Modulus of elasticity [Pa]."""
-        return self.gear.youngs_modulus
-
-    @property
-    def poisson(self) -> float:
-        """Poisson's ratio."""
-        return self.gear.poisson
 
     @cached_property
     def flank(self) -> FaceFlank:
@@ -71,29 +42,25 @@ class FaceBody:
 
         The flank goes by depth, the fillet by the shaper's angle.
         """
-        u, w = np.broadcast_arrays(np.asarray(u, float), np.asarray(w, float))
-        length = self.gear.inner + w * (self.gear.outer - self.gear.inner)
+        length = self.gear.inner + np.asarray(w, float) * (self.gear.outer - self.gear.inner)
+        u, *station = np.broadcast_arrays(np.asarray(u, float), length, *self._foot(length))
+        length, foot_phi, foot_depth = station
         rooted = u <= self.foot
+        above = ~rooted
         trailing = np.empty((*u.shape, 3))
-        trailing[rooted] = self._root(u[rooted] / self.foot, length[rooted])
-        up = (u[~rooted] - self.foot) / (1.0 - self.foot)
-        trailing[~rooted] = self._side(np.minimum(up, 1.0), length[~rooted])
+        trailing[rooted] = self._root(u[rooted] / self.foot, length[rooted], foot_phi[rooted])
+        up = np.minimum((u[above] - self.foot) / (1.0 - self.foot), 1.0)
+        depth = foot_depth[above] + up * (self.gear.tip_depth - foot_depth[above])
+        trailing[above] = self.flank.point(*self.flank.at_blank(length[above], depth))
         half: Array = trailing * np.array([1.0, -float(side), 1.0])
         return half
 
-    def _side(self, up: Array, length: Array) -> Array:
-        """Points of the flank at shares of its depth, 0 at the fillet and 1 at the tip."""
-        gear = self.gear
-        foot_depth = self._foot(length)[1]
-        depth = foot_depth + up * (gear.tip_depth - foot_depth)
-        return self.flank.point(*self.flank.at_blank(length, depth))
-
-    def _root(self, share: Array, length: Array) -> Array:
+    def _root(self, share: Array, length: Array, foot_phi: Array) -> Array:
         """Points of the root at shares of its line, from the middle of the space to the flank."""
         share = np.maximum(share, 0.0)
         land = self._land_share
         along = np.maximum((share - land) / (1.0 - land), 0.0)
-        root = self._corner(length, self._foot(length)[0], along)
+        root = self._corner(length, foot_phi, along)
         # From the end of the fillet the land runs on at the same radius to the middle of the space.
         space = -math.pi / self.gear.teeth
         polar = np.arctan2(root[..., 1], root[..., 0])
@@ -107,14 +74,6 @@ class FaceBody:
         _, foot_depth = self._foot(length)
         up = (depth - foot_depth) / (gear.tip_depth - foot_depth)
         return self.foot + (1.0 - self.foot) * up, (length - gear.inner) / (gear.outer - gear.inner)
-
-    def to_body(self, points: Array, rotation: Array | float) -> Array:
-        """Carry points (..., 3) from the fixed frame to the gear turned by `rotation` [rad]."""
-        return self.placement.to_body(points, rotation)
-
-    def to_space(self, points: Array, rotation: Array | float) -> Array:
-        """Carry points (..., 3) from the gear turned by `rotation` [rad] to the fixed frame."""
-        return self.placement.to_space(points, rotation)
 
     def _foot(self, length: Array) -> tuple[Array, Array]:
         """Base-tangent angle and depth where the shaper's tip ends the flank."""

@@ -11,6 +11,8 @@ from loadshare.tooth.face_pair import FaceGearPair, FaceMisalignment
 from loadshare.tooth.helicoid import HelicoidGear
 from loadshare.tooth.helicoid_checks import gear_problems
 from loadshare.tooth.involute import inv
+from loadshare.tooth.meeting import meeting_problems
+from loadshare.tooth.partners import Demand, misfits, same
 from loadshare.tooth.words import degrees, millimetres, plain, problem
 
 
@@ -46,6 +48,8 @@ def face_gear_pair(
         problems = _limit_problems(gear)
         pair = FaceGearPair(pinion, gear, misalignment or FaceMisalignment())
         problems += _mesh_problems(pair)
+    if not problems:
+        problems = meeting_problems(pair, pair.misalignment)
     if problems:
         raise CaseError(problems)
     return pair
@@ -112,37 +116,21 @@ def _value_problems(gear: FaceGear) -> list[Problem]:
 
 def _partner_problems(pinion: HelicoidGear, gear: FaceGear) -> list[Problem]:
     shaper = gear.shaper
-    checks = (
-        ("internal", not pinion.internal, "true", "false: only an external pinion drives"),
-        ("helix_angle", pinion.helix_angle == 0.0, degrees(pinion.helix_angle), "0 deg"),
-        ("helices", pinion.helices == 1, str(pinion.helices), "1"),
-        (
-            "module",
-            math.isclose(pinion.module, shaper.module, rel_tol=1e-9),
-            millimetres(pinion.module),
-            f"that of the shaper, {millimetres(shaper.module)}",
-        ),
-        (
-            "pressure_angle",
-            math.isclose(pinion.pressure_angle, shaper.pressure_angle, rel_tol=1e-9),
-            degrees(pinion.pressure_angle),
-            f"that of the shaper, {degrees(shaper.pressure_angle)}",
-        ),
-        (
+    demands = (
+        Demand("internal", not pinion.internal, "true", "false: only an external pinion drives"),
+        Demand("helix_angle", pinion.helix_angle == 0.0, degrees(pinion.helix_angle), "0 deg"),
+        Demand("helices", pinion.helices == 1, str(pinion.helices), "1"),
+        same("module", pinion.module, shaper.module, millimetres, "shaper"),
+        same("pressure_angle", pinion.pressure_angle, shaper.pressure_angle, degrees, "shaper"),
+        Demand(
             "teeth",
             pinion.teeth <= shaper.teeth,
             str(pinion.teeth),
             f"at most as many as the shaper, {shaper.teeth}",
         ),
     )
-    found = [
-        problem(f"driver.{name}", given, "the pinion does not fit the face gear", allowed)
-        for name, fine, given, allowed in checks
-        if not fine
-    ]
-    if found:
-        return found
-    return _shift_problems(pinion, shaper)
+    found = misfits("driver", "the pinion does not fit the face gear", demands)
+    return found or _shift_problems(pinion, shaper)
 
 
 def _shift_problems(pinion: HelicoidGear, shaper: Shaper) -> list[Problem]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -14,6 +13,7 @@ from loadshare.tooth.flank import Patch, solve_2
 from loadshare.tooth.placement import turned
 
 Pair: TypeAlias = tuple[Array, Array]
+Vector: TypeAlias = tuple[Array, Array, Array]
 
 # A Newton step below this [rad] is the last: what is left is about its square, below round-off.
 LAST_TURN = 1e-8
@@ -45,48 +45,28 @@ class FaceFlank:
     side: int = -1
 
     def patch(self, a: Array, b: Array, turn: Array | float) -> Patch:
-        """Points of the flank at the shaper's roll `a` and base-tangent angle `b` [rad].
-
-        Parameters
-        ----------
-        a, b : array
-            Surface parameters ξ and Φ, broadcast against each other.
-        turn : array or float
-            Angle by which the tooth has turned about z [rad].
-
-        Returns
-        -------
-        Patch
-            In the frame in which the gear turns.
-        """
+        """Points of the flank at ξ = `a` and Φ = `b` [rad]; see `HelicoidFlank.patch`."""
         gear, s = self.gear, -self.side
-        base, ratio = gear.shaper.base_radius, gear.roll_ratio
+        base = gear.shaper.base_radius
         roll, phi, turn = np.broadcast_arrays(a, b, turn)
         cosine, sine = np.cos(phi), np.sin(phi)
-        axial = gear.axial_scale / cosine
-        reach = s * base * roll
-        across, around = self._vector(cosine, sine, 0.0), self._vector(-sine, cosine, 0.0)
-        point = self._generated(roll, phi)
-
-        # Seen from the gear, everything also turns back by m φ_s about z.
-        back, back_normal = ratio * _about_z(point), ratio * _about_z(around)
-        along_phi = self._vector(
-            -base * sine - reach * cosine, base * cosine - reach * sine, axial * sine / cosine
-        )
-        components = (
-            point,
-            -s * around,
-            s * (base * around - back),
-            along_phi - back,
-            back_normal,
-            s * (across + back_normal),
-        )
-        return Patch.spun(components, turn - self._turned_back(roll, phi))
+        x, y, u = self._generated(s * roll, cosine, sine)
+        # Seen from the gear, everything also turns back about z = (−sin Γ, 0, cos Γ) by m φ_s.
+        k, n = (gear.roll_ratio * float(gear.axes[2, i]) for i in (2, 0))
+        tilted = Patch.of(
+            (x, y, u),
+            (s * sine, -s * cosine, 0.0),
+            (s * (k * y - base * sine), s * (base * cosine - k * x + n * u), -s * n * y),
+            ((k - 1.0) * y, (1.0 - k) * x + n * u, u * sine / cosine - n * y),
+            (-k * cosine, -k * sine, n * cosine),
+            (s * (1.0 - k) * cosine, s * (1.0 - k) * sine, s * n * cosine),
+        ).turned(gear.axes)
+        return tilted.spun(turn - self._turned_back(roll, phi))
 
     def point(self, roll: Array, phi: Array) -> Array:
         """Points (..., 3) of the flank of tooth 0 at surface parameters ξ and Φ [m]."""
-        points = np.moveaxis(self._generated(roll, phi), 0, -1)
-        return turned(points, -self._turned_back(roll, phi))
+        made = self._generated(-self.side * roll, np.cos(phi), np.sin(phi))
+        return turned(np.stack(self._in_gear(*made), axis=-1), -self._turned_back(roll, phi))
 
     def at_blank(self, length: Array, depth: Array) -> tuple[Array, Array]:
         """Surface parameters of the points at given lengths and depths of the blank [m].
@@ -132,34 +112,27 @@ class FaceFlank:
         shaper_turn = phi - s * gear.shaper.base_half_angle + s * roll
         return gear.roll_ratio * shaper_turn - self.side * np.pi / gear.teeth
 
-    def _generated(self, roll: Array, phi: Array) -> Array:
-        """Coordinates (3, ...) of the points where the shaper generates them, gear frame [m]."""
-        base, reach = self.gear.shaper.base_radius, -self.side * roll
-        cosine, sine = np.cos(phi), np.sin(phi)
-        return self._vector(
-            base * (cosine - reach * sine),
-            base * (sine + reach * cosine),
-            self.gear.axial_scale / cosine,
-        )
+    def _generated(self, reach: Array, cosine: Array, sine: Array) -> Vector:
+        """Where the shaper generates points, in its frame, from s ξ and cosine and sine of Φ."""
+        base = self.gear.shaper.base_radius
+        towards, tangential = cosine - reach * sine, sine + reach * cosine
+        return base * towards, base * tangential, self.gear.axial_scale / cosine
 
-    def _vector(self, towards: Array, tangential: Array, axial: Array | float) -> Array:
-        """Components (3, ...) in the gear's frame of a vector given in the shaper's."""
-        angle = self.gear.shaft_angle
-        c, n = math.cos(angle), math.sin(angle)
-        return np.stack([c * towards + n * axial, tangential, c * axial - n * towards])
+    def _in_gear(self, towards: Array, tangential: Array, axial: Array | float) -> Vector:
+        """Components in the gear's frame of a vector given in the shaper's."""
+        (c, _, n), _, _ = self.gear.axes.tolist()
+        return c * towards + n * axial, tangential, c * axial - n * towards
 
     def _blank(self, roll: Array, phi: Array) -> tuple[Pair, Pair, Pair]:
         """Length and depth of the blank [m], then the slopes of either over ξ and Φ."""
-        gear, s = self.gear, -self.side
-        base = gear.shaper.base_radius
-        c, n = math.cos(gear.shaft_angle), math.sin(gear.shaft_angle)
+        s, base = -self.side, self.gear.shaper.base_radius
+        (c, _, n), _, _ = self.gear.axes.tolist()
         cosine, sine = np.cos(phi), np.sin(phi)
-        x, y, z = self._generated(roll, phi)
+        made = self._generated(s * roll, cosine, sine)
+        x, y, z = self._in_gear(*made)
         radius = np.hypot(x, y)
-        by_roll = self._vector(-s * base * sine, s * base * cosine, 0.0)
-        by_phi = self._vector(
-            -y, base * (cosine - s * roll * sine), gear.axial_scale * sine / cosine**2
-        )
+        by_roll = self._in_gear(-s * base * sine, s * base * cosine, 0.0)
+        by_phi = self._in_gear(-made[1], made[0], made[2] * sine / cosine)
         (out_roll, up_roll), (out_phi, up_phi) = (
             ((x * dx + y * dy) / radius, dz) for dx, dy, dz in (by_roll, by_phi)
         )
@@ -168,8 +141,3 @@ class FaceFlank:
             (n * out_roll + c * up_roll, n * out_phi + c * up_phi),
             (c * out_roll - n * up_roll, c * out_phi - n * up_phi),
         )
-
-
-def _about_z(vectors: Array) -> Array:
-    """ẑ × vectors (3, ...)."""
-    return np.stack([-vectors[1], vectors[0], np.zeros_like(vectors[0])])

@@ -37,7 +37,7 @@ def undercut_limit(gear: FaceGear) -> float:
 def regularity(flank: FaceFlank, roll: Array, phi: Array) -> Array:
     """Area of the surface tangents over r_bs², positive on the regular part of the flank."""
     patch = flank.patch(roll, phi, 0.0)
-    area = dot(np.cross(patch.point_a, patch.point_b), patch.normal)
+    area = dot(np.cross(*patch.rays), patch.normal)
     return flank.side * area / flank.gear.shaper.base_radius**2
 
 

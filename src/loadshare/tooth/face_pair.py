@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import ClassVar, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from loadshare.tooth.body import Array
@@ -142,7 +143,7 @@ class FaceGearPair:
         phi = np.array(-self.working_angle)
 
         def depth(roll: float) -> float:
-            point = flank.patch(np.array(roll), phi, 0.0).point
+            point = flank.point(np.array(roll), phi)
             return float(gear.blank(point)[1]) - gear.tip_depth
 
         tip = gear.shaper.tip_roll
@@ -237,6 +238,40 @@ class FaceGearPair:
 
         A line's part on both flanks is where its least margin is positive.
         """
+        position, valleys, reach = self._candidates(driver, driven)
+
+        def margin(stations: Array, lines: NDArray[np.int64], *, near: bool = False) -> Array:
+            nonlocal valleys
+            here = valleys.rows(lines)
+            found = here.guess(stations) if near else None
+            if found is None:
+                found = here.find(stations, NEAR_EDGE)
+            if valleys.known is None:
+                valleys = valleys.knowing(stations, found)
+            a, b, c, d, gap = found
+            least = np.min(list(self.margins((a, b), (c, d)).values()), axis=0)
+            return np.where(np.isfinite(gap), least, -1.0)
+
+        found, start, end = span(margin, reach)
+        valleys = valleys.rows(found)
+        return Extents(
+            position[found],
+            valleys.pairs,
+            start,
+            end,
+            valleys.driver,
+            valleys.driven,
+            valleys.trace,
+        )
+
+    def margins_about(self, driver: Array, driven: Array) -> Mapping[str, Array]:
+        """Margins along the lines of pairs near contact, on both flanks or not."""
+        _, valleys, reach = self._candidates(driver, driven)
+        a, b, c, d, _ = valleys.find(reach[:, None] * np.linspace(-1.0, 1.0, 33), NEAR_EDGE)
+        return self.margins((a, b), (c, d))
+
+    def _candidates(self, driver: Array, driven: Array) -> tuple[NDArray[np.int64], Valleys, Array]:
+        """Lines of pairs that may be in contact: positions (m,), lines, farthest stations (m,)."""
         gear = self.pinion
         per_tooth = 2.0 * math.pi / gear.teeth
         middle = self.working_angle + driver + gear.base_half_angle
@@ -244,31 +279,10 @@ class FaceGearPair:
         first, last = self.first_roll - per_tooth, gear.tip_roll + per_tooth
         position, pairs = between((first - middle) / per_tooth, (last - middle) / per_tooth)
         valleys = self.valleys(pairs, driver[position], driven[position])
-
-        def margin(stations: Array) -> Array:
-            nonlocal valleys
-            found = valleys.find(stations, NEAR_EDGE)
-            if valleys.known is None:
-                valleys = valleys.knowing(stations, found)
-            a, b, c, d, gap = found
-            least = np.min(list(self.margins((a, b), (c, d)).values()), axis=0)
-            return np.where(np.isfinite(gap), least, -1.0)
-
         width = min(gear.face_width, self.gear.outer - self.gear.inner)
         along = np.maximum(np.abs(valleys.start.major[:, 2]), 0.2)
-        found, start, end = span(
-            margin, 1.1 * (0.5 * width + abs(self.contact_length - self.middle)) / along
-        )
-        valleys = valleys.rows(found)
-        return Extents(
-            position[found],
-            pairs[found],
-            start[found],
-            end[found],
-            valleys.driver,
-            valleys.driven,
-            valleys.trace,
-        )
+        reach = 1.1 * (0.5 * width + abs(self.contact_length - self.middle)) / along
+        return position, valleys, reach
 
     def positions(self, phases: Sequence[float], points_per_line: int) -> tuple[MeshPosition, ...]:
         """Unloaded contact at phases of the mesh cycle; see `positions.positions`."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -16,41 +17,61 @@ class Patch:
 
     Parameters
     ----------
-    point : array (..., 3)
-        Position [m].
-    normal : array (..., 3)
-        Unit vector out of the tooth.
-    point_a, point_b : array (..., 3)
-        Derivatives of the position with respect to the two surface parameters.
-    normal_a, normal_b : array (..., 3)
-        Derivatives of the unit normal.
+    components : array (6, 3, ...)
+        Components of `vectors`, each for itself, for all six are turned as one.
     """
 
-    point: Array
-    normal: Array
-    point_a: Array
-    point_b: Array
-    normal_a: Array
-    normal_b: Array
+    components: Array
 
     @classmethod
-    def spun(cls, components: Sequence[Iterable[Array | float]], angle: Array) -> Patch:
-        """A patch whose vectors have the components (x, y, z), turned about z by angles [rad]."""
-        vectors = np.empty((6, 3, *angle.shape))
-        cosine, sine = np.cos(angle), np.sin(angle)
-        for vector, (x, y, z) in zip(vectors, components, strict=True):
-            vector[0] = cosine * x - sine * y
-            vector[1] = sine * x + cosine * y
-            vector[2] = z
-        return cls(*(_last(vector) for vector in vectors))
+    def of(cls, *vectors: Iterable[Array | float]) -> Patch:
+        """A patch from position, normal and derivatives, each by its components (x, y, z)."""
+        point, *others = vectors
+        components = np.empty((6, 3, *np.broadcast(*point).shape))
+        for number, vector in enumerate((point, *others)):
+            for axis, part in enumerate(vector):
+                components[number, axis] = part
+        return cls(components)
 
-    def turned(self, rotation: Array, origin: Array) -> Patch:
+    @cached_property
+    def vectors(self) -> Array:
+        """Position, unit normal, and derivatives of either over a and b (6, ..., 3)."""
+        return np.moveaxis(self.components, 1, -1)
+
+    @property
+    def point(self) -> Array:
+        """Positions (..., 3) [m]."""
+        return np.asarray(self.vectors[0])
+
+    @property
+    def normal(self) -> Array:
+        """Unit vectors (..., 3) out of the tooth."""
+        return np.asarray(self.vectors[1])
+
+    @property
+    def rays(self) -> Array:
+        """Derivatives (2, ..., 3) of the position over both surface parameters."""
+        return self.vectors[2:4]
+
+    @property
+    def bends(self) -> Array:
+        """Derivatives (2, ..., 3) of the unit normal over both surface parameters."""
+        return self.vectors[4:6]
+
+    def spun(self, angle: Array) -> Patch:
+        """The patch turned about z by angles (...) [rad]."""
+        components, cosine, sine = self.components.copy(), np.cos(angle), np.sin(angle)
+        x, y = self.components[:, 0], self.components[:, 1]
+        components[:, 0], components[:, 1] = cosine * x - sine * y, sine * x + cosine * y
+        return Patch(components)
+
+    def turned(self, rotation: Array, origin: Array | None = None) -> Patch:
         """The patch carried to another frame: x ↦ rotation x + origin."""
-        names = list(self.__dataclass_fields__)
-        vectors = [getattr(self, name) for name in names]
-        if not np.array_equal(rotation, np.eye(3)):
-            vectors = [vector @ rotation.T for vector in vectors]
-        return Patch(vectors[0] + origin, *vectors[1:])
+        shape = self.components.shape
+        components = (rotation @ self.components.reshape(6, 3, -1)).reshape(shape)
+        if origin is not None:
+            components[0] += origin.reshape(3, *[1] * (len(shape) - 2))
+        return Patch(components)
 
     def normal_change(self, direction: Array) -> Array:
         """Change of the unit normal per length along tangential directions.
@@ -68,12 +89,11 @@ class Patch:
         array (..., 3)
             Derivative of the normal [1/m] times the length of `direction`.
         """
-        a, b = self.point_a, self.point_b
-        ab = dot(a, b)
-        along_a, along_b = solve_2(
-            (dot(a, a), ab), (ab, dot(b, b)), dot(a, direction), dot(b, direction)
-        )
-        return along_a[..., None] * self.normal_a + along_b[..., None] * self.normal_b
+        a, b = self.rays
+        (aa, ab), bb = dot(self.rays, a), dot(b, b)
+        along = solve_2((aa, ab), (ab, bb), *dot(self.rays, direction))
+        change = along[0][..., None] * self.bends[0] + along[1][..., None] * self.bends[1]
+        return np.asarray(change)
 
 
 def dot(first: Array, second: Array) -> Array:
@@ -99,7 +119,7 @@ def _last(vectors: Array) -> Array:
 
 
 def solve_2(
-    first: tuple[Array, Array], second: tuple[Array, Array], right_1: Array, right_2: Array
+    first: Iterable[Array], second: Iterable[Array], right_1: Array, right_2: Array
 ) -> tuple[Array, Array]:
     """Solve stacked systems of two equations, given by their rows."""
     (a, b), (c, d) = first, second
@@ -142,7 +162,7 @@ def principal_directions(driver: Patch, driven: Patch) -> tuple[Array, Array]:
     major, minor : array (..., 3)
         Unit tangents of the driver's flank, major × minor = normal.
     """
-    first = unit(driver.point_a)
+    first = unit(driver.rays[0])
     second = cross(driver.normal, first)
     change_1 = driver.normal_change(first) + driven.normal_change(first)
     change_2 = driver.normal_change(second) + driven.normal_change(second)

@@ -9,13 +9,21 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.errors import LoadshareError
+from loadshare.errors import Refused
 from loadshare.tooth.body import Array
 from loadshare.tooth.flank import Patch, dot, solve_3
 
 # A Newton step below this [m] is the last: convergence is quadratic, so that what is left is its
 # square over a radius of curvature, below round-off.
 LAST_STEP = 1e-9
+# Parts of a line in which the least gap is looked for, at least.
+FEWEST = 15
+# Stations of the second look, between those beside the least gap of the first.
+FINER = 9
+
+
+class NoContactError(Refused):
+    """At some position of the mesh cycle no pair of teeth is within both active flanks."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +61,19 @@ class Trace:
         slope: Array = -dot(moving, across) / dot(self.driver.normal, across)
         return slope
 
+    def at(self, stations: slice) -> Trace:
+        """The trace at some of the stations."""
+        own, other = (Patch(f.components[..., stations]) for f in (self.driver, self.driven))
+        (a, b), (c, d) = self.driver_at, self.driven_at
+        return Trace(
+            driver=own,
+            driven=other,
+            driver_at=(a[:, stations], b[:, stations]),
+            driven_at=(c[:, stations], d[:, stations]),
+            gap=self.gap[:, stations],
+            tangent=self.tangent[:, stations],
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class Extents:
@@ -80,6 +101,18 @@ class Extents:
     driven: Array
     trace: Callable[[Array], Trace]
 
+    def spread(self, points: int) -> tuple[Array, slice]:
+        """Stations (m, n) for a first look at the lines, and which of them are wanted.
+
+        Wanted are the middles of `points` equal parts of every line. Where these are few the parts
+        are divided further; the ends of the line are always there.
+        """
+        finer = -(-FEWEST // points) | 1  # odd, so that the middles of the parts stay
+        middles = (np.arange(finer * points) + 0.5) / (finer * points)
+        share = np.concatenate([[0.0], middles, [1.0]])
+        stations = self.start[:, None] + (self.end - self.start)[:, None] * share
+        return stations, slice(1 + finer // 2, -1, finer)
+
 
 class Lines(Protocol):
     """The contact lines of a pair of gears, as geometry gives them before any gap is known."""
@@ -97,6 +130,10 @@ class Lines(Protocol):
         """Lines of the pairs on both active flanks at positions (k,), by position and pair."""
         ...
 
+    def margins_about(self, driver: Array, driven: Array) -> Mapping[str, Array]:
+        """`margins` along the lines of pairs near contact, on both flanks or not."""
+        ...
+
     def driver_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
         """Points of the driver's flanks at surface parameters `at`, fixed frame."""
         ...
@@ -112,30 +149,35 @@ class Lines(Protocol):
         ...
 
 
-def least_gap(lines: Extents) -> tuple[Array, Array]:
+def least_gap(lines: Extents, points: int = FEWEST) -> tuple[Array, Array, Trace]:
     """Least gap on each line, ends included, and the station where it stands.
 
-    A grid finds the place; where the slope of the gap changes sign beside it, the secant of the
+    Two grids find the place; where the slope of the gap changes sign beside it, the secant of the
     slope gives the station.
 
     Returns
     -------
     gap, station : array (m,)
         Both in metres.
+    trace : Trace
+        The lines in the middles of `points` equal parts.
     """
     row = np.arange(len(lines.pairs))
-    low, high = lines.start, lines.end
-    for grid in (17, 9):
-        stations = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, grid)
-        trace = lines.trace(stations)
+    stations, wanted = lines.spread(points)
+    trace = lines.trace(stations)
+    middles = trace.at(wanted)
+    for last in (False, True):
         if not np.isfinite(trace.gap).all():
-            raise LoadshareError(
+            raise NoContactError(
                 "the flanks do not face each other along the whole contact line; "
                 "make the misalignment or the modifications smaller"
             )
         at = np.argmin(trace.gap, axis=1)
-        left, right = np.maximum(at - 1, 0), np.minimum(at + 1, grid - 1)
-        low, high = stations[row, left], stations[row, right]
+        left, right = np.maximum(at - 1, 0), np.minimum(at + 1, stations.shape[1] - 1)
+        if not last:
+            low, high = stations[row, left], stations[row, right]
+            stations = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, FINER)
+            trace = lines.trace(stations)
     least, station = trace.gap[row, at], stations[row, at]
     slope = trace.slope
     falling = slope[row, at] > 0.0
@@ -149,7 +191,7 @@ def least_gap(lines: Extents) -> tuple[Array, Array]:
         found = lines.trace(between[:, None]).gap[:, 0]
         better = found < least
         least, station = np.where(better, found, least), np.where(better, between, station)
-    return least, station
+    return least, station, middles
 
 
 def meet(
@@ -190,7 +232,7 @@ def meet(
     gap = dot(other.point - own.point, own.normal)
     for _ in range(25):
         apart = own.point + gap[..., None] * own.normal - other.point
-        step = solve_3(other.point_a, other.point_b, -own.normal, apart)
+        step = solve_3(other.rays[0], other.rays[1], -own.normal, apart)
         a, b, gap = a + step[0], b + step[1], gap + step[2]
         other = lines.driven_patch(pairs, (a, b), driven)
         moved = np.abs(apart).max(axis=-1)

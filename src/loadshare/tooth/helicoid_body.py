@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal
 
@@ -11,34 +10,15 @@ from numpy.typing import ArrayLike
 
 from loadshare.tooth.body import Array
 from loadshare.tooth.helicoid import HelicoidGear
-from loadshare.tooth.placement import Placement, fixed
+from loadshare.tooth.placed_tooth import PlacedTooth
 from loadshare.tooth.root import Curve, root_curve
 
 
-@dataclass(frozen=True)
-class HelicoidBody:
+class HelicoidBody(PlacedTooth[HelicoidGear]):
     """`ToothBody` of a cylindrical gear, without its micrometre modifications.
 
     Of a herringbone gear it is one half, with z = 0 in the middle of that half.
-
-    Parameters
-    ----------
-    gear : HelicoidGear
-        The gear.
-    placement : Placement
-        Where it stands.
-    foot : float
-        The u at which the fillet ends.
     """
-
-    gear: HelicoidGear
-    placement: Placement = field(default_factory=fixed)
-    foot: float = 0.4
-
-    @property
-    def teeth(self) -> int:
-        """Number of teeth."""
-        return self.gear.teeth
 
     @property
     def shape(self) -> Literal["external", "internal"]:
@@ -49,16 +29,6 @@ class HelicoidBody:
     def rim(self) -> float:
         """Inner radius of the body, outer radius if internal [m]."""
         return self.gear.rim_radius
-
-    @property
-    def youngs_modulus(self) -> float:
-        """Modulus of elasticity [Pa]."""
-        return self.gear.youngs_modulus
-
-    @property
-    def poisson(self) -> float:
-        """Poisson's ratio."""
-        return self.gear.poisson
 
     @cached_property
     def _root(self) -> Curve:
@@ -87,11 +57,3 @@ class HelicoidBody:
         square = (points[..., 0] ** 2 + points[..., 1] ** 2) / gear.base_radius**2 - 1.0
         up = (square - gear.form_roll**2) / (gear.tip_roll**2 - gear.form_roll**2)
         return self.foot + (1.0 - self.foot) * up, points[..., 2] / gear.face_width + 0.5
-
-    def to_body(self, points: Array, rotation: Array | float) -> Array:
-        """Carry points (..., 3) from the fixed frame to the gear turned by `rotation` [rad]."""
-        return self.placement.to_body(points, rotation)
-
-    def to_space(self, points: Array, rotation: Array | float) -> Array:
-        """Carry points (..., 3) from the gear turned by `rotation` [rad] to the fixed frame."""
-        return self.placement.to_space(points, rotation)

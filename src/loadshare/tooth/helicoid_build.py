@@ -13,6 +13,8 @@ from loadshare.tooth.helicoid_pair import (
     working_angle_without_backlash,
 )
 from loadshare.tooth.involute import inv
+from loadshare.tooth.meeting import meeting_problems
+from loadshare.tooth.partners import Demand, misfits, same
 from loadshare.tooth.words import degrees, millimetres, plain, problem
 
 
@@ -60,7 +62,7 @@ def helicoid_pair(
     if problems:
         raise CaseError(problems)
     pair = HelicoidPair(driver, driven, centre_distance, misalignment)
-    problems = _mesh_problems(pair)
+    problems = _mesh_problems(pair) or meeting_problems(pair, misalignment)
     if problems:
         raise CaseError(problems)
     return pair
@@ -71,37 +73,18 @@ def _partner_problems(
 ) -> list[Problem]:
     kind = driver.kind * driven.kind
     helix = -kind * driver.helix_angle
-    checks = [
-        (
-            "module",
-            math.isclose(driven.module, driver.module, rel_tol=1e-9),
-            millimetres(driven.module),
-            f"that of the driver, {millimetres(driver.module)}",
-        ),
-        (
-            "pressure_angle",
-            math.isclose(driven.pressure_angle, driver.pressure_angle, rel_tol=1e-9),
-            degrees(driven.pressure_angle),
-            f"that of the driver, {degrees(driver.pressure_angle)}",
-        ),
-        (
+    demands = (
+        same("module", driven.module, driver.module, millimetres, "driver"),
+        same("pressure_angle", driven.pressure_angle, driver.pressure_angle, degrees, "driver"),
+        Demand(
             "helix_angle",
             math.isclose(driven.helix_angle, helix, rel_tol=1e-9, abs_tol=1e-12),
             degrees(driven.helix_angle),
             f"{degrees(helix)}, to run with the driver",
         ),
-        (
-            "helices",
-            driven.helices == driver.helices,
-            str(driven.helices),
-            f"that of the driver, {driver.helices}",
-        ),
-    ]
-    found = [
-        problem(f"driven.{name}", given, "the gears do not fit each other", allowed)
-        for name, fine, given, allowed in checks
-        if not fine
-    ]
+        same("helices", driven.helices, driver.helices, plain, "driver"),
+    )
+    found = misfits("driven", "the gears do not fit each other", demands)
     if driver.internal and driven.internal:
         found.append(problem("driven.internal", "true", "two internal gears cannot mesh", "false"))
     elif kind < 0:

@@ -63,18 +63,15 @@ class HelicoidFlank:
         arc = -per_roll * radius * roll
         if gear.deviation.none:
             reach = radius * roll
-            return Patch.spun(
-                [
-                    (radius, arc, axial),
-                    (0.0, across, up),
-                    # Along ξ only e_r changes the point, along ζ also the generator does.
-                    (reach, 0.0, 0.0),
-                    (twist * per_roll * reach, sine / cosine, 1.0),
-                    (-per_roll * across, 0.0, 0.0),
-                    (-twist * across, 0.0, 0.0),
-                ],
-                phi,
-            )
+            return Patch.of(
+                (radius, arc, axial),
+                (0.0, across, up),
+                # Along ξ only e_r changes the point, along ζ also the generator does.
+                (reach, 0.0, 0.0),
+                (twist * per_roll * reach, sine / cosine, 1.0),
+                (-per_roll * across, 0.0, 0.0),
+                (-twist * across, 0.0, 0.0),
+            ).spun(phi)
 
         taken, by_roll, by_roll2 = gear.deviation.profile(radius * roll)
         by_roll, by_roll2 = radius * by_roll, radius**2 * by_roll2
@@ -86,32 +83,26 @@ class HelicoidFlank:
 
         # The normal along e_r, generator and plain normal is (tilt, lean, 1), made unit.
         tilt = by_roll / reach
-        tilt_roll = by_roll2 / reach - tilt * reach_roll / reach
-        tilt_axial = -tilt * reach_axial / reach
         lean = cosine * (by_axial - twist * per_roll * by_roll)
-        lean_roll = -cosine * twist * per_roll * by_roll2
-        lean_axial = cosine * by_axial2
         over = 1.0 / np.sqrt(1.0 + tilt**2 + lean**2)
-        normal = (tilt * over, (lean * sine + across) * over, (lean * cosine + up) * over)
-
-        def change(of_tilt: Array, of_lean: Array, of_phi: float) -> tuple[Array, ...]:
-            """Change of the unit normal with that of tilt, lean and φ."""
-            raw = (
-                of_tilt * over - of_phi * normal[1],
-                of_lean * sine * over + of_phi * normal[0],
-                of_lean * cosine * over,
-            )
-            along = normal[0] * raw[0] + normal[1] * raw[1] + normal[2] * raw[2]
-            return tuple(r - along * n for n, r in zip(normal, raw, strict=True))
-
-        return Patch.spun(
-            [
-                (radius, arc - across * taken, axial - up * taken),
-                normal,
-                (reach, -across * by_roll, -up * by_roll),
-                (twist * per_roll * reach, sine / cosine - across * by_axial, 1.0 - up * by_axial),
-                change(tilt_roll, lean_roll, per_roll),
-                change(tilt_axial, lean_axial, twist),
-            ],
-            phi,
-        )
+        normal = np.stack([tilt * over, (lean * sine + across) * over, (lean * cosine + up) * over])
+        # It changes with tilt, lean and φ, over ξ and over ζ, and keeps its length.
+        tilts, leans = np.empty((2, 2, *roll.shape))
+        tilts[0] = (by_roll2 - tilt * reach_roll) * (over / reach)
+        tilts[1] = tilt * reach_axial * (-over / reach)
+        leans[0] = (-cosine * twist * per_roll) * by_roll2 * over
+        leans[1] = cosine * by_axial2 * over
+        turns = np.array([per_roll, twist]).reshape(2, *[1] * roll.ndim)
+        change = np.empty((3, 2, *roll.shape))
+        change[0] = tilts - turns * normal[1]
+        change[1] = sine * leans + turns * normal[0]
+        change[2] = cosine * leans
+        change -= normal[:, None] * np.sum(normal[:, None] * change, axis=0)
+        return Patch.of(
+            (radius, arc - across * taken, axial - up * taken),
+            normal,
+            (reach, -across * by_roll, -up * by_roll),
+            (twist * per_roll * reach, sine / cosine - across * by_axial, 1.0 - up * by_axial),
+            change[:, 0],
+            change[:, 1],
+        ).spun(phi)

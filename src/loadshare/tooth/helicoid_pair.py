@@ -225,6 +225,17 @@ class HelicoidPair:
             lambda stations: self.trace(*rows, stations),
         )
 
+    def margins_about(self, driver: Array, driven: Array) -> Mapping[str, Array]:
+        """Margins along the lines of pairs near contact, on both flanks or not."""
+        gear, (first, last) = self.driver_gear, self._roll_range
+        axial = np.linspace(*self.axial_range, 33)
+        step = 2.0 * math.pi / gear.teeth
+        middle = self._roll(np.zeros(1), np.zeros(1), driver)
+        pairs = np.rint(gear.kind * (0.5 * (first + last) - middle) / step) + np.arange(-1.0, 2.0)
+        roll, axial = np.broadcast_arrays(self._roll(pairs[:, None], axial, driver), axial)
+        other = self.partner_roll(roll), axial - self.misalignment.axial_shift
+        return self.margins((roll, axial), other)
+
     def driver_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
         """Points of the driver's flanks at surface parameters `at`, fixed frame."""
         turn = rotation + 2.0 * math.pi / self.driver_gear.teeth * pairs
@@ -245,7 +256,7 @@ class HelicoidPair:
         start = (self.partner_roll(roll), stations - self.misalignment.axial_shift)
         own, other, driven_at, gap = meet(self, pairs, (roll, stations), start, driver, driven)
         slope = self.driver_gear.kind * self.driver_gear.twist
-        tangent = slope * own.point_a + own.point_b
+        tangent = slope * own.rays[0] + own.rays[1]
         return Trace(own, other, (roll, stations), driven_at, gap, tangent)
 
     def margins(

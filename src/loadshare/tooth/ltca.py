@@ -142,25 +142,25 @@ def ltca(
     torques = torque * np.array(parts)
     count = POINTS.get(compliance.model, 32) if points is None else points
     positions = pair.positions(places, count)
-    found: dict[int, tuple[ContactProblem, tuple[Contact, ...]]] = {}
-    for group in _groups(positions, len(parts)):
-        problems = contact_problems(pair, [positions[k] for k in group], compliance)
-        solved = _under_all(problems, torques / (pair.arm * pair.helices))
-        for k, problem, contacts in zip(group, problems, solved, strict=True):
-            found[k] = problem, contacts
+    problems = contact_problems(pair, positions, compliance)
+    found: dict[int, tuple[Contact, ...]] = {}
+    for group in _groups(problems, len(parts)):
+        solved = _under_all([problems[k] for k in group], torques / (pair.arm * pair.helices))
+        for k, own in zip(group, solved, strict=True):
+            found[k] = own
             if progress is not None:
                 progress(len(found), len(places))
-    in_order = [found[k] for k in range(len(positions))]
+    contacts = tuple(found[k] for k in range(len(positions)))
     return Ltca(
         rated=torque,
         torque=torques,
         positions=positions,
         arm=pair.arm,
         helices=pair.helices,
-        contacts=tuple(contacts for _, contacts in in_order),
+        contacts=contacts,
         lines=tuple(
-            tuple(_line_loads(position, problem, contact) for contact in contacts)
-            for position, (problem, contacts) in zip(positions, in_order, strict=True)
+            tuple(_line_loads(position, problem, contact) for contact in under_all)
+            for position, problem, under_all in zip(positions, problems, contacts, strict=True)
         ),
         compliance=compliance.model,
     )
@@ -241,12 +241,12 @@ def _strips(
         )
 
 
-def _groups(positions: Sequence[MeshPosition], loads: int) -> Iterator[list[int]]:
-    """Numbers of the positions that are solved at once: equally many points, and not too many."""
-    sizes = [sum(len(line.length) for line in position.lines) for position in positions]
+def _groups(problems: Sequence[ContactProblem], loads: int) -> Iterator[list[int]]:
+    """Numbers of the problems that are solved at once: equally many points, and not too many."""
+    sizes = [len(problem.gap) for problem in problems]
     for size in sorted(set(sizes)):
         alike = [k for k, own in enumerate(sizes) if own == size]
-        most = max(1, BATCH // (loads * max(1, size) ** 2))
+        most = max(1, BATCH // (loads * size**2))
         for start in range(0, len(alike), most):
             yield alike[start : start + most]
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.errors import LoadshareError
 from loadshare.tooth.body import Array, ToothBody
 from loadshare.tooth.contact import ContactLine, MeshPosition, PairGeometry
 from loadshare.tooth.flank import cross, dot, relative_curvature, unit
-from loadshare.tooth.gap import Extents, Lines, least_gap
+from loadshare.tooth.gap import FEWEST, Extents, Lines, NoContactError, Trace, least_gap
 
 # The flanks touch when the least gap is below this [m]: a hundredth of the gap that a
 # transmission error of 1e-9 rad makes at a base radius of 0.1 m.
@@ -21,10 +20,6 @@ TOUCHING = 1e-12
 
 class Pair(Lines, PairGeometry, Protocol):
     """A pair of gears with its contact lines."""
-
-
-class NoContactError(LoadshareError):
-    """At some position of the mesh cycle no pair of teeth is within both active flanks."""
 
 
 def position(pair: Pair, phase: float, points_per_line: int) -> MeshPosition:
@@ -60,10 +55,8 @@ def positions(
         raise ValueError(f"phase = {wrong[0]} is not within the mesh cycle: give 0 ≤ phase < 1")
     if points_per_line < 1:
         raise ValueError(f"points_per_line = {points_per_line}: give at least 1")
-    error, found = touching(pair, phases)
+    error, found, trace = touching(pair, phases, points_per_line)
     part = (found.end - found.start) / points_per_line
-    stations = found.start[:, None] + part[:, None] * (np.arange(points_per_line) + 0.5)
-    trace = found.trace(stations)
     along = unit(trace.tangent)
     across = cross(trace.driver.normal, along)
     length = part[:, None] * np.sqrt(dot(trace.tangent, trace.tangent))
@@ -105,11 +98,22 @@ def transmission_error(pair: Pair, phase: float) -> float:
     return float(touching(pair, [phase])[0][0])
 
 
-def touching(pair: Pair, phases: Sequence[float]) -> tuple[Array, Extents]:
-    """Transmission errors (k,) [rad] at which the first flanks touch, and the lines there.
+def touching(
+    pair: Pair, phases: Sequence[float], points: int = FEWEST
+) -> tuple[Array, Extents, Trace]:
+    """Where the first flanks touch.
 
     The driver turns until the least gap over all lines of a position is zero; each step is the
     least gap over the arm, and the lines move along.
+
+    Returns
+    -------
+    error : array (k,)
+        Transmission errors [rad].
+    found : Extents
+        The lines there.
+    trace : Trace
+        Both flanks in the middles of `points` equal parts of every line.
 
     Raises
     ------
@@ -122,18 +126,32 @@ def touching(pair: Pair, phases: Sequence[float]) -> tuple[Array, Extents]:
         found = pair.extents(driver + error, driven)
         for k, phase in enumerate(phases):
             if k not in found.position:
+                here = (driver[k : k + 1] + error[k : k + 1], driven[k : k + 1])
                 raise NoContactError(
                     f"no pair of teeth is in contact at phase {phase:.4g} of the mesh cycle: "
-                    "no contact line lies within both active flanks. Make the misalignment "
-                    "smaller, or the addenda or the face widths larger"
+                    f"{_missed(pair.margins_about(*here), pair.arm)}"
                 )
         least = np.full(len(phases), np.inf)
-        np.minimum.at(least, found.position, least_gap(found)[0])
+        gap, _, trace = least_gap(found, points)
+        np.minimum.at(least, found.position, gap)
         apart = np.abs(least) >= TOUCHING
         if not apart.any():
-            return error, found
+            return error, found, trace
         error = error + np.where(apart, least / pair.arm, 0.0)
-    return error, pair.extents(driver + error, driven)
+    found = pair.extents(driver + error, driven)
+    return error, found, least_gap(found, points)[2]
+
+
+def _missed(margins: Mapping[str, Array], far: float) -> str:
+    """What ends the flanks short of one another, where they miss by the least; `far` is no miss."""
+    names, values = list(margins), np.stack([np.ravel(part) for part in margins.values()])
+    values = np.where(np.isfinite(values), values, -np.inf)
+    worst = values.min(axis=0)
+    nearest = int(np.argmax(worst))
+    edge, short = names[int(np.argmin(values[:, nearest]))], -1e3 * float(worst[nearest])
+    if not short < 1e3 * far:
+        return "the flanks are nowhere near one another"
+    return f"the nearest contact line misses the active flanks by {short:.3g} mm at the {edge}"
 
 
 def between(first: Array, last: Array) -> tuple[NDArray[np.int64], Array]:

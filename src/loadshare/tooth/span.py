@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,28 +16,36 @@ FIRST, FINER = 33, 9
 LEVELS = 2
 
 
-def span(margin: Callable[[Array], Array], reach: Array) -> tuple[NDArray[np.bool_], Array, Array]:
+class Margin(Protocol):
+    """Distance from the nearest edge [m] at stations (k, n) on lines (k,), negative outside."""
+
+    def __call__(self, stations: Array, lines: NDArray[np.int64], *, near: bool = False) -> Array:
+        """The margin (k, n); where `near`, what is known from earlier calls may stand for it."""
+        ...
+
+
+def span(margin: Margin, reach: Array) -> tuple[NDArray[np.int64], Array, Array]:
     """Ends of the stretch on which a margin is positive, on m lines at once.
 
     Parameters
     ----------
-    margin : callable
-        From stations (m, n) to the distance from the nearest edge [m], negative outside.
+    margin : Margin
+        Of the lines by their numbers.
     reach : array (m,)
         The stretch lies between −reach and reach [m].
 
     Returns
     -------
-    found : array (m,) of bool
-        Whether the line has a positive station on the first grid.
-    start, end : array (m,)
-        First and last station of the stretch [m], meaningful where `found`.
+    found : array (k,) of int
+        Lines with a positive station on the first grid.
+    start, end : array (k,)
+        First and last station of their stretches [m].
     """
-    line = np.arange(len(reach))
     stations = reach[:, None] * np.linspace(-1.0, 1.0, FIRST)
-    values = margin(stations)
+    values = margin(stations, np.arange(len(reach)))
+    found = np.flatnonzero(values.max(axis=1) > 0.0)
+    stations, values, line = stations[found], values[found], np.arange(len(found))
     best = np.argmax(values, axis=1)
-    found = values[line, best] > 0.0
     steps = np.arange(FIRST) - best[:, None]
     inside, outside = [], []
     for side in (-1, 1):
@@ -49,22 +57,21 @@ def span(margin: Callable[[Array], Array], reach: Array) -> tuple[NDArray[np.boo
         inside.append(stations[line, np.clip(out - side, 0, FIRST - 1)])
     good, bad = np.array(inside), np.array(outside)
 
+    def both_ends(grid: Array, *, near: bool = False) -> Array:
+        """Margins at stations (2, k, n)."""
+        stations = np.concatenate(list(grid), axis=1)
+        return np.stack(np.split(margin(stations, found, near=near), 2, axis=1))
+
     share = np.linspace(0.0, 1.0, FINER)
     for _ in range(LEVELS):
         grid = good[..., None] + (bad - good)[..., None] * share
-        values = margin(grid.transpose(1, 0, 2).reshape(len(reach), -1))
-        values = values.reshape(len(reach), 2, -1).transpose(1, 0, 2)
+        values = both_ends(grid, near=True)
         values[..., -1] = np.minimum(values[..., -1], 0.0)
         after = np.maximum(np.argmax(values <= 0.0, axis=-1), 1)[..., None]
-        good, bad, value_good, value_bad = (
-            np.take_along_axis(table, at, -1)[..., 0]
-            for table, at in (
-                (grid, after - 1),
-                (grid, after),
-                (values, after - 1),
-                (values, after),
-            )
-        )
-    drop = np.where(value_good > value_bad, value_good - value_bad, 1.0)
-    ends = good + (bad - good) * np.clip(value_good / drop, 0.0, 1.0)
-    return found, ends[0], ends[1]
+        good, bad = (np.take_along_axis(grid, at, -1)[..., 0] for at in (after - 1, after))
+    within, beyond = np.moveaxis(both_ends(np.stack([good, bad], axis=-1)), -1, 0)
+    # The edge may lie beside the cell by what the grids' values were off.
+    fall = np.maximum(within - beyond, np.finfo(float).tiny)
+    ends = good + (bad - good) * np.clip(within / fall, -1.0, 2.0)
+    start, end = np.clip(ends, -reach[found], reach[found])
+    return found, start, end

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loadshare.tooth.body import Array
-from loadshare.tooth.flank import dot, principal_directions, relative_curvature
+from loadshare.tooth.flank import dot, principal_directions, relative_curvature, unit
 from loadshare.tooth.gap import LAST_STEP, least_gap
 from loadshare.tooth.positions import Pair, touching
 
@@ -80,8 +80,8 @@ def contact_points(pair: Pair, phase: float) -> tuple[ContactPoint, ...]:
     NoContactError
         If no pair of teeth is within both active flanks.
     """
-    error, lines = touching(pair, [phase])
-    gap, station = least_gap(lines)
+    error, lines, _ = touching(pair, [phase])
+    gap, station, _ = least_gap(lines)
     trace = lines.trace(station[:, None])
     pairs, driver, driven = (x[:, None] for x in (lines.pairs, lines.driver, lines.driven))
     at_end = np.minimum(np.abs(station - lines.start), np.abs(station - lines.end)) < AT_END
@@ -132,11 +132,10 @@ def _newton(pair: Pair, pairs: Array, unknowns: Array, driver: Array, driven: Ar
         a, b, c, d, turn = np.moveaxis(unknowns, -1, 0)
         own = pair.driver_patch(pairs, (a, b), driver + turn)
         other = pair.driven_patch(pairs, (c, d), driven)
-        first = own.point_a / np.sqrt(dot(own.point_a, own.point_a))[..., None]
+        first = unit(own.rays[0])
         second = np.cross(own.normal, first)
-        columns = [own.point_a, own.point_b, -other.point_a, -other.point_b, _about_z(own.point)]
-        changes = [own.normal_a, own.normal_b, other.normal_a, other.normal_b]
-        changes.append(_about_z(own.normal))
+        columns = [*own.rays, *-other.rays, _about_z(own.point)]
+        changes = [*own.bends, *other.bends, _about_z(own.normal)]
         opening = own.normal + other.normal
         matrix = np.stack(
             [

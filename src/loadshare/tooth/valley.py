@@ -20,7 +20,6 @@ NEWTON_STEPS = 10
 SURE = 3
 
 Index: TypeAlias = NDArray[np.int64] | NDArray[np.bool_]
-Vector: TypeAlias = tuple[Array, Array, Array, Array, Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +98,11 @@ class Valleys:
         """The same valleys with what was found (5, m, g) at evenly spaced stations (m, g)."""
         return replace(self, known=(stations, found))
 
+    def guess(self, stations: Array) -> Array | None:
+        """What :meth:`find` finds, good to micrometres, where all that it takes is known."""
+        near = self.known and _interpolated(*self.known, stations)
+        return near if near is not None and np.isfinite(near).all() else None
+
     def find(self, stations: Array, last: float = LAST_STEP) -> Array:
         """Surface parameters on both flanks and gap (5, m, n) at stations (m, n) [m].
 
@@ -120,9 +124,10 @@ class Valleys:
                 going &= moved < 0.25 * before
             if not going.any():
                 break
-            left, unknowns, wanted = left[going], unknowns[:, going], wanted[going]
             before = moved[going]
-            here = here.rows(going)
+            if not going.all():
+                left, unknowns, wanted = left[going], unknowns[:, going], wanted[going]
+                here = here.rows(going)
         return found.reshape(5, *stations.shape)
 
     def trace(self, stations: Array) -> Trace:
@@ -132,7 +137,7 @@ class Valleys:
         here = self._points(line)
         own, other = here._flanks((a, b), (c, d))
         along = here._slopes(own, other, gap)
-        tangent = along[0][..., None] * own.point_a + along[1][..., None] * own.point_b
+        tangent = along[0][..., None] * own.rays[0] + along[1][..., None] * own.rays[1]
         return Trace(own, other, (a, b), (c, d), gap, tangent)
 
     def _points(self, line: Index) -> Valleys:
@@ -142,7 +147,7 @@ class Valleys:
     def _slopes(self, own: Patch, other: Patch, gap: Array) -> Array:
         """Derivatives (5, ...) of the unknowns over the station."""
         still, one = np.zeros_like(gap), np.ones_like(gap)
-        return np.stack(_solve(own, other, gap, self.start, 0.0 * own.point, one, still))
+        return _solve(own, other, gap, self.start, 0.0 * own.point, one, still)
 
     def _flanks(
         self, driver_at: tuple[Array, Array], driven_at: tuple[Array, Array]
@@ -154,15 +159,14 @@ class Valleys:
 
     def _begin(self, stations: Array) -> Array:
         """First guesses (5, m, n): cubic interpolation of what is known, else the tangent."""
-        if self.known is not None:
-            near = _interpolated(*self.known, stations)
-            if np.isfinite(near).all():
-                return near
+        near = self.known and _interpolated(*self.known, stations)
+        if near is not None and np.isfinite(near).all():
+            return near
         a, b, c, d = self.start.at
         slopes = self._slopes(*self._flanks((a, b), (c, d)), np.zeros_like(a))
         start = slopes[:, :, None] * stations
         start[:4] += self.start.at[:, :, None]
-        return start if self.known is None else np.where(np.isfinite(near), near, start)
+        return start if near is None else np.where(np.isfinite(near), near, start)
 
     def _step(self, unknowns: Array, stations: Array) -> tuple[Array, Array]:
         """Newton's step (5, n) at one point of every line, and how far it moves points [m]."""
@@ -178,9 +182,10 @@ class Valleys:
             stations - dot(own.point - start.point, start.major),
             -dot(own.normal + other.normal, start.minor),
         )
-        rays = (own.point_a, own.point_b, other.point_a, other.point_b)
-        moved = [np.abs(s) * np.sqrt(dot(r, r)) for s, r in zip(step[:4], rays, strict=True)]
-        return np.stack(step), np.max([*moved, np.abs(step[4])], axis=0)
+        moved = np.abs(step)
+        moved[:2] *= np.sqrt(dot(own.rays, own.rays))
+        moved[2:4] *= np.sqrt(dot(other.rays, other.rays))
+        return step, moved.max(axis=0)
 
 
 def _interpolated(grid: Array, values: Array, stations: Array) -> Array:
@@ -205,8 +210,8 @@ def _interpolated(grid: Array, values: Array, stations: Array) -> Array:
 @np.errstate(invalid="ignore", over="ignore", divide="ignore")
 def _solve(
     own: Patch, other: Patch, gap: Array, start: Anchor, apart: Array, ahead: Array, aside: Array
-) -> Vector:
-    """Solve the linearised equations of a valley.
+) -> Array:
+    """Solve the linearised equations of a valley for the changes (5, ...) of its unknowns.
 
     With δ the changes of the driver's parameters a, b, the driven flank's c, d and the gap t,
 
@@ -216,27 +221,18 @@ def _solve(
 
     The first three give δc and δd by δa and δb, for which two equations are left.
     """
-    reach = gap[..., None]
-    ray_a, ray_b = own.point_a + reach * own.normal_a, own.point_b + reach * own.normal_b
-    c, d = other.point_a, other.point_b
+    ray_a, ray_b = rays = own.rays + gap[..., None] * own.bends
     # Rows that read δc, δd and −δt off Y_c δc + Y_d δd − n δt, once divided by the determinant.
-    read_c, read_d, read_t = cross(d, own.normal), cross(own.normal, c), cross(c, d)
-    over = 1.0 / dot(read_t, own.normal)
-    turn_c, turn_d = dot(other.normal_a, start.minor), dot(other.normal_b, start.minor)
-    lean = (turn_c * over)[..., None] * read_c + (turn_d * over)[..., None] * read_d
-    rows = (
-        (dot(own.point_a, start.major), dot(own.point_b, start.major)),
-        (
-            dot(own.normal_a, start.minor) + dot(lean, ray_a),
-            dot(own.normal_b, start.minor) + dot(lean, ray_b),
-        ),
-    )
-    step_a, step_b = solve_2(*rows, ahead, aside + dot(lean, apart))
-    left = ray_a * step_a[..., None] + ray_b * step_b[..., None] - apart
-    return (
-        step_a,
-        step_b,
-        dot(read_c, left) * over,
-        dot(read_d, left) * over,
-        -dot(read_t, left) * over,
-    )
+    basis = np.concatenate([other.rays, own.normal[None]])
+    reads = cross(basis[[1, 2, 0]], basis[[2, 0, 1]])
+    over = 1.0 / dot(reads[2], own.normal)
+    turns = dot(other.bends, start.minor) * over
+    lean = turns[0][..., None] * reads[0] + turns[1][..., None] * reads[1]
+    rows = dot(own.rays, start.major), dot(own.bends, start.minor) + dot(lean, rays)
+    a, b = solve_2(*rows, ahead, aside + dot(lean, apart))
+    left = ray_a * a[..., None] + ray_b * b[..., None] - apart
+    step = np.empty((5, *gap.shape))
+    step[0], step[1] = a, b
+    step[2:] = dot(reads, left) * over
+    step[4] *= -1.0
+    return step

@@ -54,15 +54,12 @@ FLANKS = [
 def test_derivatives_are_those_of_the_surface(flank):
     a, b = np.broadcast_arrays(*spread(flank))
     here = flank.patch(a, b, 0.3)
-    for wanted, changed, step in (
-        ("a", (STEP, 0.0), STEP),
-        ("b", (0.0, STEP), STEP),
-    ):
-        after = flank.patch(a + changed[0], b + changed[1], 0.3)
-        before = flank.patch(a - changed[0], b - changed[1], 0.3)
-        for name in ("point", "normal"):
-            difference = (getattr(after, name) - getattr(before, name)) / (2.0 * step)
-            stated = getattr(here, f"{name}_{wanted}")
+    for parameter, (over_a, over_b) in enumerate(STEP * np.eye(2)):
+        after = flank.patch(a + over_a, b + over_b, 0.3)
+        before = flank.patch(a - over_a, b - over_b, 0.3)
+        for name, slopes in (("point", here.rays), ("normal", here.bends)):
+            difference = (getattr(after, name) - getattr(before, name)) / (2.0 * STEP)
+            stated = slopes[parameter]
             # Central differences: the step squared times the third derivative (at most 1e3 per
             # unit), and round-off over the step.
             np.testing.assert_allclose(difference, stated, rtol=1e-7, atol=3e-9)
@@ -72,7 +69,7 @@ def test_derivatives_are_those_of_the_surface(flank):
 def test_normal_is_a_unit_vector_across_both_tangents(flank):
     here = flank.patch(*spread(flank), 0.3)
     np.testing.assert_allclose(dot(here.normal, here.normal), 1.0, atol=1e-14)
-    for tangent in (here.point_a, here.point_b):
+    for tangent in here.rays:
         np.testing.assert_allclose(dot(unit(tangent), here.normal), 0.0, atol=1e-13)
 
 
@@ -89,7 +86,7 @@ def test_helicoid_curvatures(helix, internal):
     flank = helicoid(helix, internal)
     roll, axial = spread(flank)
     here = flank.patch(roll, axial, 0.0)
-    across = unit(here.point_a)
+    across = unit(here.rays[0])
     along = np.cross(here.normal, across)
     chosen = flank.gear
     radius = chosen.base_radius * roll / math.cos(chosen.base_helix_angle)

@@ -11,12 +11,13 @@ from loadshare.tooth.face_build import face_gear_pair
 from loadshare.tooth.face_gear import FaceGear, Shaper
 from loadshare.tooth.face_pair import FaceMisalignment
 from loadshare.tooth.findings import edge_contacts, findings
+from loadshare.tooth.gap import NoContactError
 from loadshare.tooth.helicoid import HelicoidGear
 from loadshare.tooth.helicoid_build import helicoid_pair
 from loadshare.tooth.helicoid_checks import gear_problems
 from loadshare.tooth.helicoid_pair import HelicoidPair, Misalignment
 from loadshare.tooth.modification import Modification
-from loadshare.tooth.positions import NoContactError, position
+from loadshare.tooth.positions import position
 
 PINION = HelicoidGear(6.35e-3, 25, 90e-3, math.radians(25.0), tip_radius=0.3)
 
@@ -145,8 +146,26 @@ def corners_collide(mesh) -> bool:
 
 def test_no_contact_at_a_position():
     mesh = HelicoidPair(gear(), gear(53), 0.0805)
-    with pytest.raises(NoContactError, match=r"no pair of teeth is in contact at phase 0\.5"):
+    with pytest.raises(
+        NoContactError, match=r"in contact at phase 0\.5 .* mm at the driv(er|en) tip"
+    ):
         position(mesh, 0.5, 5)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "told"),
+    [
+        ("pinion_shift", 0.12, r"misses .* by 18\.8 mm at the driven outer end"),
+        ("pinion_shift", -0.12, "nowhere near one another"),
+        ("gear_shift", -0.02, r"misses .* by 0\.663 mm at the driven tip"),
+    ],
+)
+def test_a_misalignment_that_parts_the_teeth_is_named_with_the_edge(name, value, told):
+    with pytest.raises(CaseError, match=rf"misalignment\.{name} = .*{told}"):
+        face_pair(28, FaceMisalignment(**{name: value}))
+    off = {name: value, "offset": 1e-6}
+    with pytest.raises(CaseError, match="misalignment: no pair of teeth is in contact at phase"):
+        face_pair(28, FaceMisalignment(**off))
 
 
 def test_contact_at_the_end_of_the_teeth_is_a_finding():

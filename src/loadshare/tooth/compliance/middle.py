@@ -27,12 +27,15 @@ class Foot:
         `MiddleSurface.waist` (down to −1) for points under the tooth; w as on the flank.
     depth : array (n,)
         Distance from the flank along the normal [m].
+    flank : array (n, 3)
+        Point of the flank [m], gear frame of tooth 0.
     inward : array (n, 3)
-        Unit vector into the tooth at the flank, gear frame of tooth 0.
+        Unit vector into the tooth there.
     """
 
     zw: Array
     depth: Array
+    flank: Array
     inward: Array
 
 
@@ -81,8 +84,8 @@ class MiddleSurface:
         )
         return self.points(zw), over_z, over_w
 
-    def inward(self, uw: Array, side: int) -> Array:
-        """Unit normals (n, 3) of the flank `side`, into the tooth."""
+    def facing(self, uw: Array, side: int) -> tuple[Array, Array]:
+        """Points (n, 3) of the flank `side` [m], and unit normals there into the tooth."""
         u, w = uw[:, 0], uw[:, 1]
         # One-sided at foot and tip, where the outline may have a kink.
         low, high = np.maximum(u - STEP, self.body.foot), np.minimum(u + STEP, 1.0)
@@ -92,8 +95,9 @@ class MiddleSurface:
         across = outline(u, after, side) - outline(u, before, side)
         normal = np.cross(along, across)
         normal /= np.linalg.norm(normal, axis=1)[:, None]
-        inside = self.between(u, w) - outline(u, w, side)
-        return np.asarray(np.sign(np.sum(normal * inside, axis=1))[:, None] * normal)
+        flank = outline(u, w, side)
+        inside = np.sign(np.sum(normal * (self.between(u, w) - flank), axis=1))
+        return flank, np.asarray(inside[:, None] * normal)
 
     def feet(self, uw: Array, side: int) -> Foot:
         """Where the normals of flank points (n, 2) meet the middle surface.
@@ -101,8 +105,7 @@ class MiddleSurface:
         A normal that leaves the tooth through its face end before it meets the middle surface has
         its foot on the end.
         """
-        flank = self.flank(uw, side)
-        inward = self.inward(uw, side)
+        flank, inward = self.facing(uw, side)
         zw = uw.copy()
         for _ in range(30):
             here, *slopes = self.surface(zw)
@@ -117,7 +120,7 @@ class MiddleSurface:
             zw = new
             if done:
                 break
-        return Foot(zw, dot(self.points(zw) - flank, inward), inward)
+        return Foot(zw, dot(self.points(zw) - flank, inward), flank, inward)
 
 
 def both_sides(body: ToothBody, u: Array, w: Array) -> tuple[Array, Array]:
@@ -151,8 +154,7 @@ def floor_of(body: ToothBody) -> float:
 def waist_of(body: ToothBody, angle: float = 50.0) -> float:
     """The u on the fillet where the outline makes `angle` [degrees] with the chord of the tooth."""
     u = np.linspace(0.0, body.foot, 61)
-    middle = np.full_like(u, 0.5)
-    sides = both_sides(body, u, middle)
+    sides = both_sides(body, u, np.array(0.5))
     chord = sides[0] - sides[1]
     chord /= np.linalg.norm(chord, axis=1)[:, None]
     tangent = -np.gradient(sides[0], u, axis=0)

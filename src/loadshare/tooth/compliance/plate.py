@@ -23,16 +23,21 @@ FLAT = 0.01
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Station:
-    """The middle surface at some places: unit vectors (n, 3), slopes and thickness (n,).
+    """The middle surface at some places: points and unit vectors (n, 3), slopes, thickness (n,).
 
     `up` points to the tip, `out` to side +1; `rise` and `run` are lengths per unit of u and of w.
     """
 
+    middle: Array
     up: Array
     out: Array
     rise: Array
     run: Array
     thickness: Array
+
+    def rows(self, part: slice) -> Station:
+        """Some of the places."""
+        return Station(*(getattr(self, name)[part] for name in self.__slots__))
 
 
 def root_compliance(poisson: float) -> Array:
@@ -87,6 +92,7 @@ class Plate:
         normal = normal / np.linalg.norm(normal, axis=1)[:, None]
         thickness = 2.0 * dot(at.half, normal)
         return Station(
+            middle=at.middle,
             up=up / rise[:, None],
             out=np.sign(thickness)[:, None] * normal,
             rise=rise,
@@ -117,8 +123,21 @@ class Plate:
     @cached_property
     def root(self) -> Station:
         """The root section at Gauss points over the width."""
-        w, _ = self._over_width
-        return self.station(np.column_stack([np.full_like(w, self.middle.waist), w]))
+        return self._sections[0]
+
+    @cached_property
+    def _sections(self) -> tuple[Station, Station]:
+        """The root section, and those at Gauss points over the height, over the width each."""
+        (z, _), (w, _) = self._over_height, self._over_width
+        z = np.concatenate([[self.middle.waist], z])
+        at = self.station(np.stack(np.meshgrid(z, w, indexing="ij"), axis=-1).reshape(-1, 2))
+        return at.rows(slice(len(w))), at.rows(slice(len(w), None))
+
+    @cached_property
+    def _over_height(self) -> tuple[Array, Array]:
+        foot = self.middle.body.foot
+        z, over_z = np.hstack([_gauss(self.middle.waist, foot, 5), _gauss(foot, 1.0, 8)])
+        return z, over_z
 
     @cached_property
     def _over_width(self) -> tuple[Array, Array]:
@@ -130,10 +149,8 @@ class Plate:
 
         e, nu = self.middle.body.youngs_modulus, self.middle.body.poisson
         plane, shear = e / (1.0 - nu**2), 0.5 * e / (1.0 + nu)
-        foot = self.middle.body.foot
-        z, over_z = np.hstack([_gauss(self.middle.waist, foot, 5), _gauss(foot, 1.0, 8)])
-        w, over_w = self._over_width
-        at = self.station(np.stack(np.meshgrid(z, w, indexing="ij"), axis=-1).reshape(-1, 2))
+        (z, over_z), (w, over_w) = self._over_height, self._over_width
+        at = self._sections[1]
         rise, run, t = (x.reshape(len(z), len(w)) for x in (at.rise, at.run, at.thickness))
         area = np.outer(over_z, over_w) * rise * run
         bend, stiff = area * plane * t**3 / 12.0, area * SHEAR_FACTOR * shear * t
@@ -168,9 +185,13 @@ class Plate:
         count = len(vv)
         plate = np.block([[qq, pq.T, qv], [pq, pp, pv], [qv.T, pv.T, vv]])
         # Forces act on the deflection alone: elimination of the rotations leaves its block.
-        roots = (cholesky(plate, lower=True)[-count:, -count:], cholesky(axial, lower=True))
+        lower = (
+            cholesky(matrix.T, lower=True, overwrite_a=True, check_finite=False)[-count:, -count:]
+            for matrix in (plate, axial)
+        )
         bending, compression = (
-            solve_triangular(root, np.eye(count), lower=True).T for root in roots
+            solve_triangular(root, np.eye(count), lower=True, check_finite=False).T
+            for root in lower
         )
         return bending, compression
 
@@ -191,7 +212,13 @@ def _leggauss(count: int) -> tuple[Array, Array]:
 def _legendre(place: Array, degree: int) -> tuple[Array, Array]:
     """Legendre polynomials (n, degree + 1) at places 0 to 1, and their slopes."""
     values = np.asarray(legvander(2.0 * place - 1.0, degree), np.float64)
-    return values, 2.0 * values[:, :degree] @ legder(np.eye(degree + 1))
+    return values, 2.0 * values[:, :degree] @ _legder(degree)
+
+
+@cache
+def _legder(degree: int) -> Array:
+    """Coefficients (degree, degree + 1) of the slopes of Legendre polynomials."""
+    return np.asarray(legder(np.eye(degree + 1)))
 
 
 def _product(weight: Array, a: Array, b: Array, c: Array, d: Array) -> Array:

@@ -15,8 +15,9 @@ thick, external and internal bodies alike, and tells how far a loaded tooth move
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from math import ceil, log, pi
 
 import numpy as np
@@ -64,9 +65,8 @@ class Ring:
             In units of (1 − ν²)/E over the face width. Rows are deflection along the tooth's side
             +1, lean that way times t, and lift; columns Q, M/t and N in the same senses.
         """
-        angle = 2.0 * pi * k / self.teeth * self._orders
-        here, beside = self._weights
-        found = (here @ np.cos(angle) + beside @ np.sin(angle)).reshape(3, 3)
+        here, beside = self._felt(abs(k))
+        found = (here - beside if k < 0 else here + beside).reshape(3, 3)
         twisted, swollen = self._mean
         found[0, 0] += 0.5 * twisted
         found[2, 2] += 0.5 * swollen
@@ -77,6 +77,16 @@ class Ring:
             found[0, 1:] *= -1.0
             found[1:, 0] *= -1.0
         return np.asarray(found / pi)
+
+    @cached_property
+    def _felt(self) -> Callable[[int], tuple[Array, Array]]:
+        return cache(self._sums)
+
+    def _sums(self, k: int) -> tuple[Array, Array]:
+        """Sums (9,) over the orders at `k` teeth from the load: even and odd in k."""
+        angle = 2.0 * pi * k / self.teeth * self._orders
+        here, beside = self._weights
+        return here @ np.cos(angle), beside @ np.sin(angle)
 
     @cached_property
     def _weights(self) -> tuple[Array, Array]:
@@ -150,7 +160,7 @@ def _thick(n: Array, ratio: float, poisson: float) -> Array:
 
 def _solid(n: Array, ratio: float, poisson: float) -> Array:
     """The same where the held circle is out of reach."""
-    (u, v, sigma, tau) = _fields(n, 1.0, ratio, poisson)[:, :2]
+    u, v, sigma, tau = _fields(n, 1.0, ratio, poisson, 2)
     over = 1.0 / (sigma[0] * tau[1] - sigma[1] * tau[0])
     return np.asarray(
         [
@@ -160,11 +170,16 @@ def _solid(n: Array, ratio: float, poisson: float) -> Array:
     )
 
 
-def _fields(n: Array, radius: float, ratio: float, poisson: float) -> Array:
-    """Fields of order n at a radius: u_r, u_θ and the tractions σ, τ on the loaded side (4, 4, n).
+def _fields(n: Array, radius: float, ratio: float, poisson: float, count: int = 4) -> Array:
+    """Fields of order n at a radius: u_r, u_θ and the tractions σ, τ on the loaded side.
 
     Displacements are in units of (1 − ν²)/E. The first two fields fade from radius 1 into the ring,
     the others from the held circle towards it.
+
+    Returns
+    -------
+    array (4, count, n)
+        Of the first `count` fields.
     """
     kappa, one = 3.0 - 4.0 * poisson, np.ones_like(n)
     grow = [(n + 1.0, kappa - n - 1.0, kappa + n + 1.0), (n - 1.0, one, -one)]
@@ -173,15 +188,16 @@ def _fields(n: Array, radius: float, ratio: float, poisson: float) -> Array:
     both = [(powers, 1.0) for powers in (grow if outwards else fade)]
     both += [(powers, ratio) for powers in (fade if outwards else grow)]
     fields = []
-    for (power, u, v), start in both:
+    for (power, u, v), start in both[:count]:
         size = (radius / start) ** power
         fields.append([u * size, v * size, power * u * size, power * v * size])
     u, v, u_slope, v_slope = np.array(fields).transpose(1, 0, 2)
     # Of order 1 both r^(1 − n) and r^(n − 1) are translations; the force needs a logarithm.
     one_of, first = (2 if outwards else 0), n == 1.0
     turn = 2.0 * kappa * log(radius)
-    u[one_of, first], v[one_of, first] = turn - 1.0, -turn - 1.0
-    u_slope[one_of, first], v_slope[one_of, first] = 2.0 * kappa, -2.0 * kappa
+    if one_of < count:
+        u[one_of, first], v[one_of, first] = turn - 1.0, -turn - 1.0
+        u_slope[one_of, first], v_slope[one_of, first] = 2.0 * kappa, -2.0 * kappa
     dilation = poisson / (1.0 - 2.0 * poisson) * (u_slope + u + n * v)
     side = (1.0 if outwards else -1.0) / radius
     sigma, tau = side * (dilation + u_slope), 0.5 * side * (v_slope - v - n * u)

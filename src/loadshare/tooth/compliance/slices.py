@@ -112,9 +112,9 @@ class Slices:
     def _at_root(self) -> Array:
         """Shear force, moment over thickness and pull (nodes, 3) at the root from unit forces."""
         zw = self._flank.places.copy()
-        flank = self.middle.flank(zw, self.side)
         zw[:, 0] = self.middle.waist
-        at, arm = self._plate.station(zw), flank - self.middle.points(zw)
+        at = self._plate.station(zw)
+        arm = self._feet.flank - at.middle
         shear, pull = (np.sum(self._feet.inward * unit, axis=1) for unit in (at.out, at.up))
         moment = shear * np.sum(arm * at.up, axis=1) - pull * np.sum(arm * at.out, axis=1)
         return np.column_stack([shear, moment / self._ring.thickness, pull])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -51,12 +52,11 @@ class SmoothMiddle(MiddleSurface):
     def __init__(self, body: ToothBody, waist: float) -> None:
         super().__init__(body, waist)
         count = DEGREE + 1
-        unit = chebyshev.chebpts1(count)
+        unit, fit, _ = _chebyshev()
         self._pieces = ((waist, body.foot), (body.foot, 1.0))
         u = np.concatenate([_spread(unit, *piece) for piece in self._pieces])[:, None]
         sides = both_sides(body, u, _spread(unit, 0.0, 1.0))
         values = 0.5 * np.concatenate([sides[0] + sides[1], sides[0] - sides[1]], axis=-1)
-        fit = np.linalg.inv(chebyshev.chebvander(unit, DEGREE))
         over_w = np.einsum("jb,abk->ajk", fit, values)
         pieces = [np.tensordot(fit, part, 1) for part in np.split(over_w, 2)]
         slopes = [
@@ -113,13 +113,13 @@ class SmoothMiddle(MiddleSurface):
         at = self.sample(uw)
         return at.middle + side * at.half
 
-    def inward(self, uw: Array, side: int) -> Array:
-        """See :meth:`MiddleSurface.inward`."""
+    def facing(self, uw: Array, side: int) -> tuple[Array, Array]:
+        """See :meth:`MiddleSurface.facing`."""
         at = self.sample(uw)
         normal = cross(at.middle_u + side * at.half_u, at.middle_w + side * at.half_w)
         normal /= np.linalg.norm(normal, axis=1)[:, None]
         inside = -side * np.sum(normal * at.half, axis=1)
-        return np.asarray(np.sign(inside)[:, None] * normal)
+        return at.middle + side * at.half, np.asarray(np.sign(inside)[:, None] * normal)
 
     def _read(self, u: Array, w: Array) -> Sample:
         upper = u > self.body.foot
@@ -145,6 +145,15 @@ def _spread(unit: Array, low: float, high: float) -> Array:
 
 def _slopes(coefficients: Array, scale: float) -> Array:
     """Coefficients of the derivative along the first axis, kept as long as the polynomial's."""
-    found = np.zeros_like(coefficients)
-    found[:-1] = scale * chebyshev.chebder(coefficients)
-    return found
+    _, _, derivative = _chebyshev()
+    return np.asarray(scale * np.tensordot(derivative, coefficients, 1))
+
+
+@cache
+def _chebyshev() -> tuple[Array, Array, Array]:
+    """Points −1 to 1, and what makes coefficients of values there, and of those the slope's."""
+    points = np.asarray(chebyshev.chebpts1(DEGREE + 1))
+    derivative = np.zeros((DEGREE + 1, DEGREE + 1))
+    derivative[:-1] = chebyshev.chebder(np.eye(DEGREE + 1))
+    fit = np.asarray(np.linalg.inv(chebyshev.chebvander(points, DEGREE)), np.float64)
+    return points, fit, derivative
