@@ -22,10 +22,9 @@ def cases() -> Path:
     return CASES
 
 
-@pytest.fixture
-def command() -> Callable[..., Any]:
-    """Run the command in this process; nothing but an exit code may leave it."""
-    runner = CliRunner(env={"COLUMNS": "80", "FORCE_COLOR": None, "TTY_COMPATIBLE": None})
+def on_a_screen_of(columns: int) -> Callable[..., Any]:
+    """The command in this process; nothing but an exit code may leave it."""
+    runner = CliRunner(env={"COLUMNS": f"{columns}", "FORCE_COLOR": None, "TTY_COMPATIBLE": None})
 
     def run(*words: str | Path) -> Any:
         result = runner.invoke(app, [str(word) for word in words], prog_name="loadshare")
@@ -35,6 +34,12 @@ def command() -> Callable[..., Any]:
         return result
 
     return run
+
+
+@pytest.fixture
+def command() -> Callable[..., Any]:
+    """Run the command on a screen of 80 columns."""
+    return on_a_screen_of(80)
 
 
 @pytest.fixture

@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -158,34 +159,60 @@ def test_an_interrupted_batch_leaves_whole_files_and_goes_on(command, star, tmp_
     assert sorted(outcomes(tmp_path).values()) == ["certified", "certified", "kept", "kept"]
 
 
-@pytest.mark.slow
+GATED = """
+import sys, time
+from pathlib import Path
+from loadshare.cli.batch import pool
+from loadshare.cli.batch.work import work
+
+def gated(task):
+    gate = task.target.parent.parent / "gate"
+    while task.name != "floating_sun_3" and not gate.exists():
+        time.sleep(0.01)
+    return work(task)
+
+if __name__ == "__main__":
+    pool.work = gated
+    from loadshare.cli.main import main
+    main()
+"""
+"""A batch whose first case is solved at once, while the others wait for a file."""
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 def test_an_interrupt_from_the_keyboard_stops_a_batch_in_processes(cases, tmp_path, environment):
-    base = cases / "fgfbstts/eccentricity.toml"
-    for number in range(6):
-        text = f"extends = '{base.as_posix()}'\nmarch.steps = {600 + number}\n"
-        (tmp_path / f"case{number}.toml").write_text(text, encoding="utf-8")
-    out = tmp_path / "out"
-    start = "from loadshare.cli.main import main; main()"
+    """What is under way is finished, what waits is left: as a terminal interrupts, all at once."""
+    out, script = tmp_path / "out", tmp_path / "script.py"
+    script.write_text(GATED, encoding="utf-8")
+    words = (cases / "star", cases / "two_path", "-o", out, "--jobs", "2")
     batch = subprocess.Popen(
-        [sys.executable, "-c", start, "batch", tmp_path, "-o", out, "--jobs", "2"],
+        [sys.executable, script, "batch", *words],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
         env=environment,
         start_new_session=True,
     )
-    while not list(out.glob("case*.json")):
-        assert batch.poll() is None
-        time.sleep(0.02)
-    # As a terminal does: to the command and to all its processes.
-    os.killpg(batch.pid, signal.SIGINT)
-    _, stderr = batch.communicate(timeout=60)
+    # A batch that does not react would wait for its gate, and the test for the batch.
+    guard = threading.Timer(60.0, os.killpg, (batch.pid, signal.SIGKILL))
+    guard.start()
+    try:
+        while not (out / "floating_sun_3.json").exists():
+            assert batch.poll() is None
+            time.sleep(0.01)
+        os.killpg(batch.pid, signal.SIGINT)
+        assert batch.stderr.readline().startswith("Stopping")
+        (tmp_path / "gate").touch()
+        _, stderr = batch.communicate()
+    finally:
+        guard.cancel()
     assert batch.returncode == 130
     assert "The same command goes on" in stderr
     assert "Traceback" not in stderr
+    # Each process has one case under way, and one more may wait in the pipe between them.
     assert summary(out)["not_done"]
-    for file in out.glob("case*.json"):
+    assert set(outcomes(out).values()) <= {"certified"}
+    for file in set(out.glob("*.json")) - {out / "summary.json"}:
         assert ls.load_result(file).passed
     assert not list(out.glob(".*"))
 

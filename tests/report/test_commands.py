@@ -74,6 +74,13 @@ def test_report_writes_a_page(command):
     assert "Star with 3 planets" in Path("report.html").read_text(encoding="utf-8")
 
 
+def test_a_report_is_html_and_nothing_else(command):
+    result = command("report", STAR, "-o", "report.pdf")
+    assert result.exit_code == 2
+    assert "report.pdf: must end in .html" in result.stderr
+    assert not Path("report.pdf").exists()
+
+
 def test_report_tells_what_failed_and_writes_the_page_all_the_same(command):
     Path("bad.toml").write_text("title = 'bad'\n", encoding="utf-8")
     result = command("report", "bad.toml", STAR, "-o", "both.html")

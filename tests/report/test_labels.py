@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from itertools import combinations
 
 from hypothesis import given, settings
@@ -51,3 +52,47 @@ def test_the_preferred_side_is_taken_when_it_is_free():
         labels.place("name", [(150.0, 150.0)], towards=towards)
         (box,) = boxes(labels)
         assert box[k] > 150.0
+
+
+def leader(labels):
+    """Ends of the line that leads to the one label that was placed; none for a label beside it."""
+    import altair as alt
+
+    for layer in labels.layers(alt.X("x:Q"), alt.Y("y:Q")):
+        if layer.to_dict()["mark"]["type"] == "line":
+            return [(row["x"], row["y"]) for row in layer.data.values]
+    return []
+
+
+def test_a_line_leads_to_what_stands_further_away():
+    labels = Labels((0.0, 0.0), (300.0, 300.0), 1.0)
+    labels.avoid([(130.0, 160.0), (170.0, 160.0), (170.0, 140.0), (130.0, 140.0), (130.0, 160.0)])
+    labels.place("name", [(150.0, 150.0)])
+    (box,) = boxes(labels)
+    start, end = leader(labels)
+    assert start == (150.0, 150.0)
+    # It ends on the rim of the label; what is drawn has seven digits.
+    assert box[0] - 1e-4 <= end[0] <= box[2] + 1e-4
+    assert box[1] - 1e-4 <= end[1] <= box[3] + 1e-4
+    beside = Labels((0.0, 0.0), (300.0, 300.0), 1.0)
+    beside.place("name", [(150.0, 150.0)])
+    assert leader(beside) == []
+
+
+def test_a_label_does_not_seem_to_name_another_point():
+    """Two points 24 px above one another: without the other, the wish for "up" would be met."""
+    own, other = (150.0, 150.0), (150.0, 174.0)
+    alone, beside = (Labels((0.0, 0.0), (300.0, 300.0), 1.0) for _ in range(2))
+    alone.place("name", [own], towards=(0.0, 1.0), gap=7.0)
+    beside.place("name", [own], towards=(0.0, 1.0), gap=7.0, others=[other])
+    (met,), (kept,) = boxes(alone), boxes(beside)
+    assert met[1] > own[1]
+
+    def away(box, point):
+        return math.hypot(
+            max(box[0] - point[0], 0.0, point[0] - box[2]),
+            max(box[1] - point[1], 0.0, point[1] - box[3]),
+        )
+
+    assert away(met, other) < 1.5 * away(met, own)
+    assert leader(beside) or away(kept, other) >= 1.5 * away(kept, own)

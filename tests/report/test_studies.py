@@ -75,7 +75,7 @@ def test_lines_over_one_parameter(line, read):
     assert "1 of 5 points not certified" in words
     assert "made up" in words
     (rule,) = spec.marks("rule")
-    assert list(rule["rows"]) == [{"x": 3.0, "event": "the stop opens"}]
+    assert list(rule["rows"]) == [{"x": 3.0, "text": "the stop opens"}]
 
 
 def test_names_and_positions_can_be_chosen(line, read):

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias
 
 import typer
 
@@ -42,6 +43,19 @@ CasePaths = Annotated[
 ]
 
 
-def output(*names: str, what: str) -> object:
-    """Return the option for a file to write."""
-    return typer.Option(*names, metavar="FILE", dir_okay=False, writable=True, help=what)
+def output(*names: str, what: str, callback: Callable[..., Any] | None = None) -> object:
+    """Return the option for a file to write, which a callback may refuse."""
+    return typer.Option(
+        *names, metavar="FILE", dir_okay=False, writable=True, help=what, callback=callback
+    )
+
+
+def ending(*endings: str) -> Callable[[Path | None], Path | None]:
+    """Return a callback that refuses a file of another kind, before anything is solved."""
+
+    def checked(file: Path | None) -> Path | None:
+        if file is not None and file.suffix not in endings:
+            raise typer.BadParameter(f"{file}: must end in {' or '.join(endings)}")
+        return file
+
+    return checked

@@ -10,12 +10,15 @@ import typer
 from loadshare.cli.console import progress
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail, writing
 from loadshare.cli.find import find_cases
-from loadshare.cli.options import CasePaths, output
+from loadshare.cli.options import CasePaths, ending, output
 
 
 def report(
     cases: CasePaths,
-    file: Annotated[Path, output("-o", "--output", what="Page to write.")] = Path("report.html"),
+    file: Annotated[
+        Path,
+        output("-o", "--output", what="Page to write, .html.", callback=ending(".html", ".htm")),
+    ] = Path("report.html"),
 ) -> None:
     """Solve cases and write one page with tables, pictures and certificates.
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from loadshare._version import __version__
 from loadshare.errors import Refused
+from loadshare.report.numbers import runs
 
 _PLACED = re.compile(r"position (\d+): (.*)")
 
@@ -31,13 +32,8 @@ def _named(positions: list[int]) -> str:
 
 def ranges(numbers: list[int]) -> str:
     """Return whole numbers in short: ``1-3, 7``."""
-    runs: list[list[int]] = []
-    for number in sorted(set(numbers)):
-        if runs and number == runs[-1][-1] + 1:
-            runs[-1].append(number)
-        else:
-            runs.append([number])
-    return ", ".join(str(r[0]) if len(r) == 1 else f"{r[0]}-{r[-1]}" for r in runs)
+    # A plain hyphen: terminals and logs may know no other dash.
+    return ", ".join(runs(numbers, "-"))
 
 
 def refused_document(refusal: Refused, case: str) -> dict[str, Any]:

@@ -39,6 +39,17 @@ def small(value: float) -> str:
     return "0" if value == 0.0 else f"{value:.1e}"
 
 
+def runs(numbers: Iterable[int], to: str = "–") -> list[str]:
+    """Return whole numbers in short, rising and each once: ``1–3`` and ``7``."""
+    found: list[list[int]] = []
+    for number in sorted(set(numbers)):
+        if found and number == found[-1][-1] + 1:
+            found[-1].append(number)
+        else:
+            found.append([number])
+    return [f"{run[0]}{to}{run[-1]}" if len(run) > 1 else f"{run[0]}" for run in found]
+
+
 def significant(value: float, digits: int = 4) -> str:
     """Return a value with so many significant digits, without an exponent and trailing zeros."""
     if value == 0.0 or not math.isfinite(value):

@@ -7,27 +7,22 @@ from typing import Annotated
 
 import typer
 
-from loadshare.cli.evidence.console import DRAWING, need, teller
+from loadshare.cli.evidence.console import DRAWING, SHIPPED, Cases, Folder, Quiet, need, teller
 from loadshare.cli.exits import UNUSABLE, fail, writing
 
 EVIDENCE = Path("docs/evidence")
 
 
 def chart(
-    folder: Annotated[
-        Path,
-        typer.Option("-o", "--output", metavar="DIR", file_okay=False, help="Folder to write to."),
-    ] = EVIDENCE,
-    cases: Annotated[
-        Path, typer.Option("--cases", metavar="DIR", help="Folder of the shipped cases.")
-    ] = Path("cases"),
+    folder: Folder = EVIDENCE,
+    cases: Cases = SHIPPED,
     quick: Annotated[
         bool, typer.Option("--quick", help="Fewer samples: a look, not evidence.")
     ] = False,
     redraw: Annotated[
         bool, typer.Option("--redraw", help="Draw the figures that are there; measure nothing.")
     ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Tell no steps.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Measure speed against accuracy, ours and peers, and write charts and report."""
     need((*DRAWING, "mpmath"), "chart")

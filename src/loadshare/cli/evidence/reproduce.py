@@ -3,23 +3,17 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
-from loadshare.cli.evidence.console import DRAWING, need, teller
+from loadshare.cli.evidence.console import DRAWING, SHIPPED, Cases, Folder, Quiet, need, teller
 from loadshare.cli.exits import UNUSABLE, fail, writing
 
 
 def reproduce(
-    folder: Annotated[
-        Path,
-        typer.Option("-o", "--output", metavar="DIR", file_okay=False, help="Folder to write to."),
-    ] = Path("docs"),
-    cases: Annotated[
-        Path, typer.Option("--cases", metavar="DIR", help="Folder of the shipped cases.")
-    ] = Path("cases"),
-    quiet: Annotated[bool, typer.Option("--quiet", help="Tell no steps.")] = False,
+    folder: Folder = Path("docs"),
+    cases: Cases = SHIPPED,
+    quiet: Quiet = False,
 ) -> None:
     """Compute the seed paper's figures and write page and pictures."""
     need(DRAWING, "reproduce")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from loadshare.cli.evidence.chart import EVIDENCE
-from loadshare.cli.evidence.console import DRAWING, need, teller
+from loadshare.cli.evidence.console import DRAWING, Folder, Quiet, need, teller
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail, writing
 
 if TYPE_CHECKING:
@@ -16,10 +16,7 @@ if TYPE_CHECKING:
 
 
 def stress(
-    folder: Annotated[
-        Path,
-        typer.Option("-o", "--output", metavar="DIR", file_okay=False, help="Folder to write to."),
-    ] = EVIDENCE,
+    folder: Folder = EVIDENCE,
     family: Annotated[
         str | None, typer.Option("--family", metavar="NAME", help="Only this family.")
     ] = None,
@@ -35,7 +32,7 @@ def stress(
     case: Annotated[
         Path | None, typer.Option("--case", metavar="FILE", help="Write the problem as a case.")
     ] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Tell no steps.")] = False,
+    quiet: Quiet = False,
 ) -> None:
     """Try problems from harmless to extreme on every method, and write map and report."""
     from loadshare.evidence.stress.families import FAMILIES

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from loadshare.cli.changes import read_changes
+from loadshare.cli.console import Tick, progress
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail, problems_told, writing
-from loadshare.cli.options import output
+from loadshare.cli.options import ending, output
 from loadshare.cli.refusal import told
 from loadshare.errors import Refused
 
@@ -32,10 +33,39 @@ Changes = Annotated[
         "--with", metavar="KEY=VALUE", help="Change the case beforehand; may be repeated."
     ),
 ]
+
+
+def _file(what: str, *endings: str) -> object:
+    return output("-o", "--output", what=what, callback=ending(*endings))
+
+
 TableFile = Annotated[
-    Path | None, output("-o", "--output", what="Write it to a .csv or a .nc (netCDF) file.")
+    Path | None, _file("Write it to a .csv or a .nc (netCDF) file.", ".csv", ".nc")
 ]
-CsvFile = Annotated[Path | None, output("-o", "--output", what="Write it to a .csv file.")]
+CsvFile = Annotated[Path | None, _file("Write it to a .csv file.", ".csv")]
+FittedFile = Annotated[Path | None, _file("Write the fitted case to a .toml file.", ".toml")]
+
+
+@contextmanager
+def asked(
+    file: Path, changes: list[str] | None, what: str, total: int = 1
+) -> Iterator[tuple[Case, Tick | None]]:
+    """Open the case of a study and a progress bar; what cannot be answered becomes a message.
+
+    Parameters
+    ----------
+    file : Path
+    changes : list of str or None
+        Of ``--with``.
+    what : str
+        What the bar counts.
+    total : int
+        How many there are, as far as known beforehand.
+    """
+    with answered():
+        case = open_case(file, changes)
+        with progress(what, total) as tick:
+            yield case, tick
 
 
 @contextmanager
@@ -71,19 +101,6 @@ def open_case(file: Path, changes: list[str] | None) -> Case:
     case = load_case(file)
     asked = read_changes(changes or ())
     return case.replace(asked) if asked else case
-
-
-def check_ending(file: Path | None, *endings: str) -> None:
-    """Refuse a file of another kind before anything is solved.
-
-    Raises
-    ------
-    typer.BadParameter
-        If its ending is none of those given.
-    """
-    if file is not None and file.suffix not in endings:
-        known = " or ".join(endings)
-        raise typer.BadParameter(f"{file}: must end in {known}", param_hint="--output")
 
 
 def write_table(

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from loadshare.cli.console import console, progress
+from loadshare.cli.console import console
+from loadshare.cli.exits import counted
 from loadshare.cli.study.common import (
     CaseFile,
     Changes,
     CsvFile,
-    answered,
-    check_ending,
-    open_case,
+    asked,
     write_table,
 )
 
@@ -25,11 +24,8 @@ def compare(case: CaseFile, file: CsvFile = None, change: Changes = None) -> Non
     """Compare what was measured with what is computed."""
     from loadshare.study.compare import compare as compared
 
-    check_ending(file, ".csv")
-    with answered():
-        loaded = open_case(case, change)
-        with progress("positions", 1) as tick:
-            found = compared(loaded, progress=tick)
+    with asked(case, change, "positions") as (loaded, tick):
+        found = compared(loaded, progress=tick)
     show_comparison(console(), found)
     if file is not None:
         write_table(file, found.to_frame())
@@ -57,4 +53,4 @@ def show_comparison(screen: Console, found: Comparison) -> None:
             f"{d.deviations:+.2f}",
         )
     show(screen, "Measured against computed", made)
-    screen.print(f"χ² = {found.chi_square:.4g} over {len(found.deviations)} figures")
+    screen.print(f"χ² = {found.chi_square:.4g} over {counted(len(found.deviations), 'figure')}")

@@ -6,17 +6,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from loadshare.cli.console import console, progress
+from loadshare.cli.console import console
 from loadshare.cli.exits import counted
 from loadshare.cli.study.common import (
     CaseFile,
     Changes,
     CsvFile,
     Positions,
-    answered,
-    check_ending,
+    asked,
     end,
-    open_case,
     write_table,
 )
 
@@ -42,11 +40,8 @@ def critical(
     """Find where contacts, floats and splines change along an input, exactly."""
     from loadshare.study.critical import critical as found_along
 
-    check_ending(file, ".csv")
-    with answered():
-        loaded = open_case(case, change)
-        with progress("positions", 1) as tick:
-            found = found_along(loaded, key, start, stop, positions=position, progress=tick)
+    with asked(case, change, "positions") as (loaded, tick):
+        found = found_along(loaded, key, start, stop, positions=position, progress=tick)
     show_critical(console(), found)
     if file is not None:
         write_table(file, events_frame(found))

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from loadshare.cli.console import console, progress
+from loadshare.cli.console import console
 from loadshare.cli.exits import writing
 from loadshare.cli.files import write_text
-from loadshare.cli.options import output
-from loadshare.cli.study.common import CaseFile, Changes, answered, check_ending, open_case
+from loadshare.cli.study.common import CaseFile, Changes, FittedFile, asked
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -37,16 +35,13 @@ def fit(
     seed: Annotated[
         int, typer.Option(metavar="N", min=0, help="Seed of the further starting points.")
     ] = 0,
-    file: Annotated[
-        Path | None, output("-o", "--output", what="Write the fitted case to a .toml file.")
-    ] = None,
+    file: FittedFile = None,
     change: Changes = None,
 ) -> None:
     """Fit inputs of a case to what was measured."""
     from loadshare.study.fit import fit as fitted
     from loadshare.study.parameter import split_outside
 
-    check_ending(file, ".toml")
     unknowns: dict[tuple[str, ...], list[str]] = {}
     for text in unknown:
         *keys, bounds = split_outside(text, "=")
@@ -56,10 +51,8 @@ def fit(
                 f"{text!r} is not of the form KEY=LOW:HIGH", param_hint="--unknown"
             )
         unknowns[tuple(keys)] = limits
-    with answered():
-        loaded = open_case(case, change)
-        with progress("starting points", starts) as tick:
-            found = fitted(loaded, unknowns, starts=starts, seed=seed, progress=tick)
+    with asked(case, change, "starting points", starts) as (loaded, tick):
+        found = fitted(loaded, unknowns, starts=starts, seed=seed, progress=tick)
     show_fit(console(), found)
     if file is not None:
         with writing(file):

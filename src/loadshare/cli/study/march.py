@@ -7,14 +7,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from loadshare.cli.console import console, progress
+from loadshare.cli.console import console
 from loadshare.cli.study.common import (
     CaseFile,
     Changes,
     TableFile,
-    answered,
-    check_ending,
-    open_case,
+    asked,
     write_table,
 )
 
@@ -39,11 +37,8 @@ def march(
     """March through revolutions with spline friction that remembers its slip."""
     from loadshare.study.march import march as marched
 
-    check_ending(file, ".csv", ".nc")
-    with answered():
-        loaded = open_case(case, change)
-        with progress("steps", 1) as tick:
-            found = marched(loaded, gear=gear, revolutions=revolutions, steps=steps, progress=tick)
+    with asked(case, change, "steps") as (loaded, tick):
+        found = marched(loaded, gear=gear, revolutions=revolutions, steps=steps, progress=tick)
     show_march(console(), found)
     if file is not None:
         write_table(file, found.result.to_frame(), found.dataset)

@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from loadshare.cli.console import console, progress
+from loadshare.cli.console import console
 from loadshare.cli.study.common import (
     CaseFile,
     Changes,
     Positions,
     TableFile,
-    answered,
-    check_ending,
-    open_case,
+    asked,
     write_table,
 )
 
@@ -27,6 +25,8 @@ if TYPE_CHECKING:
 SHOWN = 25
 """Inputs that are shown; a file holds all."""
 SIDES = ("falling", "rising")
+ROUND_OFF = 1e-13
+"""Change of Ω over a unit and over the whole value of an input that says nothing."""
 
 
 def sensitivity(
@@ -42,11 +42,8 @@ def sensitivity(
     """Tell how torques, Ω and floats change with inputs of a case."""
     from loadshare.study.sensitivity import sensitivity as differentiated
 
-    check_ending(file, ".csv", ".nc")
-    with answered():
-        loaded = open_case(case, change)
-        with progress("inputs", 1) as tick:
-            found = differentiated(loaded, key or None, positions=position, progress=tick)
+    with asked(case, change, "inputs") as (loaded, tick):
+        found = differentiated(loaded, key or None, positions=position, progress=tick)
     show_sensitivity(console(), found)
     if file is not None:
         arrays = found.dataset
@@ -62,16 +59,14 @@ def show_sensitivity(screen: Console, found: Sensitivity) -> None:
     sides = ("dΩ per unit", *(["falling"] if one_sided else []))
     made = table(("input", "value", *sides, "dΩ over its value"), words=("input", "value"))
     for item in ordered[:SHOWN]:
-        falling, rising = (found.pair_omega[item.key, s]["system"] for s in SIDES)
-        factor = item.value.factor
-        below = [_signed(falling * factor) if item.key in one_sided else ""] if one_sided else []
-        made.add_row(
-            item.key,
-            f"{item.value.number:.6g} {item.value.unit}".strip(),
-            _signed(rising * factor),
-            *below,
-            _signed(_whole(found, item)),
-        )
+        slopes = [found.pair_omega[item.key, s]["system"] * item.value.factor for s in SIDES]
+        changes = [*slopes, _whole(found, item)]
+        if all(abs(change) < ROUND_OFF for change in changes):
+            changes = [0.0, 0.0, 0.0]
+        falling, rising, whole = map(_signed, changes)
+        below = [falling if item.key in one_sided else ""] if one_sided else []
+        value = f"{item.value.number:.6g} {item.value.unit}".strip()
+        made.add_row(item.key, value, rising, *below, whole)
     show(screen, "Sensitivity of the system's Ω, by group mean", made)
     if len(ordered) > SHOWN:
         screen.print(f"{len(ordered) - SHOWN} inputs that matter less are not shown.")
@@ -100,4 +95,4 @@ def _whole(found: Sensitivity, item: Input) -> float:
 
 
 def _signed(value: float) -> str:
-    return "–" if math.isnan(value) else f"{value:+.4g}"
+    return "–" if math.isnan(value) else f"{value:+.4g}" if value else "0"

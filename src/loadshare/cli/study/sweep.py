@@ -6,17 +6,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from loadshare.cli.console import console, progress
+from loadshare.cli.console import console
 from loadshare.cli.exits import counted
 from loadshare.cli.study.common import (
     CaseFile,
     Changes,
     Positions,
     TableFile,
-    answered,
-    check_ending,
+    asked,
     end,
-    open_case,
     write_table,
 )
 
@@ -48,7 +46,6 @@ def sweep(
     from loadshare.study.parameter import split_outside
     from loadshare.study.sweep import sweep as swept
 
-    check_ending(file, ".csv", ".nc")
     over: dict[tuple[str, ...], str] = {}
     for text in setting:
         *keys, grid = split_outside(text, "=")
@@ -58,10 +55,8 @@ def sweep(
                 param_hint="--set",
             )
         over[tuple(keys)] = grid
-    with answered():
-        loaded = open_case(case, change)
-        with progress("points", 1) as tick:
-            found = swept(loaded, over, positions=position, progress=tick)
+    with asked(case, change, "points") as (loaded, tick):
+        found = swept(loaded, over, positions=position, progress=tick)
     show_sweep(console(), found)
     write_table(file, found.to_frame() if file else None, found.dataset if file else None)
     end(open_points(found))

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 SHOWN = 20
 """Inputs, and messages, that are shown."""
+ROUND_OFF = 1e-12
+"""Deviation over the mean that says nothing."""
 
 
 def tolerance(
@@ -176,13 +178,18 @@ def _show_omega(screen: Console, found: Tolerance) -> None:
         above = [_interval(one.exceedance)] if one.exceedance is not None else []
         label = f"{one.stage}, group" if one.over == "group" else one.stage
         figures.add_row(
-            label, f"{s.mean.value:.5f}", f"{s.deviation:.2g}", f"{s.highest:.5f}", *above
+            label, f"{s.mean.value:.5f}", f"{_spread(s):.2g}", f"{s.highest:.5f}", *above
         )
         quantiles.add_row(label, *(f"{q.value:.5f}" for q in s.quantiles.values()))
     show(screen, "Largest Ω over branches and positions", figures)
     show(screen, "Its quantiles", quantiles)
     if found.limit is not None or any(one.shares for one in found.omega):
         screen.print("Intervals in brackets: 95 %.")
+
+
+def _spread(found: Summary) -> float:
+    """Deviation; none where it is round-off of the mean."""
+    return found.deviation if found.deviation > ROUND_OFF * abs(found.mean.value) else 0.0
 
 
 def _interval(found: Estimate, form: str = ".4g") -> str:
@@ -210,7 +217,7 @@ def _show_others(screen: Console, found: Tolerance) -> None:
     heads = ("mean", "deviation", "smallest", "largest")
 
     def cells(s: Summary, factor: float = 1.0) -> list[str]:
-        values = (s.mean.value, s.deviation, s.lowest, s.highest)
+        values = (s.mean.value, _spread(s), s.lowest, s.highest)
         return [f"{factor * value:.5g}" for value in values]
 
     made = table(("mesh", *heads), words=("mesh",))

@@ -8,17 +8,18 @@ from typing import Any
 
 from loadshare.report.figure import Figure
 from loadshare.report.figures.marks import (
-    BESIDE_RULE,
     Drawing,
     Row,
     channels,
     chart,
-    dashed_lines,
+    curves,
     heading,
     padded,
     rimmed,
 )
-from loadshare.report.palette import FAINT, INK, SOFT, Look
+from loadshare.report.figures.rules import rules
+from loadshare.report.numbers import decimals
+from loadshare.report.palette import FAINT, INK, Look
 
 WIDTH, HEIGHT = 330, 250
 PAPER = "paper"
@@ -137,15 +138,9 @@ def picture(name: str, title: str, told: str, panels: Sequence[Panel]) -> Figure
 def _panel(panel: Panel, columns: int) -> Drawing:
     import altair as alt
 
-    # Seven digits: what is beyond them is round-off, and the file shall not change with it.
-    rows: list[Row] = [
-        {"x": _seven(x), "y": _seven(y), "name": name, "order": k}
-        for name, points in panel.curves.items()
-        for k, (x, y) in enumerate(points)
-    ]
+    rows = _rows(panel)
     x, y = _axes(panel, rows)
-    by_name = channels("name", panel.looks, panel.named)
-    where = {"x": x, "y": y, "color": by_name["color"], "order": "order:Q"}
+    colour = channels("name", panel.looks, panel.named)["color"]
     layers: list[Any] = []
     if panel.band:
         low, high = panel.band
@@ -154,31 +149,40 @@ def _panel(panel: Panel, columns: int) -> Drawing:
     for level in panel.levels:
         line = chart([{"y": level.y, "name": level.name}]).encode(y=y)
         rule = line.mark_rule(strokeDash=[1, 3], strokeWidth=1.6)
-        layers.append(rule.encode(color=by_name["color"]))
+        layers.append(rule.encode(color=colour))
         words = line.encode(
             x=alt.value(4 + level.along * WIDTH),
             text=alt.value(f"{PAPER}, {level.name}"),
         )
         side = {"baseline": "top", "dy": 4} if level.below else {"baseline": "bottom", "dy": -2}
         layers += rimmed(words, INK, align="left", fontSize=10, **side)
-    layers += [line.encode(**where) for line in dashed_lines(rows, "name", panel.looks, 1.8)]
-    dots = chart(rows).mark_point(filled=True, size=26, opacity=1)
     hover = [
         alt.Tooltip("name:N", title=panel.named),
         alt.Tooltip("x:Q", title=panel.x_title),
         alt.Tooltip("y:Q", title=panel.y_title, format=".6~g"),
     ]
-    places = {k: v for k, v in where.items() if k != "order"}
-    layers.append(dots.encode(**places, shape=by_name["shape"], tooltip=hover))
-    if panel.rules:
-        marks = chart([{"x": _seven(at), "text": text} for at, text in panel.rules])
-        layers.append(marks.mark_rule(color=SOFT, strokeDash=[4, 3]).encode(x=x))
-        words = marks.encode(x=x, y=alt.value(4), text="text:N")
-        layers += rimmed(words, INK, **BESIDE_RULE)
-    layers += _printed(panel.printed, x, y)
+    layers += curves(
+        rows, "name", panel.looks, panel.named, x=x, y=y, tooltip=hover, order="order:Q"
+    )
     width = WIDTH if columns == 2 else 235
+    if panel.rules:
+        marks = [{"x": at, "text": text} for at, text in panel.rules]
+        xs = [row["x"] for row in (*rows, *marks)]
+        layers += rules(marks, x, width / (max(xs) - min(xs)))
+    layers += _printed(panel.printed, x, y)
     height = WIDTH if panel.true_to_shape else HEIGHT
     return alt.layer(*layers).properties(width=width, height=height, title=heading(panel.title))
+
+
+def _rows(panel: Panel) -> list[Row]:
+    """Points of all curves to seven digits of the largest: round-off shall not change the file."""
+    points = [point for curve in panel.curves.values() for point in curve]
+    of_x, of_y = (decimals(values, 7) for values in zip(*points, strict=True))
+    return [
+        {"x": round(x, of_x) + 0.0, "y": round(y, of_y) + 0.0, "name": name, "order": k}
+        for name, curve in panel.curves.items()
+        for k, (x, y) in enumerate(curve)
+    ]
 
 
 def _axes(panel: Panel, rows: Sequence[Row]) -> tuple[Any, Any]:
@@ -201,9 +205,9 @@ def _axes(panel: Panel, rows: Sequence[Row]) -> tuple[Any, Any]:
         ]
     # A count beside given ticks would thin them out.
     ticks = {"values": list(panel.ticks)} if panel.ticks else {"tickCount": 6}
-    x_axis = alt.Axis(**ticks, format="~f", grid=panel.true_to_shape)
+    x_axis = alt.Axis(**ticks, grid=panel.true_to_shape)
     x = alt.X("x:Q", title=panel.x_title, scale=scales[0], axis=x_axis)
-    y = alt.Y("y:Q", title=panel.y_title, scale=scales[1], axis=alt.Axis(tickCount=6, format="~f"))
+    y = alt.Y("y:Q", title=panel.y_title, scale=scales[1], axis=alt.Axis(tickCount=6))
     return x, y
 
 
@@ -222,7 +226,3 @@ def _printed(marks: Sequence[Printed], x: Any, y: Any) -> list[Drawing]:
             words = chart(own).encode(x=x, y=y, text="text:N")
             layers += rimmed(words, INK, **style, fontSize=10)
     return layers
-
-
-def _seven(value: float) -> float:
-    return float(f"{value:.7g}") + 0.0

@@ -10,11 +10,11 @@ from loadshare.evidence.reproduction.both_errors import errors_of
 from loadshare.evidence.reproduction.chapter import Chapter
 from loadshare.evidence.reproduction.drawing import Panel, Printed, picture
 from loadshare.evidence.reproduction.entry import Entry, entries_table, table
-from loadshare.evidence.reproduction.seed import GEARS, PINIONS, Seed, pair_omega
+from loadshare.evidence.reproduction.seed import GEARS, Seed, stage_omega
 from loadshare.job import solve
 from loadshare.report.figure import Figure
 from loadshare.report.palette import DASHES, INK, SHAPES, SOFT, Look
-from loadshare.results import Position, Result
+from loadshare.results import Result
 
 PARTS = tuple(0.2 * k for k in range(1, 9))
 """Loads of Table 2, over T_in."""
@@ -83,7 +83,7 @@ def loads(seed: Seed, held: Case, floating: Case) -> Loads:
 
     def missed(scale: float) -> float:
         (at,) = _solved(_scaled(case, scale), [printed.LIGHT]).positions
-        return _two(at) - printed.LIGHT_THEORY
+        return stage_omega(at, "II") - printed.LIGHT_THEORY
 
     scale = float(brentq(missed, 0.01, 1.0, xtol=1e-12))
     every = sorted((*TORQUES, printed.LIGHT))
@@ -91,19 +91,15 @@ def loads(seed: Seed, held: Case, floating: Case) -> Loads:
     rows = tuple(
         Load(
             torque,
-            max(at.share[m] or 0.0 for m in ("1-2", "1-3")),
-            _two(at),
+            stage_omega(at, "I"),
+            stage_omega(at, "II"),
             (at.torque["7-10"] - at.torque["6-10"]) / 2,
-            _two(reduced),
-            _two(free),
+            stage_omega(reduced, "II"),
+            stage_omega(free, "II"),
         )
         for torque, at, reduced, free in zip(every, *found, strict=True)
     )
     return Loads(rows, scale)
-
-
-def _two(at: Position) -> float:
-    return max(pair_omega(at, pinion) for pinion in PINIONS)
 
 
 def _scaled(case: Case, scale: float) -> Case:

@@ -20,6 +20,7 @@ from loadshare.evidence.reproduction.entry import (
     table,
 )
 from loadshare.evidence.reproduction.geometry import Geometry
+from loadshare.evidence.reproduction.pinions import clearance_panel, looks, named
 from loadshare.evidence.reproduction.seed import PAIRS, PINIONS, Seed, first, pair_omega
 from loadshare.evidence.reproduction.stiffness import ALIKE
 from loadshare.report.figure import Figure
@@ -347,36 +348,30 @@ def _mirror_told(found: Rings) -> str:
 
 
 def _ring_picture(seed: Seed, found: Rings) -> Figure:
-    panel = Panel(
-        "",
-        "clearance of both rings [µm]",
-        "Ω II, within the pair",
-        {
-            f"pinion {p}": list(zip(CLEARANCES, curve, strict=True))
-            for p, curve in found.curves.items()
-        },
-        {f"pinion {p}": seed.palette.gear(p) for p in PINIONS},
-        "pair of",
-        printed=[
+    panel = clearance_panel(
+        seed,
+        "rings",
+        CLEARANCES,
+        found.curves,
+        found.thresholds,
+        [
             *(Printed(0.0, v, f"{v}") for v in printed.RIGID_RINGS.values()),
             Printed(CLEARANCES[-1], printed.FREE_RINGS["4"], "1.004, 1.003", "left above"),
             Printed(CLEARANCES[-1], printed.FREE_RINGS["5"], ""),
             *(Printed(v, 1.0, f"{v} µm", "right above") for v in printed.THRESHOLDS.values()),
         ],
-        rules=[(v, f"pinion {p} free") for p, v in found.thresholds.items()],
     )
     title = "Load sharing against the clearance of the limit rings"
     return picture("rings", title, "cross: printed", [panel])
 
 
 def _point_picture(seed: Seed, found: Rings) -> Figure:
-    looks = {f"pinion {p}": seed.palette.gear(p) for p in PINIONS}
     panel = Panel(
         "",
         "displacement along x [µm]",
         "displacement along y [µm]",
-        {f"pinion {p}": found.paths[p] for p in PINIONS},
-        looks,
+        named(found.paths),
+        looks(seed),
         "path of",
         printed=[
             Printed(

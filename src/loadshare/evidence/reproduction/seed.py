@@ -23,6 +23,8 @@ GEARS = tuple(str(n) for n in range(1, 11))
 PAIRS = {"4": ("6-10", "7-10"), "5": ("8-10", "9-10")}
 """Output meshes of each pinion's two branches."""
 PINIONS = tuple(PAIRS)
+DIVIDING = ("1-2", "1-3")
+"""Meshes of stage I."""
 
 
 class Seed:
@@ -90,6 +92,13 @@ def first(case: Case, changes: Mapping[str, Any] | None = None) -> Position:
 def pair_omega(position: Position, pinion: str) -> float:
     """Largest Ω of a pinion's pair."""
     return max(position.pair_share[mesh] or 0.0 for mesh in PAIRS[pinion])
+
+
+def stage_omega(position: Position, stage: str) -> float:
+    """Ω of stage I, or of stage II within the pairs."""
+    if stage == "I":
+        return max(position.share[mesh] or 0.0 for mesh in DIVIDING)
+    return max(pair_omega(position, pinion) for pinion in PINIONS)
 
 
 def push_on(case: Case, position: Position, pinion: str) -> float:

@@ -12,7 +12,7 @@ from loadshare.evidence.reproduction import printed
 from loadshare.evidence.reproduction.chapter import Chapter
 from loadshare.evidence.reproduction.drawing import Level, Panel, Printed, picture
 from loadshare.evidence.reproduction.entry import Entry, entries_table, listed, table
-from loadshare.evidence.reproduction.seed import PINIONS, Seed, first, pair_omega
+from loadshare.evidence.reproduction.seed import Seed, first, stage_omega
 from loadshare.job import solve
 from loadshare.report.figure import Figure
 
@@ -126,10 +126,7 @@ def eccentricity(seed: Seed) -> Eccentricity:
                 }
             )
             curves[stage][gear] = tuple(
-                max(p.share[m] or 0.0 for m in ("1-2", "1-3"))
-                if stage == "I"
-                else max(pair_omega(p, pinion) for pinion in PINIONS)
-                for p in solve(case).positions
+                stage_omega(position, stage) for position in solve(case).positions
             )
     return Eccentricity(curves)
 
@@ -150,18 +147,21 @@ def told(groups: Sequence[Sequence[str]]) -> str:
     return " > ".join(" = ".join(group) for group in groups)
 
 
+def largest_entries(
+    paper: Mapping[str, float], one: Mapping[str, float], two: Mapping[str, float]
+) -> list[Entry]:
+    """Largest coefficients of both stages beside the printed ones."""
+    return [
+        Entry("largest Ω I from gears 1 to 3", paper["I"], max(one.values()), 4),
+        Entry("largest Ω II, within the pair", paper["II"], max(two.values()), 4),
+    ]
+
+
 def installation_chapter(seed: Seed, found: Installation) -> Chapter:
     """What the page tells of Fig. 8."""
     one, two = found.omega("I"), found.omega("II")
     far = [gear for gear in two if gear != "6"]
-    entries = [
-        Entry(
-            "largest Ω I from gears 1 to 3", printed.OMEGA_INSTALLATION["I"], max(one.values()), 4
-        ),
-        Entry(
-            "largest Ω II, within the pair", printed.OMEGA_INSTALLATION["II"], max(two.values()), 4
-        ),
-    ]
+    entries = largest_entries(printed.OMEGA_INSTALLATION, one, two)
     rows = [
         (
             gear,
@@ -235,14 +235,7 @@ def _matching_told(found: Installation) -> str:
 def eccentricity_chapter(seed: Seed, found: Eccentricity) -> Chapter:
     """What the page tells of Fig. 9."""
     one, two = found.omega("I"), found.omega("II")
-    entries = [
-        Entry(
-            "largest Ω I from gears 1 to 3", printed.OMEGA_ECCENTRICITY["I"], max(one.values()), 4
-        ),
-        Entry(
-            "largest Ω II, within the pair", printed.OMEGA_ECCENTRICITY["II"], max(two.values()), 4
-        ),
-    ]
+    entries = largest_entries(printed.OMEGA_ECCENTRICITY, one, two)
     rows = [
         (gear, stage, f"{found.omega(stage)[gear]:.4f}")
         for stage, gears in STAGE_GEARS.items()
@@ -286,10 +279,7 @@ def _displaced(seed: Seed, gear: str, amount: float, direction: float) -> dict[s
         "assumed": [f"errors.{gear}.installation"],
     }
     at = first(seed.case("installation_error"), changes)
-    return {
-        "I": max(at.share[m] or 0.0 for m in ("1-2", "1-3")),
-        "II": max(pair_omega(at, pinion) for pinion in PINIONS),
-    }
+    return {stage: stage_omega(at, stage) for stage in STAGE_GEARS}
 
 
 def _installation_picture(seed: Seed, found: Installation) -> Figure:

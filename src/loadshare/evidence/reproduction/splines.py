@@ -11,8 +11,9 @@ from loadshare.case import Case
 from loadshare.evidence.reproduction import printed
 from loadshare.evidence.reproduction.both_errors import BothErrors, errors_of, torque_picture
 from loadshare.evidence.reproduction.chapter import Chapter
-from loadshare.evidence.reproduction.drawing import Panel, picture
+from loadshare.evidence.reproduction.drawing import picture
 from loadshare.evidence.reproduction.entry import Entry, entries_table, table
+from loadshare.evidence.reproduction.pinions import clearance_panel
 from loadshare.evidence.reproduction.seed import (
     PAIRS,
     PINIONS,
@@ -330,17 +331,5 @@ def _others(others: Mapping[str, FullFloat]) -> str:
 
 
 def _clearance_picture(seed: Seed, found: Clearance) -> Figure:
-    looks = {f"pinion {p}": seed.palette.gear(p) for p in PINIONS}
-    panel = Panel(
-        "",
-        "clearance of both splines [µm]",
-        "Ω II, within the pair",
-        {
-            f"pinion {p}": list(zip(CLEARANCES, curve, strict=True))
-            for p, curve in found.curves.items()
-        },
-        looks,
-        "pair of",
-        rules=[(e.value, f"pinion {e.gear} free") for e in found.events if e.kind == FREE],
-    )
+    panel = clearance_panel(seed, "splines", CLEARANCES, found.curves, found.free)
     return picture("clearance", "Load sharing against the clearance of the splines", "", [panel])

@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING, Any
 from loadshare.report.figures.marks import (
     Drawing,
     Row,
-    channels,
     chart,
-    dashed_lines,
+    curves,
     heading,
     padded,
 )
@@ -167,7 +166,7 @@ def _lines(
         f"{reading.field}:Q",
         title=reading.title,
         scale=alt.Scale(domain=padded(min(values), max(values), reading.least), nice=False),
-        axis=alt.Axis(tickCount=6, format=",~f"),
+        axis=alt.Axis(tickCount=6),
     )
     x = alt.X(
         "position:Q",
@@ -175,14 +174,10 @@ def _lines(
         axis=alt.Axis(tickMinStep=1, format="d", grid=False),
         scale=alt.Scale(nice=False, zero=False, padding=12),
     )
-    by_mesh = channels("mesh", looks, "mesh")
     layers: list[Any] = []
     if reading.reference is not None:
         layers.append(_reference_rule(reading, y=y))
-    where = {"x": x, "y": y, "color": by_mesh["color"]}
-    layers += [line.encode(**where) for line in dashed_lines(rows, "mesh", looks, 1.6)]
-    points = chart(rows).mark_point(filled=True, size=46, opacity=1)
-    layers.append(points.encode(**where, shape=by_mesh["shape"], tooltip=hover))
+    layers += curves(rows, "mesh", looks, "mesh", x=x, y=y, tooltip=hover, width=1.6, size=46)
     return alt.layer(*layers).properties(width=WIDTH, height=190)
 
 
@@ -203,7 +198,7 @@ def _bars(
         f"{reading.field}:Q",
         title=reading.title,
         scale=alt.Scale(domain=domain, nice=False),
-        axis=alt.Axis(tickCount=5, format=",~f"),
+        axis=alt.Axis(tickCount=5),
     )
     y = alt.Y("mesh:N", title=None, sort=names, axis=alt.Axis(domain=False, ticks=False))
     colours = alt.Color(

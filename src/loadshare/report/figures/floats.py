@@ -98,7 +98,7 @@ class _Panel:
         self.labels = Labels(self.low, self.high, SIDE / (2.0 * self.half))
         self.places = self._here(journey.path)
         names = [direction_name(v) for v in journey.result.frames[journey.gear]]
-        axis = alt.Axis(tickCount=5, format=",~f")
+        axis = alt.Axis(tickCount=5)
 
         def scale(k: int) -> alt.Scale:
             return alt.Scale(domain=[self.low[k], self.high[k]], nice=False, zero=False)
@@ -256,7 +256,8 @@ class _Panel:
         found = labels.layers(self.x, self.y, WARNING)
         spots = self._spots() if len(self.places) > 1 else []
         for place, numbers in spots if len(spots) <= NUMBERED else spots[::5]:
-            labels.place(places_told(numbers), [place], gap=7.0)
+            others = [other for other, _ in spots if other != place]
+            labels.place(places_told(numbers), [place], gap=7.0, others=others)
         found += labels.layers(self.x, self.y, INK)
         for boundary in journey.region.boundaries if journey.region else ():
             path = self._here(boundary.path)

@@ -112,7 +112,7 @@ def _panel(
     x = alt.X(
         "torque:Q",
         title=torque.title("torque on the driver"),
-        axis=alt.Axis(format=",~f", tickCount=6),
+        axis=alt.Axis(tickCount=6),
     )
     y = alt.Y("angle:Q", title=angle.title("deformation at the driver"))
     lines = chart(curves).mark_line(color=SOFT, strokeWidth=1, opacity=0.7)

@@ -11,9 +11,7 @@ from loadshare.report.figure import Figure
 from loadshare.report.figures.marks import (
     Drawing,
     Row,
-    channels,
-    chart,
-    dashed_lines,
+    curves,
     heading,
     padded,
 )
@@ -107,7 +105,6 @@ def _panel(
 
     rows = list(_rows(phase, values, unit))
     looks = {name: look(k) for k, name in enumerate(values)}
-    use = channels("name", looks, by)
     every = [row["y"] for row in rows]
     # What stays within round-off shall not fill the panel.
     least = max(1e-3 * max(map(abs, every)), 1e-6)
@@ -117,16 +114,13 @@ def _panel(
         scale=alt.Scale(domain=padded(min(every), max(every), least), nice=False),
     )
     x = alt.X("x:Q", title="phase of the mesh cycle", scale=alt.Scale(domain=[0, 1], nice=False))
-    where = {"x": x, "y": y, "color": use["color"]}
     hover = [
         alt.Tooltip("name:N", title=by),
         alt.Tooltip("x:Q", title="phase", format=".3~f"),
         alt.Tooltip("y:Q", title=unit.title(what), format=".5~g"),
     ]
-    lines = [line.encode(**where) for line in dashed_lines(rows, "name", looks, 1.8)]
-    points = chart(rows).mark_point(filled=True, size=26, opacity=1)
-    layers = [*lines, points.encode(**where, shape=use["shape"], tooltip=hover)]
-    return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT)
+    drawn = curves(rows, "name", looks, by, x=x, y=y, tooltip=hover)
+    return alt.layer(*drawn).properties(width=WIDTH, height=HEIGHT)
 
 
 def _rows(phase: np.ndarray, values: Mapping[str, np.ndarray], unit: Unit) -> Iterable[Row]:

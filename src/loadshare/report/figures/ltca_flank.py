@@ -106,15 +106,7 @@ def load_map(found: Ltca, planes: Sequence[Plane], title: str, part: float = 1.0
 def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str, part: float = 1.0) -> Figure:
     """Areas of contact over the cycle on both flanks, by their pressure.
 
-    Parameters
-    ----------
-    found : Ltca
-    planes : sequence of Plane
-        The driver's flank and the driven gear's.
-    title : str
-        Of the pair.
-    part : float
-        Part of the rated torque, one that was computed.
+    Parameters as for :func:`load_map`.
 
     Returns
     -------

@@ -94,14 +94,45 @@ def distinct(looks: Mapping[str, Look]) -> list[Look]:
     return found
 
 
-BESIDE_RULE = {
-    "angle": 270,
-    "align": "right",
-    "baseline": "bottom",
-    "dy": -3,
-    "fontSize": 10,
-}
-"""Style of words that run along a rule: neighbouring rules leave no room beside them."""
+def curves(
+    rows: Sequence[Row],
+    field: str,
+    looks: Mapping[str, Look],
+    title: str,
+    *,
+    x: Any,
+    y: Any,
+    tooltip: Any,
+    order: str | None = None,
+    width: float = 1.8,
+    size: float = 26.0,
+) -> list[Drawing]:
+    """Lines with a point at every row; colour, dash and shape tell the names apart.
+
+    Parameters
+    ----------
+    rows : sequence of dict
+    field : str
+        Field that holds the names.
+    looks : mapping of name to Look
+    title : str
+        Of the legend.
+    x, y : channel
+    tooltip : list of channels
+        Told of each point.
+    order : str, optional
+        Channel along which the points are joined; by default from left to right.
+    width : float
+        Of the lines [px].
+    size : float
+        Of the points [px²].
+    """
+    by_name = channels(field, looks, title)
+    where = {"x": x, "y": y, "color": by_name["color"]}
+    along = {"order": order} if order else {}
+    lines = [line.encode(**where, **along) for line in dashed_lines(rows, field, looks, width)]
+    points = chart(rows).mark_point(filled=True, size=size, opacity=1)
+    return [*lines, points.encode(**where, shape=by_name["shape"], tooltip=tooltip)]
 
 
 def rimmed(base: Drawing, colour: str, **style: Any) -> list[Drawing]:

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
-from loadshare.report.numbers import significant
+from loadshare.report.numbers import runs, significant
 from loadshare.report.units import engineering
 
 if TYPE_CHECKING:
@@ -77,13 +77,7 @@ def spline_told(rests: Sequence[FloatState]) -> list[str]:
 
 def places_told(numbers: Sequence[int]) -> str:
     """Return whole numbers in short: ``1–3, 7``; many runs are cut off with an ellipsis."""
-    runs: list[list[int]] = []
-    for number in sorted(set(numbers)):
-        if runs and number == runs[-1][-1] + 1:
-            runs[-1].append(number)
-        else:
-            runs.append([number])
-    told = [f"{run[0]}" if len(run) == 1 else f"{run[0]}–{run[-1]}" for run in runs]
+    told = runs(numbers)
     return ", ".join(told[:3]) + (" …" if len(told) > 3 else "")
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -12,25 +13,15 @@ import numpy as np
 from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.report.figures.marks import (
-    BESIDE_RULE,
     Drawing,
     Row,
-    channels,
     chart,
-    dashed_lines,
+    curves,
     heading,
     padded,
-    rimmed,
 )
-from loadshare.report.palette import (
-    INK,
-    SOFT,
-    WARNING,
-    Look,
-    Palette,
-    ends_from_names,
-    look,
-)
+from loadshare.report.figures.rules import rules
+from loadshare.report.palette import WARNING, Look, Palette, ends_from_names, look
 from loadshare.report.units import Unit, engineering
 
 if TYPE_CHECKING:
@@ -174,6 +165,9 @@ def _telling(
     if show == "reaction" and "margin" in data:
         # Without a ring there is no reaction, and no margin either.
         return [n for n in names if bool(data["margin"].sel({by: n}).notnull().any())] or names
+    if show == "displacement":
+        # A gear on rigid bearings stays where it is.
+        return [n for n in names if bool((variable.sel({by: n}) != 0.0).any())] or names
     if by != "stage" or "system" not in names:
         return names
     whole = variable.sel(stage="system").values
@@ -222,25 +216,17 @@ def _lines(data: xr.Dataset, shown: _Shown, name: str, events: Sequence[Event]) 
         scale=alt.Scale(domain=shown.domain(0.08), nice=False),
     )
     x_axis = alt.X("x:Q", title=title, scale=alt.Scale(nice=False, zero=False))
-    by_name = channels("name", shown.looks, shown.by)
-    where = {"x": x_axis, "y": y_axis, "color": by_name["color"]}
     hover = [
         alt.Tooltip("name:N", title=shown.by),
         alt.Tooltip("x:Q", title=title),
         alt.Tooltip("y:Q", title=shown.unit.title(shown.title), format=".6~g"),
     ]
-    lines = dashed_lines(rows, "name", shown.looks, 1.8)
-    points = chart(rows).mark_point(filled=True, size=22, opacity=1)
-    layers: list[Any] = [
-        *(line.encode(**where) for line in lines),
-        points.encode(**where, shape=by_name["shape"], tooltip=hover),
-    ]
+    layers = curves(rows, "name", shown.looks, shown.by, x=x_axis, y=y_axis, tooltip=hover)
     if events:
-        marks = [{"x": float(value), "event": text} for value, text in events]
-        rule = chart(marks).encode(x=x_axis, tooltip=["event:N", alt.Tooltip("x:Q", title=title)])
-        layers.append(rule.mark_rule(color=SOFT, strokeDash=[4, 3]))
-        words = rule.encode(y=alt.value(4), text="event:N")
-        layers += rimmed(words, INK, **BESIDE_RULE)
+        marks = [{"x": float(value), "text": text} for value, text in events]
+        ends = [*grid, *(mark["x"] for mark in marks)]
+        told = [alt.Tooltip("text:N", title="event"), alt.Tooltip("x:Q", title=title)]
+        layers += rules(marks, x_axis, WIDTH / ((max(ends) - min(ends)) or 1.0), tooltip=told)
     return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT)
 
 
@@ -251,7 +237,7 @@ def _maps(data: xr.Dataset, shown: _Shown, parameters: list[str]) -> Drawing:
     x_edges, y_edges = _edges(xs), _edges(ys)
     colour = alt.Color(
         "value:Q",
-        title=shown.unit.title(shown.title).split(",")[0],
+        title=textwrap.wrap(shown.unit.title(shown.title), 36),
         # Light to dark in one direction, so that it reads in grey.
         scale=alt.Scale(scheme="tealblues", domain=shown.domain(0.0), nice=False),
         legend=alt.Legend(titleLimit=240, gradientLength=200),
@@ -286,9 +272,9 @@ def _maps(data: xr.Dataset, shown: _Shown, parameters: list[str]) -> Drawing:
             alt.Tooltip("b:Q", title=y_title),
             alt.Tooltip("value:Q", title=shown.unit.title(shown.title), format=".6~g"),
         ]
-        layers: list[Any] = [
-            chart(certified).mark_rect().encode(**places, color=colour, tooltip=hover)
-        ]
+        # Each cell reaches under the next ones: seams would look like lines of the map.
+        cells = chart(certified).mark_rect(x2Offset=0.5, y2Offset=-0.5)
+        layers: list[Any] = [cells.encode(**places, color=colour, tooltip=hover)]
         if refused:
             crossed = chart(refused).mark_rect(fillOpacity=0, stroke=WARNING, strokeDash=[2, 2])
             layers.append(crossed.encode(**places, tooltip=hover))

@@ -8,21 +8,17 @@ import numpy as np
 
 from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
-from loadshare.report.figures.marks import (
-    BESIDE_RULE,
-    Drawing,
-    Row,
-    chart,
-    heading,
-    rimmed,
-)
+from loadshare.report.figures.marks import Drawing, Row, chart, heading
+from loadshare.report.figures.rules import rules
 from loadshare.report.numbers import significant
-from loadshare.report.palette import COLOURS, INK, SOFT, WARNING
+from loadshare.report.palette import COLOURS, INK
 
 if TYPE_CHECKING:
     import xarray as xr
 
 BINS = 60
+LEAST = 0.01
+"""Margin of the axis where all samples have the same Ω."""
 WIDTH, HEIGHT = 420, 190
 ROW = 22
 """Height of an input's row [px]."""
@@ -102,22 +98,34 @@ def _marks(one: xr.Dataset, limit: Any) -> list[Row]:
     rows: list[Row] = []
     if "quantile" in one:
         rows += [
-            {"x": float(v), "text": f"{significant(100.0 * float(p), 4)} %", "limit": False}
+            {"x": float(v), "text": f"{significant(100.0 * float(p), 4)} %", "warns": False}
             for p, v in zip(one["level"].values, one["quantile"].values, strict=True)
         ]
     if limit is not None:
-        rows.append({"x": float(limit), "text": "limit", "limit": True})
+        rows.append({"x": float(limit), "text": "limit", "warns": True})
     return rows
+
+
+def _reach(edges: np.ndarray, marks: list[Row]) -> tuple[float, float]:
+    """Ends of the axis: all bins and all marks, with a margin."""
+    every = [float(edges[0]), float(edges[-1]), *(row["x"] for row in marks)]
+    room = 0.03 * (max(every) - min(every)) or LEAST
+    return min(every) - room, max(every) + room
 
 
 def _axis(edges: np.ndarray, marks: list[Row], title: str | None) -> Any:
     import altair as alt
 
-    low = min([float(edges[0]), *(row["x"] for row in marks)])
-    high = max([float(edges[-1]), *(row["x"] for row in marks)])
-    room = 0.03 * (high - low)
-    domain = alt.Scale(domain=[low - room, high + room], nice=False, zero=False)
+    domain = alt.Scale(domain=list(_reach(edges, marks)), nice=False, zero=False)
     return alt.X("x:Q", title=title, scale=domain, axis=alt.Axis(tickCount=6, grid=False))
+
+
+def _rules(edges: np.ndarray, marks: list[Row], x: Any, *, words: bool) -> list[Drawing]:
+    import altair as alt
+
+    low, high = _reach(edges, marks)
+    hover = [alt.Tooltip("text:N", title="mark"), alt.Tooltip("x:Q", title="Ω", format=".5f")]
+    return rules(marks, x, WIDTH / (high - low), tooltip=hover, words=words)
 
 
 def _bars(edges: np.ndarray, counts: np.ndarray, marks: list[Row]) -> Drawing:
@@ -137,7 +145,9 @@ def _bars(edges: np.ndarray, counts: np.ndarray, marks: list[Row]) -> Drawing:
     bars = chart(rows).mark_rect(color=BAR, opacity=0.85, stroke="white", strokeWidth=0.3)
     y = alt.Y("share:Q", title="share of samples", axis=alt.Axis(format="~%", tickCount=4))
     layers = [bars.encode(x=x, x2="x2:Q", y=y, y2=alt.datum(0), tooltip=hover)]
-    return alt.layer(*layers, *_rules(marks, x, words=True)).properties(width=WIDTH, height=HEIGHT)
+    return alt.layer(*layers, *_rules(edges, marks, x, words=True)).properties(
+        width=WIDTH, height=HEIGHT
+    )
 
 
 def _cumulative(edges: np.ndarray, counts: np.ndarray, marks: list[Row]) -> Drawing:
@@ -153,26 +163,9 @@ def _cumulative(edges: np.ndarray, counts: np.ndarray, marks: list[Row]) -> Draw
     y = alt.Y("p:Q", title="samples at or below", axis=alt.Axis(format="~%", tickCount=4))
     line = chart(rows).mark_line(color=BAR, strokeWidth=1.8, point={"size": 12, "color": BAR})
     layers = [line.encode(x=x, y=y, tooltip=hover)]
-    return alt.layer(*layers, *_rules(marks, x, words=False)).properties(
+    return alt.layer(*layers, *_rules(edges, marks, x, words=False)).properties(
         width=WIDTH, height=HEIGHT // 2
     )
-
-
-def _rules(marks: list[Row], x: Any, *, words: bool) -> list[Any]:
-    import altair as alt
-
-    layers: list[Any] = []
-    for limit, colour, dash in ((False, SOFT, [4, 3]), (True, WARNING, [1, 0])):
-        rows = [row for row in marks if row["limit"] is limit]
-        if not rows:
-            continue
-        hover = [alt.Tooltip("text:N", title="mark"), alt.Tooltip("x:Q", title="Ω", format=".5f")]
-        base = chart(rows).encode(x=x, tooltip=hover)
-        layers.append(base.mark_rule(color=colour, strokeDash=dash, strokeWidth=1.4))
-        if words:
-            text = base.encode(y=alt.value(3), text="text:N")
-            layers += rimmed(text, WARNING if limit else INK, **BESIDE_RULE)
-    return layers
 
 
 def _inputs(one: xr.Dataset) -> Drawing:

@@ -36,6 +36,8 @@ WIDTH, HEIGHT = 620.0, 560.0
 """Room for a view [px]."""
 FLAT = 1e-9
 """Heights that differ by less than this part of the train are one height."""
+SAME = 1.0
+"""Centres that are closer than this are one on the drawing [px]."""
 SENSE = math.radians(75.0)
 """Extent of the arrow of a running sense."""
 HELD = {FIXED: "circle", ELASTIC: "diamond", FLOATS: "circle"}
@@ -150,7 +152,7 @@ class _View:
 
         first, second = (direction_name(v) for v in self.frame)
         names = (MILLIMETRE.title(first), MILLIMETRE.title(second))
-        axis = alt.Axis(grid=False, tickCount=6 if self.plan else 4, format=",~f")
+        axis = alt.Axis(grid=False, tickCount=6 if self.plan else 4)
 
         def channel(kind: Any, name: str, k: int) -> Any:
             domain = alt.Scale(domain=[self.low[k], self.high[k]], nice=False, zero=False)
@@ -360,11 +362,12 @@ class _View:
         spots: dict[Point, list[str]] = {}
         for name, body in self.layout.bodies.items():
             (place, *_) = self._flat(body.centre)
-            # Coaxial gears share one label.
-            key = next((k for k in spots if math.dist(k, place) < 1e-6), place)
+            # Coaxial gears share one label; a case may give their centres rounded.
+            key = next((k for k in spots if math.dist(k, place) < SAME / self.labels.pixels), place)
             spots.setdefault(key, []).append(f"{name} ({body.role})" if body.role else name)
         for place, names in spots.items():
-            self.labels.place(", ".join(names), [place], gap=7.0)
+            others = [spot for spot in spots if spot != place]
+            self.labels.place(", ".join(names), [place], gap=7.0, others=others)
         layers = list(self.labels.layers(self.x, self.y, INK, fontWeight="bold"))
         if self.plan:
             for pair in self.layout.pairs:
