@@ -41,7 +41,7 @@ Array = NDArray[np.float64]
 
 BLOCK = 4096
 """Samples that are solved together, if every one has a few positions."""
-TOGETHER = 20480
+TOGETHER = 40960
 """Equilibria that are solved together."""
 WORKERS = 2
 """Threads; the compiled passes hold no lock."""

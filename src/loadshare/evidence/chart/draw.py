@@ -62,17 +62,7 @@ def draw_precision(measures: Sequence[Measure], titles: dict[str, str], folder: 
     """
     alt = altair()
 
-    names = [n for n in (*OURS, *PEERS) if any(m.method == n for m in measures)]
-    colour = alt.Color(
-        "method:N",
-        scale=alt.Scale(domain=names, range=[COLOURS[n] for n in names]),
-        legend=alt.Legend(title=None, symbolOpacity=1.0),
-    )
-    shape = alt.Shape(
-        "method:N",
-        scale=alt.Scale(domain=names, range=[SHAPES[k % len(SHAPES)] for k in range(len(names))]),
-        legend=alt.Legend(title=None, symbolOpacity=1.0),
-    )
+    colour, shape = _by_method(measures)
     panels = []
     for workload, title in titles.items():
         rows = [_row(m) for m in measures if m.workload == workload and math.isfinite(m.median)]
@@ -118,7 +108,7 @@ def draw_branches(measures: Sequence[Measure], folder: Path) -> list[Path]:
     """
     alt = altair()
 
-    names = [n for n in (*OURS, *PEERS) if any(m.method == n for m in measures)]
+    colour, shape = _by_method(measures)
     rows = [
         _row(m) | {"branches": int(m.workload.removeprefix("branches-"))}
         for m in measures
@@ -127,11 +117,7 @@ def draw_branches(measures: Sequence[Measure], folder: Path) -> list[Path]:
     base = alt.Chart(alt.Data(values=rows)).encode(
         x=alt.X("branches:Q", scale=alt.Scale(type="log", base=2), axis=alt.Axis(format="d")),
         y=alt.Y("us:Q", title="µs per equilibrium", scale=alt.Scale(type="log"), axis=_powers()),
-        color=alt.Color(
-            "method:N",
-            scale=alt.Scale(domain=names, range=[COLOURS[n] for n in names]),
-            legend=alt.Legend(title=None),
-        ),
+        color=colour,
         tooltip=[alt.Tooltip(f"{f}:N") for f in ("method", "branches", "time", "worst error")],
     )
     first = min((r["us"] for r in rows), default=1.0)
@@ -141,13 +127,7 @@ def draw_branches(measures: Sequence[Measure], folder: Path) -> list[Path]:
         .mark_line(strokeDash=[4, 4], color="#888888")
         .encode(x="branches:Q", y="us:Q")
     )
-    points = base.mark_point(filled=True, size=70).encode(
-        shape=alt.Shape(
-            "method:N",
-            scale=alt.Scale(domain=names, range=list(SHAPES[: len(names)])),
-            legend=alt.Legend(title=None),
-        )
-    )
+    points = base.mark_point(filled=True, size=70).encode(shape=shape)
     chart = alt.layer(guide, base.mark_line(), points).properties(
         width=420,
         height=300,
@@ -156,6 +136,20 @@ def draw_branches(measures: Sequence[Measure], folder: Path) -> list[Path]:
         ),
     )
     return write(styled(chart), folder / "branches")
+
+
+def _by_method(measures: Sequence[Measure]) -> tuple[Any, Any]:
+    """Colours and shapes of the methods that were measured."""
+    alt = altair()
+
+    names = [n for n in (*OURS, *PEERS) if any(m.method == n for m in measures)]
+    legend = alt.Legend(title=None, symbolOpacity=1.0)
+    shapes = [SHAPES[k % len(SHAPES)] for k in range(len(names))]
+    colours = alt.Scale(domain=names, range=[COLOURS[n] for n in names])
+    return (
+        alt.Color("method:N", scale=colours, legend=legend),
+        alt.Shape("method:N", scale=alt.Scale(domain=names, range=shapes), legend=legend),
+    )
 
 
 def _row(m: Measure) -> dict[str, Any]:

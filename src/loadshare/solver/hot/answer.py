@@ -26,15 +26,17 @@ def equilibria(elements: Elements, state: State, compiled: bool = False) -> Equi
     to = _map(elements, names)
     force, tables = state.force, (state.x, state.x, state.force, state.force, state.force)
     if compiled:
-        from loadshare.solver.hot.products import entries, times
+        from loadshare.solver.hot import products
 
         known = elements.kept.get(("entries",))
         if known is None:
-            known = elements.keep(("entries",), [entries(matrix) for matrix in to.matrices])
-        products = [times(table, few) for table, few in zip(tables, known, strict=True)]
+            known = elements.keep(("entries",), [products.entries(part) for part in to.matrices])
+        found = [products.times(table, few) for table, few in zip(tables, known, strict=True)]
+        pushes = products.pushes
     else:
-        products = [table @ matrix for table, matrix in zip(tables, to.matrices, strict=True)]
-    rotation, displacement, reaction, torque, support = products
+        found = [table @ matrix for table, matrix in zip(tables, to.matrices, strict=True)]
+        pushes = _pushes
+    rotation, displacement, reaction, torque, support = found
     rotation += to.turned
     count, gears, radials = len(force), len(names.gears), len(names.radials)
     first, last = elements.springs, elements.springs + elements.rows
@@ -43,19 +45,19 @@ def equilibria(elements: Elements, state: State, compiled: bool = False) -> Equi
         names,
         rotation,
         displacement.reshape(count, gears, 3),
-        _pushes(force[:, first:ring], elements.force),
-        _pushes(force[:, ring:last], elements.force),
+        pushes(force, first, ring, elements.force),
+        pushes(force, ring, last, elements.force),
         reaction.reshape(count, radials, 3),
         torque,
         support.reshape(count, gears, 2),
     )
 
 
-def _pushes(force: Array, unit: float) -> Array:
+def _pushes(force: Array, first: int, last: int, unit: float) -> Array:
     """Forces of contacts [N]; round-off may let one pull by a hair."""
-    pushes = np.maximum(force, 0.0)
-    pushes *= unit
-    return pushes
+    found = np.maximum(force[:, first:last], 0.0)
+    found *= unit
+    return found
 
 
 class _Map(NamedTuple):
@@ -127,8 +129,7 @@ def tied(
     if compiled:
         from loadshare.solver.hot import products
 
-        tied = products.tied(state.force, elements.springs, code[:, : elements.rows], CARRIES)
-        return np.asarray(tied)
+        return products.tied(state.force, elements.springs, code[:, : elements.rows], CARRIES)
     rows = np.abs(state.force[:, elements.springs : elements.springs + elements.rows])
     largest = np.maximum(rows.max(axis=1, initial=0.0), np.finfo(float).tiny)
     idle = (code[:, : elements.rows] != 0) & (rows <= CARRIES * largest[:, None])

@@ -47,16 +47,33 @@ def _times(table, starts, rows, values, product):  # type: ignore[no-untyped-def
             product[s, column] = total
 
 
+def pushes(force: Array, first: int, last: int, unit: float) -> Array:
+    """Forces of contacts (S, last − first) [N]; see `answer.equilibria`."""
+    found = np.empty((len(force), last - first))
+    _push(force, first, unit, found)
+    return found
+
+
 @njit(cache=True, nogil=True)
-def tied(force, first, code, carries):  # type: ignore[no-untyped-def]
-    """Whether every closed contact carries a force; see `answer.tied`."""
-    found = np.empty(code.shape[0], dtype=np.bool_)
+def _push(force, first, unit, found):  # type: ignore[no-untyped-def]
+    for s in range(found.shape[0]):
+        for k in range(found.shape[1]):
+            found[s, k] = max(force[s, first + k], 0.0) * unit
+
+
+def tied(force: Array, first: int, code: NDArray[np.int8], carries: float) -> NDArray[np.bool_]:
+    """Whether every closed contact carries a force, shape (S,); see `answer.tied`."""
+    found = np.ones(len(force), dtype=bool)
+    _tie(force, first, code, carries, found)
+    return found
+
+
+@njit(cache=True, nogil=True)
+def _tie(force, first, code, carries, found):  # type: ignore[no-untyped-def]
     for s in range(code.shape[0]):
         largest = np.finfo(np.float64).tiny
         for k in range(code.shape[1]):
             largest = max(largest, abs(force[s, first + k]))
-        found[s] = True
         for k in range(code.shape[1]):
             if code[s, k] != 0 and abs(force[s, first + k]) <= carries * largest:
                 found[s] = False
-    return found
