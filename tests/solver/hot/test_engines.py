@@ -17,7 +17,7 @@ from tests.support import SHIPPED, shipped
 import loadshare as ls
 from loadshare.certify.certificate import TOLERANCE
 from loadshare.job.machine import FEW, Answers, Machine, engine_named
-from loadshare.solver.hot import compiled, vectorised
+from loadshare.solver.hot import compiled, lanes, vectorised
 from loadshare.solver.hot import places as at
 from loadshare.train import build_train
 from loadshare.train.equilibria import Equilibria
@@ -70,6 +70,13 @@ def in_lanes(*given):
         return compiled.settle(*given)
 
 
+def in_few_lanes(*given):
+    """Eight at a time, so that samples wait, and the slow ones begin again beside one another."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(lanes, "WIDTHS", (8,))
+        return in_lanes(*given)
+
+
 def one_by_one(*given):
     """All sets one by one."""
     with pytest.MonkeyPatch.context() as patch:
@@ -81,7 +88,7 @@ def agree(machine: Machine, situations: Situations) -> Answers:
     """All engines certify the same samples, with the same elements and the same figures."""
     one, *others = (
         machine.answer(situations, TOLERANCE, engine)
-        for engine in (vectorised.settle, in_lanes, one_by_one)
+        for engine in (vectorised.settle, in_lanes, in_few_lanes, one_by_one)
     )
     for other in others:
         same(machine, one, other)
