@@ -177,7 +177,8 @@ def solve_many(
         Largest scaled residual of a certified answer.
     engine : {"auto", "compiled", "vectorised"}
         Numba or NumPy; both give the same answers. "auto" compiles from a few thousand equilibria
-        on.
+        on. The first time it does, in an installation, takes about a minute; what was compiled is
+        kept on disk.
     workers : int
         Threads.
     least_norm : bool

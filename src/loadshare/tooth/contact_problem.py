@@ -96,8 +96,9 @@ class ContactBatch:
         Points of each problem; they come first.
     gap : array (K, N)
         [m].
-    fixed : array (K, N, N)
-        The part of the compliance [m/N] that does not depend on the load.
+    fixed : array (M, N, N)
+        The part of the compliance [m/N] that does not depend on the load, of the M problems that
+        the batch was made of.
     surface : Surface
         What the surfaces yield.
     """
@@ -113,10 +114,15 @@ class ContactBatch:
         self.surface = Surface([problem.lines for problem in problems])
         self.names = tuple(problem.name for problem in problems)
 
+    @property
+    def which(self) -> NDArray[np.int64]:
+        """Numbers (K,) of the problems in `fixed`."""
+        return self.surface.which
+
     def rows(self, chosen: NDArray[np.int64]) -> ContactBatch:
         """Some of the problems, or some of them several times."""
         part = copy(self)
-        part.count, part.gap, part.fixed = self.count[chosen], self.gap[chosen], self.fixed[chosen]
+        part.count, part.gap = self.count[chosen], self.gap[chosen]
         part.surface = self.surface.rows(chosen)
         part.names = tuple(self.names[k] for k in chosen)
         return part
@@ -125,8 +131,9 @@ class ContactBatch:
         """Secant and tangent compliance (K, N, N) [m/N] at the forces (K, N) [N]."""
         least = FAINT * np.sum(np.maximum(force, 0.0), axis=1)
         secant, tangent = self.surface.compliance(force, least)
-        secant += self.fixed
-        tangent += self.fixed
+        fixed = self.fixed[self.which]
+        secant += fixed
+        tangent += fixed
         return secant, tangent
 
     def yielded(self, force: Array) -> Array:

@@ -20,6 +20,7 @@ are held once more. What leaves is in touch to round-off, and certified.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +32,9 @@ from loadshare.solver.findings import Unsolved
 from loadshare.solver.inner import solve_programme
 from loadshare.tooth.body import Array
 from loadshare.tooth.contact_certificate import ContactCertificate, certify_contacts
-from loadshare.tooth.contact_problem import ContactBatch, ContactProblem, times
+from loadshare.tooth.contact_problem import ContactBatch, ContactProblem
+from loadshare.tooth.strips import FAINT
+from loadshare.tooth.surface import Strips
 
 Mask = NDArray[np.bool_]
 
@@ -109,6 +112,7 @@ def solve_contacts(
     Refused
         If one of the contacts is not found, or not passed by its certificate.
     """
+    load = np.array(load, float)
     wrong = load[~((load > 0.0) & np.isfinite(load))]
     if len(wrong):
         raise ValueError(f"load = {wrong[0]}: the flanks are pressed together; allowed: above 0 N")
@@ -117,96 +121,113 @@ def solve_contacts(
         force = np.where(real, (load / batch.count)[:, None], 0.0)
     else:
         force = warm * (load / np.sum(warm, axis=1))[:, None]
-    count = len(force)
-    found = _Settled.empty(batch)
-    going, part, wanted = np.arange(count), batch, load
-    newton, last = np.full(count, warm is not None), np.full(count, np.inf)
-    for passes in range(PASSES):
-        secant, tangent = part.compliance(force)
-        yielded = times(secant, force)
-        approach = np.sum((yielded + part.gap) * force, axis=1) / wanted
-        distance = yielded + part.gap - approach[:, None]
-        closed = force > 0.0
-        missed = np.max(np.where(closed, np.abs(distance), -distance), axis=1)
-        # Light loads yield less than the gaps that they close; those have their own round-off.
-        least = ROUND_OFF * np.max(np.where(closed, part.gap, 0.0), axis=1)
-        settled = missed < SETTLED * np.abs(yielded).max(axis=1) + least
-        if settled.any():
-            found.keep(
-                going[settled],
-                passes,
-                *(values[settled] for values in (force, approach, distance, tangent)),
-            )
-            left = np.flatnonzero(~settled)
-            if not len(left):
-                return found.contacts(batch, load)
-            going, part = going[left], part.rows(left)
-            force, yielded, closed = force[left], yielded[left], closed[left]
-            newton, last, wanted = newton[left], last[left], wanted[left]
-            secant, tangent = secant[left], tangent[left]
-        # The law at the last forces by its tangent: a linear contact with a shifted gap.
-        shift = np.where(newton[:, None], yielded - times(tangent, force), 0.0)
-        matrix = np.where(newton[:, None, None], tangent, secant)
-        gap = part.gap + shift
-        new, solved = exchanges(matrix, gap, wanted, closed)
-        for k in np.flatnonzero(~solved):
-            n = part.count[k]
-            linear = matrix[k, :n, :n], gap[k, :n], float(wanted[k]), force[k, :n]
-            try:
-                new[k] = 0.0
-                new[k, :n] = by_interface(*linear, backend(solver))
-            except Refused as refusal:
-                raise Refused(_called(part.names[k]) + str(refusal), refusal.figures) from refusal
-        step = np.abs(new - force).max(axis=1)
-        # Where Newton's method does not draw in, a pass at fixed widths does.
-        newton = ~newton | (step < last)
-        force, last = new, step
-    raise Refused(
-        f"{_called(part.names[0])}the contact under {wanted[0]:.6g} N did not settle in {PASSES} "
-        "passes; more points a line, or a smoother gap, may help",
-    )
+    found = _Found.begun(force, warm is not None)
+    of, linear = _Batch(batch.which, load, batch.gap, batch.fixed), _Linear.empty(force.shape[1])
+    strips = batch.surface.strips
+    circling = -1
+    while (circling := _settle(strips, of, found, linear, circling)) >= 0:
+        try:
+            linear.answer(batch.count[circling], load[circling], force[circling], solver)
+        except Refused as refusal:
+            told = _called(batch.names[circling]) + str(refusal)
+            raise Refused(told, refusal.figures) from refusal
+    for k in np.flatnonzero(~found.settled)[:1]:
+        raise Refused(
+            f"{_called(batch.names[k])}the contact under {load[k]:.6g} N did not settle in "
+            f"{PASSES} passes; more points a line, or a smoother gap, may help",
+        )
+    return _certified(batch, load, found)
 
 
-@dataclass(eq=False)
-class _Settled:
-    """What has settled of a batch; `tangent` is du/dp (K, N, N)."""
+def _settle(strips: Strips, of: _Batch, found: _Found, linear: _Linear, answered: int) -> int:
+    """Number of the next contact whose exchange goes in a circle, −1 when all is done."""
+    from loadshare.tooth.compiled_contact import settle
 
-    force: Array
-    approach: Array
-    distance: Array
-    tangent: Array
-    passes: NDArray[np.int64]
+    try:
+        return int(settle(strips, of, found, linear, _limits(), answered))
+    except np.linalg.LinAlgError as error:
+        raise Refused(
+            "the compliance of a contact is singular or not a number; gap, lengths, curvatures and "
+            "elasticity of the teeth must be finite"
+        ) from error
+
+
+class _Limits(NamedTuple):
+    """When compiled code stops; handed over, for it would keep an old limit."""
+
+    passes: int
+    exchanges: int
+    settled: float
+    round_off: float
+    band: float
+    faint: float
+
+
+def _limits() -> _Limits:
+    return _Limits(PASSES, EXCHANGES, SETTLED, ROUND_OFF, BAND, FAINT)
+
+
+class _Batch(NamedTuple):
+    """Contacts to be settled, as compiled code reads them."""
+
+    which: NDArray[np.int64]  # (K,)
+    load: Array  # (K,)
+    gap: Array  # (K, N)
+    fixed: Array  # (M, N, N)
+
+
+class _Found(NamedTuple):
+    """How far the contacts have settled."""
+
+    force: Array  # (K, N)
+    approach: Array  # (K,)
+    distance: Array  # (K, N)
+    slope: Array  # (K,): dZ/dP
+    step: Array  # (K,): largest change of a force in the last pass
+    passes: NDArray[np.int64]  # (K,)
+    newton: Mask  # (K,): whether the next pass takes the tangent
+    settled: Mask  # (K,)
 
     @classmethod
-    def empty(cls, batch: ContactBatch) -> _Settled:
-        flat, count = np.zeros_like(batch.gap), len(batch.gap)
-        passes = np.zeros(count, dtype=np.int64)
-        return cls(flat, np.zeros(count), flat.copy(), np.zeros_like(batch.fixed), passes)
+    def begun(cls, force: Array, newton: bool) -> _Found:
+        count = len(force)
+        approach, slope = np.zeros((2, count))
+        step, passes = np.full(count, np.inf), np.zeros(count, dtype=np.int64)
+        newtons, settled = np.full(count, newton), np.zeros(count, dtype=bool)
+        return cls(force, approach, np.zeros_like(force), slope, step, passes, newtons, settled)
 
-    def keep(
-        self, rows: NDArray[np.int64], passes: int, force: Array, approach: Array,
-        distance: Array, tangent: Array,
-    ) -> None:  # fmt: skip
-        self.passes[rows] = passes
-        self.force[rows], self.approach[rows] = force, approach
-        self.distance[rows], self.tangent[rows] = distance, tangent
 
-    def contacts(self, batch: ContactBatch, load: Array) -> tuple[Contact, ...]:
-        """The contacts with their slopes, all certified."""
-        certificates = certify_contacts(batch, load, self.force, self.approach)
-        closed = self.force > 0.0
-        _, slope = _saddles(self.tangent, np.zeros_like(self.force), np.ones_like(load), closed)
-        distance = np.where(closed, 0.0, self.distance)
-        for name, part, certificate in zip(batch.names, load, certificates, strict=True):
-            if not certificate.passed:
-                raise Refused(_told(name, float(part), certificate), certificate.failing)
-        return tuple(
-            Contact(
-                self.force[k, :n], float(self.approach[k]), distance[k, :n], float(slope[k]),
-                int(self.passes[k]), certificates[k],
-            )
-            for k, n in enumerate(batch.count)
-        )  # fmt: skip
+class _Linear(NamedTuple):
+    """A contact with its law held, and its forces."""
+
+    matrix: Array  # (N, N)
+    gap: Array  # (N,)
+    force: Array  # (N,)
+
+    @classmethod
+    def empty(cls, count: int) -> _Linear:
+        return cls(np.empty((count, count)), np.empty(count), np.empty(count))
+
+    def answer(self, count: int, load: float, last: Array, solver: str) -> None:
+        """Solve it by the solver interface; only `count` of the points are real."""
+        linear = self.matrix[:count, :count], self.gap[:count], float(load), last[:count]
+        self.force[:] = 0.0
+        self.force[:count] = by_interface(*linear, backend(solver))
+
+
+def _certified(batch: ContactBatch, load: Array, found: _Found) -> tuple[Contact, ...]:
+    certificates = certify_contacts(batch, load, found.force, found.approach)
+    for name, part, certificate in zip(batch.names, load, certificates, strict=True):
+        if not certificate.passed:
+            raise Refused(_told(name, float(part), certificate), certificate.failing)
+    distance = np.where(found.force > 0.0, 0.0, found.distance)
+    return tuple(
+        Contact(
+            found.force[k, :n], float(found.approach[k]), distance[k, :n], float(found.slope[k]),
+            int(found.passes[k]), certificates[k],
+        )
+        for k, n in enumerate(batch.count)
+    )  # fmt: skip
 
 
 def _called(name: str) -> str:
@@ -219,26 +240,6 @@ def _told(name: str, load: float, certificate: ContactCertificate) -> str:
         f"{_called(name)}the contact under {load:.6g} N does not pass its certificate: {figures}, "
         f"allowed {certificate.tolerance:.0e}"
     )
-
-
-def _saddles(matrix: Array, gap: Array, load: Array, closed: Mask) -> tuple[Array, Array]:
-    """Forces (K, N) and approaches (K,) with the closed points in touch, whatever the signs."""
-    count = gap.shape[1]
-    # The compliance's size keeps the bordered matrix well scaled.
-    unit = matrix.max(axis=(1, 2))
-    unit = np.where(unit > 0.0, unit, 1.0)[:, None]
-    system = np.zeros((len(gap), count + 1, count + 1))
-    both = closed[:, :, None] & closed[:, None, :]
-    np.divide(matrix, unit[..., None], out=system[:, :count, :count], where=both)
-    point = np.arange(count)
-    system[:, point, point] += ~closed  # open points carry nothing
-    system[:, count, :count] = closed
-    system[:, :count, count] = -1.0 * closed
-    right = np.empty((len(gap), count + 1, 1))
-    right[:, :count, 0] = np.where(closed, -gap / unit, 0.0)
-    right[:, count, 0] = load
-    solved = np.linalg.solve(system, right)[..., 0]
-    return solved[:, :count], solved[:, count] * unit[:, 0]
 
 
 def exchange(matrix: Array, gap: Array, load: float, closed: Mask) -> Array | None:
@@ -260,41 +261,11 @@ def exchange(matrix: Array, gap: Array, load: float, closed: Mask) -> Array | No
     array (N,) or None
         Forces [N]; None if the exchange comes back to a set.
     """
-    force, solved = exchanges(matrix[None], gap[None], np.array([load]), closed[None])
-    return force[0] if solved[0] else None
+    from loadshare.tooth.compiled_contact import exchange as exchanged
 
-
-def exchanges(matrix: Array, gap: Array, load: Array, closed: Mask) -> tuple[Array, Mask]:
-    """Solve K linear contacts (K, N, N) by exchanging closed points; see :func:`exchange`.
-
-    Returns
-    -------
-    force : array (K, N)
-        [N].
-    solved : array (K,) of bool
-        Where the exchange did not come back to a set.
-    """
-    force, solved = np.zeros_like(gap), np.zeros(len(gap), dtype=bool)
-    seen: set[tuple[int, bytes]] = set()
-    closed, going = closed.copy(), list(range(len(gap)))
-    for _ in range(EXCHANGES):
-        sets = {k: (k, closed[k].tobytes()) for k in going if closed[k].any()}
-        going = [k for k, own in sets.items() if own not in seen]
-        if not going:
-            break
-        seen.update(sets.values())
-        now, inner = closed[going], matrix if len(going) == len(gap) else matrix[going]
-        found, approach = _saddles(inner, gap[going], load[going], now)
-        yielded = times(inner, found)
-        distance = yielded + gap[going] - approach[:, None]
-        pulled = found < -BAND * load[going, None]
-        pressed = ~now & (distance < -BAND * np.abs(yielded).max(axis=1, keepdims=True))
-        left = (pulled | pressed).any(axis=1)
-        force[going] = np.maximum(found, 0.0)
-        solved[going] = ~left
-        closed[going] = (now & ~pulled) | pressed
-        going = [k for k, more in zip(going, left, strict=True) if more]
-    return force, solved
+    force, compliance = np.empty(len(gap)), np.ascontiguousarray(matrix, float)
+    found = exchanged(compliance, gap, float(load), closed.copy(), _limits(), force)
+    return force if found else None
 
 
 def contact_rows(matrix: Array, gap: Array, load: float) -> tuple[Programme, Array]:

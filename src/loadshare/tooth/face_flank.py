@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeAlias
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from loadshare.tooth.body import Array
 from loadshare.tooth.face_gear import FaceGear
-from loadshare.tooth.flank import Patch, solve_2
-from loadshare.tooth.placement import turned
-
-Pair: TypeAlias = tuple[Array, Array]
-Vector: TypeAlias = tuple[Array, Array, Array]
+from loadshare.tooth.flank import Patch, patch
 
 # A Newton step below this [rad] is the last: what is left is about its square, below round-off.
 LAST_TURN = 1e-8
@@ -46,27 +43,27 @@ class FaceFlank:
 
     def patch(self, a: Array, b: Array, turn: Array | float) -> Patch:
         """Points of the flank at ξ = `a` and Φ = `b` [rad]; see `HelicoidFlank.patch`."""
-        gear, s = self.gear, -self.side
-        base = gear.shaper.base_radius
-        roll, phi, turn = np.broadcast_arrays(a, b, turn)
-        cosine, sine = np.cos(phi), np.sin(phi)
-        x, y, u = self._generated(s * roll, cosine, sine)
-        # Seen from the gear, everything also turns back about z = (−sin Γ, 0, cos Γ) by m φ_s.
-        k, n = (gear.roll_ratio * float(gear.axes[2, i]) for i in (2, 0))
-        tilted = Patch.of(
-            (x, y, u),
-            (s * sine, -s * cosine, 0.0),
-            (s * (k * y - base * sine), s * (base * cosine - k * x + n * u), -s * n * y),
-            ((k - 1.0) * y, (1.0 - k) * x + n * u, u * sine / cosine - n * y),
-            (-k * cosine, -k * sine, n * cosine),
-            (s * (1.0 - k) * cosine, s * (1.0 - k) * sine, s * n * cosine),
-        ).turned(gear.axes)
-        return tilted.spun(turn - self._turned_back(roll, phi))
+        from loadshare.tooth.compiled_flank import faces
+
+        return patch(faces, self.numbers, a, b, turn)
+
+    @cached_property
+    def numbers(self) -> FaceNumbers:
+        """The flank, as compiled code reads it."""
+        gear, shaper = self.gear, self.gear.shaper
+        return FaceNumbers(
+            side=float(self.side),
+            teeth=gear.teeth,
+            ratio=gear.roll_ratio,
+            scale=gear.axial_scale,
+            base=shaper.base_radius,
+            half_angle=shaper.base_half_angle,
+            axes=gear.axes,
+        )
 
     def point(self, roll: Array, phi: Array) -> Array:
         """Points (..., 3) of the flank of tooth 0 at surface parameters ξ and Φ [m]."""
-        made = self._generated(-self.side * roll, np.cos(phi), np.sin(phi))
-        return turned(np.stack(self._in_gear(*made), axis=-1), -self._turned_back(roll, phi))
+        return self.patch(roll, phi, 0.0).point
 
     def at_blank(self, length: Array, depth: Array) -> tuple[Array, Array]:
         """Surface parameters of the points at given lengths and depths of the blank [m].
@@ -78,66 +75,45 @@ class FaceFlank:
         roll, phi : array
             NaN where the flank has no such point.
         """
+        from loadshare.tooth.compiled_flank import at_blank
+
         gear = self.gear
-        length, depth = np.broadcast_arrays(length, depth)
+        lengths, depths = (np.array(x, float) for x in np.broadcast_arrays(length, depth))
         with np.errstate(invalid="ignore"):
-            start = np.arccos(gear.axial_scale / length)
-            roll = (depth / gear.shaper.base_radius - np.cos(start)) / np.sin(start)
-        phi = self.side * start
-        for _ in range(30):
-            now, first, second = self._blank(roll, phi)
-            step_a, step_b = solve_2(first, second, now[0] - length, now[1] - depth)
-            roll, phi = roll - step_a, phi - step_b
-            if not np.nanmax(np.abs(step_a) + np.abs(step_b), initial=0.0) > LAST_TURN:
-                break
-        return roll, phi
+            start = np.arccos(gear.axial_scale / lengths)
+            roll = (depths / gear.shaper.base_radius - np.cos(start)) / np.sin(start)
+        roll, phi = roll.ravel(), self.side * start.ravel()
+        at_blank(self.numbers, lengths.ravel(), depths.ravel(), roll, phi, _LIMITS)
+        return roll.reshape(lengths.shape), phi.reshape(lengths.shape)
 
     def at_length(self, length: Array, roll: Array | float) -> Array:
         """Base-tangent angle Φ of the points with a given shaper roll at lengths of the blank."""
-        gear = self.gear
-        length, roll = np.broadcast_arrays(length, roll)
+        from loadshare.tooth.compiled_flank import at_length
+
+        lengths, rolls = (np.array(x, float) for x in np.broadcast_arrays(length, roll))
         with np.errstate(invalid="ignore"):
-            phi = self.side * np.arccos(gear.axial_scale / length)
-        for _ in range(30):
-            now, along, _ = self._blank(roll, phi)
-            step = (now[0] - length) / along[1]
-            phi = phi - step
-            if not np.nanmax(np.abs(step), initial=0.0) > LAST_TURN:
-                break
-        return phi
+            phi = self.side * np.arccos(self.gear.axial_scale / lengths).ravel()
+        at_length(self.numbers, lengths.ravel(), rolls.ravel(), phi, _LIMITS)
+        return phi.reshape(lengths.shape)
 
-    def _turned_back(self, roll: Array, phi: Array) -> Array:
-        """Angle m φ_s of the gear since it stood with tooth 0 on +x [rad]."""
-        gear, s = self.gear, -self.side
-        shaper_turn = phi - s * gear.shaper.base_half_angle + s * roll
-        return gear.roll_ratio * shaper_turn - self.side * np.pi / gear.teeth
 
-    def _generated(self, reach: Array, cosine: Array, sine: Array) -> Vector:
-        """Where the shaper generates points, in its frame, from s ξ and cosine and sine of Φ."""
-        base = self.gear.shaper.base_radius
-        towards, tangential = cosine - reach * sine, sine + reach * cosine
-        return base * towards, base * tangential, self.gear.axial_scale / cosine
+class _Limits(NamedTuple):
+    """When compiled code stops; handed over, for it would keep an old limit."""
 
-    def _in_gear(self, towards: Array, tangential: Array, axial: Array | float) -> Vector:
-        """Components in the gear's frame of a vector given in the shaper's."""
-        (c, _, n), _, _ = self.gear.axes.tolist()
-        return c * towards + n * axial, tangential, c * axial - n * towards
+    steps: int
+    last: float
 
-    def _blank(self, roll: Array, phi: Array) -> tuple[Pair, Pair, Pair]:
-        """Length and depth of the blank [m], then the slopes of either over ξ and Φ."""
-        s, base = -self.side, self.gear.shaper.base_radius
-        (c, _, n), _, _ = self.gear.axes.tolist()
-        cosine, sine = np.cos(phi), np.sin(phi)
-        made = self._generated(s * roll, cosine, sine)
-        x, y, z = self._in_gear(*made)
-        radius = np.hypot(x, y)
-        by_roll = self._in_gear(-s * base * sine, s * base * cosine, 0.0)
-        by_phi = self._in_gear(-made[1], made[0], made[2] * sine / cosine)
-        (out_roll, up_roll), (out_phi, up_phi) = (
-            ((x * dx + y * dy) / radius, dz) for dx, dy, dz in (by_roll, by_phi)
-        )
-        return (
-            (n * radius + c * z, c * radius - n * z),
-            (n * out_roll + c * up_roll, n * out_phi + c * up_phi),
-            (c * out_roll - n * up_roll, c * out_phi - n * up_phi),
-        )
+
+_LIMITS = _Limits(30, LAST_TURN)
+
+
+class FaceNumbers(NamedTuple):
+    """Numbers of a flank by the names of `FaceGear`; `base` and `half_angle` are the shaper's."""
+
+    side: float
+    teeth: int
+    ratio: float
+    scale: float
+    base: float
+    half_angle: float
+    axes: Array

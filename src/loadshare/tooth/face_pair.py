@@ -26,7 +26,7 @@ from loadshare.tooth.involute import inv, inverse_inv
 from loadshare.tooth.placement import Placement, fixed
 from loadshare.tooth.positions import between, positions
 from loadshare.tooth.span import span
-from loadshare.tooth.valley import Valleys, anchor
+from loadshare.tooth.valley import Flanks, Known, Valleys, anchor
 
 Roll = TypeVar("Roll", float, Array)
 
@@ -203,18 +203,25 @@ class FaceGearPair:
         own = roll, np.full_like(roll, self.contact_length - self.middle)
         other = self.shaper_roll(roll), np.full_like(roll, -self.working_angle)
         flanks = self.driver_patch(pairs, own, driver), self.driven_patch(pairs, other, driven)
-        return Valleys(self, pairs, driver, driven, anchor(own, other, flanks))
+        turns = _turn(self.pinion, pairs, driver), _turn(self.gear, pairs, driven)
+        begun = anchor(own, other, flanks)
+        return Valleys(self._numbers, np.stack(turns, axis=-1), begun, Known.nothing(len(pairs)))
+
+    @cached_property
+    def _numbers(self) -> Flanks:
+        driver, driven = self._flanks
+        place = self.driven.placement
+        return Flanks(driver.numbers, driven.numbers, place.axes, place.origin)
 
     def driver_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
         """Points of the pinion's flanks at surface parameters `at`, fixed frame."""
-        turn = rotation + 2.0 * math.pi / self.pinion.teeth * pairs
-        return self._flanks[0].patch(*at, turn)
+        return self._flanks[0].patch(*at, _turn(self.pinion, pairs, rotation))
 
     def driven_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
         """Points of the gear's flanks at surface parameters `at`, fixed frame."""
-        turn = rotation + 2.0 * math.pi / self.gear.teeth * pairs
         place = self.driven.placement
-        return self._flanks[1].patch(*at, turn).turned(place.axes, place.origin)
+        patch = self._flanks[1].patch(*at, _turn(self.gear, pairs, rotation))
+        return patch.turned(place.axes, place.origin)
 
     def margins(
         self, driver_at: tuple[Array, Array], driven_at: tuple[Array, Array]
@@ -238,7 +245,7 @@ class FaceGearPair:
 
         A line's part on both flanks is where its least margin is positive.
         """
-        position, valleys, reach = self._candidates(driver, driven)
+        position, pairs, valleys, reach = self._candidates(driver, driven)
 
         def margin(stations: Array, lines: NDArray[np.int64], *, near: bool = False) -> Array:
             nonlocal valleys
@@ -246,7 +253,7 @@ class FaceGearPair:
             found = here.guess(stations) if near else None
             if found is None:
                 found = here.find(stations, NEAR_EDGE)
-            if valleys.known is None:
+            if not valleys.known.found.size:
                 valleys = valleys.knowing(stations, found)
             a, b, c, d, gap = found
             least = np.min(list(self.margins((a, b), (c, d)).values()), axis=0)
@@ -256,22 +263,24 @@ class FaceGearPair:
         valleys = valleys.rows(found)
         return Extents(
             position[found],
-            valleys.pairs,
+            pairs[found],
             start,
             end,
-            valleys.driver,
-            valleys.driven,
+            driver[position[found]],
+            driven[position[found]],
             valleys.trace,
         )
 
     def margins_about(self, driver: Array, driven: Array) -> Mapping[str, Array]:
         """Margins along the lines of pairs near contact, on both flanks or not."""
-        _, valleys, reach = self._candidates(driver, driven)
+        _, _, valleys, reach = self._candidates(driver, driven)
         a, b, c, d, _ = valleys.find(reach[:, None] * np.linspace(-1.0, 1.0, 33), NEAR_EDGE)
         return self.margins((a, b), (c, d))
 
-    def _candidates(self, driver: Array, driven: Array) -> tuple[NDArray[np.int64], Valleys, Array]:
-        """Lines of pairs that may be in contact: positions (m,), lines, farthest stations (m,)."""
+    def _candidates(
+        self, driver: Array, driven: Array
+    ) -> tuple[NDArray[np.int64], Array, Valleys, Array]:
+        """Positions, pairs, lines and farthest stations (m,) of pairs that may be in contact."""
         gear = self.pinion
         per_tooth = 2.0 * math.pi / gear.teeth
         middle = self.working_angle + driver + gear.base_half_angle
@@ -282,8 +291,13 @@ class FaceGearPair:
         width = min(gear.face_width, self.gear.outer - self.gear.inner)
         along = np.maximum(np.abs(valleys.start.major[:, 2]), 0.2)
         reach = 1.1 * (0.5 * width + abs(self.contact_length - self.middle)) / along
-        return position, valleys, reach
+        return position, pairs, valleys, reach
 
     def positions(self, phases: Sequence[float], points_per_line: int) -> tuple[MeshPosition, ...]:
         """Unloaded contact at phases of the mesh cycle; see `positions.positions`."""
         return positions(self, phases, points_per_line)
+
+
+def _turn(gear: HelicoidGear | FaceGear, pairs: Array, rotation: Array) -> Array:
+    """How far the teeth of pairs have turned at rotations of their gear [rad]."""
+    return rotation + 2.0 * math.pi / gear.teeth * pairs

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -22,16 +23,6 @@ class Patch:
     """
 
     components: Array
-
-    @classmethod
-    def of(cls, *vectors: Iterable[Array | float]) -> Patch:
-        """A patch from position, normal and derivatives, each by its components (x, y, z)."""
-        point, *others = vectors
-        components = np.empty((6, 3, *np.broadcast(*point).shape))
-        for number, vector in enumerate((point, *others)):
-            for axis, part in enumerate(vector):
-                components[number, axis] = part
-        return cls(components)
 
     @cached_property
     def vectors(self) -> Array:
@@ -57,13 +48,6 @@ class Patch:
     def bends(self) -> Array:
         """Derivatives (2, ..., 3) of the unit normal over both surface parameters."""
         return self.vectors[4:6]
-
-    def spun(self, angle: Array) -> Patch:
-        """The patch turned about z by angles (...) [rad]."""
-        components, cosine, sine = self.components.copy(), np.cos(angle), np.sin(angle)
-        x, y = self.components[:, 0], self.components[:, 1]
-        components[:, 0], components[:, 1] = cosine * x - sine * y, sine * x + cosine * y
-        return Patch(components)
 
     def turned(self, rotation: Array, origin: Array | None = None) -> Patch:
         """The patch carried to another frame: x ↦ rotation x + origin."""
@@ -94,6 +78,24 @@ class Patch:
         along = solve_2((aa, ab), (ab, bb), *dot(self.rays, direction))
         change = along[0][..., None] * self.bends[0] + along[1][..., None] * self.bends[1]
         return np.asarray(change)
+
+
+def patch(fill: Callable[..., None], numbers: tuple[Any, ...], *at: Array | float) -> Patch:
+    """Points at surface parameters a, b and turns [rad], broadcast against one another.
+
+    Parameters
+    ----------
+    fill : callable
+        Compiled; from the numbers of a flank and the parameters (n,) to points (6, 3, n).
+    numbers : tuple
+        The flank.
+    *at : array or float
+        a, b and the turns.
+    """
+    parameters = np.broadcast_arrays(*at)
+    components = np.empty((6, 3, parameters[0].size))
+    fill(numbers, *(np.array(part, float, order="C").ravel() for part in parameters), components)
+    return Patch(components.reshape(6, 3, *parameters[0].shape))
 
 
 def dot(first: Array, second: Array) -> Array:

@@ -159,7 +159,7 @@ def ltca(
         helices=pair.helices,
         contacts=contacts,
         lines=tuple(
-            tuple(_line_loads(position, problem, contact) for contact in under_all)
+            _line_loads(position, problem, under_all)
             for position, problem, under_all in zip(positions, problems, contacts, strict=True)
         ),
         compliance=compliance.model,
@@ -264,16 +264,20 @@ def _under_all(problems: Sequence[ContactProblem], loads: Array) -> Iterator[tup
 
 
 def _line_loads(
-    position: MeshPosition, problem: ContactProblem, contact: Contact
-) -> tuple[LineLoad, ...]:
-    """The contact told line by line."""
-    return tuple(
-        LineLoad(
-            line=line,
-            force=contact.force[part],
-            half_width=strips.widths(contact.force[part]),
-            pressure=strips.pressure(contact.force[part]),
-            distance=contact.distance[part],
+    position: MeshPosition, problem: ContactProblem, contacts: Sequence[Contact]
+) -> tuple[tuple[LineLoad, ...], ...]:
+    """The contacts under every load told line by line."""
+    force = np.stack([contact.force for contact in contacts])
+    distance = np.stack([contact.distance for contact in contacts])
+    told = []
+    for line, strips, part in zip(position.lines, problem.lines, problem.parts, strict=True):
+        own = force[:, part]
+        told.append(
+            [
+                LineLoad(line, *values)
+                for values in zip(
+                    own, strips.widths(own), strips.pressure(own), distance[:, part], strict=True
+                )
+            ]
         )
-        for line, strips, part in zip(position.lines, problem.lines, problem.parts, strict=True)
-    )
+    return tuple(zip(*told, strict=True))

@@ -3,11 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
-
-import numpy as np
-
-from loadshare.tooth.body import Array
+from typing import Literal, NamedTuple
 
 
 @dataclass(frozen=True)
@@ -68,38 +64,25 @@ class Deviation:
         m = self.modification
         return not (m.tip_relief or m.profile_crowning or m.lead_crowning or m.end_relief)
 
-    def profile(self, roll: Array) -> tuple[Array, Array, Array]:
-        """Material taken off at a length of roll [m], with first and second derivative."""
-        m = self.modification
-        half = 0.5 * (self.tip - self.root)
-        middle = roll - 0.5 * (self.tip + self.root)
-        bend = m.profile_crowning / half**2
-        taken = bend * middle**2
-        slope = 2.0 * bend * middle
-        second = np.full_like(roll, 2.0 * bend)
-        if m.tip_relief:
-            # Grows towards the tip, which an internal gear has at its shorter roll.
-            towards = np.sign(half)
-            start = self.tip - towards * m.tip_relief_length
-            into = np.maximum(towards * (roll - start) / m.tip_relief_length, 0.0)
-            n = m.tip_relief_exponent
-            taken = taken + m.tip_relief * into**n
-            inside = into > 0.0
-            first = m.tip_relief * n * into ** (n - 1) * inside
-            slope = slope + first * towards / m.tip_relief_length
-            second = second + m.tip_relief * n * (n - 1) * inside / m.tip_relief_length**2
-        return taken, slope, second
+    @property
+    def numbers(self) -> Taken:
+        """All of it, as compiled code reads it."""
+        # Floats, for code is compiled for them; another kind of number would have it made again.
+        amounts = {name: float(getattr(self.modification, name)) for name in Taken._fields[4:]}
+        extent = float(self.root), float(self.tip), float(self.width)
+        return Taken(self.modification.tip_relief_exponent, *extent, **amounts)
 
-    def lead(self, axial: Array) -> tuple[Array, Array, Array]:
-        """Material taken off at ζ [m], with first and second derivative."""
-        m = self.modification
-        bend = 4.0 * m.lead_crowning / self.width**2
-        taken = bend * axial**2
-        slope = 2.0 * bend * axial
-        second = np.full_like(axial, 2.0 * bend)
-        if m.end_relief:
-            start = 0.5 * self.width - m.end_relief_length
-            into = np.maximum(np.abs(axial) - start, 0.0) / m.end_relief_length
-            taken = taken + m.end_relief * into
-            slope = slope + m.end_relief / m.end_relief_length * np.sign(axial) * (into > 0.0)
-        return taken, slope, second
+
+class Taken(NamedTuple):
+    """What a deviation takes off, by the names of `Modification` and of `Deviation`."""
+
+    tip_relief_exponent: int
+    root: float
+    tip: float
+    width: float
+    tip_relief: float
+    tip_relief_length: float
+    profile_crowning: float
+    lead_crowning: float
+    end_relief: float
+    end_relief_length: float

@@ -21,6 +21,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 
@@ -45,9 +46,18 @@ def _slope(tau: Array) -> Array:
     return np.where(far, np.sqrt(m) * (1.0 + 0.375 * m), exact)
 
 
+class StripTable(NamedTuple):
+    """Knots, evenly spaced in ln τ, with g and dg/d ln τ, as compiled code reads them."""
+
+    first: float
+    last: float
+    values: Array  # (n,)
+    slopes: Array  # (n,)
+
+
 @cache
-def _table() -> tuple[Array, Array, Array]:
-    """Knots in ln τ with g and dg/d ln τ."""
+def strip_table() -> StripTable:
+    """The table of g."""
     knots = np.linspace(np.log(FIRST), np.log(LAST), 1200)
     nodes, weights = np.polynomial.legendre.leggauss(6)
     middle, half = 0.5 * (knots[1:] + knots[:-1]), 0.5 * np.diff(knots)
@@ -55,7 +65,8 @@ def _table() -> tuple[Array, Array, Array]:
     parts = half * ((inner * _slope(inner)) @ weights)
     tau = np.exp(knots)
     first = 4.0 / pi * tau[0] * np.log(4.0 / tau[0])  # leading order near 0
-    return knots, first + np.concatenate([[0.0], np.cumsum(parts)]), tau * _slope(tau)
+    values = first + np.concatenate([[0.0], np.cumsum(parts)])
+    return StripTable(FIRST, LAST, values, tau * _slope(tau))
 
 
 def strip_shape(tau: Array) -> tuple[Array, Array]:
@@ -63,25 +74,11 @@ def strip_shape(tau: Array) -> tuple[Array, Array]:
 
     Below the table's first knot (τ = 1e-7) both go to 0 in proportion to τ.
     """
-    knots, values, slopes = _table()
-    size = np.abs(tau)
-    faded = np.sign(tau) * np.minimum(size / FIRST, 1.0)
-    step = knots[1] - knots[0]
-    x = (np.log(np.clip(size, FIRST, LAST)) - knots[0]) / step
-    k = np.minimum(x.astype(int), len(knots) - 2)
-    s = x - k
-    v0, m0, m1 = values[k], step * slopes[k], step * slopes[k + 1]
-    rise = values[k + 1] - v0
-    bend, lean = m0 + m1 - 2.0 * rise, 3.0 * rise - 2.0 * m0 - m1
-    g = v0 + s * (m0 + s * (lean + s * bend))
-    dg = (m0 + s * (2.0 * lean + 3.0 * s * bend)) / step
-    return faded * g, faded * dg
+    from loadshare.tooth.compiled_contact import shapes
 
-
-def _below(x: Array, depth: Array, poisson: float) -> Array:
-    """Integral over x of z²/R³ + 2(1 − ν)/R: Boussinesq's normal displacement at a depth z = h."""
-    tau = x / depth
-    return np.asarray(tau / np.hypot(1.0, tau) + 2.0 * (1.0 - poisson) * np.arcsinh(tau))
+    value, slope = np.empty((2, tau.size))
+    shapes(tau.ravel(), strip_table(), value, slope)
+    return value.reshape(tau.shape), slope.reshape(tau.shape)
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,13 +152,11 @@ class StripLine:
     @cached_property
     def removed(self) -> Array:
         """Compliance (n, n) [m/N] of two half-spaces at the depths of the middle surfaces."""
+        from loadshare.tooth.compiled_contact import add_below
+
         total = np.zeros((len(self.length),) * 2)
-        if self.depth is None:
-            return total
-        away = self.place[:, None] - self.place
-        ends = np.stack([away + 0.5 * self.length, away - 0.5 * self.length])
-        for depth, e, nu in zip(self.depth, self.modulus, self.poisson, strict=True):
-            between = 0.5 * (depth[:, None] + depth)
-            far, near = _below(ends, between, nu)
-            total += (1.0 + nu) / (2.0 * pi * e * self.length) * (far - near)
+        if self.depth is not None:
+            for depth, e, nu in zip(self.depth, self.modulus, self.poisson, strict=True):
+                scale = (1.0 + nu) / (2.0 * pi * e * self.length)
+                add_below(self.place, self.length, scale, depth, float(nu), total)
         return total

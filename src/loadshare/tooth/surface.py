@@ -15,17 +15,34 @@ from __future__ import annotations
 from collections.abc import Sequence
 from copy import copy
 from math import comb, pi
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.tooth.body import Array
-from loadshare.tooth.strips import StripLine, strip_shape
+from loadshare.tooth.strips import StripLine, StripTable, strip_table
 
 TERMS = 5
 """Powers of b² that are kept."""
 FAR = 4.0
 """Distance, in half-widths, from which they are good to 4e-11."""
+
+
+class Strips(NamedTuple):
+    """Strips of K positions, N of each, as compiled code reads them.
+
+    Lines are numbered within a position; what only fills it up has the number −1.
+    """
+
+    number: Array  # (K, N)
+    place: Array  # (K, N) along the line [m]
+    half: Array  # (K, N): half of the length [m]
+    scale: Array  # (K, N): displacement per force and unit of g [m/N]
+    square: Array  # (K, N): b² per force [m²/N]
+    series: Array  # (K, TERMS + 1, N, N): coefficients of b²ᵏ [m/N]
+    far: float
+    table: StripTable
 
 
 class Surface:
@@ -37,38 +54,34 @@ class Surface:
     ----------
     positions : sequence of sequence of StripLine
         Lines do not feel one another here: that is what the bulk compliance is for.
+
+    Attributes
+    ----------
+    strips : Strips
+    which : array (K,) of int
+        Numbers of the positions among the strips.
     """
 
     def __init__(self, positions: Sequence[Sequence[StripLine]]) -> None:
-        count = max(sum(len(line.length) for line in lines) for lines in positions)
-        strips = np.stack([_strips(lines, count) for lines in positions], axis=1)
-        number, place, half, self._scale, self._square = strips
-        real = number >= 0.0
-        together = (number[:, :, None] == number[:, None, :]) & real[:, None, :]
-        away = place[:, :, None] - place[:, None, :]
-        half = half[:, None, :]
-        self._ends = np.stack([away + half, away - half])
-        self._nearest = np.where(together, np.abs(self._ends).min(axis=0), np.inf)
-        diagonal = np.arange(count)
-        self._nearest[:, diagonal, diagonal] = np.where(real, 0.0, np.inf)
-        side = self._scale[:, None, :] * np.sign(away) * together  # g is odd
-        ends = np.where(side != 0.0, self._ends, 1.0)
-        inverse = power = 1.0 / ends**2
-        self._series = np.empty((TERMS + 1, *away.shape))
-        self._series[0] = side * np.log(np.abs(ends[0] / ends[1]))
-        for k in range(1, TERMS + 1):
-            coefficient = -((-1.0) ** k) * (comb(2 * k, k) / 4.0**k) ** 2 / (2.0 * k * (k + 1.0))
-            self._series[k] = coefficient * side * (power[0] - power[1])
-            power = power * inverse
+        from loadshare.tooth.compiled_contact import expand
 
-    def compliance(self, force: Array, least: Array | float) -> tuple[Array, Array]:
+        count = max(sum(len(line.length) for line in lines) for lines in positions)
+        number, place, half, scale, square = np.stack(
+            [_strips(lines, count) for lines in positions], axis=1
+        )
+        series = np.empty((len(positions), TERMS + 1, count, count))
+        self.strips = Strips(number, place, half, scale, square, series, FAR, strip_table())
+        expand(self.strips, COEFFICIENTS, series)
+        self.which = np.arange(len(positions))
+
+    def compliance(self, force: Array, least: Array) -> tuple[Array, Array]:
         """Compliance of the two surfaces at the widths that belong to the forces.
 
         Parameters
         ----------
         force : array (K, N)
             [N].
-        least : array (K,) or float
+        least : array (K,)
             Force below which a strip narrows no further [N].
 
         Returns
@@ -76,29 +89,28 @@ class Surface:
         secant, tangent : array (K, N, N)
             [m/N]; displacement is secant @ force, its derivative over force is the tangent.
         """
-        square = np.maximum(force, np.asarray(least)[..., None]) * self._square
-        order = np.arange(TERMS + 1.0)[:, None, None]
-        powers = square**order
-        secant = np.einsum("knij,knj->nij", self._series, powers)
-        # b² grows as p, so p ∂S/∂p counts every power of b² by its exponent.
-        tangent = np.einsum("knij,knj->nij", self._series, (1.0 + order) * powers)
-        width = np.sqrt(square)
-        n, i, j = np.nonzero(self._nearest < FAR * width[:, None, :])
-        value, slope = strip_shape(self._ends[:, n, i, j] / width[n, j])
-        scale = self._scale[n, j]
-        near = scale * (value[0] - value[1])
-        secant[n, i, j] = near
-        # b grows as √p, so p ∂S/∂p = −½ Σ ± τ g'(τ).
-        tangent[n, i, j] = near - 0.5 * scale * (slope[0] - slope[1])
+        from loadshare.tooth.compiled_contact import surfaces
+
+        force, least = np.array(force, float, order="C"), np.array(least, float)
+        secant, tangent = np.empty((2, *force.shape, force.shape[1]))
+        surfaces(self.strips, self.which, force, least, secant, tangent)
         return secant, tangent
 
     def rows(self, chosen: NDArray[np.int64]) -> Surface:
         """The surfaces of some of the positions."""
         part = copy(self)
-        part._ends, part._series = self._ends[:, chosen], self._series[:, chosen]
-        part._nearest = self._nearest[chosen]
-        part._scale, part._square = self._scale[chosen], self._square[chosen]
+        part.which = self.which[chosen]
         return part
+
+
+COEFFICIENTS = np.array(
+    [1.0]
+    + [
+        -((-1.0) ** k) * (comb(2 * k, k) / 4.0**k) ** 2 / (2.0 * k * (k + 1.0))
+        for k in range(1, TERMS + 1)
+    ]
+)
+"""Of the series above; the first is the logarithm's."""
 
 
 def _strips(lines: Sequence[StripLine], count: int) -> Array:

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.tooth.geometry.samples import RELIEVED, face_gear, gear
 
+from loadshare.tooth.compiled_flank import lead, profile
 from loadshare.tooth.face_flank import FaceFlank
 from loadshare.tooth.flank import dot, principal_directions, unit
 from loadshare.tooth.helicoid_flank import HelicoidFlank
@@ -101,12 +102,14 @@ def test_modification_is_taken_off_along_the_normal(side):
     roll, axial = np.broadcast_arrays(*spread(plain))
     before, after = plain.patch(roll, axial, 0.0), cut.patch(roll, axial, 0.0)
     depth = dot(before.point - after.point, before.normal)
-    deviation = cut.gear.deviation
-    expected = deviation.profile(cut.gear.base_radius * roll)[0] + deviation.lead(axial)[0]
-    np.testing.assert_allclose(depth, expected, atol=1e-16)
-    tip = deviation.profile(np.array([cut.gear.base_radius * cut.gear.tip_roll]))[0]
-    assert tip[0] == pytest.approx(24e-6, abs=1e-15)
-    assert deviation.lead(np.array([10e-3]))[0] == pytest.approx(10e-6, abs=1e-15)
+    taken, radius = cut.gear.deviation.numbers, cut.gear.base_radius
+    expected = [
+        profile(taken, radius * a)[0] + lead(taken, b)[0]
+        for a, b in zip(roll.ravel(), axial.ravel(), strict=True)
+    ]
+    np.testing.assert_allclose(depth.ravel(), expected, atol=1e-16)
+    assert profile(taken, radius * cut.gear.tip_roll)[0] == pytest.approx(24e-6, abs=1e-15)
+    assert lead(taken, 10e-3)[0] == pytest.approx(10e-6, abs=1e-15)
 
 
 @pytest.mark.parametrize("angle", [90.0, 85.0, 100.0])

@@ -145,6 +145,12 @@ def test_a_refused_contact_of_several_is_named(monkeypatch):
         solve_contacts(ContactBatch(problems), np.array([900.0, 800.0]))
 
 
+def test_a_compliance_that_is_no_number_is_refused():
+    problem = uneven(1)
+    with pytest.raises(Refused, match="singular or not a number"):
+        solve_contact(replace(problem, bulk=np.full_like(problem.bulk, np.nan)), 900.0)
+
+
 def test_a_warm_start_does_not_change_the_answer():
     problem = uneven(7)
     cold = solve_contact(problem, 900.0)
@@ -172,15 +178,29 @@ def test_back_ends_exchange_and_nnls_agree(solver):
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
+def test_an_exchange_that_goes_in_a_circle_is_told(solver):
+    """It closes and opens the same points of this definite matrix for ever; a solver does not."""
+    matrix = np.array(
+        [[91.5, 21, -25, 81], [21, 34.5, 28, 11], [-25, 28, 50.5, -31], [81, 11, -31, 75.5]]
+    )
+    gap, every = np.array([38.0, 9.0, 4.0, 34.0]), np.ones(4, dtype=bool)
+    assert exchange(matrix, gap, 1.0, every) is None
+    assert every.all()
+    force = by_interface(matrix, gap, 1.0, np.full(4, 0.25), backend(solver))
+    distance = matrix @ force + gap
+    approach = distance @ force
+    assert force.sum() == pytest.approx(1.0, rel=1e-12)
+    assert np.all(force >= 0.0)
+    np.testing.assert_allclose(distance[force > 0.0], approach, rtol=1e-9)
+    assert np.all(distance > approach * (1.0 - 1e-9))
+
+
+@pytest.mark.parametrize("solver", SOLVERS)
 def test_the_solver_interface_takes_over_from_the_exchange(monkeypatch, solver):
     """Every programme of the whole contact by a back-end: the same answer, as tightly settled."""
     problem = uneven(9)
     ours = solve_contact(problem, 700.0)
-    monkeypatch.setattr(
-        contact_programme,
-        "exchanges",
-        lambda matrix, gap, load, closed: (np.full_like(gap, np.nan), np.zeros(len(gap), bool)),
-    )
+    monkeypatch.setattr(contact_programme, "EXCHANGES", 0)
     theirs = solve_contact(problem, 700.0, solver=solver)
     np.testing.assert_allclose(theirs.force, ours.force, atol=1e-10 * 700.0)
     assert theirs.approach == pytest.approx(ours.approach, rel=1e-11)

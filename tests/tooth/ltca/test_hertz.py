@@ -131,7 +131,7 @@ def test_a_long_row_of_strips_is_the_compression_to_the_depth():
         depth=(np.full(n, depth), np.full(n, depth)),
     )
     force = q * line.length
-    moved = (Surface(((line,),)).compliance(force[None], 0.0)[0][0] - line.removed) @ force
+    moved = (Surface(((line,),)).compliance(force[None], np.zeros(1))[0][0] - line.removed) @ force
     width = float(half_width(q, 90.0, E_STAR))
     closed = 2.0 * float(compression(q, width, depth, 206e9, 0.3))
     # The plane formula reads the depth's field at the edge of a contact of width b, the strips at
@@ -145,11 +145,11 @@ def test_strip_tangent_is_the_derivative_of_the_yielding():
     line = StripLine(np.full(n, 4e-4), np.full(n, 90.0), np.full(n, 20.0), *STEEL)
     force = 50.0 + 10.0 * np.arange(n) % 37
     surface = Surface(((line,),))
-    tangent = surface.compliance(force[None], 0.0)[1][0]
+    tangent = surface.compliance(force[None], np.zeros(1))[1][0]
     numeric = np.empty((n, n))
     for j, step in enumerate(1e-3 * np.eye(n)):
         up, down = (
-            surface.compliance(f[None], 0.0)[0][0] @ f for f in (force + step, force - step)
+            surface.compliance(f[None], np.zeros(1))[0][0] @ f for f in (force + step, force - step)
         )
         numeric[:, j] = (up - down) / 2e-3
     # The table's slope is good to 1e-7 of a strip's own compliance.
@@ -169,7 +169,7 @@ def test_surfaces_of_lines_are_those_of_their_strips(load):
     force = load * rng.uniform(0.5, 1.5, 29)
     # A second position with one of the lines fills up with points that yield nothing.
     both = np.stack([force, np.where(np.arange(29) < 17, force, 0.0)])
-    secant, tangent = Surface((lines, lines[:1])).compliance(both, 0.0)
+    secant, tangent = Surface((lines, lines[:1])).compliance(both, np.zeros(2))
     np.testing.assert_array_equal(secant[1, :17, :17], secant[0, :17, :17])
     assert not secant[1, 17:].any()
     assert not secant[1, :, 17:].any()

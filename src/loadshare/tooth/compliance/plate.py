@@ -16,6 +16,8 @@ HEIGHT_DEGREE = 6
 """Degree of the polynomials along the tooth's height."""
 ROOT_TANGENT = 60.0
 """Angle [degrees] between fillet and chord at the root section: the standard's 30° tangent."""
+OVER = 2
+"""Gauss points over the width, more than the degree of the polynomials."""
 SHEAR_FACTOR = 5.0 / 6.0
 FLAT = 0.01
 """Least rise of the middle surface per unit of u, over the tooth's height."""
@@ -141,7 +143,7 @@ class Plate:
 
     @cached_property
     def _over_width(self) -> tuple[Array, Array]:
-        return _gauss(0.0, 1.0, self._degrees[1] + 2)
+        return _gauss(0.0, 1.0, self._degrees[1] + OVER)
 
     def _yielding(self) -> tuple[Array, Array]:
         """Factors X of the compliances X Xᵀ of deflection and of compression."""
@@ -157,7 +159,7 @@ class Plate:
         place, slope = self.middle.height(z)
         f, df = _legendre(place, self._degrees[0])
         df *= slope[:, None]
-        g, dg = _legendre(w, self._degrees[1])
+        g, dg = _legendre_at_gauss(self._degrees[1])
 
         # Fields: deflection v, rotation p about the tooth line, rotation q about the height, with
         # the strain energy ½ bend (p_z² + q_w² + 2ν p_z q_w + ½(1 − ν)(p_w + q_z)²) and
@@ -175,7 +177,7 @@ class Plate:
         axial += _product(area * shear * t / run**2, f, f, dg, dg)
 
         springs = np.linalg.inv(root_compliance(nu))
-        f, _ = _legendre(np.zeros(1), self._degrees[0])
+        f = (-1.0) ** np.arange(self._degrees[0] + 1.0)[None]  # Legendre's polynomials at the root
         unit, t = (plane * over_w * self.root.run)[None], self.root.thickness
         vv += _product(springs[0, 0] * unit, f, f, g, g)
         pv += _product(springs[0, 1] * unit * t, f, f, g, g)
@@ -213,6 +215,12 @@ def _legendre(place: Array, degree: int) -> tuple[Array, Array]:
     """Legendre polynomials (n, degree + 1) at places 0 to 1, and their slopes."""
     values = np.asarray(legvander(2.0 * place - 1.0, degree), np.float64)
     return values, 2.0 * values[:, :degree] @ _legder(degree)
+
+
+@cache
+def _legendre_at_gauss(degree: int) -> tuple[Array, Array]:
+    """The same at the Gauss points over the width, `OVER` more than the degree."""
+    return _legendre(_gauss(0.0, 1.0, degree + OVER)[0], degree)
 
 
 @cache

@@ -18,7 +18,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
-from math import ceil, log, pi
+from math import ceil, pi
+from typing import NamedTuple
 
 import numpy as np
 
@@ -115,19 +116,19 @@ class Ring:
 
     @cached_property
     def _harmonics(self) -> Array:
-        """Displacements u_r, u_θ (first index) for tractions σ, τ of every order (2, 2, n).
+        """Displacements u_r, u_θ (first index) for tractions σ, τ of every order (2, 2, n)."""
+        from loadshare.tooth.compliance.compiled_ring import harmonics
 
-        Poisson's strain across the width is held back where a harmonic reaches less deep than half
-        the width, and free where it reaches deeper: plane strain and plane stress.
-        """
-        n, ratio = self._orders, self.held / self.loaded
-        found = np.empty((2, 2, len(n)))
-        free = self.loaded / n > 0.5 * self.width
-        felt = (n * abs(log(ratio)) < -0.5 * log(FELT)) & ~free
-        solid = ~free & ~felt
-        found[..., solid] = _solid(n[solid], ratio, self.poisson)
-        found[..., felt] = _thick(n[felt], ratio, self.poisson)
-        found[..., free] = _thick(n[free], ratio, self._in_plane_stress) / (1.0 - self.poisson**2)
+        found = np.empty((2, 2, len(self._orders)))
+        numbers = RingNumbers(
+            loaded=float(self.loaded),
+            held=float(self.held),
+            width=float(self.width),
+            poisson=float(self.poisson),
+            in_plane_stress=float(self._in_plane_stress),
+            felt=FELT,
+        )
+        harmonics(numbers, found)
         return found
 
     @property
@@ -147,59 +148,12 @@ class Ring:
         return scale * twisted, scale * swollen
 
 
-def _thick(n: Array, ratio: float, poisson: float) -> Array:
-    """Displacements (2, 2, n) at radius 1 for tractions there, held at the radius `ratio`."""
-    own, far = _fields(n, 1.0, ratio, poisson), _fields(n, ratio, ratio, poisson)
-    matrix = np.concatenate([own[2:], far[:2]]).transpose(2, 0, 1)
-    scale = np.abs(matrix).max(axis=1, keepdims=True)
-    loads = np.zeros((len(n), 4, 2))
-    loads[:, 0, 0] = loads[:, 1, 1] = 1.0
-    parts = np.linalg.solve(matrix / scale, loads) / scale.transpose(0, 2, 1)
-    return np.asarray(np.einsum("ujn,njt->utn", own[:2], parts))
+class RingNumbers(NamedTuple):
+    """A ring, as compiled code reads it."""
 
-
-def _solid(n: Array, ratio: float, poisson: float) -> Array:
-    """The same where the held circle is out of reach."""
-    u, v, sigma, tau = _fields(n, 1.0, ratio, poisson, 2)
-    over = 1.0 / (sigma[0] * tau[1] - sigma[1] * tau[0])
-    return np.asarray(
-        [
-            [(x[0] * tau[1] - x[1] * tau[0]) * over, (x[1] * sigma[0] - x[0] * sigma[1]) * over]
-            for x in (u, v)
-        ]
-    )
-
-
-def _fields(n: Array, radius: float, ratio: float, poisson: float, count: int = 4) -> Array:
-    """Fields of order n at a radius: u_r, u_θ and the tractions σ, τ on the loaded side.
-
-    Displacements are in units of (1 − ν²)/E. The first two fields fade from radius 1 into the ring,
-    the others from the held circle towards it.
-
-    Returns
-    -------
-    array (4, count, n)
-        Of the first `count` fields.
-    """
-    kappa, one = 3.0 - 4.0 * poisson, np.ones_like(n)
-    grow = [(n + 1.0, kappa - n - 1.0, kappa + n + 1.0), (n - 1.0, one, -one)]
-    fade = [(1.0 - n, kappa - 1.0 + n, n - 1.0 - kappa), (-1.0 - n, one, one)]
-    outwards = ratio < 1.0
-    both = [(powers, 1.0) for powers in (grow if outwards else fade)]
-    both += [(powers, ratio) for powers in (fade if outwards else grow)]
-    fields = []
-    for (power, u, v), start in both[:count]:
-        size = (radius / start) ** power
-        fields.append([u * size, v * size, power * u * size, power * v * size])
-    u, v, u_slope, v_slope = np.array(fields).transpose(1, 0, 2)
-    # Of order 1 both r^(1 − n) and r^(n − 1) are translations; the force needs a logarithm.
-    one_of, first = (2 if outwards else 0), n == 1.0
-    turn = 2.0 * kappa * log(radius)
-    if one_of < count:
-        u[one_of, first], v[one_of, first] = turn - 1.0, -turn - 1.0
-        u_slope[one_of, first], v_slope[one_of, first] = 2.0 * kappa, -2.0 * kappa
-    dilation = poisson / (1.0 - 2.0 * poisson) * (u_slope + u + n * v)
-    side = (1.0 if outwards else -1.0) / radius
-    sigma, tau = side * (dilation + u_slope), 0.5 * side * (v_slope - v - n * u)
-    unit = 1.0 / (1.0 - poisson)
-    return np.array([unit * u, unit * v, sigma, tau])
+    loaded: float
+    held: float
+    width: float
+    poisson: float
+    in_plane_stress: float
+    felt: float

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -36,6 +37,13 @@ class Sample:
     half_w: Array
 
 
+class Polynomials(NamedTuple):
+    """Chebyshev series in u, in pieces, and in w, as compiled code reads them."""
+
+    pieces: Array  # (2, 2): first and last u
+    coefficients: Array  # (2, DEGREE + 1, (DEGREE + 1)·18): of u, then of w and of each number
+
+
 class SmoothMiddle(MiddleSurface):
     """Middle surface from one sampling of the outline at Chebyshev points.
 
@@ -65,7 +73,11 @@ class SmoothMiddle(MiddleSurface):
         ]
         whole = np.concatenate(pieces)
         across = np.swapaxes(_slopes(np.swapaxes(whole, 0, 1), 2.0), 0, 1)
-        self._coefficients = np.concatenate([whole, np.concatenate(slopes), across], axis=-1)
+        coefficients = np.concatenate([whole, np.concatenate(slopes), across], axis=-1)
+        self._polynomials = Polynomials(
+            pieces=np.array(self._pieces),
+            coefficients=np.ascontiguousarray(coefficients).reshape(2, count, -1),
+        )
 
         # Length of the middle line half-way over the width, integrated from its exact slope.
         rise = self._read(u[:, 0], np.full(2 * count, 0.5)).middle_u
@@ -122,20 +134,11 @@ class SmoothMiddle(MiddleSurface):
         return at.middle + side * at.half, np.asarray(np.sign(inside)[:, None] * normal)
 
     def _read(self, u: Array, w: Array) -> Sample:
-        upper = u > self.body.foot
-        parts = []
-        for above, (low, high) in zip((False, True), self._pieces, strict=True):
-            inside = np.clip(2.0 * (u - low) / (high - low) - 1.0, -1.0, 1.0)
-            parts.append(_basis(inside) * (upper == above)[:, None])
-        shape = self._coefficients.shape
-        lines = np.hstack(parts) @ self._coefficients.reshape(shape[0], -1)
-        found = np.einsum("nj,njk->nk", _basis(2.0 * w - 1.0), lines.reshape(-1, *shape[1:]))
+        from loadshare.tooth.compliance.compiled_smooth import read
+
+        found = np.empty((len(u), 18))
+        read(self._polynomials, self.body.foot, np.array(u, float), np.array(w, float), found)
         return Sample(*(found[:, k : k + 3] for k in range(0, 18, 3)))
-
-
-def _basis(x: Array) -> Array:
-    """Chebyshev polynomials (n, DEGREE + 1) at places −1 to 1."""
-    return np.asarray(np.cos(np.arccos(x)[:, None] * np.arange(DEGREE + 1)))
 
 
 def _spread(unit: Array, low: float, high: float) -> Array:
