@@ -162,6 +162,7 @@ def programme_rows(problem: ContactProblem, pair: HelicoidPair) -> list[list[str
             even, problem.gap, load, np.ones(count, dtype=bool)
         ),
         "scipy.optimize.nnls": by_nnls,
+        "Lemke's pivots, NumPy": lambda: _by_lemke(even, problem.gap, load),
         "solver interface, Clarabel + exact": lambda: through("clarabel"),
         "solver interface, OSQP + exact": lambda: through("osqp"),
     }
@@ -177,6 +178,46 @@ def programme_rows(problem: ContactProblem, pair: HelicoidPair) -> list[list[str
         residual = f"{contact.certificate.worst:.0e}"
         rows.append([str(count), told, f"{1e3 * seconds:.2f}", residual])
     return rows
+
+
+def _by_lemke(matrix: np.ndarray, gap: np.ndarray, load: float) -> np.ndarray | None:
+    """Lemke's complementary pivots, from the textbook.
+
+    Unknown are the forces and the approach, complementary to the gaps and to what the forces carry
+    beyond the load; all stand over the largest compliance and the load.
+    """
+    size = len(gap) + 1
+    unit = matrix.max() * load
+    rows = np.zeros((size, 2 * size + 2))
+    rows[:, :size] = np.eye(size)
+    rows[:-1, size : 2 * size - 1] = -matrix / matrix.max()
+    rows[:-1, 2 * size - 1] = 1.0
+    rows[-1, size : 2 * size - 1] = -1.0
+    rows[:, 2 * size] = -1.0
+    rows[:, -1] = np.append(gap / unit, -1.0)
+    basis = np.arange(size)
+    artificial = entering = 2 * size
+    leaving = int(rows[:, -1].argmin())
+    for _ in range(20 * size):
+        rows[leaving] /= rows[leaving, entering]
+        others = rows[:, entering].copy()
+        others[leaving] = 0.0
+        rows -= others[:, None] * rows[leaving]
+        basis[leaving], left = entering, basis[leaving]
+        if left == artificial:
+            value = np.zeros(2 * size + 1)
+            value[basis] = rows[:, -1]
+            return np.asarray(value[size : 2 * size - 1] * load)
+        entering = left + size if left < size else left - size
+        column = rows[:, entering]
+        with np.errstate(divide="ignore"):
+            ratio = np.where(column > 1e-12, rows[:, -1] / column, np.inf)
+        if np.isinf(ratio).all():
+            return None
+        least = np.flatnonzero(ratio <= ratio.min() + 1e-15)
+        # Should several leave at once, the artificial one does, so that the pivots end.
+        leaving = int(next((k for k in least if basis[k] == artificial), least[0]))
+    return None
 
 
 def _violation(matrix: np.ndarray, gap: np.ndarray, load: float, force: np.ndarray | None) -> str:
