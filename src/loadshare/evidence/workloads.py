@@ -105,6 +105,15 @@ def workloads(cases: Path, quick: bool) -> list[Workload]:
         _workload("splines", "clearance splines", "SOCP", splines, _errors | _splines, many, few),
         _workload("law", "limit rings, b + c law", "QP, law", law, _errors | _ring_5, many, few),
         _workload(
+            "splines-law",
+            "clearance splines, b + c law",
+            "SOCP, law",
+            _with_laws(splines),
+            _errors | _splines,
+            many,
+            few,
+        ),
+        _workload(
             "all",
             "every element, b + c law",
             "SOCP, law",
@@ -135,10 +144,7 @@ def branches(quick: bool) -> list[Workload]:
         for number in range(1, size // 2 + 1):
             data["gears"][f"pinion{number}"]["support"] = "1e8 N/m"
         for mesh in data["meshes"].values():
-            stiffness = float(mesh.pop("stiffness").split()[0])
-            bending, hertz = 0.7 / stiffness, 0.3 * (1e-3 * stiffness) ** (1.0 / 3.0) / stiffness
-            unit = "rad/(N*m)"
-            mesh["law"] = {"b": f"{bending!r} {unit}", "c": f"{hertz!r} {unit}^(2/3)"}
+            mesh["law"] = _law(mesh.pop("stiffness"))
             mesh["backlash"] = "30 um"
         idlers = [g for g in data["gears"] if g.startswith("idler")]
         data["errors"] = {
@@ -153,6 +159,22 @@ def branches(quick: bool) -> list[Workload]:
         case = Case(data, name=name)
         found.append(_workload(name, f"{size} branches", "QP, law", case, draws, count, few))
     return found
+
+
+def _law(stiffness: str) -> dict[str, str]:
+    """A law of which bending makes 0.7 and Hertz contact 0.3 where the mesh winds up by 1 mrad."""
+    k, unit = float(stiffness.split()[0]), "rad/(N*m)"
+    hertz = 0.3 * (1e-3 * k) ** (1.0 / 3.0) / k
+    return {"b": f"{0.7 / k!r} {unit}", "c": f"{hertz!r} {unit}^(2/3)"}
+
+
+def _with_laws(case: Case) -> Case:
+    """Give the meshes laws in place of their stiffness."""
+    changes: dict[str, Any] = {}
+    for name, mesh in case.to_dict()["meshes"].items():
+        changes[f"meshes.{name}.stiffness"] = None
+        changes[f"meshes.{name}.law"] = _law(mesh["stiffness"])
+    return case.replace(changes)
 
 
 def _with_errors(case: Case, **more: Any) -> Case:

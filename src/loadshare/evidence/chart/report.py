@@ -33,8 +33,11 @@ WANTED = (
             ("DAQP", 3.0),
         )
     ),
-    Ratio("all", OURS_BATCH, "Clarabel, update", 30.0),
-    *(Ratio(w, OURS_SOLVE, "CVXPY, rebuilt", 20.0) for w in ("rings", "splines", "law", "all")),
+    *(Ratio(w, OURS_BATCH, "Clarabel, update", 30.0) for w in ("splines-law", "all")),
+    *(
+        Ratio(w, OURS_SOLVE, "CVXPY, rebuilt", 20.0)
+        for w in ("rings", "splines", "law", "splines-law", "all")
+    ),
     *(
         Ratio(w, OURS_BATCH, peer, None)
         for w in ("rings", "splines")
