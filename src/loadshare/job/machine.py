@@ -52,7 +52,7 @@ def engine_named(name: str, count: int) -> Engine:
     return compiled.settle
 
 
-PILOTS, WORTH = 64, 8
+PILOTS, WORTH = 16, 32
 """Samples that show the others where to begin, and how many times as many it takes."""
 Attempt = Callable[[NDArray[np.bool_]], tuple[State, Found]]
 """Solves some of the samples anew."""

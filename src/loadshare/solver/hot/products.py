@@ -18,33 +18,36 @@ from loadshare.scene.scene import Array
 class Entries(NamedTuple):
     """Entries of a matrix (n, q) that are not zero, column by column."""
 
+    columns: NDArray[np.intp]  # those that are not empty
     starts: NDArray[np.intp]
     rows: NDArray[np.intp]
     values: Array
+    width: int  # q
 
 
 def entries(matrix: Array) -> Entries:
     """Return the entries of a matrix of shape (n, q)."""
-    columns, rows = np.nonzero(matrix.T)
-    starts = np.searchsorted(columns, np.arange(matrix.shape[1] + 1))
-    return Entries(starts, rows, matrix[rows, columns])
+    at_column, rows = np.nonzero(matrix.T)
+    columns, starts = np.unique(at_column, return_index=True)
+    starts = np.append(starts, len(rows))
+    return Entries(columns, starts, rows.copy(), matrix[rows, at_column], matrix.shape[1])
 
 
 def times(table: Array, matrix: Entries) -> Array:
     """Return a table (S, n) times the matrix, shape (S, q)."""
-    product = np.empty((len(table), len(matrix.starts) - 1))
-    _times(table, *matrix, product)
+    product = np.zeros((len(table), matrix.width))
+    _times(table, matrix.columns, matrix.starts, matrix.rows, matrix.values, product)
     return product
 
 
 @njit(cache=True, nogil=True)
-def _times(table, starts, rows, values, product):  # type: ignore[no-untyped-def]
+def _times(table, columns, starts, rows, values, product):  # type: ignore[no-untyped-def]
     for s in range(product.shape[0]):
-        for column in range(product.shape[1]):
+        for c in range(columns.shape[0]):
             total = 0.0
-            for k in range(starts[column], starts[column + 1]):
+            for k in range(starts[c], starts[c + 1]):
                 total += values[k] * table[s, rows[k]]
-            product[s, column] = total
+            product[s, columns[c]] = total
 
 
 def pushes(force: Array, first: int, last: int, unit: float) -> Array:
