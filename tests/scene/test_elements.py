@@ -12,7 +12,8 @@ from tests.support import SHIPPED, shipped
 from loadshare.case import families
 from loadshare.job.machine import Machine
 from loadshare.scene import assemble
-from loadshare.scene.elements import Elements, data_of, elements_of
+from loadshare.scene.data import data_of
+from loadshare.scene.elements import Elements, elements_of
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.exchange import exchange, first_sets
 from loadshare.solver.hot.places import graph

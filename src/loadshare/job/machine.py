@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from loadshare.certify.many import Judge, Verdicts
 from loadshare.scene import assemble
-from loadshare.scene.elements import Data, Elements, data_of, elements_of
+from loadshare.scene.data import Data, data_of
+from loadshare.scene.elements import Elements, elements_of
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.answer import equilibria, tied
 from loadshare.solver.hot.exchange import Codes, Engine, Found, exchange, first_sets

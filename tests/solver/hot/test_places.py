@@ -15,7 +15,7 @@ from tests.solver.hot.trains import varied
 
 from loadshare.certify.certificate import TOLERANCE
 from loadshare.job.machine import Machine
-from loadshare.scene.elements import data_of
+from loadshare.scene.data import data_of
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot import vectorised
 from loadshare.train import build_train

@@ -14,7 +14,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from loadshare.scene.elements import Basis, Data, Elements
+from loadshare.scene.data import Data
+from loadshare.scene.elements import Basis, Elements
 from loadshare.scene.scene import Array
 from loadshare.solver.hot import lanes
 from loadshare.solver.hot import places as at

@@ -13,7 +13,8 @@ from heapq import heappop, heappush
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.elements import Basis, Data, Elements
+from loadshare.scene.data import Data
+from loadshare.scene.elements import Basis, Elements
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot.state import State
 from loadshare.solver.hot.vectorised import pick

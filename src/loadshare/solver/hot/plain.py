@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.elements import Basis, Data, Elements
+from loadshare.scene.data import Data
+from loadshare.scene.elements import Basis, Elements
 from loadshare.scene.scene import Array
 from loadshare.solver.hot.places import OPEN
 

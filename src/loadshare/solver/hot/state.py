@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.elements import Data, Elements
+from loadshare.scene.data import Data
+from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
 from loadshare.solver.hot.places import FLOOR
 

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.elements import Basis, Data, Elements
+from loadshare.scene.data import Data
+from loadshare.scene.elements import Basis, Elements
 from loadshare.scene.scene import Array
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot.state import State

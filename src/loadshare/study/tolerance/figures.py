@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from loadshare.case import Case
 from loadshare.errors import CaseError
-from loadshare.job.many import Block, mesh_torques, shares, solve_blocks
+from loadshare.job.many import Block, solve_blocks
+from loadshare.job.table import mesh_torques, shares
 from loadshare.study.tolerance.inputs import Inputs
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.ring import DrumRing
