@@ -52,7 +52,14 @@ def never_slipping() -> ls.Case:
     )
 
 
+def clocked() -> ls.Case:
+    """A split-path box with both shafts rigid, one of them clocked."""
+    rigid = {f"shafts.wheel{p}-pinion{p}.stiffness": "rigid" for p in "AB"}
+    return families.two_path("1.2 mrad").replace({**rigid, "assumed": []})
+
+
 WAYS = {name: (lambda name=name: shipped(name)) for name in SHIPPED} | {
+    "clocked rigid shaft": clocked,
     "round ring": round_ring,
     "elastic round ring": lambda: round_ring("5e8 N/m"),
     "lost contact": lost_contact,

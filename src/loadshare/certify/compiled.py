@@ -41,10 +41,11 @@ def judge_all(of, here, claim, sheet, residuals, loads, deflections):  # type: i
         gap += _ring_contacts(of, here, claim, s, sheet)
         fault = _pulls(of, here, claim, s, sheet)
         _moves(of, claim, s, sheet)
+        _moments(of, here, claim, s, sheet)
         work = load * deflection
         figures = (
             _force_balance(of, claim, s, sheet) / load,
-            _moment_balance(of, here, claim, s, sheet) / load,
+            _moment_balance(of, sheet) / load,
             _penetration(sheet) / deflection,
             _complementarity(claim, s, sheet) / work,
             _deformation_law(of, here, claim, s, sheet, of.band * load) / deflection,
@@ -307,6 +308,18 @@ def _moves(of, claim, s, sheet):  # type: ignore[no-untyped-def]
 
 
 @inlined
+def _moments(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
+    """Add the load and the torques of elastic shafts to the moments of flanks."""
+    r = _row(here.torque, s)
+    for g in range(len(of.radius)):
+        sheet.moment[g] += here.torque[r, g]
+    for w in range(len(of.shaft)):
+        if of.is_elastic[w]:
+            sheet.moment[of.shaft[w, 0]] -= claim.shaft_torque[s, w]
+            sheet.moment[of.shaft[w, 1]] += claim.shaft_torque[s, w]
+
+
+@inlined
 def _force_balance(of, claim, s, sheet):  # type: ignore[no-untyped-def]
     worst = 0.0
     for g in range(len(of.radius)):
@@ -329,16 +342,11 @@ def _wind_up(of, here, claim, s, w):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _moment_balance(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
-    r = _row(here.torque, s)
+def _moment_balance(of, sheet):  # type: ignore[no-untyped-def]
     total = sheet.group_moment
     total[:] = 0.0
     for g in range(len(of.radius)):
-        total[of.group[g]] += here.torque[r, g] + sheet.moment[g]
-    for w in range(len(of.shaft)):
-        if of.is_elastic[w]:
-            total[of.group[of.shaft[w, 0]]] -= claim.shaft_torque[s, w]
-            total[of.group[of.shaft[w, 1]]] += claim.shaft_torque[s, w]
+        total[of.group[g]] += sheet.moment[g]
     worst = 0.0
     for k in range(len(total)):
         worst = _worse(worst, abs(total[k]) / of.group_radius[k])
@@ -477,11 +485,15 @@ def _energy_gap(of, here, claim, s, sheet, gap):  # type: ignore[no-untyped-def]
                 if stiffness > 0.0:
                     gap += 0.5 * claim.support_force[s, g, a] ** 2 / stiffness
     for w in range(len(of.shaft)):
+        torque = claim.shaft_torque[s, w]
         if of.is_elastic[w]:
-            stiffness, torque = here.torsion[rk, w], claim.shaft_torque[s, w]
-            wind = _wind_up(of, here, claim, s, w)
+            stiffness, wind = here.torsion[rk, w], _wind_up(of, here, claim, s, w)
             gap += 0.5 * stiffness * wind**2 + 0.5 * torque**2 / stiffness
-            gap += torque * here.clocking[_row(here.clocking, s), w]
+        else:
+            torque = 0.0
+            for g in range(len(of.radius)):
+                torque += of.beyond[w, g] * sheet.moment[g]
+        gap += torque * here.clocking[_row(here.clocking, s), w]
     for q in range(len(sheet.pull_law)):
         reaction = claim.radial_reaction[s, q]
         gap += _energy(sheet.pull_law[q], _size(sheet.pull_offset[q]))

@@ -45,6 +45,7 @@ class Mechanics(NamedTuple):
     output: int
     shaft: Numbers  # (w, 2): first and second gear
     is_elastic: Flags  # (w,)
+    beyond: Array  # (w, g): torque of a rigid shaft per moment on the gears beyond it
     drum: Numbers  # (d, 3): gear, neighbours
     across: Array  # (d, 3)
     nominal: Array  # (d, 2, 3)
@@ -74,7 +75,7 @@ class Sheet(NamedTuple):
     pull_law: Array  # (r + n, 5)
     moved: Array  # (g, 2): displacement in the gear's frame
     push: Array  # (g, 3): sum of all forces but the bearing's
-    moment: Array  # (g,): of flanks
+    moment: Array  # (g,): of flanks; in the end of the load and elastic shafts too
     group_moment: Array  # (groups,)
 
 
@@ -119,6 +120,7 @@ def mechanics(judge: Judge) -> Mechanics:
             -1, 2
         ),
         is_elastic=np.array([np.isfinite(w.stiffness) for w in shafts], dtype=np.bool_),
+        beyond=judge.beyond,
         drum=np.array(
             [[order[g] for g in (r.gear, *r.neighbours)] for r in train.drums], np.uintp
         ).reshape(-1, 3),

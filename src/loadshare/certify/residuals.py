@@ -25,36 +25,12 @@ def force_balance(state: State) -> tuple[float, str]:
 def moment_balance(state: State) -> tuple[float, str]:
     """Largest unbalanced moment over base radius [N] on gears that turn as one, and one of them."""
     train = state.train
-    moment = dict.fromkeys(train.gears, 0.0)
-    for gear, torque in state.situation.torque.items():
-        moment[gear] += torque
-    for mesh in train.meshes.values():
-        for drive in mesh.flanks:
-            force = state.answer.flank_force[mesh.flank_name(drive)]
-            along = 1.0 if drive else -1.0
-            moment[mesh.driver] -= along * mesh.radii[0] * force
-            moment[mesh.driven] += along * mesh.radii[1] * force
-    for name, _, torque in state.winds():
-        shaft = train.shafts[name]
-        moment[shaft.first] -= torque
-        moment[shaft.second] += torque
     unbalanced = {}
-    for group in _turning_as_one(state):
+    for group in state.rigid.groups:
         if train.output not in group:
             radius = max(train.gears[g].base_radius for g in group)
-            unbalanced[group[0]] = abs(math.fsum(moment[g] for g in group)) / radius
+            unbalanced[group[0]] = abs(math.fsum(state.moment[g] for g in group)) / radius
     return _worst(unbalanced)
-
-
-def _turning_as_one(state: State) -> list[list[str]]:
-    """Gears joined by rigid shafts."""
-    groups = {g: [g] for g in state.train.gears}
-    for shaft in state.train.shafts.values():
-        first, second = groups[shaft.first], groups[shaft.second]
-        if math.isinf(shaft.stiffness) and first is not second:
-            first += second
-            groups |= dict.fromkeys(second, first)
-    return list({id(g): g for g in groups.values()}.values())
 
 
 def penetration(state: State) -> tuple[float, str]:
@@ -147,7 +123,7 @@ def energy_gap(state: State) -> tuple[float, str]:
         shaft = state.train.shafts[name]
         if not math.isinf(shaft.stiffness):
             primal.append(0.5 * shaft.stiffness * wind**2)
-            dual += [-0.5 * torque**2 / shaft.stiffness, -torque * shaft.clocking]
+        dual += [-0.5 * torque**2 / shaft.stiffness, -torque * shaft.clocking]
     for _, moved, stiffness, force in state.bearings():
         primal.append(0.5 * float(stiffness @ moved**2))
         held = stiffness > 0.0

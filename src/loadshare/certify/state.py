@@ -15,6 +15,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.certify.rigid import RigidShafts, rigid_shafts
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
 from loadshare.train.law import RIGID, Law, PowerLaw
@@ -246,16 +247,40 @@ class State:
     def winds(self) -> Iterator[tuple[str, float, float]]:
         """Every shaft with its wind-up φ_a − φ_b − clocking [rad] and its torque [N·m].
 
-        The torque of a rigid shaft is nobody's claim: it is 0 here.
+        The torque of a rigid shaft is nobody's claim: it is what balances the gears beyond it.
         """
-        phi = self.answer.rotation
+        phi, claimed = self.answer.rotation, self.answer.shaft_torque
         for name, shaft in self.train.shafts.items():
             wind = phi[shaft.first] - phi[shaft.second] - shaft.clocking
             if math.isinf(shaft.stiffness):
-                yield name, wind, 0.0
+                beyond = self.rigid.beyond[name].items()
+                yield name, wind, math.fsum(sign * self.moment[g] for g, sign in beyond)
             else:
-                claimed = self.answer.shaft_torque
                 yield name, wind, claimed.get(name, shaft.stiffness * wind)
+
+    @cached_property
+    def rigid(self) -> RigidShafts:
+        """The rigid shafts, and what lies beyond each."""
+        return rigid_shafts(self.train)
+
+    @cached_property
+    def moment(self) -> dict[str, float]:
+        """Moment [N·m] on every gear of the load, its flanks and elastic shafts."""
+        train, answer = self.train, self.answer
+        moment = {g: self.situation.torque.get(g, 0.0) for g in train.gears}
+        for mesh in train.meshes.values():
+            for drive in mesh.flanks:
+                force = answer.flank_force[mesh.flank_name(drive)]
+                along = 1.0 if drive else -1.0
+                moment[mesh.driver] -= along * mesh.radii[0] * force
+                moment[mesh.driven] += along * mesh.radii[1] * force
+        for name, shaft in train.shafts.items():
+            if not math.isinf(shaft.stiffness):
+                wind = answer.rotation[shaft.first] - answer.rotation[shaft.second]
+                torque = answer.shaft_torque.get(name, shaft.stiffness * (wind - shaft.clocking))
+                moment[shaft.first] -= torque
+                moment[shaft.second] += torque
+        return moment
 
     def bearings(self) -> Iterator[tuple[str, Vector, Vector, Vector]]:
         """Every gear that can be displaced: p [m], stiffness [N/m] and bearing force [N], (2,)."""

@@ -33,12 +33,11 @@ class Pull(NamedTuple):
 
 
 class Wind(NamedTuple):
-    """A shaft. The torque of a rigid one is nobody's claim: it is 0 here."""
+    """A shaft. The torque of a rigid one is what balances the gears beyond it."""
 
     first: int  # number of the gear
-    second: int
     angle: Array  # (S,): φ_first − φ_second − clocking [rad]
-    torque: Array  # (S,): as claimed [N·m]
+    torque: Array  # (S,): as claimed, for an elastic one [N·m]
     stiffness: Array  # (S or 1,) [N·m/rad]
     clocking: Array  # (S or 1,) [rad]
     is_elastic: bool
@@ -75,6 +74,8 @@ class Bench:
     ring_push : ndarray, shape (S, gears, 3)
         Sum of their forces on each gear [N].
     pulls, winds, bearings : list of Pull, Wind, Bearing
+    moment : ndarray, shape (S, gears)
+        Of the load, flanks and elastic shafts on each gear [N·m].
     fault : ndarray of bool, shape (S,)
         Whether a law has no meaning.
     load, deflection : ndarray, shape (S,)
@@ -91,6 +92,7 @@ class Bench:
         self._ring_contacts()
         self.fault = np.zeros(self.count, dtype=bool)
         self.pulls = list(self._pulls())
+        self.moment = self._moments()
         self.winds = list(self._winds())
         self.bearings = list(self._bearings())
 
@@ -202,17 +204,25 @@ class Bench:
             q = len(self.train.rounds) + k
             yield Pull(gear, graph, moved[:, gear], np.zeros(3), reaction[:, q])
 
+    def _moments(self) -> Array:
+        order, claimed = self.of.order, self.answers.shaft_torque
+        moment = self.situations.torque + times(self.force, self.of.moment)
+        for s, shaft in enumerate(self.train.shafts.values()):
+            if not math.isinf(shaft.stiffness):
+                moment[:, order[shaft.first]] -= claimed[:, s]
+                moment[:, order[shaft.second]] += claimed[:, s]
+        return moment
+
     def _winds(self) -> Iterator[Wind]:
         phi, order = self.answers.rotation, self.of.order
         for s, shaft in enumerate(self.train.shafts.values()):
             a, b = order[shaft.first], order[shaft.second]
             clocking = self.situations.clocking[:, s]
             is_elastic = not math.isinf(shaft.stiffness)
-            torque = self.answers.shaft_torque[:, s] if is_elastic else np.zeros(self.count)
+            claimed = self.answers.shaft_torque[:, s]
+            torque = claimed if is_elastic else self.moment @ self.of.beyond[s]
             stiffness = self.situations.torsion[:, s]
-            yield Wind(
-                a, b, phi[:, a] - phi[:, b] - clocking, torque, stiffness, clocking, is_elastic
-            )
+            yield Wind(a, phi[:, a] - phi[:, b] - clocking, torque, stiffness, clocking, is_elastic)
 
     def _bearings(self) -> Iterator[Bearing]:
         moved, force = self.answers.displacement, self.answers.support_force

@@ -13,6 +13,7 @@ from loadshare.certify.many.bench import Bench
 from loadshare.certify.many.residuals import scaled_residuals
 from loadshare.certify.many.verdicts import Verdicts
 from loadshare.certify.mechanics import Mechanics, judged, mechanics
+from loadshare.certify.rigid import rigid_shafts
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.ring import DrumRing, transverse
 from loadshare.train.situations import Situations
@@ -48,6 +49,8 @@ class Judge:
         Base radii [m].
     groups : list of list of int
         Gears that turn as one.
+    beyond : ndarray, shape (shafts, gears)
+        Torque of every rigid shaft per moment on the gears beyond it (see `RigidShafts`).
     tabled : list of (int, int)
         Flanks with a tabulated law, and their meshes.
     """
@@ -80,7 +83,12 @@ class Judge:
             for r in train.drums
         ]
         self.radius = np.array([g.base_radius for g in gears])
-        self.groups = _turning_as_one(train)
+        rigid = rigid_shafts(train)
+        self.groups = [[self.order[g] for g in group] for group in rigid.groups]
+        self.beyond = np.zeros((len(train.shafts), count))
+        for w, name in enumerate(train.shafts):
+            for gear, sign in rigid.beyond.get(name, {}).items():
+                self.beyond[w, self.order[gear]] = sign
         self.tabled = [
             (e, k) for e, (k, m, _) in enumerate(self.flanks) if hasattr(m.laws[0], "forces")
         ]
@@ -135,14 +143,3 @@ def _apart(train: Train, gear: str, neighbour: str) -> Array:
     """Way from a neighbour's nominal centre, across the gear's axis (3,) [m]."""
     here = train.gears[gear]
     return transverse(here.centre - train.gears[neighbour].centre, here.axis)
-
-
-def _turning_as_one(train: Train) -> list[list[int]]:
-    """Numbers of the gears joined by rigid shafts."""
-    order = {g: k for k, g in enumerate(train.gears)}
-    group = list(range(len(order)))
-    for shaft in train.shafts.values():
-        if math.isinf(shaft.stiffness):
-            a, b = group[order[shaft.first]], group[order[shaft.second]]
-            group = [a if g == b else g for g in group]
-    return [[k for k, g in enumerate(group) if g == which] for which in sorted(set(group))]

@@ -50,15 +50,11 @@ def force_balance(bench: Bench) -> Array:
 
 def moment_balance(bench: Bench) -> Array:
     """Largest unbalanced moment over base radius [N] on gears that turn as one."""
-    moment = bench.situations.torque + times(bench.force, bench.of.moment)
-    for wind in bench.winds:
-        moment[:, wind.first] -= wind.torque
-        moment[:, wind.second] += wind.torque
     worst = np.zeros(bench.count)
     held = bench.of.order[bench.train.output]
     for group in bench.of.groups:
         if held not in group:
-            total = moment[:, group].sum(axis=1)
+            total = bench.moment[:, group].sum(axis=1)
             worst = np.fmax(worst, np.abs(total) / bench.of.radius[group].max())
     return worst
 
@@ -177,7 +173,7 @@ def energy_gap(bench: Bench) -> Array:
         if wind.is_elastic:
             stiffness, torque = wind.stiffness, wind.torque
             gap += 0.5 * stiffness * wind.angle**2 + 0.5 * torque**2 / stiffness
-            gap += torque * wind.clocking
+        gap += wind.torque * wind.clocking
     for bearing in bench.bearings:
         stiffness, held = bearing.stiffness, bearing.stiffness > 0.0
         dual = np.where(held, bearing.force**2 / np.where(held, stiffness, 1.0), 0.0)

@@ -1,0 +1,55 @@
+"""Gears that rigid shafts join: which turn as one, and what each shaft between them carries."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from loadshare.train.train import Train
+
+
+@dataclass(frozen=True, slots=True)
+class RigidShafts:
+    """The rigid shafts of a train.
+
+    Attributes
+    ----------
+    groups : tuple of tuple of str
+        Gears that turn as one.
+    beyond : mapping of shaft to mapping of gear to float
+        The gears beyond every rigid shaft, seen from the held output (or any gear of a group
+        without it). Their balance gives its torque from the first gear to the second, the sum of
+        their moments times these signs; clocking then works against it. A shaft that closes a loop
+        of rigid ones carries none of its own.
+    """
+
+    groups: tuple[tuple[str, ...], ...]
+    beyond: dict[str, dict[str, float]]
+
+
+def rigid_shafts(train: Train) -> RigidShafts:
+    """Walk along the rigid shafts of a train, from the held output and from every gear left."""
+    rigid = [s for s in train.shafts.values() if math.isinf(s.stiffness)]
+    groups: dict[str, dict[str, dict[str, float]]] = {}
+    reached: set[str] = set()
+    for seed in (train.output, *train.gears):
+        if seed in reached:
+            continue
+        between: dict[str, dict[str, float]] = {seed: {}}
+        queue = [seed]
+        while queue:
+            here = queue.pop()
+            for shaft in rigid:
+                ends = ((shaft.first, shaft.second, -1.0), (shaft.second, shaft.first, 1.0))
+                for near, far, sign in ends:
+                    if near == here and far not in between:
+                        between[far] = between[here] | {shaft.name: sign}
+                        queue.append(far)
+        groups[seed] = between
+        reached |= between.keys()
+    beyond: dict[str, dict[str, float]] = {shaft.name: {} for shaft in rigid}
+    for between in groups.values():
+        for gear, path in between.items():
+            for name, sign in path.items():
+                beyond[name][gear] = sign
+    return RigidShafts(tuple(tuple(group) for group in groups.values()), beyond)
