@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias
@@ -15,10 +14,14 @@ SolverName: TypeAlias = Literal["auto", "clarabel", "osqp", "cvxpy"]
 MethodName: TypeAlias = Literal["newton", "picard", "power"]
 
 
-def _positive(value: float) -> float:
-    if not 0.0 < value < math.inf:
-        raise typer.BadParameter("must be a positive number")
-    return value
+def _tolerance(value: float) -> float:
+    # Imported late: it brings numpy with it, which --help does not need.
+    from loadshare.certify.tolerance import checked_tolerance
+
+    try:
+        return checked_tolerance(value)
+    except ValueError as error:
+        raise typer.BadParameter(str(error)) from None
 
 
 Solver = Annotated[
@@ -32,7 +35,9 @@ Method = Annotated[
 Tolerance = Annotated[
     float,
     typer.Option(
-        metavar="X", callback=_positive, help="Largest scaled residual of a certified answer."
+        metavar="X",
+        callback=_tolerance,
+        help="Largest scaled residual of a certified answer, up to 1e-3.",
     ),
 ]
 CasePaths = Annotated[

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from loadshare.case import Case, load_case
 from loadshare.certify.certificate import TOLERANCE, certify
+from loadshare.certify.tolerance import checked_tolerance
 from loadshare.errors import CaseError, Refused
 from loadshare.job.ladder import HOT, climb
 from loadshare.job.machine import Machine, engine_named
@@ -100,6 +101,7 @@ def solve_blocks(
     ------
     Block
     """
+    tolerance = checked_tolerance(tolerance)
     if not isinstance(case, Case):
         case = load_case(case)
     groups = samples_of(case, samples)
@@ -174,7 +176,7 @@ def solve_many(
     keep : iterable of str
         Variables to keep: "torque", "share", "pair_share", "displacement", "contact_force".
     tolerance : float
-        Largest scaled residual of a certified answer.
+        Largest scaled residual of a certified answer, up to 1e-3.
     engine : {"auto", "compiled", "vectorised"}
         Numba or NumPy; both give the same answers. "auto" compiles from a few thousand equilibria
         on. The first time it does, in an installation, takes about a minute; what was compiled is
@@ -201,7 +203,7 @@ def solve_many(
     CaseError
         If a key or a value cannot be used; all problems are listed.
     ValueError
-        If a position, a variable or an engine does not exist.
+        If a position, a variable or an engine does not exist, or the tolerance is no tolerance.
 
     Examples
     --------
@@ -211,6 +213,7 @@ def solve_many(
     >>> bool(found.certified.all())
     True
     """
+    tolerance = checked_tolerance(tolerance)
     if not isinstance(case, Case):
         case = load_case(case)
     keep = tuple(keep)

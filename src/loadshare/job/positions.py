@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
+from collections import Counter, OrderedDict
 from collections.abc import Iterable
 from dataclasses import replace
+from numbers import Integral
 from pathlib import Path
 from typing import Protocol
 
 from loadshare._version import __version__
 from loadshare.case import Case, load_case
 from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify.tolerance import checked_tolerance
 from loadshare.errors import Refused
 from loadshare.job.ladder import AUTO, HOT, Answer, climb_all, left_out
 from loadshare.job.machine import Machine
@@ -53,7 +55,7 @@ def solve(
     reduce : bool
         Leave out, and verify, what cannot matter; the answer does not depend on it.
     tolerance : float
-        Largest scaled residual of a certified answer.
+        Largest scaled residual of a certified answer, up to 1e-3.
     positions : iterable of int, optional
         1-based positions to solve; all by default.
     engine : {"vectorised", "compiled"}
@@ -77,7 +79,7 @@ def solve(
     Refused
         If a position has no certified answer. The positions that have one are in its ``partial``.
     ValueError
-        If a solver, method or position does not exist.
+        If a solver, method or position does not exist, or the tolerance is no tolerance.
 
     Examples
     --------
@@ -86,6 +88,7 @@ def solve(
     >>> result.passed
     True
     """
+    tolerance = checked_tolerance(tolerance)
     case, machine = prepared(case, near)
     options, hot = _options(solver, method, reduce)
     settle = engine if hot else None
@@ -139,6 +142,7 @@ def explain(
     CaseError, Refused, ValueError
         As :func:`solve`.
     """
+    tolerance = checked_tolerance(tolerance)
     case, machine = prepared(case)
     options, hot = _options(solver, method, reduce)
     wanted = wanted_positions(machine.train, [position])
@@ -186,13 +190,30 @@ def prepared(case: Case | str | Path, near: Case | None = None) -> tuple[Case, M
 
 
 def wanted_positions(train: Train, positions: Iterable[int] | None) -> list[int]:
-    """Return the positions to solve, checked; all of them by default."""
-    wanted = list(range(1, train.count + 1)) if positions is None else list(positions)
-    wrong = [k for k in wanted if not 1 <= k <= train.count]
+    """Return the positions to solve, checked; all of them by default.
+
+    Raises
+    ------
+    ValueError
+        If none is given, one is given twice, or one is not a position of the train.
+    """
+    there = range(1, train.count + 1)
+    if positions is None:
+        return list(there)
+    allowed = f"this case has positions 1 to {train.count}"
+    if not isinstance(positions, Iterable) or isinstance(positions, str | bytes):
+        told = f"positions {positions!r}: not a list of positions; {allowed}"
+        raise ValueError(told)  # noqa: TRY004 -- one kind of error for all that no position is
+    wanted = list(positions)
+    # A position out of an array is an integer of NumPy; a result and its file hold plain ones.
+    wrong = [k for k in wanted if not isinstance(k, Integral) or k is True or k not in there]
     if wrong or not wanted:
         told = ", ".join(map(str, wrong)) or "none given"
-        raise ValueError(f"positions {told}: this case has positions 1 to {train.count}")
-    return wanted
+        raise ValueError(f"positions {told}: {allowed}")
+    twice = sorted(k for k, times in Counter(wanted).items() if times > 1)
+    if twice:
+        raise ValueError(f"positions {', '.join(map(str, twice))}: given more than once")
+    return [int(k) for k in wanted]
 
 
 def result_of(

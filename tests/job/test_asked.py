@@ -1,0 +1,65 @@
+"""What may be asked for: a tolerance that certifies something, and positions that exist."""
+
+import math
+
+import numpy as np
+import pytest
+from tests.support import shipped
+
+import loadshare as ls
+from loadshare.certify.tolerance import LARGEST, checked_tolerance
+from loadshare.job import explain
+from loadshare.job.many import solve_blocks
+
+NO_TOLERANCE = (-1.0, 0.0, 1e300, math.inf, math.nan, 1.001 * LARGEST, True, "1e-9", None)
+SAMPLES = {"rings.4.float [um]": [4.0]}
+
+
+@pytest.mark.parametrize("tolerance", NO_TOLERANCE, ids=repr)
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda case, t: ls.solve(case, tolerance=t),
+        lambda case, t: explain(case, tolerance=t),
+        lambda case, t: ls.solve_many(case, SAMPLES, tolerance=t),
+        lambda case, t: next(solve_blocks(case, SAMPLES, tolerance=t)),
+    ],
+    ids=["solve", "explain", "solve_many", "solve_blocks"],
+)
+def test_a_tolerance_that_certifies_nothing_is_refused(ask, tolerance):
+    with pytest.raises(ValueError, match=r"allowed: a number above 0 and up to 0\.001"):
+        ask(shipped("fgfbstts/limit_ring"), tolerance)
+
+
+def test_any_other_tolerance_is_taken():
+    assert checked_tolerance(LARGEST) == LARGEST
+    assert checked_tolerance(np.float64(1e-12)) == 1e-12
+    result = ls.solve(shipped("fgfbstts/base"), positions=[1], tolerance=1e-8)
+    assert result.stamp.tolerance == 1e-8
+
+
+@pytest.mark.parametrize(
+    ("positions", "told"),
+    [
+        ([0], "positions 0: this case has positions 1 to 5"),
+        ([1.0], r"positions 1\.0: this"),
+        ([True], "positions True: this"),
+        (["1"], "positions 1: this"),
+        ([None], "positions None: this"),
+        ([], "positions none given: this"),
+        ("12", "positions '12': not a list"),
+        (3, "positions 3: not a list"),
+        ([2, 1, 2], "positions 2: given more than once"),
+    ],
+)
+def test_positions_that_are_none_are_refused(positions, told):
+    with pytest.raises(ValueError, match=f"^{told}"):
+        ls.solve(shipped("fgfbstts/limit_ring"), positions=positions)
+    with pytest.raises(ValueError, match=f"^{told}"):
+        ls.solve_many(shipped("fgfbstts/limit_ring"), SAMPLES, positions=positions)
+
+
+def test_positions_keep_their_order_and_become_plain_numbers():
+    result = ls.solve(shipped("fgfbstts/base"), positions=np.array([3, 1]))
+    assert [p.position for p in result.positions] == [3, 1]
+    assert all(type(p.position) is int for p in result.positions)
