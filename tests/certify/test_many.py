@@ -229,6 +229,30 @@ def test_a_spline_whose_law_drops():
     assert many.passed.tolist() == [False, True]
 
 
+def test_a_gear_beyond_its_neighbour():
+    """Mirrored at a neighbour, a limited gear is as far from it as before; no such place passes,
+    whatever force the ring claims for it.
+    """
+    train = build_train(shipped("fgfbstts/limit_ring"))
+    situations, found = claims(train, [1])
+    places = [(ring, side) for ring in train.drums for side in (0, 1)]
+    rows = np.zeros(len(places), dtype=int)
+    spoilt = taken(found, rows)
+    order = list(train.gears)
+    for row, (ring, side) in enumerate(places):
+        moved = spoilt.displacement[row]
+        gear, neighbour = order.index(ring.gear), order.index(ring.neighbours[side])
+        way = train.arc(ring, side, train.situation(1)).start + moved[gear] - moved[neighbour]
+        moved[gear] -= 2.0 * way
+    agree(train, [1] * len(places), situations.take(rows), spoilt)
+    many = alike(train, situations.take(rows), spoilt)
+    assert np.isinf(many.residuals).all()
+    for row, (ring, side) in enumerate(places):
+        where = certify(train, spoilt.one(row, 1)).failing["penetration"].where
+        assert "beyond the neighbour" in where
+        assert ring.arc_name(ring.neighbours[side]) in where
+
+
 def test_a_squeeze_between_opposed_arcs():
     """Both arcs of one ring push at once, of either ring: what the squeeze leaves open is the
     largest force out of its cone.

@@ -141,6 +141,17 @@ def beyond_the_ring(train: Train, found: Equilibrium) -> Iterator[Wrong]:
             yield Wrong(name, answer, "penetration", None)
 
 
+def beyond_the_neighbour(train: Train, found: Equilibrium) -> Iterator[Wrong]:
+    """The limited gear is mirrored at its neighbour, where the arc's inequality holds."""
+    for ring in train.drums:
+        for side, neighbour in enumerate(ring.neighbours):
+            arc = train.arc(ring, side, train.situation(found.index))
+            relative = found.displacement[ring.gear] - found.displacement[neighbour]
+            far = found.displacement[ring.gear] - 2.0 * (arc.start + relative)
+            answer = spoilt(found, "displacement", {ring.gear: far})
+            yield Wrong(ring.arc_name(neighbour), answer, "penetration", None)
+
+
 def rigid_gear_moved(train: Train, found: Equilibrium) -> Iterator[Wrong]:
     """A rigid bearing gives way, or a floating gear leaves its plane."""
     for name, gear in train.gears.items():
@@ -221,7 +232,8 @@ SLIPS: dict[str, Callable[[Train, Equilibrium], Iterator[Wrong]]] = {
     slip.__name__: slip
     for slip in (
         flipped_flank, scaled_flank, scaled_everything, missing_contact, force_on_open_flank,
-        pulling_ring, missing_ring_force, shifted_float, beyond_the_ring, rigid_gear_moved,
+        pulling_ring, missing_ring_force, shifted_float, beyond_the_ring,
+        beyond_the_neighbour, rigid_gear_moved,
         rotated_gear, swapped_meshes, turned_reaction, wrong_size_of_reaction, pulling_reaction,
         other_position,
     )

@@ -38,8 +38,9 @@ def judge_all(of, here, claim, sheet, residuals, loads, deflections):  # type: i
         load = _load(of, here, claim, s)
         gap = _flanks(of, here, claim, s, sheet)
         deflection = _deflection(here, claim, s, sheet)
-        gap += _ring_contacts(of, here, claim, s, sheet)
-        fault = _pulls(of, here, claim, s, sheet)
+        more, fault = _ring_contacts(of, here, claim, s, sheet)
+        gap += more
+        fault |= _pulls(of, here, claim, s, sheet)
         _moves(of, claim, s, sheet)
         _moments(of, here, claim, s, sheet)
         work = load * deflection
@@ -217,12 +218,15 @@ def _deflection(here, claim, s, sheet):  # type: ignore[no-untyped-def]
 
 @inlined
 def _ring_contacts(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
-    """Overlaps and pushes of stops, then arcs; returns their part of the energy gap [J]."""
+    """Overlaps and pushes of stops, then arcs.
+
+    Returns their part of the energy gap [J], and whether a gear stands beyond its neighbour.
+    """
     moved, forces = claim.displacement, claim.ring_force
     drums = len(of.drum)
     rh, ra = _row(here.stop, s), _row(here.arc_shift, s)
     rc, rw = _row(here.arc_clearance, s), _row(here.wall, s)
-    gap = 0.0
+    gap, fault = 0.0, False
     for d in range(drums):
         g, wall = of.drum[d, 0], here.wall[rw, d]
         across = 0.0
@@ -236,7 +240,7 @@ def _ring_contacts(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
             gap += _wall_energy(wall, force, approach) + force * limit
 
             neighbour = of.drum[d, 1 + side]
-            grown, size, rolled = 0.0, 0.0, 0.0
+            grown, size, rolled, ahead = 0.0, 0.0, 0.0, 0.0
             for k in range(3):
                 nominal = of.nominal[d, side, k]
                 relative = moved[s, g, k] - moved[s, neighbour, k]
@@ -244,6 +248,8 @@ def _ring_contacts(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
                 grown += (2.0 * nominal + apart) * apart
                 size += (nominal + apart) * (nominal + apart)
                 rolled += (nominal + apart) * relative
+                ahead += (nominal + apart) * nominal
+            fault |= not ahead > 0.0
             size = np.sqrt(size)
             force = forces[s, arc]
             margin = grown / (size + of.distance[d, side]) + here.arc_clearance[rc, d, side]
@@ -255,7 +261,7 @@ def _ring_contacts(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
                 way = of.nominal[d, side, k] + here.arc_shift[ra, d, side, k] + relative
                 sheet.push[g, k] += push * way - sign * forces[s, stop] * of.across[d, k]
                 sheet.push[neighbour, k] -= push * way
-    return gap
+    return gap, fault
 
 
 @inlined

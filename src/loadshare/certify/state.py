@@ -21,6 +21,7 @@ from loadshare.train.gear import Vector
 from loadshare.train.law import RIGID, Law, PowerLaw
 from loadshare.train.memory import SlipFriction, SlipStop
 from loadshare.train.radial import RadialLaw, round_ring_law
+from loadshare.train.ring import Arc
 from loadshare.train.train import Situation, Spline, Train
 
 Scalars = TypeVar("Scalars", float, NDArray[np.float64])
@@ -179,6 +180,13 @@ class State:
                     pushing=None,
                 )
 
+    def _arcs(self) -> Iterator[tuple[str, Arc, Vector]]:
+        """Every exclusion arc: its name, itself, and the relative displacement of its gears [m]."""
+        for ring in self.train.drums:
+            for side, neighbour in enumerate(ring.neighbours):
+                arc = self.train.arc(ring, side, self.situation)
+                yield ring.arc_name(neighbour), arc, self.moved(ring.gear) - self.moved(neighbour)
+
     def squeezes(self, band: float) -> dict[str, float]:
         """Force [N] across the two rigid arcs of a ring that a squeeze between them leaves open.
 
@@ -309,14 +317,19 @@ class State:
 
     @cached_property
     def fault(self) -> str:
-        """Why the claim cannot be judged: not a number, or a spline without a law; else empty."""
+        """Why the claim cannot be judged, else empty.
+
+        A figure is not a number, a spline has no law, or a gear stands beyond the neighbour on
+        whose ring its own rolls: there the arc's inequality holds, and no gear can be.
+        """
         if not self.finite:
             return "a figure that is not a number"
         try:
             _ = self.pulls
         except ValueError as error:
             return str(error)
-        return ""
+        beyond = [name for name, arc, relative in self._arcs() if arc.beyond(relative)]
+        return f"a place beyond the neighbour, {', '.join(beyond)}" if beyond else ""
 
     @cached_property
     def force_scale(self) -> float:

@@ -84,6 +84,9 @@ Ring = DrumRing | RoundRing
 class Arc:
     """The exclusion arc between a ring and a neighbour's ring: |d₀ + Δ| ≥ a − c_x.
 
+    It holds on the side on which the limited gear is mounted. Beyond the neighbour, where
+    (d₀ + Δ)·nominal ≤ 0, it is continued by its face at rest, so that such a place is never free.
+
     Attributes
     ----------
     nominal : ndarray, shape (3,)
@@ -110,8 +113,12 @@ class Arc:
 
     def normal(self, relative: Vector) -> Vector:
         """Unit outward push on the limited gear at the relative displacement Δ (3,) [m]."""
-        d = self.start + relative
+        d = self.nominal if self.beyond(relative) else self.start + relative
         return d / math.sqrt(float(d @ d))
+
+    def beyond(self, relative: Vector) -> bool:
+        """Whether Δ (3,) [m] leads past the neighbour, where no gear can be."""
+        return not float(self.nominal @ (self.start + relative)) > 0.0
 
     def margin(self, relative: Vector) -> float:
         """Distance beyond the arc [m], |d₀ + Δ| − a + c_x, free of cancellation for small Δ.
@@ -119,6 +126,8 @@ class Arc:
         At rest and without errors it is the clearance, to the last digit.
         """
         moved = self.shift + relative
+        if self.beyond(relative):
+            return float(self.nominal @ moved) / self.distance + self.clearance
         d = self.nominal + moved
         here = math.sqrt(float(d @ d))
         grown = 2.0 * float(self.nominal @ moved) + float(moved @ moved)

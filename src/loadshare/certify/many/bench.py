@@ -77,7 +77,7 @@ class Bench:
     moment : ndarray, shape (S, gears)
         Of the load, flanks and elastic shafts on each gear [N·m].
     fault : ndarray of bool, shape (S,)
-        Whether a law has no meaning.
+        Whether a law has no meaning, or a gear stands beyond a ring's neighbour (see `State`).
     load, deflection : ndarray, shape (S,)
         Scales [N], [m] (see `State`).
     """
@@ -89,8 +89,8 @@ class Bench:
         self.force = self.answers.flank_force
         self._flanks()
         self._scales()
-        self._ring_contacts()
         self.fault = np.zeros(self.count, dtype=bool)
+        self._ring_contacts()
         self.pulls = list(self._pulls())
         self.moment = self._moments()
         self.winds = list(self._winds())
@@ -163,6 +163,7 @@ class Bench:
                 relative = moved[:, order[ring.gear]] - moved[:, order[neighbour]]
                 apart = situations.arc_shift[:, d, side] + relative
                 here = nominal + apart
+                self.fault |= ~(here @ nominal > 0.0)
                 length = size(here)
                 grown = 2.0 * apart @ nominal + (apart**2).sum(axis=1)
                 distance = math.sqrt(nominal @ nominal)

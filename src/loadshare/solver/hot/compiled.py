@@ -245,9 +245,9 @@ def _piece(axis, values, where):  # type: ignore[no-untyped-def]
 
 @compiled
 def _arc(s, i, a, x, normal):  # type: ignore[no-untyped-def]
-    """Margin of an arc at x; writes its normal."""
+    """Margin of an arc at x, as `train.ring.Arc` has it; writes its normal."""
     shift = _row(s.shift, i)[a]
-    grown, distance, here = 0.0, 0.0, 0.0
+    grown, distance, here, ahead = 0.0, 0.0, 0.0, 0.0
     for c in range(3):
         nominal, moved = s.nominal[a, c], shift[c]
         for d in range(x.shape[0]):
@@ -256,10 +256,15 @@ def _arc(s, i, a, x, normal):  # type: ignore[no-untyped-def]
         here += normal[c] * normal[c]
         distance += nominal * nominal
         grown += (2.0 * nominal + moved) * moved
-    here = np.sqrt(here)
+        ahead += nominal * normal[c]
+    here, distance = np.sqrt(here), np.sqrt(distance)
+    if ahead <= 0.0:
+        for c in range(3):
+            normal[c] = s.nominal[a, c] / distance
+        return ahead / distance - distance + _row(s.clearance, i)[a]
     for c in range(3):
         normal[c] /= here
-    return grown / (here + np.sqrt(distance)) + _row(s.clearance, i)[a]
+    return grown / (here + distance) + _row(s.clearance, i)[a]
 
 
 @compiled

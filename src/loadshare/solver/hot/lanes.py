@@ -173,7 +173,7 @@ def _add(total, weights, table, lanes):  # type: ignore[no-untyped-def]
 
 @bare
 def _arc(s, samples, a, x, lanes, normal, margin, work):  # type: ignore[no-untyped-def]
-    """Margins (lanes,) of an arc at x, and its normals (3, lanes)."""
+    """Margins (lanes,) of an arc at x, and its normals (3, lanes); see `train.ring.Arc`."""
     varying = s.shift.shape[0] > 1
     varying_clearance = s.clearance.shape[0] > 1
     for c in range(3):
@@ -205,6 +205,13 @@ def _arc(s, samples, a, x, lanes, normal, margin, work):  # type: ignore[no-unty
     for c in range(3):
         for m in range(lanes):
             normal[c, m] *= work[m]
+    for m in range(lanes):
+        ahead = s.nominal[a, 0] * normal[0, m]
+        ahead += s.nominal[a, 1] * normal[1, m] + s.nominal[a, 2] * normal[2, m]
+        if ahead <= 0.0:
+            margin[m] = ahead / (work[m] * distance) - distance
+            for c in range(3):
+                normal[c, m] = s.nominal[a, c] / distance
     for m in range(lanes):
         margin[m] += s.clearance[samples[m] if varying_clearance else 0, a]
 

@@ -485,13 +485,18 @@ def piece(axis: Array, values: Array, points: Array, where: Array) -> tuple[Arra
 
 
 def arc_at(data: Data, a: int, rows: Rows, x: Array) -> tuple[Array, Array]:
-    """Normal (k, 3) and margin (k,) of an arc at the coordinates x (k, n)."""
+    """Normal (k, 3) and margin (k,) of an arc at the coordinates x (k, n); see `Arc`."""
     nominal = data.nominal[a]
     moved = pick(data.shift, rows)[:, a] + x @ data.relative[a].T
     d = nominal + moved
     here = np.sqrt((d * d).sum(axis=1))
     grown = 2.0 * moved @ nominal + (moved * moved).sum(axis=1)
-    margin = grown / (here + np.sqrt(nominal @ nominal))
+    distance = np.sqrt(nominal @ nominal)
+    margin = grown / (here + distance)
+    beyond = d @ nominal <= 0.0
+    if beyond.any():
+        d[beyond], here[beyond] = nominal, distance
+        margin[beyond] = moved[beyond] @ nominal / distance
     return d / here[:, None], margin + pick(data.clearance, rows)[:, a]
 
 
