@@ -13,7 +13,10 @@ from hypothesis import strategies as st
 from tests.physics.test_random_trains import PROFILE
 from tests.solver.hot.trains import varied
 
+import loadshare as ls
+from loadshare.case import families
 from loadshare.certify.certificate import TOLERANCE
+from loadshare.job.ladder import HOT
 from loadshare.job.machine import Machine
 from loadshare.scene.data import data_of
 from loadshare.solver.hot import places as at
@@ -257,3 +260,23 @@ def test_torque_that_reaches_the_spline_bounds_its_friction():
         for j, radial in enumerate(elements.scene.radials):
             torque = group.train.transmitted(radial.gear, forces)
             assert abs(carried[row, j]) == pytest.approx(abs(torque), rel=1e-12)
+
+
+def test_a_ring_without_play_relieves_a_spline_that_would_pin_its_gear_too():
+    """Both hold the sun in one place; who carries what is open, the torques are not."""
+    spline = {
+        "bending_stiffness": "2e7 N/m", "clearance": "10 um", "stick_limit": "0 um",
+        "friction_force": "50 N",
+    }  # fmt: skip
+    held = families.star(3).replace({"rings": {"sun": {"radius": "0 um"}}})
+    both = held.replace({"splines": {"sun": spline}})
+    for case in (held, both):
+        found = ls.explain(case, 1)
+        assert found.rung == HOT
+        torques = ls.solve(case).positions[0].torque
+        assert torques == pytest.approx(ls.solve(held).positions[0].torque, rel=1e-12)
+    # Where their middles differ it is the spline's turn to say with what it pushes.
+    aside = both.replace({"rings.sun.offset": ["15 um", "0 um"]})
+    found = ls.explain(aside, 1).equilibrium
+    pushed = 50.0 + 2e7 * 5e-6
+    assert np.linalg.norm(found.radial_reaction["spline sun"]) == pytest.approx(pushed, rel=1e-9)

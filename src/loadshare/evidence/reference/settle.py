@@ -20,6 +20,11 @@ from loadshare.evidence.reference.machine import Machine
 
 ROUNDING = 1e-9
 """Imbalance along a free direction, in loads, that the rounding of a case's figures explains."""
+NOWHERE = 1e10
+"""Displacement, in deflections under the load, that only the rounding of a direction explains."""
+WANING = 1000
+"""Divisor of the force of a flank with a Hertz law that a step would let pull: its compliance is
+infinite without force, so it may only come near, and forty-five digits are far."""
 STEPS = 60
 """Newton steps on one active set."""
 
@@ -75,25 +80,43 @@ def _newton(machine: Machine, guess: Guess, tolerance: Any, nothing: Any) -> Set
     """Newton's method; directions that the train's own rounding leaves free are held still.
 
     A free pinion between two flanks is in balance only as far as their normals are opposite, and
-    doubles are opposite to 1e-12. Each null vector then gets a tie where the guess stands, whose
-    force is that rounding.
+    doubles are opposite to 1e-12. Such a direction shows as a null vector of equations that
+    contradict one another, or as a place out of this world, where round-off would be in balance.
+    It then gets a tie where the guess stands, whose force is that rounding.
     """
-    try:
-        return _iterated(machine, guess, tolerance, nothing)
-    except Contradiction as fault:
-        spans = [s[: machine.size] for s in fault.spans if any(s[: machine.size])]
-        if fault.left > ROUNDING or not spans:
-            raise NoReference(f"an active set contradicts itself: {fault}") from fault
     zero = machine.arithmetic.mpf(0)
-    held = [({i: v for i, v in enumerate(s) if v}, sum(map(mul, s, guess.x), zero)) for s in spans]
-    count = len(machine.ties)
-    tied = replace(guess, ties=[*guess.ties, *(zero for _ in held)])
-    try:
-        settled = _iterated(replace(machine, ties=[*machine.ties, *held]), tied, tolerance, nothing)
-    except Contradiction as fault:
-        raise NoReference(f"an active set contradicts itself: {fault}") from fault
-    imbalance = max(abs(t) for t in settled.at.ties[count:])
-    if imbalance > ROUNDING * max(max(abs(v) for v in s) for s in spans):
+    spans: list[list[Any]] = []
+    fault: Contradiction | None = None
+    for _ in range(machine.size):
+        held = [
+            ({i: v for i, v in enumerate(s) if v}, sum(map(mul, s, guess.x), zero)) for s in spans
+        ]
+        tied = replace(guess, ties=[*guess.ties, *(zero for _ in held)])
+        trial = replace(machine, ties=[*machine.ties, *held])
+        try:
+            settled = _iterated(trial, tied, tolerance, nothing)
+        except Contradiction as found:
+            fault = found
+            more = [s[: machine.size] for s in found.spans if any(s[: machine.size])]
+            more = more if found.left <= ROUNDING else []
+        else:
+            furthest = max(map(abs, settled.at.x), default=zero)
+            if not furthest > NOWHERE:
+                return _released(machine, guess, settled, spans)
+            more = [[v / furthest for v in settled.at.x]]
+        if not more:
+            break
+        spans += more
+    raise NoReference(f"an active set contradicts itself: {fault}") from fault
+
+
+def _released(machine: Machine, guess: Guess, settled: Settled, spans: list[list[Any]]) -> Settled:
+    """Take the ties of free directions away again, if they carry round-off only."""
+    if not spans:
+        return settled
+    count = len(guess.ties)
+    imbalance = max(map(abs, settled.at.ties[count:]))
+    if imbalance > ROUNDING * max(max(map(abs, s)) for s in spans):
         raise NoReference(f"a free direction is out of balance by {float(imbalance):.1e}")
     at = replace(settled.at, ties=settled.at.ties[:count])
     return Settled(at, settled.residual, tuple(tuple(s) for s in spans), imbalance)
@@ -122,7 +145,7 @@ def _step(equations: Equations, nothing: Any) -> tuple[Guess, tuple[tuple[Any, .
     for name, force in at.forces.items():
         new = force + step[equations.force_at[name]]
         curved = machine.contacts[name].law.c
-        forces[name] = force / 10 if curved and new <= 0 else new
+        forces[name] = force / WANING if curved and new <= 0 else new
     bounds = {
         name: bound + step[equations.bound_at[name]] if name in equations.bound_at else bound
         for name, bound in at.bounds.items()

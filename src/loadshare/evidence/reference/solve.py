@@ -91,6 +91,16 @@ def reference(train: Train, index: int = 1, hint: Equilibrium | None = None) -> 
     NoReference
         If no active set was found, or the train is not determined to 50 digits.
     """
+    return report(train, *settled_in_digits(train, index, hint))
+
+
+def settled_in_digits(
+    train: Train, index: int = 1, hint: Equilibrium | None = None
+) -> tuple[Machine, Settled]:
+    """Return the equations of a position in 70 digits, and where they are settled.
+
+    Parameters, errors: as for `reference`.
+    """
     import mpmath
 
     situation = train.situation(index)
@@ -98,7 +108,7 @@ def reference(train: Train, index: int = 1, hint: Equilibrium | None = None) -> 
     exact.dps = DIGITS
     fine = machine(train, situation, exact)
     start = _hinted(fine, train, hint) if hint else _raised(fine, _found(train, situation))
-    return _report(fine, train, settle(fine, start, exact.mpf(TOLERANCE), exact.mpf(10) ** -50))
+    return fine, settle(fine, start, exact.mpf(TOLERANCE), exact.mpf(10) ** -50)
 
 
 def _found(train: Train, situation: Situation) -> Guess:
@@ -190,7 +200,8 @@ def _moving(fine: Machine, spans: Sequence[Sequence[Any]]) -> frozenset[str]:
     )
 
 
-def _report(fine: Machine, train: Train, settled: Settled) -> Reference:
+def report(train: Train, fine: Machine, settled: Settled) -> Reference:
+    """Return an equilibrium in 70 digits as doubles."""
     at, unit, length = settled.at, fine.arithmetic.mpf(fine.force), fine.arithmetic.mpf(fine.length)
     force = {n: float(at.forces.get(n, 0) * unit) for n in fine.contacts}
     torque: dict[str, Any] = {}

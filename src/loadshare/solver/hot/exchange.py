@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from heapq import heappop, heappush
+from itertools import permutations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from loadshare.scene.elements import Basis, Elements
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot.state import State
 from loadshare.solver.hot.vectorised import pick
+from loadshare.train.radial import RadialLaw
 
 Codes = NDArray[np.int8]
 Engine = Callable[
@@ -85,7 +87,23 @@ def first_sets(elements: Elements, data: Data) -> Codes:
         resting = np.where(law.reach > 0.0, at.OPEN, np.where(rigid, at.PINNED, at.STOP))
         held = np.where(law.stick > 0.0, at.STICK, at.PINNED)
         code[:, elements.rows + j] = np.where(free, resting, held)
+    _relieve(elements, data, code)
     return code
+
+
+def _relieve(elements: Elements, data: Data, code: Codes) -> None:
+    """Let a rigid ring without play alone hold a gear that a spline would pin in the same place.
+
+    How the two share the force is open; a spline that carries nothing is one answer.
+    """
+    radials = elements.scene.radials
+    for (i, spline), (j, ring) in permutations(enumerate(radials), 2):
+        if spline.gear != ring.gear or not isinstance(ring.source, RadialLaw):
+            continue
+        centres = [data.gap[:, c : c + 2] for c in map(elements.radial_column, (i, j))]
+        together = (centres[0] == centres[1]).all(axis=1)
+        pinned = (code[:, elements.rows + np.array([i, j])] == at.PINNED).all(axis=1)
+        code[pinned & together, elements.rows + i] = at.OPEN
 
 
 def exchange(

@@ -1,0 +1,42 @@
+"""Random trains against the 50-digit reference.
+
+Run with ``python -m benchmarks.random_trains --count 5000 --seed 1 [--processes 2]``. It may be
+stopped at any time; the same command goes on where it was.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from benchmarks.random_trains.run import run, write_failures
+from benchmarks.random_trains.table import text
+
+
+def main() -> None:
+    """Draw, judge, tell."""
+    parser = argparse.ArgumentParser(description="Random trains against the 50-digit reference.")
+    parser.add_argument("--count", type=int, default=5000, help="trains")
+    parser.add_argument("--first", type=int, default=0, help="number of the first one")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--processes", type=int, default=1)
+    parser.add_argument(
+        "--out", type=Path, default=Path("build/random_trains"), help="folder of what is found"
+    )
+    asked = parser.parse_args()
+    numbers = range(asked.first, asked.first + asked.count)
+
+    def tell(done: int, total: int) -> None:
+        if done % 10 == 0 or done == total:
+            print(f"\r{done} of {total}", end="", file=sys.stderr, flush=True)  # noqa: T201
+
+    rows = run(numbers, asked.seed, asked.out / "verdicts.jsonl", asked.processes, tell)
+    count = write_failures(rows, asked.out / "failing")
+    print(text(rows))  # noqa: T201
+    if count:
+        print(f"\n{count} trains at fault are in {asked.out / 'failing'}.")  # noqa: T201
+
+
+if __name__ == "__main__":
+    main()

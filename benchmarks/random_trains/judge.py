@@ -1,0 +1,199 @@
+"""One random train solved, timed, and compared with the 50-digit reference at every position."""
+
+from __future__ import annotations
+
+import math
+import time
+import traceback
+import warnings
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from benchmarks.random_trains.limit import TooLong, limited
+from benchmarks.random_trains.play import play
+
+import loadshare as ls
+from loadshare.case import Case
+from loadshare.certify import Certificate
+from loadshare.errors import CaseError, Refused
+from loadshare.evidence.reference import NoReference, Reference
+from loadshare.evidence.reference.machine import Machine
+from loadshare.evidence.reference.settle import Settled
+from loadshare.evidence.reference.solve import report, settled_in_digits
+from loadshare.evidence.stress.truth import truth_of
+from loadshare.results.result import Position
+from loadshare.train import Train, build_train
+
+AGREES = 1e-9
+"""Largest error of a certified torque, over the largest torque of its position."""
+PLACED = 1e-6
+"""Largest error of a determined place, over the deflection of a flank under the whole load or the
+largest displacement: what soft supports make of torques that are right."""
+OPEN = 1e-5
+"""Play, in deflections, from which on a place is open: ten times what the linear programmes that
+find it leave open."""
+NO_FORCE = 1e-40
+"""Force, in loads, that is none in 70 digits."""
+SOLVING, REFERRING = 60.0, 60.0
+"""Processor time that a solve and a reference may take [s]."""
+
+
+@dataclass
+class Finding:
+    """What became of one position.
+
+    Attributes
+    ----------
+    position : int
+    outcome : str
+        "agrees", "wrong", "unchecked" (certified, without reference), "refused" (has an answer),
+        "no answer" (refused, and known to have none), "open" (refused, neither is known),
+        "crashed".
+    told : str
+        Refusal, exception, or why there is no reference.
+    rung : str
+    error : float or None
+        Of the worst torque, over the largest.
+    misplaced : dict of coordinate to float
+        Places that are given as determined and are not where they are given, error in deflections;
+        infinite where they are open.
+    bound : list of (float, float)
+        Claimed bound and true error of every torque [N·m], where the certificate has bounds.
+    slack : float or None
+        Distance of the reference from another active set.
+    reference : str
+        "found", or why not.
+    """
+
+    position: int
+    outcome: str = ""
+    told: str = ""
+    rung: str = ""
+    error: float | None = None
+    misplaced: dict[str, float] = field(default_factory=dict)
+    bound: list[tuple[float, float]] = field(default_factory=list)
+    slack: float | None = None
+    reference: str = ""
+
+
+def judged(case: Case) -> dict[str, Any]:
+    """Solve a train and compare it; plain data, with the processor time of the solve [s]."""
+    findings, seconds, train = [], math.nan, None
+    solved: dict[int, Position] = {}
+    told, crashed = "", ""
+    start = time.process_time()
+    try:
+        with limited(SOLVING), warnings.catch_warnings():
+            warnings.simplefilter("error")
+            solved = _by_index(ls.solve(case))
+    except Refused as refusal:
+        told = str(refusal)
+        solved = _by_index(refusal.partial) if refusal.partial is not None else {}
+    except CaseError as refusal:
+        told = crashed = f"invalid: {refusal}"
+    except TooLong:
+        told = f"took more than {SOLVING:g} s"
+    except Exception:  # noqa: BLE001 -- whatever escapes is a crash, and what is looked for
+        crashed = traceback.format_exc(limit=-4)
+    seconds = time.process_time() - start
+    train = None if crashed.startswith("invalid") else build_train(case)
+    for index in range(1, case.operating.positions + 1):
+        finding = Finding(index)
+        if crashed:
+            finding.outcome, finding.told = "crashed", crashed
+        elif train is not None:
+            _compare(case, train, solved.get(index), _told_of(told, index), finding)
+        findings.append(asdict(finding))
+    return {"name": case.name, "seconds": seconds, "positions": findings}
+
+
+def _by_index(result: ls.Result) -> dict[int, Position]:
+    return {p.position: p for p in result.positions}
+
+
+def _told_of(told: str, index: int) -> str:
+    lines = [t for t in told.splitlines() if t.startswith(f"position {index}:")]
+    return "\n".join(lines) or told
+
+
+def _compare(case: Case, train: Train, found: Position | None, told: str, finding: Finding) -> None:
+    """Judge one position."""
+    machine, settled = _settled(case, train, found, finding)
+    if found is None:
+        finding.told = told
+        if machine is None or settled is None:
+            finding.outcome = "open" if solvable(train, finding.position) else "no answer"
+        else:
+            finding.outcome = "refused"
+        return
+    finding.rung = found.effort.rung
+    if machine is None or settled is None:
+        finding.outcome = "unchecked"
+        return
+    exact = report(train, machine, settled)
+    largest = max(map(abs, exact.torque.values()), default=0.0)
+    errors = {n: abs(found.torque[n] - t) for n, t in exact.torque.items()}
+    finding.error = max(errors.values()) / largest if largest else max(errors.values())
+    finding.outcome = "agrees" if finding.error <= AGREES else "wrong"
+    finding.slack = exact.slack
+    finding.misplaced = misplaced(train, found, exact, machine, settled)
+    claimed = torque_bounds(found.certificate)
+    finding.bound = [(claimed[n], error) for n, error in errors.items() if n in claimed]
+
+
+def _settled(
+    case: Case, train: Train, found: Position | None, finding: Finding
+) -> tuple[Machine, Settled] | tuple[None, None]:
+    """The reference: from what was found, which saves time, or from nothing."""
+    hints = [None] if found is None else [ls.explain(case, finding.position).equilibrium, None]
+    for hint in hints:
+        try:
+            with limited(REFERRING):
+                machine, settled = settled_in_digits(train, finding.position, hint)
+        except (NoReference, ArithmeticError) as failure:
+            finding.reference = str(failure)
+        except TooLong:
+            finding.reference = f"took more than {REFERRING:g} s"
+        else:
+            finding.reference = "found"
+            return machine, settled
+    return None, None
+
+
+def solvable(train: Train, index: int) -> bool:
+    """Tell whether forces balance the load and the limits leave a place, or it is not known."""
+    try:
+        return truth_of(train, index).solvable
+    except (ValueError, RuntimeError):
+        return True
+
+
+def misplaced(
+    train: Train, found: Position, exact: Reference, machine: Machine, settled: Settled
+) -> dict[str, float]:
+    """Places given as determined that are open, or elsewhere; error in deflections."""
+    named = set(found.undetermined)
+    free = play(machine, settled.at, NO_FORCE)
+    # What hangs on forces of round-off may be called either.
+    loose = play(machine, settled.at, 1e-9)
+    wrong = {
+        name: math.inf
+        for name, span in free.items()
+        if span > OPEN and name not in named and not name.endswith("rotation")
+    }
+    moved = max((abs(float(v)) for d in exact.displacement.values() for v in d), default=0.0)
+    scale = max(moved, machine.length)
+    for gear, place in exact.displacement.items():
+        for axis, k in ("x", 0), ("y", 1):
+            name = f"gear {gear} {axis}"
+            apart = abs(found.displacement[gear][k] - float(place[k])) / scale
+            if apart > PLACED and name not in named and loose.get(name, 0.0) <= OPEN:
+                wrong[name] = apart
+    return wrong
+
+
+def torque_bounds(certificate: Certificate) -> Mapping[str, float]:
+    """Claimed bounds on the error of every mesh's torque [N·m]; none where there are none yet."""
+    bound = getattr(certificate, "bound", None)
+    return getattr(bound, "torque", None) or {}

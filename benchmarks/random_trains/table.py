@@ -1,0 +1,96 @@
+"""What a run of random trains came to, as Markdown."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections import Counter
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+MEANING = {
+    "agrees": "torques as the reference has them",
+    "wrong": "certified torque off by more than 1e-9 of the largest",
+    "unchecked": "certified, no reference found",
+    "refused": "refused, has an answer",
+    "open": "refused, an answer should exist, no reference found",
+    "no answer": "refused, and known to have none",
+    "crashed": "exception",
+}
+
+
+def text(rows: list[dict[str, Any]]) -> str:
+    """Tables: outcomes, reasons, times, rungs, bounds."""
+    positions = [p for row in rows for p in row["positions"]]
+    outcomes = Counter(p["outcome"] for p in positions)
+    misplaced = [p for p in positions if p["misplaced"]]
+    solvable = sum(outcomes[o] for o in MEANING if o != "no answer")
+    refused = outcomes["refused"] + outcomes["open"]
+    lines = [f"{len(rows)} trains, {len(positions)} positions", ""]
+    counts = [(o, str(outcomes[o]), m) for o, m in MEANING.items()]
+    opened = sum(math.inf in p["misplaced"].values() for p in misplaced)
+    counts.append(("places", str(opened), "with a place that is open but given as determined"))
+    counts.append(
+        ("places", str(len(misplaced) - opened), "with a determined place that is elsewhere")
+    )
+    lines += _table(("outcome", "positions", "meaning"), counts)
+    part = refused / solvable if solvable else 0.0
+    lines += [f"Refused of what has an answer: {100.0 * part:.2f} %.", ""]
+    for outcome in ("refused", "open", "unchecked", "no answer"):
+        lines += _reasons(outcome, [p for p in positions if p["outcome"] == outcome])
+    lines += _times(rows)
+    rungs = Counter(p["rung"] for p in positions if p["rung"])
+    lines += _table(("rung", "positions"), [(r, str(n)) for r, n in rungs.most_common()])
+    lines += _bounds([b for p in positions for b in p["bound"]])
+    errors = [p["error"] for p in positions if p["error"] is not None]
+    if errors:
+        figures = f"median {np.median(errors):.1e}, worst {max(errors):.1e}"
+        lines.append(f"Torque error over the largest torque: {figures}.")
+    return "\n".join(lines)
+
+
+def _table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> list[str]:
+    cells = [list(head), *map(list, rows)]
+    cells.insert(1, ["---"] * len(cells[0]))
+    return [*(f"| {' | '.join(line)} |" for line in cells), ""]
+
+
+def _reasons(outcome: str, positions: list[dict[str, Any]]) -> list[str]:
+    """Messages without their figures and names, the commonest first."""
+    if not positions:
+        return []
+    key = "reference" if outcome == "unchecked" else "told"
+    kinds = Counter(_kind(p[key]) for p in positions)
+    head = (f"{outcome}: reason", "positions")
+    return _table(head, [(k, str(n)) for k, n in kinds.most_common(12)])
+
+
+def _kind(told: str) -> str:
+    told = told.split(";")[0].removeprefix("position ").split(" (")[0]
+    told = re.sub(r"[-+]?\d+\.?\d*(e[-+]?\d+)?", "…", told)
+    return re.sub(r"gear \w+", "gear …", told)[:110].replace("|", "/")
+
+
+def _times(rows: list[dict[str, Any]]) -> list[str]:
+    seconds = np.array([row["seconds"] for row in rows])
+    each = np.array([row["seconds"] / len(row["positions"]) for row in rows])
+    told = []
+    for name, times in (("train, new to the process", seconds), ("position", each)):
+        figures = [*np.percentile(times, [50.0, 99.0]), times.max()]
+        told.append((name, *(f"{1e3 * f:.1f}" for f in figures)))
+    return _table(("processor time [ms] per", "median", "99 %", "worst"), told)
+
+
+def _bounds(pairs: list[list[float]]) -> list[str]:
+    """How the claimed bounds stand against true errors."""
+    if not pairs:
+        return []
+    claimed, true = np.array(pairs).T
+    held = int((claimed >= true).sum())
+    ratio = claimed[true > 0.0] / true[true > 0.0]
+    told = [("torques", str(len(claimed))), ("bound holds", str(held))]
+    if len(ratio):
+        told.append(("bound over true error, median", f"{np.median(ratio):.1f}"))
+    return _table(("bound", ""), told)

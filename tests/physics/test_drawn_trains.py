@@ -1,0 +1,97 @@
+"""Trains of the benchmark's own drawing, every element and size, against the 50-digit reference.
+
+Source: formulation, sections 1 to 7. The drawing is `benchmarks/random_trains`; the measurement
+runs thousands, this test the first of another seed.
+"""
+
+import dataclasses
+
+import pytest
+from benchmarks.random_trains.draw import LAYOUTS, draw
+from benchmarks.random_trains.judge import AGREES, judged
+from benchmarks.random_trains.run import failures, known, run
+from benchmarks.random_trains.table import text
+
+import loadshare as ls
+
+SEED = 7
+
+
+def faults(numbers: range) -> list[str]:
+    found = ({"seed": SEED, "number": k, **judged(draw(SEED, k))} for k in numbers)
+    return [f"{row['name']}: {line}" for row in found for line in failures(row)]
+
+
+def test_a_drawing_depends_on_its_numbers_alone():
+    one, again, other = draw(SEED, 3), draw(SEED, 3), draw(SEED, 4)
+    assert one.to_toml() == again.to_toml() != other.to_toml()
+
+
+def test_every_structure_and_element_is_drawn():
+    cases = [draw(SEED, k) for k in range(150)]
+    assert {c.name.rsplit(" ", 1)[0] for c in cases} == set(LAYOUTS)
+    laws = {
+        key
+        for c in cases
+        for m in c.meshes.values()
+        for key in m.given("law", "table", "stiffness")
+    }
+    assert laws == {"law", "table", "stiffness"}
+    rings = [r for c in cases for r in c.rings.values()]
+    assert (
+        {bool(r.neighbours) for r in rings}
+        == {r.stiffness == "rigid" for r in rings}
+        == {True, False}
+    )
+    assert any(s.fixed_bound == 0.0 for c in cases for s in c.splines.values())
+    assert any(s.fixed_bound is None for c in cases for s in c.splines.values())
+    assert any(c.operating.external for c in cases)
+    assert any(g.type == "face" for c in cases for g in c.gears.values())
+
+
+def test_drawn_trains_are_solved_as_the_reference_has_them():
+    assert not faults(range(25))
+
+
+@pytest.mark.slow
+def test_many_drawn_trains_are_solved_as_the_reference_has_them():
+    assert not faults(range(25, 325))
+
+
+def test_a_torque_that_is_wrong_is_found(monkeypatch):
+    solve = ls.solve
+
+    def lying(case):
+        result = solve(case)
+        first = result.positions[0]
+        mesh, torque = max(first.torque.items(), key=lambda item: abs(item[1]))
+        torques = {**first.torque, mesh: torque * (1.0 + 3.0 * AGREES)}
+        false = dataclasses.replace(first, torque=torques)
+        return dataclasses.replace(result, positions=(false, *result.positions[1:]))
+
+    monkeypatch.setattr(ls, "solve", lying)
+    assert judged(draw(SEED, 0))["positions"][0]["outcome"] == "wrong"
+
+
+def test_an_exception_is_a_crash(monkeypatch):
+    def broken(case):
+        raise KeyError("gear")
+
+    monkeypatch.setattr(ls, "solve", broken)
+    finding = judged(draw(SEED, 0))["positions"][0]
+    assert finding["outcome"] == "crashed"
+    assert "KeyError" in finding["told"]
+
+
+def test_a_run_goes_on_where_it_was_stopped(tmp_path):
+    path = tmp_path / "verdicts.jsonl"
+    counts: list[int] = []
+    first = run(range(2), SEED, path, 1, lambda done, total: counts.append(total))
+    with path.open("a") as file:
+        file.write('{"seed": 7, "numb')  # cut off in the middle of a line
+    assert sorted(known(path, SEED)) == [0, 1]
+    again = run(range(3), SEED, path, 1, lambda done, total: counts.append(total))
+    assert counts == [2, 2, 1]
+    assert again[:2] == first
+    assert sorted(known(path, SEED)) == [0, 1, 2]
+    assert "3 trains" in text(again)
