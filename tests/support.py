@@ -85,8 +85,7 @@ def driver_torques(case: ls.Case, index: int = 1, **options: object) -> dict[str
     train = build_train(case)
     found, _ = answer(train, index, **options)
     return {
-        name: mesh.radii[0]
-        * sum((1 if d else -1) * found.flank_force[mesh.flank_name(d)] for d in mesh.flanks)
+        name: sum(mesh.lever(d) * found.flank_force[mesh.flank_name(d)] for d in mesh.flanks)
         for name, mesh in train.meshes.items()
     }
 

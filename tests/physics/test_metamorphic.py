@@ -161,6 +161,92 @@ def test_the_frame_does_not_matter(name, frame):
         assert apart < SAME * verdict.load, element
 
 
+# --- Flanks ---
+
+
+def reversed_load(case: ls.Case) -> dict[str, Any]:
+    """Plain data of the case under its load turned round, in the mirror sense of running.
+
+    The torque is the same in space, and the same flanks touch; they have other names.
+    """
+    data, running = bare(case), case.operating.running
+    data["operating"] = {k: v for k, v in data["operating"].items() if k not in ("power", "speed")}
+    data["operating"]["torque"] = [f"{-t!r} N*m" for t in case.operating.input_torque]
+    senses = {"counter-clockwise": "clockwise", "clockwise": "counter-clockwise"}
+    data["operating"]["running"] = senses[running]
+    return data
+
+
+@pytest.mark.parametrize("name", ["both errors", "drum ring", "spline stop", "lost contact"])
+def test_a_load_turned_round_presses_the_other_flanks(name):
+    """Torque and running sense both reversed push on the same teeth: every force is the same."""
+    case = CASES[name]()
+    one, _ = certified(case)
+    other, _ = certified(ls.Case(reversed_load(case)))
+    assert furthest(one.flank_force, other.flank_force) < SAME
+    here, there = driver_torques(case), driver_torques(ls.Case(reversed_load(case)))
+    assert furthest(here, {m: -t for m, t in there.items()}) < SAME
+    assert sum(abs(t) for t in here.values()) > 0.0
+
+
+def test_with_backlash_a_load_turned_round_swaps_gap_and_backlash():
+    """The flank that touches under −T in the other sense has the backlash for its gap."""
+    case = with_backlash(shipped("fgfbstts/both_errors"), "0.2 mm")
+    for number, mesh in enumerate(case.meshes):
+        case = case.replace({f'meshes."{mesh}".gap': f"{5 * number} urad"})
+    radii = {n: g.acting_radius for n, g in case.gears.items()}
+    data = reversed_load(case)
+    for mesh, given in case.meshes.items():
+        radius = radii[given.driver]
+        gap, play = given.gap.si * radius, build_train(case).meshes[mesh].backlash
+        del data["meshes"][mesh]["backlash"]
+        data["meshes"][mesh]["normal_backlash"] = f"{gap!r} m"
+        data["meshes"][mesh]["gap"] = f"{play / radius!r} rad"
+    here, there = driver_torques(case), driver_torques(ls.Case(data))
+    assert furthest(here, {m: -t for m, t in there.items()}) < SAME
+
+
+@pytest.mark.parametrize("backlash", [None, "0.1 mm"])
+@pytest.mark.parametrize("name", ["fgfbstts/both_errors", "fgfbstts/full_float"])
+def test_a_train_is_driven_from_its_other_end(name, backlash):
+    """Gear 10 drives what gear 1 drove: as with every mesh named the other way round."""
+    case = shipped(name)
+    torque = build_train(case).input_torque[0] / build_train(case).gears["10"].ratio
+    case = loaded(case, f"{torque!r} N*m")
+    if backlash:
+        case = with_backlash(case, backlash)
+    case = case.replace({"operating.input": "10", "operating.output": "1"})
+    # A mesh b-a has its law at b, and its drive flank is what the mesh a-b calls its coast flank.
+    radii = {n: g.acting_radius for n, g in case.gears.items()}
+    data = bare(case)
+    names = {m: f"{g.driven}-{g.driver}" for m, g in case.meshes.items()}
+    data = renamed(data, names)
+    for mesh, given in case.meshes.items():
+        turned = data["meshes"][names[mesh]]
+        ratio = radii[given.driven] / radii[given.driver]
+        turned["stiffness"] = f"{given.stiffness.si * ratio**2!r} N*m/rad"
+        if backlash:
+            play = build_train(case).meshes[mesh].backlash
+            del turned["backlash"]
+            turned["normal_backlash"] = "0 m"
+            turned["gap"] = f"{play / radii[given.driven]!r} rad"
+    here, there = driver_torques(case), driver_torques(ls.Case(data))
+    at_driven = {
+        m: -there[names[m]] * radii[g.driver] / radii[g.driven] for m, g in case.meshes.items()
+    }
+    assert all(t < 0.0 for t in here.values())
+    assert furthest(here, at_driven) < SAME
+
+
+def test_loads_of_both_signs_are_solved_side_by_side():
+    """Meshes without a backlash press one flank, then the other, from sample to sample."""
+    case = loaded(shipped("fgfbstts/base"), "100 N*m")
+    load = [-300.0, 0.0, 500.0]
+    found = ls.solve_many(case, {"operating.torque [N*m]": load}, positions=[1])
+    torque = found["torque"].sel(mesh="1-2").values.ravel()
+    assert torque == pytest.approx([t / 2 for t in load])
+
+
 # --- Units ---
 
 OTHER_UNITS = {

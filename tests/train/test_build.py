@@ -162,6 +162,52 @@ def test_a_mesh_cycle_turns_the_input_by_one_pitch():
     assert turned == pytest.approx(2 * math.pi / 25 * 2 / 5)
 
 
+@pytest.mark.parametrize("gear", ["1", "2", "3"])
+def test_the_teeth_of_any_gear_of_the_first_stage_tell_the_cycle_of_the_input(gear):
+    """One tooth of the input: 25 times that gear's radius over the input's need not be whole."""
+    case = shipped("fgfbstts/base")
+    radii = {n: g.acting_radius for n, g in case.gears.items()}
+    teeth = {"1": 25, "2": 139, "3": 139}[gear]
+    train = build_train(case.replace({f"gears.{gear}.teeth": teeth}))
+    assert train.cycle == "1"
+    pitch = 2 * math.pi / teeth * radii[gear] / radii["1"]
+    turned = {n: 0.4 * pitch * train.gears[n].ratio for n in radii}
+    assert train.situation(3).rotation == pytest.approx(turned, rel=1e-14)
+
+
+def test_teeth_of_a_later_stage_alone_make_its_tooth_the_cycle():
+    """Nothing tells the teeth of stage I: gear 4 is the first on the way whose teeth are known."""
+    case = shipped("fgfbstts/base")
+    train = build_train(case.replace({"gears.10.teeth": 227}))
+    assert train.cycle == "4"
+    assert train.gears["1"].teeth is None
+    assert train.gears["6"].teeth == pytest.approx(227 * 114.75 / 382.9862)
+    assert train.situation(3).rotation["10"] == pytest.approx(2 * math.pi / 227 * 0.4)
+
+
+@pytest.mark.parametrize("gear", ["1", "2", "4", "6", "10"])
+def test_eccentricities_turn_whichever_gear_has_the_teeth(gear):
+    eccentric = {"errors": {"6": {"eccentricity": {"amount": "50 um"}}}}
+    case = shipped("fgfbstts/base").replace(eccentric | {f"gears.{gear}.teeth": 30})
+    train = build_train(case)
+    angle = [math.atan2(*train.situation(k).offset["6"][1::-1]) for k in range(1, 6)]
+    steps = np.diff(angle) / train.gears["6"].sense
+    assert steps == pytest.approx(np.full(4, train.situation(2).rotation["6"]))
+    assert steps[0] > 1e-3
+
+
+def test_a_neglected_rotation_leaves_eccentricities_where_they_are():
+    case = shipped("fgfbstts/both_errors").replace({"gears.1.teeth": 25})
+    train = build_train(case)
+    assert train.cycle is None
+    for gear in train.gears:
+        np.testing.assert_array_equal(
+            train.situation(4).offset[gear], train.situation(1).offset[gear]
+        )
+    turning = build_train(case.replace({"operating.rotation": "teeth"}))
+    assert turning.situation(4).offset["1"] != pytest.approx(turning.situation(1).offset["1"])
+
+
 def test_a_march_turns_its_gear_through_whole_revolutions():
     """Gear 8 in 24 steps of 15°; its eccentricity turns with it in its running sense, clockwise."""
     train = build_train(shipped("fgfbstts/eccentricity"))
@@ -196,5 +242,6 @@ def test_installation_errors_and_eccentricities_are_offsets():
         "installation": ["3 um", "4 um"],
         "eccentricity": {"amount": "2 um", "phase": "90 deg"},
     }
-    train = build_train(shipped("fgfbstts/base").replace({"errors": {"6": errors}}))
+    case = shipped("fgfbstts/base").replace({"errors": {"6": errors}, "gears.1.teeth": 25})
+    train = build_train(case)
     assert train.situation(1).offset["6"] == pytest.approx([3e-6, 6e-6, 0.0])

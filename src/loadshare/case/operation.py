@@ -8,10 +8,9 @@ from typing import Annotated, Literal
 from pydantic import Field, Strict
 
 from loadshare.case.element import Element, PerPosition, Rule, values
-from loadshare.case.quantity import ANGULAR_SPEED, POWER, TORQUE, Quantity, Torque
+from loadshare.case.quantity import ANGULAR_SPEED, POWER, Quantity, Torque
 
-InputTorque = Annotated[Quantity, TORQUE.bounded(at_least=0)]
-InputPower = Annotated[Quantity, POWER.bounded(at_least=0)]
+InputPower = Annotated[Quantity, POWER]
 Count = Annotated[int, Strict(), Field(ge=1)]
 
 
@@ -27,8 +26,8 @@ class Operating(Element):
     running: Literal["counter-clockwise", "clockwise"] = "counter-clockwise"
     """Sense of rotation of the input gear, seen against its axis."""
 
-    torque: PerPosition[InputTorque] | None = None
-    """Input torque [torque], one value or one per position."""
+    torque: PerPosition[Torque] | None = None
+    """Input torque [torque], one value or one per position; negative where the input brakes."""
 
     power: PerPosition[InputPower] | None = None
     """Input power [power], one value or one per position; goes with `speed`."""
@@ -38,6 +37,14 @@ class Operating(Element):
 
     positions: Count = 1
     """Number of meshing positions in a mesh cycle [-]."""
+
+    rotation: Literal["teeth", "neglected"] = "teeth"
+    """How far gears turn over a mesh cycle: by their `teeth`, or not at all.
+
+    One cycle is one tooth of the input gear; where nothing tells its teeth, one tooth of the first
+    gear on the way from it whose teeth are told. Neglected, eccentricities keep the direction that
+    they have at the first position. A march turns the gears in any case.
+    """
 
     external: dict[str, Torque] = Field(default_factory=dict)
     """Further torques on gears [torque], positive in the gear's sense of rotation."""

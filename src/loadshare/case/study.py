@@ -27,6 +27,7 @@ KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 _OWN = (
     *("over", "keys", "start", "stop", "gear", "revolutions", "steps", "unknowns"),
     *("inputs", "groups", "samples", "sampling", "limit", "indices", "quantiles"),
+    *("starts", "seed"),
 )
 Level = Annotated[float, Strict(), Field(gt=0, lt=1)]
 
@@ -98,7 +99,7 @@ class Study(Element):
             if getattr(self, key) is None:
                 yield Rule("is missing", (key,), hint=f"A {self.kind} needs it.")
         known = (*needed, *possible)
-        for key in self.given(*_OWN):
-            if key not in known:
+        for key in _OWN:
+            if key in self.model_fields_set and key not in known:
                 allowed = ", ".join((*known, "positions"))
                 yield Rule(f"says nothing to a {self.kind}", (key,), allowed)

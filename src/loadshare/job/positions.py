@@ -250,9 +250,9 @@ def _position(train: Train, answer: Answer) -> Position:
     found = answer.equilibrium
     drive, coast = {}, {}
     for name, mesh in train.meshes.items():
-        forces = [found.flank_force[mesh.flank_name(d)] for d in mesh.flanks]
-        coast[name] = mesh.radii[0] * forces[1] if len(forces) > 1 else 0.0
-        drive[name] = mesh.radii[0] * forces[0] - coast[name]
+        parts = [mesh.lever(d) * found.flank_force[mesh.flank_name(d)] for d in mesh.flanks]
+        coast[name] = sum(max(-part, 0.0) for part in parts)
+        drive[name] = sum(parts)
     moved = {n: g.frame @ found.displacement[n] for n, g in train.gears.items()}
     return Position(
         position=found.index,

@@ -27,7 +27,7 @@ def mesh_torques(answers: Equilibria) -> tuple[Array, tuple[str, ...]]:
     flank = 0
     for m, mesh in enumerate(meshes.values()):
         for drive in mesh.flanks:
-            lever[flank, m] = mesh.radii[0] if drive else -mesh.radii[0]
+            lever[flank, m] = mesh.lever(drive)
             flank += 1
     return answers.flank_force @ lever, tuple(meshes)
 

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from loadshare import case as spec
 from loadshare.case.place import axis_of, centres_of
+from loadshare.case.power_flow import against_the_names
+from loadshare.case.teeth import tooth_counts
 from loadshare.errors import CaseError, Problem
 from loadshare.train.gear import Gear, Vector, transverse_frame
 from loadshare.train.kinematics import Kinematics, settle
 from loadshare.train.law import Law, PowerLaw, TableLaw
-from loadshare.train.mesh import Contact, Mesh
+from loadshare.train.mesh import Contact, Mesh, contact_of
 from loadshare.train.offset import Offset
 from loadshare.train.ring import DrumRing, Ring, RoundRing, transverse
 from loadshare.train.train import Shaft, Spline, Stage, Train
@@ -44,8 +47,8 @@ def build_train(case: spec.Case) -> Train:
     problems = [case.problem(c.key, c.message) for c in kinematics.conflicts]
     if problems:
         raise CaseError(problems)
-    gears = kinematics.gears
-    meshes = {n: _mesh(n, m, gears, kinematics.contacts[n]) for n, m in case.meshes.items()}
+    gears = _with_teeth(kinematics.gears, case)
+    meshes = _meshes(case, gears, kinematics.contacts)
     rings: dict[str, Ring] = {}
     for name, ring in case.rings.items():
         try:
@@ -72,6 +75,7 @@ def build_train(case: spec.Case) -> Train:
         input_torque=operating.input_torque,
         external={n: t.si for n, t in operating.external.items()},
         positions=operating.positions,
+        rotating=operating.rotation == "teeth",
         march=(case.march.gear, case.march.revolutions, case.march.steps) if case.march else None,
     )
 
@@ -86,6 +90,16 @@ def _kinematics(case: spec.Case) -> Kinematics:
         {n: s.ends for n, s in case.shafts.items()},
         case.operating.input,
     )
+
+
+def _with_teeth(gears: Mapping[str, Gear], case: spec.Case) -> dict[str, Gear]:
+    """Gears with the tooth counts that follow from those given."""
+    counts, _ = tooth_counts(
+        {name: gear.teeth for name, gear in case.gears.items()},
+        {name: gear.base_radius for name, gear in gears.items()},
+        [(mesh.driver, mesh.driven) for mesh in case.meshes.values()],
+    )
+    return {name: replace(gear, teeth=counts.get(name)) for name, gear in gears.items()}
 
 
 def _gear(
@@ -133,8 +147,26 @@ def _each(
     return value if isinstance(value, tuple) else (value,)
 
 
-def _mesh(name: str, mesh: spec.Mesh, gears: Mapping[str, Gear], contact: Contact) -> Mesh:
-    driver, driven = gears[mesh.driver], gears[mesh.driven]
+def _meshes(
+    case: spec.Case, gears: Mapping[str, Gear], contacts: Mapping[str, Contact]
+) -> dict[str, Mesh]:
+    """Meshes with the flanks that the torque presses, whichever way it runs through them."""
+    against = all(against_the_names(case.operating, case.meshes, case.shafts) or (False,))
+    found = {}
+    for name, mesh in case.meshes.items():
+        if against and not mesh.given("backlash", "normal_backlash"):
+            other = contact_of(gears[mesh.driven], gears[mesh.driver])
+            found[name] = _mesh(name, mesh, (gears[mesh.driven], gears[mesh.driver]), other, True)
+        else:
+            pair = gears[mesh.driver], gears[mesh.driven]
+            found[name] = _mesh(name, mesh, pair, contacts[name], False)
+    return found
+
+
+def _mesh(
+    name: str, mesh: spec.Mesh, pair: tuple[Gear, Gear], contact: Contact, turned: bool
+) -> Mesh:
+    driver, driven = pair
     angle = mesh.pressure_angle.si
     if mesh.normal_backlash is not None:
         backlash = mesh.normal_backlash.si
@@ -142,18 +174,19 @@ def _mesh(name: str, mesh: spec.Mesh, gears: Mapping[str, Gear], contact: Contac
         backlash = mesh.backlash.si * math.cos(angle) * math.cos(mesh.helix_angle.si)
     else:
         backlash = math.inf
-    r = driver.base_radius
+    r = driven.base_radius if turned else driver.base_radius
     gap = mesh.law.a if mesh.gap is None and mesh.law is not None else mesh.gap
     return Mesh(
         name=name,
         driver=driver.name,
         driven=driven.name,
-        radii=(r, driven.base_radius),
+        radii=(driver.base_radius, driven.base_radius),
         drive_normal=contact.normal(angle, drive=True),
         coast_normal=contact.normal(angle, drive=False),
         laws=_laws(mesh, r),
         gaps=(0.0,) if gap is None else tuple(r * g.si for g in _each(gap)),
         backlash=backlash,
+        turned=turned,
     )
 
 

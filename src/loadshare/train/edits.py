@@ -143,11 +143,11 @@ class Edits:
                 yield (g,), external
 
     def _meshes(self, *tail: str) -> Iterator[tuple[int, str, float, Array]]:
-        """Number, name and driver's base radius of the meshes that give a key, and its values."""
+        """Number, name and radius of the law of the meshes that give a key, and its values."""
         for m, (name, mesh) in enumerate(self.train.meshes.items()):
             values = self._get("meshes", name, *tail)
             if values is not None:
-                yield m, name, mesh.radii[0], values
+                yield m, name, mesh.told_radius, values
 
     def _gap(self, _: int) -> Iterator[Edit]:
         for tail in (("gap",), ("law", "a")):

@@ -43,7 +43,8 @@ class Gear:
         r_b [m]; the acting radius of a face gear.
     sense : int
         +1 if the gear runs counter-clockwise seen against its axis, −1 otherwise.
-    teeth : int or None
+    teeth : float or None
+        Given, or what follows from those of gears that it meshes with; None where nothing tells.
     support : ndarray, shape (2,), or None
         Stiffness along the frame's directions [N/m]; zeros for a free gear, None for a rigid
         bearing.
@@ -58,7 +59,7 @@ class Gear:
     frame: NDArray[np.float64]
     base_radius: float
     sense: int
-    teeth: int | None
+    teeth: float | None
     support: Vector | None
     ratio: float
 

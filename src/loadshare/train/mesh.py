@@ -130,6 +130,9 @@ class Mesh:
         Unloaded gap of the drive flank along the line of action [m], one or one per position.
     backlash : float
         Normal backlash j_n [m]; infinite if the coast flank cannot touch.
+    turned : bool
+        Whether the case names the driven gear first: torque runs against the name of a mesh that
+        has one flank only, and that flank is the one it presses.
     """
 
     name: str
@@ -141,6 +144,16 @@ class Mesh:
     laws: tuple[Law, ...]
     gaps: tuple[float, ...]
     backlash: float
+    turned: bool = False
+
+    @property
+    def told_radius(self) -> float:
+        """Base radius [m] of the gear that the name puts first: laws and torques are told at it."""
+        return self.radii[1] if self.turned else self.radii[0]
+
+    def lever(self, drive: bool) -> float:
+        """Torque per flank force [m] on the gear named first, positive where it drives."""
+        return self.told_radius if drive != self.turned else -self.told_radius
 
     @property
     def flanks(self) -> tuple[bool, ...]:

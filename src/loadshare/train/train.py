@@ -146,6 +146,8 @@ class Train:
         Further external torques [N·m].
     positions : int
         Positions of a mesh cycle.
+    rotating : bool
+        Whether gears turn over the mesh cycle.
     march : tuple of (str, float, int) or None
         Reference gear, its revolutions and the number of steps.
     slip : mapping of gear to ndarray (3,), or None
@@ -166,6 +168,7 @@ class Train:
     input_torque: tuple[float, ...]
     external: Mapping[str, float]
     positions: int
+    rotating: bool
     march: tuple[str, float, int] | None
     slip: Mapping[str, Vector] | None = None
 
@@ -195,13 +198,23 @@ class Train:
         """Round rings."""
         return tuple(r for r in self.rings.values() if isinstance(r, RoundRing))
 
+    @cached_property
+    def cycle(self) -> str | None:
+        """Gear one tooth of which is a mesh cycle; None where gears stand still over the cycle.
+
+        The input gear, or else the first on the way from it whose teeth are known. In a march it
+        decides nothing.
+        """
+        known = (name for name, gear in self.gears.items() if gear.teeth is not None)
+        return next(known, None) if self.rotating else None
+
     def situation(self, index: int) -> Situation:
         """Describe position `index` (1-based).
 
-        In a mesh cycle every mesh stands at the same position and the gears turn by the input
-        gear's pitch over the cycle (if its teeth are given). In a march the gears turn through
-        whole revolutions; a mesh whose driver's teeth are given stands at the position that its
-        rotation reaches, others step one by one.
+        In a mesh cycle every mesh stands at the same position and the gears turn by one pitch of
+        the gear `cycle` over the cycle. In a march the gears turn through whole revolutions; a mesh
+        whose teeth are known stands at the position that its rotation reaches. Others have one law
+        for all positions.
 
         Raises
         ------
@@ -212,8 +225,7 @@ class Train:
             raise IndexError(f"position {index}: this case has positions 1 to {self.count}")
         step = index - 1
         if self.march is None:
-            teeth = self.gears[self.input].teeth
-            turned = 2.0 * math.pi * step / (self.positions * teeth) if teeth else 0.0
+            turned = self._pitch * step / self.positions
         else:
             gear, revolutions, steps = self.march
             turned = 2.0 * math.pi * revolutions * step / steps / self.gears[gear].ratio
@@ -232,6 +244,14 @@ class Train:
             },
             torque=torque,
         )
+
+    @cached_property
+    def _pitch(self) -> float:
+        """Angle by which the input gear turns over a mesh cycle [rad]."""
+        if self.cycle is None:
+            return 0.0
+        gear = self.gears[self.cycle]
+        return 2.0 * math.pi / ((gear.teeth or math.inf) * gear.ratio)
 
     def _mesh_position(self, mesh: str, step: int, rotation: Mapping[str, float]) -> int:
         driver = self.gears[self.meshes[mesh].driver]

@@ -12,7 +12,13 @@ from loadshare.case.checks.floats import (
     check_spline_law,
     check_support,
 )
-from loadshare.case.checks.flow import check_loaded_meshes, check_output_reached, check_taken_part
+from loadshare.case.checks.flow import (
+    check_loaded_meshes,
+    check_output_reached,
+    check_pressed_flanks,
+    check_taken_part,
+)
+from loadshare.case.checks.idle import check_idle_inputs
 from loadshare.case.checks.measured import check_measured_names, check_measured_positions
 from loadshare.case.checks.names import (
     check_about_circles,
@@ -22,6 +28,11 @@ from loadshare.case.checks.names import (
 )
 from loadshare.case.checks.positions import check_list_lengths
 from loadshare.case.checks.stages import check_stage_groups
+from loadshare.case.checks.turning import (
+    check_march_teeth,
+    check_teeth_fit,
+    check_turning,
+)
 from loadshare.case.draft import Draft
 from loadshare.errors import Problem
 
@@ -43,6 +54,11 @@ CHECKS = (
     check_taken_part,
     check_output_reached,
     check_loaded_meshes,
+    check_pressed_flanks,
+    check_teeth_fit,
+    check_turning,
+    check_march_teeth,
+    check_idle_inputs,
     check_assumed_patterns,
 )
 

@@ -2,10 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from itertools import chain
 
 from loadshare.case.draft import Draft
+from loadshare.case.power_flow import (
+    Steps,
+    against_the_names,
+    backwards,
+    from_the_other_end,
+    reach,
+    steps,
+)
+from loadshare.case.quantity import LENGTH
 from loadshare.case.words import choices
 from loadshare.errors import Problem
 
@@ -27,7 +36,7 @@ def check_output_reached(draft: Draft) -> Iterator[Problem]:
     """Yield the output where no path of meshes and shafts leads to it."""
     if not _known(draft) or draft.operating is None:
         return
-    reached = _reach([draft.operating.input], _steps(draft))
+    reached = reach([draft.operating.input], _steps(draft))
     if draft.operating.output not in reached:
         source = draft.operating.input
         message = (
@@ -41,15 +50,37 @@ def check_loaded_meshes(draft: Draft) -> Iterator[Problem]:
     """Yield meshes that are on no path from where torque enters to where it leaves."""
     if not _known(draft) or draft.operating is None or any(check_output_reached(draft)):
         return
-    steps = _steps(draft)
+    taken = _steps(draft)
     external = list(draft.operating.external)
-    ahead = _reach([draft.operating.input, *external], steps)
-    behind = _reach([draft.operating.output, *external], [(b, a) for a, b in steps])
+    ahead = reach([draft.operating.input, *external], taken)
+    behind = reach([draft.operating.output, *external], backwards(taken))
+    turned = from_the_other_end(draft.operating, draft.meshes, draft.shafts)
     for name, mesh in draft.meshes.items():
-        if mesh.driver not in ahead or mesh.driven not in behind:
+        first, last = (mesh.driven, mesh.driver) if turned else (mesh.driver, mesh.driven)
+        if first not in ahead or last not in behind:
             message = "carries no torque: it is on no path from the input to the output"
             hint = "Is it named driver-driven?"
             yield draft.problem(("meshes", name), message, hint=hint)
+
+
+def check_pressed_flanks(draft: Draft) -> Iterator[Problem]:
+    """Yield meshes whose backlash must tell when the flank that takes the torque is reached.
+
+    Torque that runs against a mesh's name presses its coast flank. A mesh without a backlash has
+    one flank only, and its play is not known: then all or none of them must be told.
+    """
+    if not _known(draft) or draft.operating is None:
+        return
+    against = against_the_names(draft.operating, draft.meshes, draft.shafts)
+    told = {n for n, m in draft.meshes.items() if m.given("backlash", "normal_backlash")}
+    if not any(against) or (all(against) and not told):
+        return
+    for name in draft.meshes:
+        if name not in told:
+            why = "other meshes have one" if told else "it presses the usual flanks elsewhere"
+            message = f"is missing: the torque runs against the meshes' names, and {why}"
+            hint = "How much play the mesh has decides when its other flank carries."
+            yield draft.problem(("meshes", name, "backlash"), message, LENGTH.allowed, hint)
 
 
 def _known(draft: Draft) -> bool:
@@ -60,16 +91,11 @@ def _known(draft: Draft) -> bool:
     return named | set(chain.from_iterable(_steps(draft))) <= set(draft.gears)
 
 
-def _steps(draft: Draft) -> list[tuple[str, str]]:
-    steps = [(mesh.driver, mesh.driven) for mesh in draft.meshes.values()]
-    for a, b in (shaft.ends for shaft in draft.shafts.values()):
-        steps += [(a, b), (b, a)]
-    return steps
-
-
-def _reach(sources: Iterable[str], steps: list[tuple[str, str]]) -> set[str]:
-    reached, fresh = set(sources), set(sources)
-    while fresh:
-        fresh = {b for a, b in steps if a in fresh and b not in reached}
-        reached |= fresh
-    return reached
+def _steps(draft: Draft) -> Steps:
+    """The steps of the torque from the input on, along the names of the meshes or against them."""
+    taken = steps(draft.meshes, draft.shafts)
+    if draft.operating is None or not from_the_other_end(
+        draft.operating, draft.meshes, draft.shafts
+    ):
+        return taken
+    return backwards(taken)

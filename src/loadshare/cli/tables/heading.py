@@ -49,3 +49,8 @@ def print_heading(
         f"Input torque {load} N·m on gear {operating.input}, "
         f"output gear {operating.output}; {solved}"
     )
+    turning = any(errors.eccentricity is not None for errors in case.errors.values())
+    if turning and case.march is None and count > 1 and operating.rotation == "neglected":
+        console.print(
+            "Gears stand still over the mesh cycle: eccentricities keep their first direction"
+        )

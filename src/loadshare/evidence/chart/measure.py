@@ -128,9 +128,8 @@ def claimed(train: Train, found: Equilibrium) -> tuple[dict[str, float], dict[st
     """Torques of an answer [N·m], and displacements [m] in the transverse frames."""
     torque = {}
     for name, mesh in train.meshes.items():
-        signs = ((d, 1.0 if d else -1.0) for d in mesh.flanks)
-        forces = [s * found.flank_force[mesh.flank_name(d)] for d, s in signs]
-        torque[name] = mesh.radii[0] * float(np.sum(forces))
+        parts = [mesh.lever(d) * found.flank_force[mesh.flank_name(d)] for d in mesh.flanks]
+        torque[name] = float(np.sum(parts))
     return torque, {g: train.gears[g].frame @ p for g, p in found.displacement.items()}
 
 

@@ -206,9 +206,10 @@ def report(train: Train, fine: Machine, settled: Settled) -> Reference:
     force = {n: float(at.forces.get(n, 0) * unit) for n in fine.contacts}
     torque: dict[str, Any] = {}
     for name, mesh in train.meshes.items():
-        flanks = [at.forces.get(mesh.flank_name(d), 0) for d in mesh.flanks]
-        net = flanks[0] - (flanks[1] if len(flanks) > 1 else 0)
-        torque[name] = fine.arithmetic.mpf(mesh.radii[0]) * net * unit
+        torque[name] = sum(
+            fine.arithmetic.mpf(mesh.lever(d)) * at.forces.get(mesh.flank_name(d), 0) * unit
+            for d in mesh.flanks
+        )
     gaps = [-c.approach(at.x)[0] for n, c in fine.contacts.items() if n not in at.forces]
     undetermined = _moving(fine, settled.free)
     return Reference(

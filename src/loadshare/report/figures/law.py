@@ -65,7 +65,7 @@ def _working(result: Result, train: Train) -> Iterator[Row]:
     for p in result.positions:
         at = train.situation(p.position).mesh_position
         for name, net in p.torque.items():
-            torque = net + p.coast_torque[name]
+            torque = abs(net) if train.meshes[name].turned else net + p.coast_torque[name]
             angle = _deformation(train.meshes[name], at[name], torque)
             yield {
                 "mesh": name,
@@ -82,7 +82,7 @@ def _curves(train: Train, meshes: Sequence[str], reach: float) -> Iterator[Row]:
     for name in meshes:
         mesh = train.meshes[name]
         for position in range(max(len(mesh.laws), len(mesh.gaps))):
-            key = (mesh.law(position), mesh.gap(position, True), mesh.radii[0])
+            key = (mesh.law(position), mesh.gap(position, True), mesh.told_radius)
             if key in seen:
                 continue
             curve = seen[key] = len(seen)
@@ -95,7 +95,7 @@ def _curves(train: Train, meshes: Sequence[str], reach: float) -> Iterator[Row]:
 
 def _deformation(mesh: Mesh, position: int, torque: float) -> float:
     """Δφ(T) = a + bT + cT^(2/3) [rad at the driver], a being the gap."""
-    radius = mesh.radii[0]
+    radius = mesh.told_radius
     compression = mesh.law(position).compression(torque / radius)
     return (mesh.gap(position, True) + compression) / radius
 

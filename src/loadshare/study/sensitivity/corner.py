@@ -118,7 +118,7 @@ class Corner:
             total = float(explicit)
             for drive in mesh.flanks:
                 _, gradient = contacts[mesh.flank_name(drive)]
-                total += (1.0 if drive else -1.0) * mesh.radii[0] * float(gradient @ motion.rate)
+                total += mesh.lever(drive) * float(gradient @ motion.rate)
             torque[name] = total
         for gear, where in scene.displacement.items():
             rate = motion.rate[where] * branch.units.length
@@ -144,8 +144,7 @@ def _torques(branch: Branch, z: Array) -> dict[str, float]:
     """Torque on the driver of every mesh, drive flank less coast flank [N·m]."""
     contacts = branch.contacts(z)
     return {
-        name: mesh.radii[0]
-        * sum((1.0 if d else -1.0) * contacts[mesh.flank_name(d)][0] for d in mesh.flanks)
+        name: sum(mesh.lever(d) * contacts[mesh.flank_name(d)][0] for d in mesh.flanks)
         for name, mesh in branch.scene.train.meshes.items()
     }
 

@@ -1,0 +1,85 @@
+"""What turns must be told how far: over the mesh cycle, and in a march."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from loadshare.case.draft import Draft
+from loadshare.case.meshes import Mesh
+from loadshare.case.teeth import Misfit, tooth_counts
+from loadshare.errors import Problem
+
+
+def check_teeth_fit(draft: Draft) -> Iterator[Problem]:
+    """Yield tooth counts that contradict the base radii of gears that mesh."""
+    if not draft.sound("gears", "meshes"):
+        return
+    _, misfits = _counts(draft)
+    for found in misfits:
+        number = draft.gears[found.gear].teeth
+        message = (
+            f"{number} teeth do not fit the {draft.gears[found.other].teeth} of gear "
+            f"{found.other}: by the base radii there would be {found.expected:.5g}"
+        )
+        hint = "The speed ratio of a mesh is that of its base radii, and of its teeth."
+        yield draft.problem(("gears", found.gear, "teeth"), message, hint=hint)
+
+
+def check_turning(draft: Draft) -> Iterator[Problem]:
+    """Yield eccentricities of a mesh cycle over which nothing tells how far gears turn."""
+    operating = draft.operating
+    if operating is None or draft.march is not None or not draft.sound("gears"):
+        return
+    if operating.positions == 1 or operating.rotation == "neglected":
+        return
+    if any(gear.teeth is not None for gear in draft.gears.values()):
+        return
+    for name, errors in draft.errors.items():
+        if errors.eccentricity is not None:
+            message = (
+                f"turns with its gear, but nothing tells how far gears turn over the "
+                f"{operating.positions} positions of the mesh cycle: gears.{operating.input}.teeth "
+                "is missing"
+            )
+            hint = (
+                f"Give gears.{operating.input}.teeth, or the teeth of any other gear; "
+                'operating.rotation = "neglected" if gears shall stand still; or a march.'
+            )
+            yield draft.problem(("errors", name, "eccentricity"), message, hint=hint)
+
+
+def check_march_teeth(draft: Draft) -> Iterator[Problem]:
+    """Yield meshes of a march whose law changes over a cycle that nothing tells."""
+    if draft.march is None or not draft.sound("gears", "meshes"):
+        return
+    counts, _ = _counts(draft)
+    for name, mesh in draft.meshes.items():
+        if mesh.driver in draft.gears and mesh.driver not in counts and _varies(mesh):
+            message = (
+                "its law changes from position to position, but nothing tells which position the "
+                f"march has reached: gears.{mesh.driver}.teeth is missing"
+            )
+            hint = f"The teeth of {mesh.driven} or of another gear that they mesh with would do."
+            yield draft.problem(("meshes", name), message, hint=hint)
+
+
+def _varies(mesh: Mesh) -> bool:
+    lists: list[object] = [mesh.stiffness, mesh.gap]
+    if mesh.law is not None:
+        lists += [mesh.law.a, mesh.law.b, mesh.law.c]
+    if mesh.table is not None:
+        lists.append(mesh.table.curves)
+    if mesh.law_file or mesh.geometry:
+        return True
+    return any(isinstance(values, tuple) and len(set(values)) > 1 for values in lists)
+
+
+def _counts(draft: Draft) -> tuple[dict[str, float], tuple[Misfit, ...]]:
+    """Tooth counts of the gears and what contradicts; misspelt names are reported elsewhere."""
+    gears = draft.gears
+    pairs = [(m.driver, m.driven) for m in draft.meshes.values()]
+    return tooth_counts(
+        {name: gear.teeth for name, gear in gears.items()},
+        {name: gear.acting_radius for name, gear in gears.items()},
+        [(a, b) for a, b in pairs if a in gears and b in gears],
+    )

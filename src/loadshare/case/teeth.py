@@ -1,0 +1,85 @@
+"""Tooth counts that follow from those given: gears that mesh have the same base pitch."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+TEETH_TOLERANCE = 1e-2
+"""How far given tooth counts may miss the ratio of the base radii, as a part of it [-].
+
+Radii that are assumed or rounded miss whole tooth counts by less; a tooth too many on a gear of
+fewer than 100 teeth by more."""
+
+
+@dataclass(frozen=True, slots=True)
+class Misfit:
+    """A given tooth count that another one contradicts.
+
+    Attributes
+    ----------
+    gear, other : str
+        The gear, and the one whose teeth contradict its own.
+    expected : float
+        Teeth that the gear would have by the other's and the base radii [-].
+    """
+
+    gear: str
+    other: str
+    expected: float
+
+
+def tooth_counts(
+    given: Mapping[str, int | None],
+    radii: Mapping[str, float],
+    pairs: Iterable[tuple[str, str]],
+) -> tuple[dict[str, float], tuple[Misfit, ...]]:
+    """Return the teeth of every gear that meshes, over any meshes, with one whose teeth are given.
+
+    Parameters
+    ----------
+    given : mapping of gear to int or None
+    radii : mapping of gear to float
+        Base radii [m].
+    pairs : iterable of (str, str)
+        Gears that mesh with one another.
+
+    Returns
+    -------
+    dict of gear to float
+        Given counts as they are; what follows need not be whole, as radii may be rounded [-].
+    tuple of Misfit
+    """
+    partners: dict[str, list[str]] = {name: [] for name in given}
+    for a, b in pairs:
+        partners[a].append(b)
+        partners[b].append(a)
+    counts = {name: float(count) for name, count in given.items() if count is not None}
+    misfits: list[Misfit] = []
+    settled: dict[str, tuple[str, float]] = {}
+    for source in counts.copy():
+        if source in settled:
+            continue
+        settled[source] = source, counts[source] / radii[source]
+        queue = deque([source])
+        while queue:
+            here = queue.popleft()
+            told, density = settled[here]
+            for other in partners[here]:
+                if other in settled:
+                    continue
+                expected = density * radii[other]
+                count = counts.setdefault(other, expected)
+                if abs(count - expected) > TEETH_TOLERANCE * expected:
+                    misfits.append(Misfit(other, told, expected))
+                settled[other] = (
+                    (told, density)
+                    if given[other] is None
+                    else (
+                        other,
+                        count / radii[other],
+                    )
+                )
+                queue.append(other)
+    return counts, tuple(misfits)
