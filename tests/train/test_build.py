@@ -196,6 +196,14 @@ def test_eccentricities_turn_whichever_gear_has_the_teeth(gear):
     assert steps[0] > 1e-3
 
 
+def test_samples_of_an_eccentricity_that_nothing_turns_are_refused():
+    """An eccentricity of 0 is no input that could be ignored; the samples after it are."""
+    still = {"errors": {"6": {"eccentricity": {"amount": "0 um"}}}}
+    case = shipped("fgfbstts/base").replace(still)
+    with pytest.raises(ls.CaseError, match=r"gears\.1\.teeth is missing"):
+        ls.solve_many(case, {"errors.6.eccentricity.amount [um]": [0.0, 10.0]})
+
+
 def test_a_neglected_rotation_leaves_eccentricities_where_they_are():
     case = shipped("fgfbstts/both_errors").replace({"gears.1.teeth": 25})
     train = build_train(case)

@@ -8,6 +8,7 @@ they push, and changes the machine itself. What a key writes into the arrays sta
 from __future__ import annotations
 
 from loadshare import case as spec
+from loadshare.case.checks.turning import turning_told
 from loadshare.train.columns import Column
 
 _LENGTH = "m"
@@ -50,7 +51,8 @@ def array_unit(case: spec.Case, column: Column) -> str | None:
         case ("errors", _, "installation", int()):
             return _LENGTH
         case ("errors", _, "eccentricity", "amount"):
-            return _LENGTH
+            # Where it is not told how far gears turn, only an eccentricity of 0 has an answer.
+            return _LENGTH if turning_told(case.operating, case.march, case.gears) else None
         case ("errors", _, "eccentricity", "direction" | "phase"):
             return "rad"
         case ("rings", gear, "float") | ("rings", gear, "float", "up" | "down"):

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from loadshare.case.draft import Draft
+from loadshare.case.gears import Gear
 from loadshare.case.meshes import Mesh
+from loadshare.case.operation import March, Operating
 from loadshare.case.teeth import Misfit, tooth_counts
 from loadshare.errors import Problem
 
@@ -28,14 +30,12 @@ def check_teeth_fit(draft: Draft) -> Iterator[Problem]:
 def check_turning(draft: Draft) -> Iterator[Problem]:
     """Yield eccentricities of a mesh cycle over which nothing tells how far gears turn."""
     operating = draft.operating
-    if operating is None or draft.march is not None or not draft.sound("gears"):
+    if operating is None or not draft.sound("gears"):
         return
-    if operating.positions == 1 or operating.rotation == "neglected":
-        return
-    if any(gear.teeth is not None for gear in draft.gears.values()):
+    if turning_told(operating, draft.march, draft.gears):
         return
     for name, errors in draft.errors.items():
-        if errors.eccentricity is not None:
+        if errors.eccentricity is not None and errors.eccentricity.amount.si:
             message = (
                 f"turns with its gear, but nothing tells how far gears turn over the "
                 f"{operating.positions} positions of the mesh cycle: gears.{operating.input}.teeth "
@@ -46,6 +46,13 @@ def check_turning(draft: Draft) -> Iterator[Problem]:
                 'operating.rotation = "neglected" if gears shall stand still; or a march.'
             )
             yield draft.problem(("errors", name, "eccentricity"), message, hint=hint)
+
+
+def turning_told(operating: Operating, march: March | None, gears: Mapping[str, Gear]) -> bool:
+    """Tell whether it is known how far gears turn from position to position, if at all."""
+    if march is not None or operating.positions == 1 or operating.rotation == "neglected":
+        return True
+    return any(gear.teeth is not None for gear in gears.values())
 
 
 def check_march_teeth(draft: Draft) -> Iterator[Problem]:
