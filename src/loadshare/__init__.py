@@ -13,7 +13,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from loadshare._version import __version__
-from loadshare.errors import CaseError, LoadshareError, Problem, Refused
+from loadshare.errors import CaseError, LoadshareError, Problem, Refused, ResultError
 
 if TYPE_CHECKING:
     from loadshare.case import Case, load_case
@@ -56,6 +56,7 @@ __all__ = [
     "Problem",
     "Refused",
     "Result",
+    "ResultError",
     "__version__",
     "case_schema",
     "compare",

@@ -87,3 +87,29 @@ class Refused(LoadshareError):  # noqa: N818 -- an answer is refused; nothing we
         self.figures = dict(figures or {})
         self.partial = partial
         super().__init__(message)
+
+
+class ResultError(LoadshareError):
+    """A file that holds no result to be believed, with everything that is wrong with it.
+
+    Parameters
+    ----------
+    problems : iterable of Problem
+        All problems found.
+    refusal : bool
+        Whether the file says that its case was refused.
+    """
+
+    def __init__(self, problems: Iterable[Problem], *, refusal: bool = False) -> None:
+        self.problems = tuple(problems)
+        self.refusal = refusal
+        super().__init__(self.problems)
+
+    def __str__(self) -> str:
+        told = [str(problem) for problem in self.problems[:SHOWN]]
+        more = len(self.problems) - len(told)
+        return "\n".join([*told, *([f"and {more} more problems"] if more else [])])
+
+
+SHOWN = 5
+"""Problems of a result file that are told: a file that was tampered with disagrees everywhere."""

@@ -126,6 +126,35 @@ def test_a_file_that_is_not_the_answer_is_replaced(command, star, tmp_path, dama
     assert file.read_text(encoding="utf-8") == good
 
 
+@pytest.mark.parametrize(
+    ("doctor", "told"),
+    [
+        (lambda d: d["omega"].update(system=1.5), "omega.system = 1.5: does not follow"),
+        (lambda d: d["positions"][0]["torque"].update({"sun-planet1": 1e3}), "positions[0].torque"),
+        (lambda d: d["positions"][0]["claim"]["rotation"].update(sun=1e-3), "no equilibrium"),
+        (lambda d: d.update(positions=[]), "position 1 is missing"),
+        (lambda d: d.update(format=1), "was written by loadshare"),
+    ],
+)
+def test_a_doctored_file_is_not_kept_and_the_summary_says_why(
+    command, star, tmp_path, doctor, told
+):
+    case, file = star / "floating_sun_3.toml", tmp_path / "floating_sun_3.json"
+    command("batch", case, "-o", tmp_path, "--jobs", "1")
+    good = file.read_text(encoding="utf-8")
+    document = json.loads(good)
+    doctor(document)
+    file.write_text(json.dumps(document), encoding="utf-8")
+    result = command("batch", case, "-o", tmp_path, "--jobs", "1")
+    assert result.exit_code == 0
+    (found,) = summary(tmp_path)["cases"]
+    assert found["outcome"] == "certified"
+    assert found["message"].startswith("the file there was not kept: ")
+    assert told in found["message"]
+    assert "floating_sun_3: certified: the file there was not kept" in result.stdout
+    assert file.read_text(encoding="utf-8") == good
+
+
 def test_a_changed_case_and_a_refused_one_are_tried_again(command, star, half_held, tmp_path):
     case = tmp_path / "case.toml"
     text = (star / "floating_sun_3.toml").read_text(encoding="utf-8")
@@ -135,6 +164,7 @@ def test_a_changed_case_and_a_refused_one_are_tried_again(command, star, half_he
     case.write_text(text.replace("1000 N*m", "1100 N*m"), encoding="utf-8")
     command("batch", case, half_held, "-o", out, "--jobs", "1")
     assert outcomes(out) == {"case": "certified", "half_held": "refused"}
+    assert not any("not kept" in case["message"] for case in summary(out)["cases"])
 
 
 def test_an_interrupted_batch_leaves_whole_files_and_goes_on(command, star, tmp_path, monkeypatch):

@@ -106,10 +106,8 @@ class _Later(Mapping[str, Value]):
         return len(self._made)
 
 
-def certify_later(
-    train: Train, answer: Equilibrium, tolerance: float, load: float, deflection: float
-) -> Certificate:
-    """Return the certificate of an answer that was judged with many others.
+def certify_later(train: Train, answer: Equilibrium, tolerance: float) -> Certificate:
+    """Return the certificate of an answer that passed when it was judged with many others.
 
     Its figures are computed, as `certify` computes them, when they are first asked for.
 
@@ -117,15 +115,15 @@ def certify_later(
     ----------
     train, answer, tolerance
         As for `certify`.
-    load, deflection : float
-        Scales [N], [m], as `Verdicts` has them.
     """
+    # The batch's scales may differ in the last digit, and a result that is loaded again would.
+    state = State(train, answer)
     return Certificate(
         residuals=_Later(partial(_residuals, train, answer, tolerance)),
         floats=_Later(partial(_floats, train, answer)),
         tolerance=tolerance,
-        load=load,
-        deflection=deflection,
+        load=state.force_scale,
+        deflection=state.length_scale,
     )
 
 

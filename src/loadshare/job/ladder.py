@@ -119,10 +119,9 @@ def hot_answers(
     answers = {}
     for row in np.flatnonzero(found.passed).tolist():
         index = indices[row]
-        scales = float(found.verdicts.load[row]), float(found.verdicts.deflection[row])
         if found.tied[row]:
             equilibrium = found.equilibria.one(row, index, machine.loose(found.code[row]))
-            certificate = certify_later(train, equilibrium, tolerance, *scales)
+            certificate = certify_later(train, equilibrium, tolerance)
         else:
             claimed = found.equilibria.one(row, index)
             equilibrium = of_least_norm(assemble(train, index), claimed)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter, OrderedDict
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from numbers import Integral
 from pathlib import Path
@@ -16,8 +16,9 @@ from loadshare.certify.tolerance import checked_tolerance
 from loadshare.errors import Refused
 from loadshare.job.ladder import AUTO, HOT, Answer, climb_all, left_out
 from loadshare.job.machine import Machine
+from loadshare.results.claim import claim_of
+from loadshare.results.derive import position_of, result_from
 from loadshare.results.result import Effort, Position, Result, Stamp
-from loadshare.results.share import largest, pair_shares, stage_shares
 from loadshare.solver import Options
 from loadshare.tooth import resolve
 from loadshare.train import Train, build_train
@@ -103,7 +104,9 @@ def solve(
         if progress is not None:
             progress(done, len(wanted))
     asked = replace(options, solver=solver)
-    result = result_of(case, machine.train, answers, asked, tolerance) if answers else None
+    result = None
+    if answers:
+        result = result_of(case, machine.train, answers, asked, tolerance, wanted)
     if refusals:
         figures: dict[str, float] = {}
         for refused in refusals:
@@ -217,59 +220,54 @@ def wanted_positions(train: Train, positions: Iterable[int] | None) -> list[int]
 
 
 def result_of(
-    case: Case, train: Train, answers: list[Answer], options: Options, tolerance: float
+    case: Case,
+    train: Train,
+    answers: list[Answer],
+    options: Options,
+    tolerance: float,
+    wanted: Sequence[int],
 ) -> Result:
-    """Put answers together as a result."""
-    positions = tuple(_position(train, a) for a in answers)
-    stages = train.stages
-    return Result(
-        stamp=Stamp(
-            version=__version__,
-            case=case.name,
-            title=case.title,
-            case_hash=case.hash,
-            solver=options.solver,
-            method=options.method,
-            reduce=options.reduce,
-            tolerance=tolerance,
-            stop=options.stop,
-        ),
-        frames={
-            n: (tuple(g.frame[0].tolist()), tuple(g.frame[1].tolist()))
-            for n, g in train.gears.items()
-        },
-        stages={s.name: s.meshes for s in stages},
-        positions=positions,
-        omega=largest([p.share for p in positions], stages),
-        pair_omega=largest([p.pair_share for p in positions], stages),
-        case=case,
+    """Put answers together as a result.
+
+    Parameters
+    ----------
+    case : Case
+        Its mesh laws computed.
+    train : Train
+    answers : list of Answer
+    options : Options
+    tolerance : float
+    wanted : sequence of int
+        1-based positions that were asked for.
+    """
+    stamp = Stamp(
+        version=__version__,
+        case=case.name,
+        title=case.title,
+        case_hash=case.hash,
+        solver=options.solver,
+        method=options.method,
+        reduce=options.reduce,
+        tolerance=tolerance,
+        stop=options.stop,
+        positions=tuple(wanted),
     )
+    return result_from(case, train, [_position(a) for a in answers], stamp)
 
 
-def _position(train: Train, answer: Answer) -> Position:
-    found = answer.equilibrium
-    drive, coast = {}, {}
-    for name, mesh in train.meshes.items():
-        parts = [mesh.lever(d) * found.flank_force[mesh.flank_name(d)] for d in mesh.flanks]
-        coast[name] = sum(max(-part, 0.0) for part in parts)
-        drive[name] = sum(parts)
-    moved = {n: g.frame @ found.displacement[n] for n, g in train.gears.items()}
-    return Position(
-        position=found.index,
-        torque=drive,
-        coast_torque=coast,
-        share=stage_shares(drive, train.stages),
-        pair_share=pair_shares(drive, train.stages),
-        rotation={g: float(v) for g, v in found.rotation.items()},
-        displacement={n: (float(d[0]), float(d[1])) for n, d in moved.items()},
-        floats=answer.certificate.floats,
-        certificate=answer.certificate,
-        undetermined=found.undetermined,
-        effort=Effort(
+def _position(answer: Answer) -> Position:
+    found, record = answer.equilibrium, answer.record
+    return position_of(
+        answer.train,
+        found.index,
+        claim_of(answer.train, found),
+        answer.certificate,
+        found.undetermined,
+        Effort(
             rung=answer.rung,
-            method=answer.record.method,
-            kind=answer.record.kind,
-            iterations=len(answer.record.iterations),
-            rounds=answer.record.rounds,
+            method=record.method,
+            kind=record.kind,
+            iterations=len(record.iterations),
+            rounds=record.rounds,
         ),
     )

@@ -112,14 +112,10 @@ def palette_of(result: Result) -> Palette:
     Parameters
     ----------
     result : Result
-        Of a case that it carries; without one, the meshes' names tell their gears.
     """
-    meshes = list(result.positions[0].torque)
-    gears = list(result.frames)
-    if result.case is not None:
-        known = result.case.meshes
-        return Palette(gears, {m: (known[m].driver, known[m].driven) for m in meshes})
-    return Palette(gears, ends_from_names(meshes, gears))
+    known = result.case.meshes
+    meshes = {m: (known[m].driver, known[m].driven) for m in result.positions[0].torque}
+    return Palette(list(result.frames), meshes)
 
 
 def ends_from_names(meshes: Iterable[str], gears: Iterable[str]) -> dict[str, tuple[str, str]]:

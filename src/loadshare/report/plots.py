@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from loadshare.errors import LoadshareError
+from loadshare.train import build_train
 
 if TYPE_CHECKING:
-    from loadshare.case import Case
     from loadshare.report.figure import Figure
     from loadshare.report.figures.share import Mean
     from loadshare.results import Result
-    from loadshare.train import Train
 
 
 @dataclass(frozen=True)
@@ -52,74 +50,26 @@ class Plots:
 
         return share(self.result, over)
 
-    def floats(self, case: Case | None = None) -> Figure:
+    def floats(self) -> Figure:
         """Each float's centre in its region, enlarged and true to shape.
-
-        Parameters
-        ----------
-        case : Case, optional
-            What was solved; needed for a result that was loaded from a file.
 
         Raises
         ------
         LoadshareError
-            If no gear floats, or the case is missing or another one.
+            If no gear floats.
         """
         from loadshare.report.figures.floats import floats
 
-        return floats(self.result, self._train(case))
+        return floats(self.result, build_train(self.result.case))
 
-    def law(self, case: Case | None = None) -> Figure:
-        """Deformation of the meshes over torque, with the points at which they work.
-
-        Parameters
-        ----------
-        case : Case, optional
-            As for `floats`.
-
-        Raises
-        ------
-        LoadshareError
-            If the case is missing or another one.
-        """
+    def law(self) -> Figure:
+        """Deformation of the meshes over torque, with the points at which they work."""
         from loadshare.report.figures.law import law
 
-        return law(self.result, self._train(case))
+        return law(self.result, build_train(self.result.case))
 
-    def train(self, case: Case | None = None) -> Figure:
-        """Drawing of the train.
-
-        Parameters
-        ----------
-        case : Case, optional
-            As for `floats`.
-
-        Raises
-        ------
-        LoadshareError
-            If the case is missing or another one.
-        """
+    def train(self) -> Figure:
+        """Drawing of the train."""
         from loadshare.report.figures.train import train
 
-        return train(self._case(case))
-
-    def _train(self, given: Case | None) -> Train:
-        from loadshare.train import build_train
-
-        return build_train(self._case(given))
-
-    def _case(self, given: Case | None) -> Case:
-        case = given if given is not None else self.result.case
-        stamp = self.result.stamp
-        if case is None:
-            raise LoadshareError(
-                f"{stamp.case}: this result was loaded from a file and does not hold its case, "
-                "which the picture needs. Give it, as in "
-                'result.plot.floats(ls.load_case("case.toml")).'
-            )
-        if case.hash != stamp.case_hash:
-            raise LoadshareError(
-                f"{stamp.case}: the case given is not the one that was solved: its hash is "
-                f"{case.hash[:12]}…, the result's {stamp.case_hash[:12]}…"
-            )
-        return case
+        return train(self.result.case)

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from loadshare.case.words import as_given
+from loadshare.results.differences import DIGITS, ROUND_OFF
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
     from loadshare.results.result import Position, Result
+
+
+JUDGED_ARRAYS = ("residual",)
+"""Figures of certificates, which are round-off themselves (see `differences.JUDGED`)."""
 
 
 def dataset(result: Result) -> xr.Dataset:
@@ -115,6 +122,40 @@ def dataset(result: Result) -> xr.Dataset:
             "tolerance": stamp.tolerance,
         },
     )
+
+
+def array_differences(expected: xr.Dataset, found: xr.Dataset) -> Iterator[tuple[str, str, str]]:
+    """Yield where the arrays of a file differ from those of its result by more than round-off.
+
+    Yields
+    ------
+    tuple of (str, str, str)
+        Variable or attribute, what stands there, and what is wrong with it.
+    """
+    for name, value in expected.attrs.items():
+        if found.attrs.get(name) != value:
+            given = as_given(found.attrs.get(name))
+            yield name, given, f"is not {as_given(value)}, as the result in this file says"
+    for name in map(str, found.variables):
+        if name not in expected.variables:
+            yield name, "", "is not known"
+    for name, variable in expected.variables.items():
+        if name not in found.variables:
+            yield str(name), "", "is missing"
+        elif not _alike(str(name), variable, found.variables[name]):
+            yield str(name), "", "does not agree with the result in this file"
+
+
+def _alike(name: str, expected: xr.Variable, found: xr.Variable) -> bool:
+    one, other = np.asarray(expected.values), np.asarray(found.values)
+    if expected.dims != found.dims or one.shape != other.shape or expected.attrs != found.attrs:
+        return False
+    if one.dtype.kind != "f":
+        return bool(np.array_equal(one, other))
+    if other.dtype.kind != "f" or not np.array_equal(np.isnan(one), np.isnan(other)):
+        return False
+    floor = ROUND_OFF * float(np.nanmax(np.abs(one), initial=0.0))
+    return name in JUDGED_ARRAYS or np.allclose(one, other, DIGITS, floor, equal_nan=True)
 
 
 def frame(result: Result) -> pd.DataFrame:

@@ -1,103 +1,60 @@
-"""The JSON form of a result, and back, without loss."""
+"""The JSON form of a result."""
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
 from typing import Any
 
-from loadshare.certify import Certificate, FloatState, Residual, Touch
-from loadshare.results.result import Effort, Position, Result, Stamp
+from loadshare.certify import Certificate
+from loadshare.results.result import Position, Result
+
+FORMAT = 2
+"""Of the files that are written; it changes with what a file holds."""
+_CERTIFICATE = ("residuals", "floats", "tolerance", "load", "deflection")
 
 
 def to_document(result: Result) -> dict[str, Any]:
     """Return the result as plain data: the documented JSON form, self-contained."""
     return {
+        "format": FORMAT,
         "case": result.stamp.case,
         "version": result.stamp.version,
-        "stamp": asdict(result.stamp),
-        "frames": {g: [list(v) for v in f] for g, f in result.frames.items()},
-        "stages": {n: list(m) for n, m in result.stages.items()},
-        "positions": [_position(p) for p in result.positions],
+        "stamp": plain(result.stamp),
+        "input": result.case.to_dict(),
+        "frames": plain(result.frames),
+        "stages": plain(result.stages),
+        "positions": [_told(p) for p in result.positions],
         "omega": dict(result.omega),
         "pair_omega": dict(result.pair_omega),
     }
 
 
-def _position(p: Position) -> dict[str, Any]:
-    verdict: dict[str, Any] = {"passed": p.certificate.passed}
-    verdict |= {name: r.scaled for name, r in p.certificate.residuals.items()}
-    return {
-        "position": p.position,
-        "torque": dict(p.torque),
-        "share": dict(p.share),
-        "pair_share": dict(p.pair_share),
-        "displacement": {g: list(d) for g, d in p.displacement.items()},
-        "floats": {g: _plain(f) for g, f in p.floats.items()},
-        "certificate": verdict,
-        "coast_torque": dict(p.coast_torque),
-        "rotation": dict(p.rotation),
-        "residuals": {n: asdict(r) for n, r in p.certificate.residuals.items()},
-        "scales": {
-            "load": p.certificate.load,
-            "deflection": p.certificate.deflection,
-            "tolerance": p.certificate.tolerance,
-        },
-        "undetermined": list(p.undetermined),
-        "effort": asdict(p.effort),
+def plain(given: Any) -> Any:
+    """Return dataclasses, mappings and tuples as JSON knows them."""
+    if isinstance(given, Mapping):
+        return {key: plain(value) for key, value in given.items()}
+    if is_dataclass(given):
+        return {f.name: plain(getattr(given, f.name)) for f in fields(given)}
+    if isinstance(given, list | tuple):
+        return [plain(value) for value in given]
+    return given
+
+
+def _told(p: Position) -> dict[str, Any]:
+    """Every field of a position; those of its certificate stand beside one another."""
+    told = {f.name: plain(getattr(p, f.name)) for f in fields(p) if f.name != "certificate"}
+    return told | _judged(p.certificate)
+
+
+def _judged(certificate: Certificate) -> dict[str, Any]:
+    verdict: dict[str, Any] = {"passed": certificate.passed}
+    verdict |= {name: r.scaled for name, r in certificate.residuals.items()}
+    scales = {name: getattr(certificate, name) for name in ("load", "deflection", "tolerance")}
+    more = {
+        f.name: plain(getattr(certificate, f.name))
+        for f in fields(certificate)
+        if f.name not in _CERTIFICATE
     }
-
-
-def _plain(rest: FloatState) -> dict[str, Any]:
-    """Return a float's state with lists where JSON has lists."""
-    state = asdict(rest)
-    for key in ("normal", "reaction"):
-        state[key] = None if state[key] is None else list(state[key])
-    state["boundaries"] = [b | {"normal": list(b["normal"])} for b in state["boundaries"]]
-    return state
-
-
-def from_document(document: dict[str, Any]) -> Result:
-    """Rebuild a result from its JSON form.
-
-    Raises
-    ------
-    KeyError, TypeError
-        If the document is not one that :func:`to_document` wrote.
-    """
-    return Result(
-        stamp=Stamp(**document["stamp"]),
-        frames={g: (tuple(f[0]), tuple(f[1])) for g, f in document["frames"].items()},
-        stages={n: tuple(m) for n, m in document["stages"].items()},
-        positions=tuple(_read_position(p) for p in document["positions"]),
-        omega=document["omega"],
-        pair_omega=document["pair_omega"],
-    )
-
-
-def _read_position(p: dict[str, Any]) -> Position:
-    floats = {g: _read_float(f) for g, f in p["floats"].items()}
-    return Position(
-        position=p["position"],
-        torque=p["torque"],
-        coast_torque=p["coast_torque"],
-        share=p["share"],
-        pair_share=p["pair_share"],
-        rotation=p["rotation"],
-        displacement={g: (d[0], d[1]) for g, d in p["displacement"].items()},
-        floats=floats,
-        certificate=Certificate(
-            residuals={n: Residual(**r) for n, r in p["residuals"].items()},
-            floats=floats,
-            tolerance=p["scales"]["tolerance"],
-            load=p["scales"]["load"],
-            deflection=p["scales"]["deflection"],
-        ),
-        undetermined=tuple(p["undetermined"]),
-        effort=Effort(**p["effort"]),
-    )
-
-
-def _read_float(f: dict[str, Any]) -> FloatState:
-    pairs = {k: tuple(f[k]) if f[k] is not None else None for k in ("normal", "reaction")}
-    touches = tuple(Touch(**(t | {"normal": tuple(t["normal"])})) for t in f["boundaries"])
-    return FloatState(**(f | pairs | {"boundaries": touches}))
+    residuals = plain(certificate.residuals)
+    return {"certificate": verdict | more, "residuals": residuals, "scales": scales}

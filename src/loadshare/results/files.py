@@ -9,8 +9,10 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from loadshare.errors import LoadshareError
-from loadshare.results.document import from_document, to_document
+from loadshare.errors import Problem, ResultError
+from loadshare.results.dataset import array_differences
+from loadshare.results.document import to_document
+from loadshare.results.reading import read_document
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -67,7 +69,11 @@ def _write_arrays(arrays: object, file: Path) -> None:
 
 
 def load_result(path: str | Path) -> Result:
-    """Load a result written by ``to_json`` or ``to_netcdf``.
+    """Load a result written by ``to_json`` or ``to_netcdf``, and certify it again.
+
+    The case that the file holds is built anew, every position's claimed displacements and forces
+    are certified against it, and all other figures are computed from them. The file must agree with
+    what was computed but for round-off.
 
     Parameters
     ----------
@@ -77,22 +83,44 @@ def load_result(path: str | Path) -> Result:
     Returns
     -------
     Result
-        Equal to the one that was saved, bit for bit.
+        Equal to the one that was saved, bit for bit, where the same machine loads it.
 
     Raises
     ------
-    LoadshareError
-        If the file is missing or holds no result of loadshare.
+    ResultError
+        If the file is missing, holds no result of loadshare, or one that does not pass; all
+        problems are listed.
     """
     path = Path(path)
     try:
         if path.suffix == ".json":
-            text = path.read_text(encoding="utf-8")
-        else:
-            import xarray as xr
+            return read_document(path.read_text(encoding="utf-8"), str(path))[0]
+        return _read_netcdf(path)
+    except OSError as error:
+        why = (error.strerror or str(error)).lower()
+        raise ResultError([Problem(str(path), "", "", f"cannot be read: {why}")]) from error
+    except UnicodeDecodeError as error:
+        why = f"holds no result of loadshare: it is not UTF-8 text at byte {error.start}"
+        raise ResultError([Problem(str(path), "", "", why)]) from error
 
-            with xr.open_dataset(path, engine="h5netcdf") as arrays:
-                text = arrays.attrs[DOCUMENT]
-        return from_document(json.loads(text))
-    except (OSError, KeyError, TypeError, ValueError) as error:
-        raise LoadshareError(f"{path}: holds no result of loadshare ({error})") from error
+
+def _read_netcdf(path: Path) -> Result:
+    """Load the result, and compare the arrays beside it with its own."""
+    import xarray as xr
+
+    try:
+        with xr.open_dataset(path, engine="h5netcdf") as file:
+            arrays = file.load()
+    except FileNotFoundError:
+        raise
+    except (OSError, ValueError, KeyError, TypeError, RuntimeError) as error:
+        why = "holds no result of loadshare: it is not a netCDF file"
+        raise ResultError([Problem(str(path), "", "", why)]) from error
+    text = arrays.attrs.pop(DOCUMENT, None)
+    if not isinstance(text, str):
+        raise ResultError([Problem(str(path), "", "", "holds no result of loadshare")])
+    result = read_document(text, f"{path}: {DOCUMENT}")[0]
+    problems = [Problem(str(path), *told) for told in array_differences(result.dataset, arrays)]
+    if problems:
+        raise ResultError(problems)
+    return result

@@ -9,6 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from loadshare.certify import Certificate, FloatState
+from loadshare.results.claim import Claim, Pair
+from loadshare.train.equilibrium import Equilibrium
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -16,8 +18,6 @@ if TYPE_CHECKING:
 
     from loadshare.case import Case
     from loadshare.report.plots import Plots
-
-Pair = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +39,8 @@ class Stamp:
         Of the certificate.
     stop : float
         Of the outer loop.
+    positions : tuple of int
+        1-based positions that were asked for.
     """
 
     version: str
@@ -50,6 +52,7 @@ class Stamp:
     reduce: bool
     tolerance: float
     stop: float
+    positions: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +100,8 @@ class Position:
     undetermined : tuple of str
         Coordinates that the equilibrium does not determine; the least-norm displacement is given.
     effort : Effort
+    claim : Claim
+        The displacements and forces from which, with the case, all the rest was computed.
     """
 
     position: int
@@ -110,6 +115,12 @@ class Position:
     certificate: Certificate
     undetermined: tuple[str, ...]
     effort: Effort
+    claim: Claim
+
+    @property
+    def equilibrium(self) -> Equilibrium:
+        """The claim as `loadshare.certify.certify` takes it."""
+        return self.claim.equilibrium(self.position, self.undetermined)
 
 
 @dataclass(frozen=True)
@@ -125,9 +136,9 @@ class Result:
     positions : tuple of Position
     omega, pair_omega : mapping of stage to float or None
         Largest Ω of each stage and of the system, by stage mean and by group mean.
-    case : Case or None
-        What was solved; None for a result that was loaded from a file. Two results are compared
-        without it: the stamp holds its hash.
+    case : Case
+        What was solved, its mesh laws computed. Two results are compared without it: the stamp
+        holds its hash.
     """
 
     stamp: Stamp
@@ -136,12 +147,14 @@ class Result:
     positions: tuple[Position, ...]
     omega: Mapping[str, float | None]
     pair_omega: Mapping[str, float | None]
-    case: Case | None = field(default=None, compare=False, repr=False)
+    case: Case = field(compare=False, repr=False)
 
     @property
     def passed(self) -> bool:
-        """Whether every position is certified; `solve` hands out no other result."""
-        return all(p.certificate.passed for p in self.positions)
+        """Whether every position asked for is there and certified; `solve` returns no other."""
+        there = [p.position for p in self.positions]
+        whole = bool(there) and sorted(there) == sorted(self.stamp.positions)
+        return whole and all(p.certificate.passed for p in self.positions)
 
     @property
     def certificate(self) -> Certificate:

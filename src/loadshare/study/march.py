@@ -145,13 +145,14 @@ def _marched(case: Case, train: Train, progress: Progress | None) -> March:
     answers: list[Answer] = []
     slips: list[dict[str, Slip]] = []
     before: dict[str, Vector] = {gear: np.zeros(3) for gear in train.splines}
-    for index in range(1, train.count + 1):
+    steps = range(1, train.count + 1)
+    for index in steps:
         remembering = train.remembering(before)
         try:
             answer = stepped(remembering, index)
         except Refused as refusal:
             if answers:
-                refusal.partial = result_of(case, train, answers, BACKEND, TOLERANCE)
+                refusal.partial = result_of(case, train, answers, BACKEND, TOLERANCE, steps)
             raise
         state = State(remembering, answer.equilibrium)
         after = {g: state.slip(s) for g, s in train.splines.items()}
@@ -161,10 +162,10 @@ def _marched(case: Case, train: Train, progress: Progress | None) -> March:
         if progress is not None:
             progress(index, train.count)
     assert train.march is not None
-    reference, revolutions, steps = train.march
+    reference, revolutions, count = train.march
     return March(
-        result=result_of(case, train, answers, BACKEND, TOLERANCE),
-        revolutions=tuple(revolutions * k / steps for k in range(steps)),
+        result=result_of(case, train, answers, BACKEND, TOLERANCE, steps),
+        revolutions=tuple(revolutions * k / count for k in range(count)),
         gear=reference,
         slips=tuple(slips),
     )

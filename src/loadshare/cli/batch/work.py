@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from loadshare._version import __version__
-from loadshare.errors import CaseError, LoadshareError, Refused
+from loadshare.errors import CaseError, Refused, ResultError
 
 if TYPE_CHECKING:
     from loadshare.case import Case
@@ -109,7 +109,8 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
     try:
         case = resolve(load_case(task.case))
         count = build_train(case).count
-        if not task.force and (kept := _kept(task, case, count)):
+        kept, notes = (None, ()) if task.force else _kept(task, case, count)
+        if kept is not None:
             return "kept", kept, ()
         result = solve(case, solver=task.solver, method=task.method, tolerance=task.tolerance)
     except CaseError as error:
@@ -118,20 +119,32 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
         write_document(task.target, refused_document(refusal, task.case.stem))
         return "refused", refusal.partial, tuple(told(refusal))
     result.to_json(task.target)
-    return "certified", result, ()
+    return "certified", result, notes
 
 
-def _kept(task: Task, case: Case, count: int) -> Result | None:
-    """Return the result on disk if it answers the same question in full."""
+def _kept(task: Task, case: Case, count: int) -> tuple[Result | None, tuple[str, ...]]:
+    """Return the result on disk if it answers the same question in full, and passes again.
+
+    Returns
+    -------
+    Result or None
+    tuple of str
+        What is wrong with a file that claims to be this result and is not.
+    """
     from loadshare.results import load_result
 
+    if not task.target.exists():
+        return None, ()
     try:
         result = load_result(task.target)
-    except LoadshareError:
-        return None
+    except ResultError as error:
+        # That the case was refused before is no news; it is solved again all the same.
+        if error.refusal:
+            return None, ()
+        first = replace(error.problems[0], hint="")
+        return None, (f"the file there was not kept: {first}",)
     stamp = result.stamp
     found = (stamp.case_hash, stamp.version, stamp.solver, stamp.method, stamp.tolerance)
     asked = (case.hash, __version__, task.solver, task.method, task.tolerance)
-    # A refused case leaves fewer positions than it has.
-    whole = len(result.positions) == count and result.passed and stamp.reduce
-    return result if whole and found == asked else None
+    whole = stamp.positions == tuple(range(1, count + 1)) and stamp.reduce
+    return (result if whole and found == asked else None), ()

@@ -1,0 +1,267 @@
+"""A result read back: what it claims is certified anew, the rest is computed and compared."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, fields, replace
+from functools import cache
+from typing import Any, NoReturn
+
+import numpy as np
+from pydantic import TypeAdapter, ValidationError
+
+from loadshare._version import __version__
+from loadshare.case import Case
+from loadshare.case.keys import Path, dotted
+from loadshare.case.origin import Origin
+from loadshare.case.words import as_given
+from loadshare.certify import certify
+from loadshare.certify.state import State
+from loadshare.certify.tolerance import checked_tolerance
+from loadshare.errors import CaseError, Problem, ResultError
+from loadshare.results.claim import Claim, misnamed
+from loadshare.results.derive import position_of, result_from
+from loadshare.results.differences import DIGITS, ROUND_OFF, differences
+from loadshare.results.document import FORMAT, to_document
+from loadshare.results.result import Effort, Position, Result, Stamp
+from loadshare.train import Train, build_train
+
+AGAIN = "Solve the case again: loadshare run CASE.toml --json FILE."
+
+
+@dataclass(frozen=True, slots=True)
+class _Position:
+    """What is read of a position; all else in it is computed anew, and compared."""
+
+    position: int
+    claim: Claim
+    undetermined: tuple[str, ...]
+    effort: Effort
+
+
+@dataclass(frozen=True, slots=True)
+class _File:
+    """What is read of a file."""
+
+    stamp: Stamp
+    input: dict[str, Any]
+    positions: list[_Position]
+
+
+def read_document(text: str, file: str) -> tuple[Result, dict[str, Any]]:
+    """Rebuild a result from its JSON text: certify what it claims, compute all else and compare.
+
+    Parameters
+    ----------
+    text : str
+    file : str
+        Name of the file, for messages.
+
+    Returns
+    -------
+    Result
+    dict
+        The text as plain data.
+
+    Raises
+    ------
+    ResultError
+        If the text is not what :func:`to_document` tells of a result that passes.
+    """
+    document = _parsed(text, file)
+    given = _read(text, file)
+    case, train = _machine(given, file)
+    problems = [*_wrong_positions(given, train), *_wrong_names(given, train)]
+    _raise(problems, file)
+    tolerance = _tolerance(given, file)
+    positions = [_position(train, p, tolerance) for p in given.positions]
+    _raise(_uncertified(positions), file)
+    _raise(_forgotten(train, positions), file)
+    stamp = replace(given.stamp, title=case.title, case_hash=case.hash)
+    result = result_from(case, train, positions, stamp)
+    _raise(differences(to_document(result), document, names=_elements(given, train)), file)
+    return result, document
+
+
+Wrong = tuple[Path, str, str, str]
+"""Key path, what stands there, what is wrong with it, and what was expected."""
+
+
+def _raise(wrong: Iterable[Wrong], file: str, hint: str = AGAIN) -> None:
+    problems = [Problem(file, dotted(path), *told) for path, *told in wrong]
+    if problems:
+        last = problems.pop()
+        raise ResultError(
+            [*problems, Problem(file, last.key, last.given, last.message, last.allowed, hint)]
+        )
+
+
+def _fail(file: str, message: str, hint: str = AGAIN, key: Path = (), given: str = "") -> NoReturn:
+    raise ResultError([Problem(file, dotted(key), given, message, "", hint)])
+
+
+def _parsed(text: str, file: str) -> dict[str, Any]:
+    """Parse JSON in which every number is finite and no key stands twice; look at its head."""
+
+    def number(written: str) -> float:
+        value = float(written)
+        if not math.isfinite(value):
+            raise ValueError(f"{written} is not a finite number")
+        return value
+
+    def table(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+        found = dict(pairs)
+        if len(found) < len(pairs):
+            keys = [key for key, _ in pairs]
+            twice = next(key for key in keys if keys.count(key) > 1)
+            raise ValueError(f"the key {twice} stands twice in one table")
+        return found
+
+    try:
+        document = json.loads(
+            text, parse_float=number, parse_constant=number, object_pairs_hook=table
+        )
+    except RecursionError:
+        _fail(file, "holds no result of loadshare: its tables are nested too deeply")
+    except ValueError as error:
+        _fail(file, f"holds no result of loadshare: {error}")
+    if not isinstance(document, dict) or "positions" not in document:
+        _fail(file, "holds no result of loadshare")
+    if "refused" in document:
+        message, hint = "holds a refusal and no result", "Why stands under refused.message."
+        raise ResultError([Problem(file, "", "", message, "", hint)], refusal=True)
+    found = document.get("format", 1)
+    if found != FORMAT or isinstance(found, bool):
+        writer = as_given(document.get("version"))
+        newer = isinstance(found, int) and found > FORMAT
+        hint = "Load it with that version, or a newer one." if newer else AGAIN
+        message = f"was written by loadshare {writer}; this is {__version__}, which reads {FORMAT}"
+        _fail(file, message, hint, ("format",), as_given(found))
+    return document
+
+
+@cache
+def _reader() -> TypeAdapter[_File]:
+    return TypeAdapter(_File)
+
+
+def _read(text: str, file: str) -> _File:
+    try:
+        return _reader().validate_json(text, strict=True)
+    except ValidationError as error:
+        raise ResultError(
+            Problem(
+                file,
+                dotted(details["loc"]),
+                "" if details["type"] == "missing" else as_given(details["input"]),
+                f"{details['msg'][0].lower()}{details['msg'][1:]}",
+                hint=AGAIN,
+            )
+            for details in error.errors(include_url=False)
+        ) from None
+
+
+def _machine(given: _File, file: str) -> tuple[Case, Train]:
+    """Build the case of a file, and its train."""
+    try:
+        case = Case(given.input, name=given.stamp.case, origin=Origin(f"{file}: input"))
+        if any(mesh.geometry or mesh.law_file for mesh in case.meshes.values()):
+            _fail(file, "its meshes ask for other files", key=("input", "meshes"))
+        train = build_train(case)
+    except CaseError as error:
+        raise ResultError(error.problems) from None
+    if case.hash != given.stamp.case_hash:
+        message = f"is not that of the case under input, {case.hash}"
+        if given.stamp.version != __version__:
+            message += f"; loadshare {given.stamp.version} wrote it, this is {__version__}"
+        _fail(file, message, key=("stamp", "case_hash"), given=given.stamp.case_hash)
+    return case, train
+
+
+def _tolerance(given: _File, file: str) -> float:
+    try:
+        return checked_tolerance(given.stamp.tolerance)
+    except ValueError as error:
+        _fail(file, str(error), key=("stamp", "tolerance"))
+
+
+def _wrong_positions(given: _File, train: Train) -> Iterator[Wrong]:
+    """Yield positions that are missing, there twice, or no position of the case."""
+    asked, there = given.stamp.positions, [p.position for p in given.positions]
+    if not asked:
+        yield ("stamp", "positions"), "[]", "is empty", "the positions that were asked for"
+    for at, index in enumerate(there):
+        path: Path = ("positions", at, "position")
+        if not 1 <= index <= train.count:
+            yield path, f"{index}", "is no position of the case", f"1 to {train.count}"
+        elif index in there[:at]:
+            yield path, f"{index}", "stands there twice", ""
+    for told, some in (
+        ("is missing", [k for k in asked if k not in there]),
+        ("was not asked for", [k for k in dict.fromkeys(there) if k not in asked]),
+    ):
+        yield from ((("positions",), "", f"position {k} {told}", "") for k in some)
+
+
+def _wrong_names(given: _File, train: Train) -> Iterator[Wrong]:
+    for at, p in enumerate(given.positions):
+        for field, name, message in misnamed(train, p.claim):
+            path: Path = ("positions", at, "claim", field, name)
+            yield path if name else path[:-1], "", message, ""
+
+
+def _position(train: Train, given: _Position, tolerance: float) -> Position:
+    found = given.claim.equilibrium(given.position, given.undetermined)
+    remembering = given.claim.train(train)
+    certificate = certify(remembering, found, tolerance)
+    return position_of(
+        remembering, given.position, given.claim, certificate, given.undetermined, given.effort
+    )
+
+
+def _uncertified(positions: Iterable[Position]) -> Iterator[Wrong]:
+    """Yield positions whose claims are no equilibrium of the case."""
+    for at, p in enumerate(positions):
+        if p.certificate.passed:
+            continue
+        failing = "; ".join(
+            f"{name.replace('_', ' ')} {r.value:.3g} {r.unit} at {r.where} ({r.scaled:.1e} of the "
+            f"case, allowed {p.certificate.tolerance:.0e})"
+            for name, r in p.certificate.failing.items()
+        )
+        message = f"position {p.position} is no equilibrium of the case under input: {failing}"
+        yield ("positions", at, "claim"), "", message, ""
+
+
+def _forgotten(train: Train, positions: Iterable[Position]) -> Iterator[Wrong]:
+    """Yield positions of a march that do not begin at the slip at which the one before ended."""
+    after = {gear: np.zeros(3) for gear in train.splines}
+    remembered = False
+    for at, p in enumerate(positions):
+        before = p.claim.slip
+        path: Path = ("positions", at, "claim", "slip")
+        if at > 0 and remembered != (before is not None):
+            yield path, "", "some positions remember their slip and some do not", ""
+        if before is None:
+            continue
+        remembered = True
+        if p.position != at + 1:
+            yield path, "", f"a march does not begin at its step {p.position}", ""
+        size = max((abs(u) for q in p.claim.displacement.values() for u in q), default=0.0)
+        for gear, slip in before.items():
+            off = float(np.abs(np.array(slip) - after[gear]).max())
+            if off > ROUND_OFF * size + DIGITS * float(np.abs(after[gear]).max()):
+                told = "is not the slip at the end of the step before"
+                yield (*path, gear), as_given(list(slip)), told, as_given(after[gear].tolist())
+        state = State(p.claim.train(train), p.equilibrium)
+        after = {gear: state.slip(spline) for gear, spline in train.splines.items()}
+
+
+def _elements(given: _File, train: Train) -> frozenset[str]:
+    """Names of elements, which are keys of tables in which all figures are of one kind."""
+    found = {*train.gears, *train.meshes, *(s.name for s in train.stages)}
+    for p in given.positions[:1]:
+        found |= {key for f in fields(Claim) for key in getattr(p.claim, f.name) or ()}
+    return frozenset(found)

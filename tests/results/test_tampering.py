@@ -1,0 +1,264 @@
+"""Files that were changed: each is refused by name, or gives the very result that was saved."""
+
+from __future__ import annotations
+
+import copy
+import json
+import math
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from tests.support import coasting, round_ring, shipped
+
+import loadshare as ls
+from loadshare.certify import certify
+from loadshare.results.claim import claim_of
+from loadshare.results.document import FORMAT, plain
+from loadshare.results.files import DOCUMENT
+from loadshare.results.reading import read_document
+from loadshare.study.march import march
+from loadshare.study.memory import stepped
+from loadshare.train import build_train
+
+METADATA = ("effort", "stop", "input")
+"""Told for readers: no figure follows from them. Of the input, what bears on the mechanics is
+hashed; the rest is titles and notes."""
+WORDS = ("version", "case", "solver", "method", "reduce", "rung", "kind", "where", "undetermined")
+"""Words for readers, which may be any, but nothing other than words."""
+
+CASES = {
+    "rings": lambda: ls.solve(shipped("fgfbstts/limit_ring"), positions=[1]),
+    "splines": lambda: ls.solve(shipped("fgfbstts/full_float"), positions=[2]),
+    "everything": lambda: ls.solve(shipped("fgfbstts/all_elements"), positions=[3]),
+    "coasting": lambda: ls.solve(coasting(), positions=[1]),
+    "round ring": lambda: ls.solve(round_ring("2e8 N/m")),
+    "march": lambda: (
+        march(shipped("fgfbstts/full_float"), gear="4", revolutions=1.0, steps=3).result
+    ),
+}
+
+
+@pytest.fixture(scope="module", params=CASES)
+def result(request):
+    return CASES[request.param]()
+
+
+def leaves(data: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str | int, ...]]:
+    if isinstance(data, dict):
+        for key, value in data.items():
+            yield from leaves(value, (*path, key))
+    elif isinstance(data, list):
+        for at, value in enumerate(data):
+            yield from leaves(value, (*path, at))
+    else:
+        yield path
+
+
+def at(data: Any, path: tuple[str | int, ...]) -> Any:
+    for step in path:
+        data = data[step]
+    return data
+
+
+def changed(document: dict[str, Any], path: tuple[str | int, ...], value: Any) -> dict[str, Any]:
+    made = copy.copy(document)
+    part = made
+    for step in path[:-1]:
+        part[step] = copy.copy(part[step])
+        part = part[step]
+    part[path[-1]] = value
+    return made
+
+
+def without(document: dict[str, Any], path: tuple[str | int, ...]) -> dict[str, Any]:
+    made = copy.deepcopy(document)
+    del at(made, path[:-1])[path[-1]]
+    return made
+
+
+def loads(document: dict[str, Any]) -> ls.Result | None:
+    """The result of a document, or None if it is refused by name."""
+    with suppress(ls.ResultError):
+        return read_document(json.dumps(document), "file.json")[0]
+    return None
+
+
+def is_metadata(path: tuple[str | int, ...]) -> bool:
+    return any(step in METADATA for step in path)
+
+
+def harmless(document: dict[str, Any], result: ls.Result) -> bool:
+    """Whether a document is refused, or gives the very result that was saved."""
+    found = loads(document)
+    return found is None or found == result
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("factor", [1.5, 1.0 + 1e-6, -1.0])
+def test_no_figure_can_be_changed(result, factor):
+    document = json.loads(result.to_json())
+    changes = 0
+    for path in leaves(document):
+        value = at(document, path)
+        if isinstance(value, bool) or not isinstance(value, int | float) or value == 0:
+            continue
+        made = type(value)(value * factor) if factor != 1.5 else value * factor
+        if made == value or is_metadata(path):
+            continue
+        changes += 1
+        assert harmless(changed(document, path, made), result), path
+    assert changes > 100
+
+
+@pytest.mark.slow
+def test_no_figure_can_be_something_else_or_missing(result):
+    document = json.loads(result.to_json())
+    for path in leaves(document):
+        if path[0] == "input":
+            continue
+        value = at(document, path)
+        wrong = [None, math.nan, "1.0" if isinstance(value, int | float) else 0.5, [value], {}]
+        for made in wrong:
+            if type(made) is type(value) and (made is None or {*path} & {*WORDS}):
+                continue
+            assert loads(changed(document, path, made)) is None, (path, made)
+        if path[-2] != "undetermined":
+            assert loads(without(document, path)) is None, path
+
+
+def test_every_claim_is_looked_at(result):
+    """The quick twin of the slow tests: claims and derived figures of the first position."""
+    document = json.loads(result.to_json())
+    for field in ("claim", "torque", "share", "floats", "displacement", "rotation"):
+        for path in leaves(document["positions"][0][field], ("positions", 0, field)):
+            value = at(document, path)
+            if isinstance(value, float) and value != 0.0:
+                assert harmless(changed(document, path, value * 1.5), result), path
+                assert loads(changed(document, path, math.nan)) is None
+                assert loads(without(document, path)) is None
+
+
+def test_what_a_result_holds_certifies_again(result):
+    train = build_train(result.case)
+    for p in result.positions:
+        again = certify(p.claim.train(train), p.equilibrium, result.stamp.tolerance)
+        assert again.passed
+        assert again == p.certificate
+
+
+@pytest.fixture(scope="module")
+def small():
+    return ls.solve(shipped("fgfbstts/limit_ring"), positions=[1, 2])
+
+
+def told(document: Any) -> str:
+    with pytest.raises(ls.ResultError) as caught:
+        read_document(document if isinstance(document, str) else json.dumps(document), "file.json")
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "message"),
+    [
+        (("positions", 0, "torque", "4-6"), 5000.0, r'positions[0].torque."4-6" = 5000.0: does'),
+        (("positions",), [], "position 2 is missing"),
+        (("positions", 1, "position"), 1, "positions[1].position = 1: stands there twice"),
+        (("positions", 1, "position"), 7, "is no position of the case. Allowed: 1 to 5"),
+        (("stamp", "case_hash"), "0" * 64, "stamp.case_hash"),
+        (("stamp", "tolerance"), 1.0, "tolerance 1.0 cannot be certified by"),
+        (("stamp", "positions"), [], "stamp.positions = []: is empty"),
+        (("input", "gears", "4", "base_radius"), "3 kg", "file.json: input: gears.4.base_radius"),
+        (("input", "rings", "4", "float"), "4.1 um", "is not that of the case under input"),
+        (("format",), FORMAT - 1, "Solve the case again: loadshare run CASE.toml --json FILE."),
+        (("format",), FORMAT + 1, "Load it with that version, or a newer one."),
+        (("format",), True, "format = true: was written by"),
+        (("refused",), {"message": "no"}, "holds a refusal and no result"),
+        (("colour",), "red", "colour: is not known"),
+        (("positions", 0, "claim", "flank_force", "4-6 drive"), 1.0, "position 1 is no equil"),
+        (("positions", 0, "claim", "shaft_torque"), {}, "is missing"),
+        (("positions", 0, "claim", "flank_force", "x"), 1.0, "claim.flank_force.x: is not known"),
+    ],
+)
+def test_what_is_wrong_is_named(small, path, value, message):
+    document = json.loads(small.to_json())
+    if path[-1] == "4-6 drive":
+        path = (*path[:-1], next(n for n in at(document, path[:-1]) if n.startswith("4-6")))
+    assert message in told(changed(document, path, value))
+
+
+def test_a_position_left_out_is_missed(small):
+    assert "position 2 is missing" in told(without(json.loads(small.to_json()), ("positions", 1)))
+
+
+def test_text_that_is_no_plain_json_is_refused(small):
+    text = small.to_json()
+    assert "the key omega stands twice" in told(text.replace('"pair_omega"', '"omega"'))
+    torque = f"{small.positions[0].torque['4-6']!r}"
+    for number in ("NaN", "Infinity", "-Infinity", "1e999"):
+        assert "not a finite number" in told(text.replace(torque, number))
+    assert "holds no result" in told(text[: len(text) // 2])
+    assert "holds no result" in told("[" * 100_000)
+    assert "holds no result" in told("[]")
+
+
+def test_results_of_other_cases_are_not_taken_for_this_one(small):
+    """Claims of one case under the other's input and stamp."""
+    other = ls.solve(
+        shipped("fgfbstts/limit_ring").replace({"rings.4.float": "4.1 um"}), positions=[1, 2]
+    )
+    here, there = json.loads(small.to_json()), json.loads(other.to_json())
+    assert "no equilibrium of the case" in told(here | {"positions": there["positions"]})
+    mixed = there | {"input": here["input"], "stamp": here["stamp"]}
+    assert "no equilibrium of the case" in told(mixed)
+
+
+def test_a_march_begins_where_the_step_before_ended():
+    found = CASES["march"]()
+    document = json.loads(found.to_json())
+    path = ("positions", 2, "claim", "slip")
+    assert harmless(changed(document, path, at(document, ("positions", 1, *path[2:]))), found)
+    assert loads(changed(document, path, None)) is None
+    # An equilibrium of the same step from another slip, which the march never had.
+    train = build_train(found.case).remembering({"4": [1e-5, 0.0, 0.0], "5": np.zeros(3)})
+    answer = stepped(train, 3)
+    claim = plain(claim_of(train, answer.equilibrium))
+    strange = changed(document, path[:-1], claim)
+    assert "is not the slip at the end of the step before" in told(strange)
+    later = {**document, "positions": document["positions"][1:]}
+    later["stamp"] = {**document["stamp"], "positions": [2, 3]}
+    assert "a march does not begin at its step 2" in told(later)
+    assert found.passed
+    assert ls.solve(found.case.replace({"march": None})).positions[0].claim.slip is None
+
+
+def test_a_result_of_some_positions_is_whole_if_no_more_were_asked_for(small):
+    assert small.passed
+    assert small.stamp.positions == (1, 2)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda a: a.assign(torque=a.torque * 1.5),
+        lambda a: a.assign(torque=a.torque.where(a.position > 1)),
+        lambda a: a.drop_vars("share"),
+        lambda a: a.assign(other=a.torque),
+        lambda a: a.isel(position=[0]),
+        lambda a: a.assign_coords(mesh=a.mesh.values[::-1]),
+        lambda a: a.assign_attrs(case_hash="0" * 64),
+        lambda a: a.assign_attrs({DOCUMENT: a.attrs[DOCUMENT].replace("on boundary", "inside")}),
+        lambda a: a.assign_attrs({DOCUMENT: 1.0}),
+    ],
+)
+def test_arrays_that_do_not_agree_with_their_result_are_refused(small, tmp_path, change):
+    file, spoilt = tmp_path / "good.nc", tmp_path / "spoilt.nc"
+    small.to_netcdf(file)
+    assert ls.load_result(file) == small
+    with xr.open_dataset(file, engine="h5netcdf") as arrays:
+        change(arrays.load()).to_netcdf(spoilt, engine="h5netcdf")
+    with pytest.raises(ls.ResultError, match=r"spoilt\.nc"):
+        ls.load_result(spoilt)
