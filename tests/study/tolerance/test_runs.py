@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -181,6 +182,55 @@ def test_a_damaged_part_is_solved_again(reference, tmp_path):
     found = run(out, chunk=3)
     assert bits(out) == whole == bits(reference)
     assert found.samples == ASKED["samples"]
+
+
+@pytest.mark.parametrize(
+    ("column", "change"),
+    [
+        ("omega.system", lambda v: 1.5 * v),
+        ("torque.pinionA-out [N*m]", lambda v: v + 1e-3 * v.max()),
+        ("omega.I", lambda v: np.full_like(v, np.nan)),
+        ("certified", lambda v: ~v),
+        ("sample", lambda v: v[::-1].copy()),
+        (None, lambda v: np.nextafter(v, 9.0)),
+    ],
+)
+def test_a_doctored_part_is_refused_by_name(reference, tmp_path, column, change):
+    out = tmp_path / "study"
+    shutil.copytree(reference, out)
+    file = sorted(out.glob("part-*.parquet"))[1]
+    table = parquet.read_table(file)
+    if column is None:
+        column = table.column_names[1]
+    made = pa.array(change(table.column(column).to_numpy()))
+    at = table.column_names.index(column)
+    parquet.write_table(table.set_column(at, column, made), file)
+    with pytest.raises(ls.ResultError, match=r"part-000001\.parquet: .*Remove this file") as caught:
+        run(out, chunk=1)
+    assert caught.value.problems[0].key == column
+    file.unlink()
+    run(out, chunk=1)
+    assert bits(out) == bits(reference)
+
+
+def test_a_worst_case_that_is_none_is_refused_by_name(tmp_path):
+    asked = {"samples": 64, "chunk": 1, "worst": True}
+    found = run(tmp_path / "study", **asked)
+    assert run(tmp_path / "study", **asked).worst == found.worst
+    file = tmp_path / "study" / "worst.json"
+    good = json.loads(file.read_text(encoding="utf-8"))
+    omega = good["worst"][0]["omega"]
+    some = next(iter(good["worst"][0]["inputs"]))
+    for change in (
+        {"omega": omega * 1.001},
+        {"omega": float("nan")},
+        {"inputs": {**good["worst"][0]["inputs"], some: 0.0}},
+        {"changes": {}},
+    ):
+        spoilt = {**good, "worst": [{**good["worst"][0], **change}]}
+        file.write_text(json.dumps(spoilt), encoding="utf-8")
+        with pytest.raises(ls.ResultError, match=r"worst\.json: worst\.stage\.omega"):
+            run(tmp_path / "study", **asked)
 
 
 def test_other_settings_are_told(tmp_path):

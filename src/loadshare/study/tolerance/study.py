@@ -20,10 +20,12 @@ from loadshare.job.machine import ENGINES, FEW
 from loadshare.job.positions import wanted_positions
 from loadshare.study.positions import loaded
 from loadshare.study.tolerance.figures import KINDS, SYSTEM
+from loadshare.study.tolerance.folder import WORST as WORST_FILE
 from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.indices import Share, shares
 from loadshare.study.tolerance.inputs import read_inputs
 from loadshare.study.tolerance.job import CHUNK, INDICES, Job, Part, equilibria
+from loadshare.study.tolerance.kept import check_kept
 from loadshare.study.tolerance.points import SEQUENCES
 from loadshare.study.tolerance.result import (
     FloatStatistics,
@@ -33,7 +35,7 @@ from loadshare.study.tolerance.result import (
     remove_with,
 )
 from loadshare.study.tolerance.statistics import Summary, exceedance, summary
-from loadshare.study.tolerance.worst import WorstCase, worst_case
+from loadshare.study.tolerance.worst import WorstCase, check_worst, worst_case
 from loadshare.train import Train, build_train
 
 NAME = "tolerance"
@@ -241,8 +243,11 @@ def _job(case: Case, name: str, chunk: int, engine: str) -> Job:
 
 
 def _solve(folder: Folder, scheduler: str | None, workers: int, progress: Progress | None) -> None:
-    """Solve what is missing."""
+    """Solve what is missing, after a look at what is there."""
     missing = folder.missing()
+    for part in folder.all:
+        if part not in missing:
+            check_kept(folder, part)
     total = sum(part.rows for part in folder.all)
     done = total - sum(part.rows for part in missing)
     if progress is not None:
@@ -349,7 +354,10 @@ def _worst(folder: Folder, kinds: Sequence[str]) -> tuple[WorstCase, ...]:
     if known is not None:
         # A file that something else wrote under this name holds other keys.
         with suppress(TypeError):
-            return tuple(WorstCase(**one) for one in known)
+            believed = tuple(WorstCase(**one) for one in known)
+            for one in believed:
+                check_worst(folder.job.solver, one, str(folder.path / WORST_FILE))
+            return believed
     found = tuple(_searched(folder, kinds))
     folder.keep_worst([asdict(one) for one in found])
     return found

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.errors import CaseError, Refused
+from loadshare.errors import CaseError, Problem, Refused, ResultError
 from loadshare.job import solve
 from loadshare.job.many import BLOCK
 from loadshare.study.tolerance.figures import KINDS, SYSTEM, Solver
@@ -207,3 +207,35 @@ def _confirmed(solver: Solver, box: Box, kind: str, place: Array, solved: int) -
         },
         solved=solved,
     )
+
+
+def check_worst(solver: Solver, known: WorstCase, file: str) -> None:
+    """Solve a worst case that an earlier run found again.
+
+    Raises
+    ------
+    ResultError
+        If its inputs do not give its Ω.
+    """
+    try:
+        changes = solver.inputs.changes(list(known.inputs.values()))
+        result = solve(
+            solver.case.replace(changes), positions=solver.positions, tolerance=solver.tolerance
+        )
+        found = (result.omega if known.over == "stage" else result.pair_omega)[SYSTEM]
+    except (Refused, CaseError, TypeError, ValueError):
+        changes, found = {}, None
+    if found is None or changes != known.changes or not abs(known.omega - found) <= GAIN * found:
+        expected = "no certified answer" if found is None else repr(found)
+        raise ResultError(
+            [
+                Problem(
+                    file,
+                    f"worst.{known.over}.omega",
+                    repr(known.omega),
+                    "is not what the inputs told there give",
+                    expected,
+                    "Remove this file and give the same command: it is then searched for again.",
+                )
+            ]
+        )

@@ -1,0 +1,81 @@
+"""Parts that an earlier run left behind are sampled: inputs drawn and samples solved again.
+
+A part is some ten thousand certified answers of which only the largest figures are kept, so it
+cannot be certified by itself. A few of its samples can: the study says how all of them were drawn.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from loadshare.case.words import as_given
+from loadshare.errors import Problem, ResultError
+from loadshare.study.tolerance.folder import Folder
+from loadshare.study.tolerance.job import Part
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+SAMPLED = 2
+"""Samples of a kept part that are solved again."""
+APART = 1e-6
+"""Relative difference of a figure that two certified answers of one sample cannot have: each is
+known to 1e-9, and a largest figure over branches is no less so."""
+AGAIN = "Remove this file and give the same command: the part is then solved again."
+
+
+def check_kept(folder: Folder, part: Part) -> None:
+    """Solve some samples of a part again; which ones follows from the study and the part.
+
+    Parameters
+    ----------
+    folder : Folder
+    part : Part
+        One that is there.
+
+    Raises
+    ------
+    ResultError
+        If the part's inputs are not those that the study draws, or a sample's figures are not those
+        of its answer. Where a float rests is not compared: it may be undetermined.
+    """
+    from pyarrow import parquet
+
+    job, file = folder.job, str(folder.file(part))
+    table = parquet.read_table(folder.file(part))
+    rng = np.random.default_rng(list(hashlib.sha256(job.stamp(part)).digest()))
+    design, blocks = job.designs[part.design], job.blocks(part.design, part.number)
+    block = int(rng.choice(blocks))
+    first = sum(len(design.rows(b)) for b in range(blocks.start, block))
+    numbers, values = design.rows(block), design.values(block)
+    there = table.slice(first, len(numbers))
+    drawn = {one.column: values[:, k] for k, one in enumerate(job.inputs.every)}
+    for name, column in {"sample": numbers, **drawn}.items():
+        found = _column(there, name, file)
+        if not np.array_equal(found, column):
+            row = int(np.flatnonzero(found != column)[0])
+            _refuse(file, name, int(numbers[row]), found[row], column[row])
+    rows = rng.choice(len(numbers), min(SAMPLED, len(numbers)), replace=False)
+    again = job.solver.solve(values[rows])
+    for name, expected in {**again.columns, "certified": ~np.isnan(again.residual)}.items():
+        found = _column(there, name, file)[rows]
+        if name.startswith("float."):
+            continue
+        off = ~np.isclose(found, expected, rtol=APART, atol=0.0, equal_nan=True)
+        if off.any():
+            k = int(np.flatnonzero(off)[0])
+            _refuse(file, name, int(numbers[rows[k]]), found[k], expected[k])
+
+
+def _column(table: pa.Table, name: str, file: str) -> np.ndarray[Any, Any]:
+    if name not in table.column_names:
+        raise ResultError([Problem(file, name, "", "is missing", "", AGAIN)])
+    return np.asarray(table.column(name).to_numpy())
+
+
+def _refuse(file: str, name: str, sample: int, found: object, expected: object) -> None:
+    message = f"is not what sample {sample} of this study gives"
+    raise ResultError([Problem(file, name, as_given(found), message, as_given(expected), AGAIN)])
