@@ -127,7 +127,10 @@ def test_the_worst_case_is_not_sought_again(slope, tmp_path, monkeypatch):
 def test_the_worst_phase_is_between(slope):
     """A phase has no vertex. Two equal eccentricities help each other most, or not at all."""
     case = shipped("fgfbstts/base").replace(
-        {"errors.6.eccentricity": {"amount": "20 um", "direction": "0 deg"}}
+        {
+            "errors.6.eccentricity": {"amount": "20 um", "direction": "0 deg"},
+            "operating.rotation": "neglected",
+        }
     )
     phase = {"errors.6.eccentricity.phase": {"distribution": "uniform phase"}}
     found = ls.tolerance(
