@@ -22,7 +22,7 @@ def test_a_certified_case_prints_everything_an_engineer_asks_for(command, cases)
         "Ω stage",
         "9-10",
         "upper stop + arc 6",
-        "Undetermined: gear 1 x, gear 1 y",
+        "gear 1 x, gear 1 y: not determined, without limit",
         "energy gap",
         "PASSED  5 of 5 positions certified",
     ):

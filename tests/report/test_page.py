@@ -47,7 +47,7 @@ def test_the_page_tells_what_was_computed(ring_page, ring_chapter):
         "loadshare run ",
         f"loadshare {ls.__version__}",
         "vl-convert-python",
-        "Undetermined: gear 1 x, gear 1 y",
+        "Gear 1 x, gear 1 y: not determined, without limit.",
     ):
         assert words in text
     for torque in result.positions[0].torque.values():

@@ -30,7 +30,7 @@ def test_every_point_is_a_solve_of_its_own():
     omega = float(here["pair_omega"].sel(stage="system"))
     assert omega == pytest.approx(alone.pair_omega["system"], rel=1e-13)
     assert here["rest"].sel(position=1, float="4") == alone.floats[0]["4"].boundary
-    assert here["rest"].sel(position=1, float="1") == "inside"
+    assert here["rest"].sel(position=1, float="1") == "undetermined"
 
 
 def test_each_point_begins_where_the_last_one_ended():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,7 +24,8 @@ class Touch:
     normal : tuple of float
         Outward normal of the region, (2,) in the gear's transverse frame.
     touching : bool
-        Whether the centre lies on it: its margin is within the band, or it pushes.
+        Whether the centre lies on it: it pushes, or its margin is within the band and the place is
+        determined.
     """
 
     name: str
@@ -41,7 +43,8 @@ class FloatState:
     ----------
     gear : str
     state : str
-        "inside" or "on boundary".
+        "inside", "on boundary", or "undetermined" where forces leave the place open and no boundary
+        pushes; what it then says of margins holds for the place of least norm.
     boundary : str or None
         The boundaries it touches, the hardest pressed first.
     margin : float or None
@@ -86,6 +89,7 @@ def float_states(state: State, band: float) -> dict[str, FloatState]:
 
 def _float_state(state: State, gear: str, band: float) -> FloatState:
     frame = state.train.gears[gear].frame
+    settled = not {f"gear {gear} x", f"gear {gear} y"} & state.answer.undetermined.keys()
     near, pressed = band * state.length_scale, band * state.force_scale
     touches: list[Touch] = []
     reaction = np.zeros(2)
@@ -95,7 +99,7 @@ def _float_state(state: State, gear: str, band: float) -> FloatState:
         reaction += push.force * (frame @ push.normal)
         margin = -push.approach
         normal = -(frame @ push.normal)
-        touching = margin <= near or push.force > pressed
+        touching = (settled and margin <= near) or push.force > pressed
         touches.append(Touch(push.name, margin, push.force, _pair(normal), touching))
     spline: list[Pull] = []
     for pull in state.pulls:
@@ -112,19 +116,19 @@ def _float_state(state: State, gear: str, band: float) -> FloatState:
         margin = pull.law.pieces[0].length - radius
         if pull.law.pieces[0].name != "inside":
             margin = -radius
-        touching = margin <= near or size > pressed
+        touching = (settled and margin <= near) or size > pressed
         touches.append(Touch(pull.name, margin, size, _pair(outward), touching))
     touches.sort(key=lambda t: -t.force)
     on = [t for t in touches if t.touching]
     return FloatState(
         gear=gear,
-        state="on boundary" if on else "inside",
+        state="on boundary" if on else "inside" if settled else "undetermined",
         boundary=" + ".join(t.name.split(": ")[-1] for t in on) or None,
         margin=min((t.margin for t in touches), default=None),
         normal=on[0].normal if on else None,
         reaction=_pair(reaction),
         boundaries=tuple(touches),
-        spline=_stage(spline, near, pressed) if spline else None,
+        spline=_stage(spline, near if settled else math.inf, pressed) if spline else None,
         spline_force=float(np.linalg.norm(sum(p.reaction for p in spline))) if spline else 0.0,
         friction=state.train.splines[gear].bound(state.transmitted(gear)) if spline else None,
     )
@@ -151,6 +155,7 @@ def _stage(parts: list[Pull], near: float, pressed: float) -> str:
     radius, force = float(np.linalg.norm(pull.offset)), float(np.linalg.norm(pull.reaction))
     stage = pull.law.pieces[0].name
     for k, piece in enumerate(pull.law.pieces):
-        if radius >= pull.law.start(k) - near and force >= piece.force - pressed:
+        more = pressed if math.isinf(near) and piece.stiffness > 0.0 else -pressed
+        if radius >= pull.law.start(k) - near and force >= piece.force + more:
             stage = piece.name
     return stage

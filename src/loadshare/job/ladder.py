@@ -117,21 +117,23 @@ def hot_answers(
         machine.situations(indices), tolerance, engine_named(engine, len(indices))
     )
     answers = {}
-    for row in np.flatnonzero(found.passed).tolist():
-        index = indices[row]
-        if found.tied[row]:
-            equilibrium = found.equilibria.one(row, index, machine.loose(found.code[row]))
-            certificate = certify_later(train, equilibrium, tolerance)
-        else:
-            claimed = found.equilibria.one(row, index)
-            equilibrium = of_least_norm(assemble(train, index), claimed)
-            certificate = certify(train, equilibrium, tolerance)
-            if not certificate.passed:
-                equilibrium = replace(claimed, undetermined=equilibrium.undetermined)
-                certificate = certify(train, equilibrium, tolerance)
-        if found.tied[row] or certificate.passed:
-            record = _hot_record(machine, found, row)
-            answers[index] = Answer(train, equilibrium, certificate, record, HOT)
+    passed = np.flatnonzero(found.passed)
+    claimed = {row: found.equilibria.one(row, indices[row]) for row in passed.tolist()}
+    least, verdicts = dict(claimed), found.verdicts
+    for row in passed[~found.determined[passed]].tolist():
+        least[row] = of_least_norm(assemble(train, indices[row]), claimed[row])
+    moved = [row for row in least if least[row].displacement is not claimed[row].displacement]
+    if moved:
+        placed = found.equilibria.laid(np.copy)
+        for row in moved:
+            placed.put(row, least[row])
+        verdicts = machine.judge.judge(machine.situations(indices), placed, tolerance)
+    for row, equilibrium in least.items():
+        if not verdicts.passed[row]:
+            equilibrium = replace(claimed[row], undetermined=equilibrium.undetermined)
+        certificate = certify_later(train, equilibrium, tolerance)
+        record = _hot_record(machine, found, row)
+        answers[indices[row]] = Answer(train, equilibrium, certificate, record, HOT)
     return answers
 
 

@@ -14,7 +14,8 @@ from loadshare.scene import assemble
 from loadshare.scene.data import Data, data_of
 from loadshare.scene.elements import Elements, elements_of
 from loadshare.solver.hot import vectorised
-from loadshare.solver.hot.answer import equilibria, tied
+from loadshare.solver.hot.answer import equilibria
+from loadshare.solver.hot.determined import determined
 from loadshare.solver.hot.exchange import Codes, Engine, Found, exchange, first_sets
 from loadshare.solver.hot.state import State, at_rest, pushes
 from loadshare.train import Train
@@ -22,8 +23,6 @@ from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations, situation_of, stack
 
 ENGINES = ("auto", "compiled", "vectorised")
-LOOSE = 1e-6
-"""Share of a coordinate in a loose move from which on it counts as undetermined."""
 FEW = 2000
 """Equilibria up to which compiling, or reading what was compiled, costs more than it saves."""
 
@@ -69,11 +68,9 @@ class Answers:
     verdicts : Verdicts
     passed : ndarray of bool, shape (S,)
         Certified.
-    tied : ndarray of bool, shape (S,)
-        Whether every closed contact carries a force. The displacements are then determined, but for
-        the loose moves of the set, and of least norm; otherwise they are one possible choice.
-    held : ndarray of bool, shape (S,)
-        Whether the set has no loose moves.
+    determined : ndarray of bool, shape (S,)
+        Whether the forces determine every displacement; where they do not, the place given is one
+        possible choice.
     code : ndarray of int8, shape (S, switches)
         Which elements act.
     turns : ndarray of int, shape (S,)
@@ -83,8 +80,7 @@ class Answers:
     equilibria: Equilibria
     verdicts: Verdicts
     passed: NDArray[np.bool_]
-    tied: NDArray[np.bool_]
-    held: NDArray[np.bool_]
+    determined: NDArray[np.bool_]
     code: Codes
     turns: NDArray[np.intp]
 
@@ -194,8 +190,7 @@ class Machine:
             answers,
             verdicts,
             found.solved & verdicts.passed,
-            tied(self.elements, state, found.code, quick),
-            found.held,
+            determined(self.elements, data, state, found.code, found.held, quick),
             found.code,
             found.turns,
         )
@@ -246,12 +241,6 @@ class Machine:
     def _drives(self) -> Codes:
         kinds = [row.kind == "drive flank" for row in self.elements.scene.rows]
         return np.array(kinds + [False] * len(self.elements.scene.arcs), dtype=np.int8)
-
-    def loose(self, code: Codes) -> tuple[str, ...]:
-        """Coordinates that a set leaves undetermined."""
-        moves = np.abs(self.elements.basis(code).loose).max(axis=1, initial=0.0)
-        names = self.elements.scene.coordinates
-        return tuple(name for name, move in zip(names, moves, strict=True) if move > LOOSE)
 
     def _start(self, index: int, engine: Engine) -> _Start | None:
         """What the train itself does at a position; None if the hot path does not know."""

@@ -268,9 +268,9 @@ def _block(
         columns = slice(at, at + len(some))
         certified[:, columns] = found.passed.reshape(-1, count).T
         residual[:, columns] = found.verdicts.worst.reshape(-1, count).T
-        determined[:, columns] = (found.tied & found.held).reshape(-1, count).T
+        determined[:, columns] = found.determined.reshape(-1, count).T
         if least_norm:
-            for k in np.flatnonzero(found.passed & ~found.tied).tolist():
+            for k in np.flatnonzero(found.passed & ~found.determined).tolist():
                 p, row = divmod(k, count)
                 _settle_loose(every[at + p], row, samples.one(row), some[p], tolerance)
     for row, p in np.argwhere(~certified).tolist():

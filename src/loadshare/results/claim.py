@@ -9,7 +9,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from loadshare.train.equilibria import Names
-from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.equilibrium import Equilibrium, Range
 from loadshare.train.train import Train
 
 Pair = tuple[float, float]
@@ -49,7 +49,7 @@ class Claim:
     support_force: Mapping[str, Pair]
     slip: Mapping[str, Triple] | None
 
-    def equilibrium(self, index: int, undetermined: tuple[str, ...]) -> Equilibrium:
+    def equilibrium(self, index: int, undetermined: Mapping[str, Range]) -> Equilibrium:
         """Return the claim as the equilibrium of position `index` (1-based)."""
         vectors = {
             name: {key: np.array(v) for key, v in getattr(self, name).items()}

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from loadshare.case import Case
 from loadshare.certify import Certificate
 from loadshare.results.claim import Claim
 from loadshare.results.result import Effort, Position, Result, Stamp
 from loadshare.results.share import largest, pair_shares, stage_shares
+from loadshare.train.equilibrium import Range
 from loadshare.train.train import Train
 
 
@@ -17,7 +18,7 @@ def position_of(
     index: int,
     claim: Claim,
     certificate: Certificate,
-    undetermined: tuple[str, ...],
+    undetermined: Mapping[str, Range],
     effort: Effort,
 ) -> Position:
     """Return what a claim says of a position.
@@ -30,7 +31,7 @@ def position_of(
     claim : Claim
     certificate : Certificate
         Of the claim.
-    undetermined : tuple of str
+    undetermined : mapping of coordinate to (float, float)
     effort : Effort
     """
     drive, coast = {}, {}

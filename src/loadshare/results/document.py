@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any
@@ -31,14 +32,14 @@ def to_document(result: Result) -> dict[str, Any]:
 
 
 def plain(given: Any) -> Any:
-    """Return dataclasses, mappings and tuples as JSON knows them."""
+    """Return dataclasses, mappings and tuples as JSON knows them; what is infinite is null."""
     if isinstance(given, Mapping):
         return {key: plain(value) for key, value in given.items()}
     if is_dataclass(given):
         return {f.name: plain(getattr(given, f.name)) for f in fields(given)}
     if isinstance(given, list | tuple):
         return [plain(value) for value in given]
-    return given
+    return None if isinstance(given, float) and math.isinf(given) else given
 
 
 def _told(p: Position) -> dict[str, Any]:

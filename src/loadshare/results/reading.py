@@ -24,9 +24,12 @@ from loadshare.errors import CaseError, Problem, ResultError
 from loadshare.results.claim import Claim, misnamed
 from loadshare.results.derive import position_of, result_from
 from loadshare.results.differences import DIGITS, ROUND_OFF, differences
-from loadshare.results.document import FORMAT, to_document
+from loadshare.results.document import FORMAT, plain, to_document
 from loadshare.results.result import Effort, Position, Result, Stamp
+from loadshare.scene import assemble
+from loadshare.solver.position import of_least_norm
 from loadshare.train import Train, build_train
+from loadshare.train.equilibrium import Range
 
 AGAIN = "Solve the case again: loadshare run CASE.toml --json FILE."
 
@@ -37,8 +40,16 @@ class _Position:
 
     position: int
     claim: Claim
-    undetermined: tuple[str, ...]
+    undetermined: dict[str, tuple[float | None, float | None]]
     effort: Effort
+
+    @property
+    def ranges(self) -> dict[str, Range]:
+        """What is undetermined, with infinite ends where there is no limit."""
+        return {
+            name: (-math.inf if low is None else low, math.inf if high is None else high)
+            for name, (low, high) in self.undetermined.items()
+        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +90,7 @@ def read_document(text: str, file: str) -> tuple[Result, dict[str, Any]]:
     positions = [_position(train, p, tolerance) for p in given.positions]
     _raise(_uncertified(positions), file)
     _raise(_forgotten(train, positions), file)
+    _raise(_loosened(positions, train), file)
     stamp = replace(given.stamp, title=case.title, case_hash=case.hash)
     result = result_from(case, train, positions, stamp)
     _raise(differences(to_document(result), document, names=_elements(given, train)), file)
@@ -213,11 +225,11 @@ def _wrong_names(given: _File, train: Train) -> Iterator[Wrong]:
 
 
 def _position(train: Train, given: _Position, tolerance: float) -> Position:
-    found = given.claim.equilibrium(given.position, given.undetermined)
+    found = given.claim.equilibrium(given.position, given.ranges)
     remembering = given.claim.train(train)
     certificate = certify(remembering, found, tolerance)
     return position_of(
-        remembering, given.position, given.claim, certificate, given.undetermined, given.effort
+        remembering, given.position, given.claim, certificate, given.ranges, given.effort
     )
 
 
@@ -257,6 +269,15 @@ def _forgotten(train: Train, positions: Iterable[Position]) -> Iterator[Wrong]:
                 yield (*path, gear), as_given(list(slip)), told, as_given(after[gear].tolist())
         state = State(p.claim.train(train), p.equilibrium)
         after = {gear: state.slip(spline) for gear, spline in train.splines.items()}
+
+
+def _loosened(positions: Iterable[Position], train: Train) -> Iterator[Wrong]:
+    """Yield ranges of what the forces leave open that do not follow from the claim."""
+    for at, p in enumerate(positions):
+        scene = assemble(p.claim.train(train), p.position)
+        ranges = of_least_norm(scene, p.equilibrium).undetermined
+        for path, was, wrong, expected in differences(plain(ranges), plain(p.undetermined)):
+            yield ("positions", at, "undetermined", *path), was, wrong, expected
 
 
 def _elements(given: _File, train: Train) -> frozenset[str]:

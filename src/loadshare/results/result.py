@@ -97,8 +97,10 @@ class Position:
         [m], in the gear's transverse frame; the global x, y for a gear whose axis is z.
     floats : mapping of gear to FloatState
     certificate : Certificate
-    undetermined : tuple of str
-        Coordinates that the equilibrium does not determine; the least-norm displacement is given.
+    undetermined : mapping of coordinate to (float, float)
+        What the forces leave open, as "gear 4 x" [m] or "gear 4 rotation" [rad]: the least and the
+        largest value that it may take, infinite without a limit. Rotation and displacement are
+        those of least norm: Σ r_b²φ² + |p|² over all gears.
     effort : Effort
     claim : Claim
         The displacements and forces from which, with the case, all the rest was computed.
@@ -113,7 +115,7 @@ class Position:
     displacement: Mapping[str, Pair]
     floats: Mapping[str, FloatState]
     certificate: Certificate
-    undetermined: tuple[str, ...]
+    undetermined: Mapping[str, Pair]
     effort: Effort
     claim: Claim
 

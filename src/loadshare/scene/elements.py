@@ -167,7 +167,7 @@ class Elements:
 
 def elements_of(scene: Scene) -> Elements:
     """Set up the force method for a scene's train."""
-    springs, kinds = _springs(scene)
+    springs, kinds = spring_directions(scene)
     origin = np.zeros(scene.size)
     rows = [r.vector for r in scene.rows_at(origin)]
     radials = [component for r in scene.radials for component in r.matrix]
@@ -196,8 +196,8 @@ def _between_rigid(scene: Scene, arc: str) -> bool:
     return not train.gears[neighbours[arc]].moves
 
 
-def _springs(scene: Scene) -> tuple[list[Array], list[str]]:
-    """Directions of elastic shafts and supports."""
+def spring_directions(scene: Scene) -> tuple[list[Array], list[str]]:
+    """Unit directions (n,) of elastic shafts and supports, and which of these they are."""
     train = scene.train
     vectors, kinds = [], []
     for shaft in train.shafts.values():
@@ -225,9 +225,19 @@ def wind_up(scene: Scene, first: str, second: str) -> tuple[Array, float]:
     return (wind / size if size else wind), size
 
 
+def unresisted(directions: Array) -> Array:
+    """Orthonormal moves (n, l) across all of some directions (k, n)."""
+    _, sizes, right = np.linalg.svd(directions, full_matrices=True)
+    return np.asarray(right[_rank(sizes) :].T)
+
+
+def _rank(sizes: Array) -> int:
+    return int((sizes > RANK * sizes.max(initial=0.0)).sum())
+
+
 def _basis(columns: NDArray[np.intp], directions: Array) -> Basis:
     left, sizes, right = np.linalg.svd(directions, full_matrices=True)
-    rank = int((sizes > RANK * sizes.max(initial=0.0)).sum())
+    rank = _rank(sizes)
     particular = left[:, :rank] / sizes[:rank] @ right[:rank]
     return Basis(
         columns, directions, particular, np.ascontiguousarray(left[:, rank:]), right[rank:].T

@@ -13,10 +13,11 @@ from loadshare.scene.scene import Scene
 from loadshare.solver.backend import Backend, backend
 from loadshare.solver.exact import ROUNDING
 from loadshare.solver.findings import Unbalanced, Unsolved
-from loadshare.solver.least_norm import least_norm
 from loadshare.solver.outer import Settled, settle
 from loadshare.solver.record import Options, Record
+from loadshare.solver.undetermined import free_set, places
 from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.memory import SlipFriction
 
 NOISE = 1e-12
 """Force, over what a gap would cost if it were pressed shut, that counts as round-off."""
@@ -147,29 +148,35 @@ def _equilibrium(scene: Scene, settled: Settled) -> Equilibrium:
     train = scene.train
     settled = _without_noise(scene, settled)
     pulls = _radial_forces(scene, settled)
-    x, undetermined = least_norm(scene, settled.x, settled.forces, pulls, settled.laws)
+    found = places(free_set(scene, settled.x, settled.forces, pulls, settled.laws))
     flanks = {r.name for r in scene.rows if r.kind.endswith("flank")}
     contacts = [r.name for r in scene.rows if r.kind == "stop"] + [a.name for a in scene.arcs]
     reactions = {r.name: -pulls[r.name] @ train.gears[r.gear].frame for r in scene.radials}
     return Equilibrium(
         index=scene.situation.index,
-        rotation={g: scene.angle(g, x) for g in train.gears},
-        displacement={g: scene.moved(g, x) for g in train.gears},
+        rotation={g: scene.angle(g, found.x) for g in train.gears},
+        displacement={g: scene.moved(g, found.x) for g in train.gears},
         flank_force={n: max(settled.forces.get(n, 0.0), 0.0) for n in sorted(flanks)},
         ring_force={n: max(settled.forces.get(n, 0.0), 0.0) for n in contacts},
         radial_reaction=reactions,
-        undetermined=undetermined,
+        undetermined=found.ranges,
     )
 
 
 def coordinates_of(scene: Scene, found: Equilibrium) -> Array:
-    """Coordinates (n,) [m] of an equilibrium without memory of slip."""
+    """Coordinates (n,) [m] of an equilibrium."""
     x = np.zeros(scene.size)
     for name, r in scene.rotation.items():
         if r.index is not None:
             x[r.index] = (found.rotation[name] - r.constant) / r.rate
     for name, where in scene.displacement.items():
         x[where] = scene.train.gears[name].frame @ found.displacement[name]
+    for radial in scene.radials:
+        if isinstance(radial.source, SlipFriction):
+            spline, frame = radial.source.spline, scene.train.gears[radial.gear].frame
+            pull = [found.radial_reaction[n] for n in (spline.name, spline.stop_name)]
+            slip = found.displacement[radial.gear] + sum(pull) / spline.bending_stiffness
+            x += radial.matrix.T @ frame @ slip
     return x
 
 
@@ -196,7 +203,7 @@ def _without_noise(scene: Scene, settled: Settled) -> Settled:
 
 
 def of_least_norm(scene: Scene, found: Equilibrium) -> Equilibrium:
-    """Return the same equilibrium at its displacement of least norm, what is undetermined named.
+    """Return the same equilibrium at its place of least norm, with the ranges of what is open.
 
     Torques and forces stay as they are.
     """
@@ -206,12 +213,14 @@ def of_least_norm(scene: Scene, found: Equilibrium) -> Equilibrium:
     laws = {
         r.name: r.law(scene.train.transmitted(r.gear, found.flank_force)) for r in scene.radials
     }
-    x, undetermined = least_norm(scene, x, forces, pulls, laws)
+    least = places(free_set(scene, x, forces, pulls, laws))
+    if least.x is x:
+        return replace(found, undetermined=least.ranges)
     return replace(
         found,
-        rotation={g: scene.angle(g, x) for g in gears},
-        displacement={g: scene.moved(g, x) for g in gears},
-        undetermined=undetermined,
+        rotation={g: scene.angle(g, least.x) for g in gears},
+        displacement={g: scene.moved(g, least.x) for g in gears},
+        undetermined=least.ranges,
     )
 
 

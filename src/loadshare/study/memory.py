@@ -21,6 +21,7 @@ from loadshare.job.ladder import Answer, rungs
 from loadshare.scene import assemble
 from loadshare.scene.scene import Array, Scene
 from loadshare.solver import Options, solve_scene
+from loadshare.solver.position import of_least_norm
 from loadshare.study.answers import BACKEND, certified
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
@@ -90,6 +91,9 @@ def _held(
         split = _split(train, found, gears)
         certificate = certify(train, split, TOLERANCE)
         if certificate.passed:
+            ranges = of_least_norm(assemble(train, index), split).undetermined
+            split = replace(split, undetermined=ranges)
+            certificate = certify(train, split, TOLERANCE)
             return Answer(train, split, certificate, record, f"{rung}, slip held")
     return None
 

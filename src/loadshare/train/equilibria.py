@@ -100,7 +100,7 @@ class Equilibria:
         """Return some of the samples, as a view."""
         return self.laid(lambda array: array[samples])
 
-    def one(self, sample: int, index: int, undetermined: tuple[str, ...] = ()) -> Equilibrium:
+    def one(self, sample: int, index: int) -> Equilibrium:
         """Return a sample as an equilibrium of position `index`."""
         names = self.names
         return Equilibrium(
@@ -115,7 +115,6 @@ class Equilibria:
                     names.radials, self.radial_reaction[sample], strict=True
                 )
             },
-            undetermined=undetermined,
             shaft_torque={
                 shaft.name: float(torque)
                 for shaft, torque in zip(

@@ -7,6 +7,9 @@ from dataclasses import dataclass, field
 
 from loadshare.train.gear import Vector
 
+Range = tuple[float, float]
+"""Least and largest value."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Equilibrium:
@@ -33,8 +36,10 @@ class Equilibrium:
     support_force : mapping of gear to ndarray, shape (2,)
         Force [N] on elastic bearings, in the gear's transverse frame; otherwise from the
         displacement.
-    undetermined : tuple of str
-        Coordinates that the equilibrium does not determine; the least-norm displacement is given.
+    undetermined : mapping of coordinate to (float, float)
+        Coordinates that the forces do not determine, as "gear 4 x" or "gear 4 rotation", with the
+        least and the largest value that each may take [m, rad], infinite without a limit. The
+        place given is that of least norm.
     """
 
     index: int
@@ -43,6 +48,6 @@ class Equilibrium:
     flank_force: Mapping[str, float]
     ring_force: Mapping[str, float]
     radial_reaction: Mapping[str, Vector]
-    undetermined: tuple[str, ...] = ()
+    undetermined: Mapping[str, Range] = field(default_factory=dict)
     shaft_torque: Mapping[str, float] = field(default_factory=dict)
     support_force: Mapping[str, Vector] = field(default_factory=dict)

@@ -88,6 +88,13 @@ class RadialLaw:
             low, high = min(low, self.pieces[-1].end_force), math.inf
         return low, high
 
+    def level(self, force: float, band: float) -> tuple[float, float] | None:
+        """Radii [m] between which the graph admits a force, up to `band` [N]; None for one only."""
+        for k, piece in enumerate(self.pieces):
+            if piece.stiffness == 0.0 and piece.length > 0.0 and abs(force - piece.force) <= band:
+                return self.start(k), self.start(k) + piece.length
+        return None
+
     def energy(self, radius: float) -> float:
         """∫F dR [J] up to `radius` [m]; beyond a rigid stop, what its edge costs."""
         total, left = 0.0, radius

@@ -11,6 +11,7 @@ from loadshare.cli.exits import counted
 from loadshare.cli.tables.table import show, table
 from loadshare.job.ladder import Answer
 from loadshare.report.numbers import NONE, fixed, small
+from loadshare.report.undetermined import range_told
 from loadshare.scene.plan import Role
 from loadshare.solver import Record
 
@@ -54,7 +55,11 @@ def _print_facts(console: Console, answer: Answer) -> None:
         "programme": f"{record.kind}, {counted(len(record.coordinates), 'coordinate')}",
         **how,
         "coordinates": ", ".join(record.coordinates),
-        "undetermined": ", ".join(answer.equilibrium.undetermined) or "none",
+        "undetermined": "; ".join(
+            f"{name} {range_told(name, *ends)}"
+            for name, ends in answer.equilibrium.undetermined.items()
+        )
+        or "none",
     }
     made = Table.grid(padding=(0, 2))
     for fact, told in facts.items():

@@ -12,17 +12,26 @@ from loadshare.certify import FloatState
 from loadshare.cli.tables.sharing import MOST
 from loadshare.cli.tables.table import show, table
 from loadshare.report.numbers import NONE, decimals, fixed, micrometres
+from loadshare.report.undetermined import undetermined_told
 from loadshare.results import Position, Result
 
 TITLE = "Floating gears: displacement x, y and margin [µm], reaction of the ring [N]"
 
 
 def print_floats(console: Console, result: Result) -> None:
+    """Print where the floats rest, and what the forces leave open of that and of rotations."""
+    if result.positions[0].floats:
+        _print_rests(console, result.positions)
+    told = undetermined_told(result.positions)
+    for line in told:
+        console.print(line)
+    if told:
+        console.print("Of what is not determined, the least displacement is given.")
+
+
+def _print_rests(console: Console, positions: tuple[Position, ...]) -> None:
     """Print the rest of every float: alike everywhere, position by position, or summed up."""
-    positions = result.positions
     gears = list(positions[0].floats)
-    if not gears:
-        return
     forces = [math.hypot(*f.reaction) for p in positions for f in p.floats.values()]
     places = decimals(forces)
     splines = any(f.spline for p in positions for f in p.floats.values())
@@ -35,9 +44,6 @@ def print_floats(console: Console, result: Result) -> None:
     show(console, TITLE, shown)
     if alike and len(positions) > 1:
         console.print("The same at all positions.")
-    loose = dict.fromkeys(name for p in positions for name in p.undetermined)
-    if loose:
-        console.print(f"Undetermined: {', '.join(loose)}; the least displacement is given.")
 
 
 def _rest(position: Position, gear: str, places: int) -> tuple[str, ...]:

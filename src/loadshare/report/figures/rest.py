@@ -48,6 +48,8 @@ def rest_told(rests: Sequence[FloatState], positions: Sequence[int]) -> list[str
 
 
 def _where(rest: FloatState) -> str:
+    if rest.state == "undetermined":
+        return "undetermined: no force decides"
     if rest.margin is None:
         return "inside: no ring bounds it"
     if rest.state == "inside":

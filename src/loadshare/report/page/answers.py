@@ -9,6 +9,7 @@ from loadshare.report.figures.rest import places_told, rest_told
 from loadshare.report.numbers import NONE, decimals, fixed, micrometres, omega, small
 from loadshare.report.page.table import Cell, Table, columns
 from loadshare.report.reached import reached
+from loadshare.report.undetermined import undetermined_told
 from loadshare.results import Position, Result
 
 FOLDED = 24
@@ -68,6 +69,8 @@ def torque_table(result: Result) -> Table:
         notes.append("Ω is the largest over the positions.")
     if any(cell.text == NONE for row in rows for cell in row):
         notes.append(f"{NONE}: not in a stage, or without load.")
+    if not result.positions[0].floats:
+        notes += _undetermined(result)
     return Table(
         "Torque on the driver of every mesh",
         columns(("mesh", "stage"), (*torque, "Ω over stage mean", "Ω over group mean")),
@@ -129,15 +132,21 @@ def float_table(result: Result) -> Table:
                     *(Cell(t, v) for t, v in zip(texts, values, strict=True)),
                 ]
             )
-    loose = dict.fromkeys(name for p in result.positions for name in p.undetermined)
-    notes = [f"Undetermined: {', '.join(loose)}; the least displacement is given."] if loose else []
     figures = ("position", "x [µm]", "y [µm]", "margin [µm]", "reaction [N]")
     return Table(
         "Floating gears",
         columns(("gear", "rests", "spline"), figures),
         rows,
-        notes,
+        _undetermined(result),
         folded=len(rows) > FOLDED,
+    )
+
+
+def _undetermined(result: Result) -> list[str]:
+    """Notes on what the forces leave open."""
+    notes = [f"{told[0].upper()}{told[1:]}." for told in undetermined_told(result.positions)]
+    return notes + (
+        ["Of what is not determined, the least displacement is given."] if notes else []
     )
 
 

@@ -6,15 +6,11 @@ import math
 from typing import NamedTuple, cast
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loadshare.scene.elements import Elements, wind_up
 from loadshare.scene.scene import Array
 from loadshare.solver.hot.state import State
 from loadshare.train.equilibria import Equilibria, Names
-
-CARRIES = 1e-12
-"""Force, over the largest, below which a contact ties no displacement (see `least_norm`)."""
 
 
 def equilibria(elements: Elements, state: State, compiled: bool = False) -> Equilibria:
@@ -117,20 +113,3 @@ def _map(elements: Elements, names: Names) -> _Map:
     )
     elements.keep(("map",), found)
     return found
-
-
-def tied(
-    elements: Elements, state: State, code: NDArray[np.int8], compiled: bool = False
-) -> NDArray[np.bool_]:
-    """Whether every closed contact of a sample carries a force, shape (S,).
-
-    One that is closed without force ties no displacement, although the set says so.
-    """
-    if compiled:
-        from loadshare.solver.hot import products
-
-        return products.tied(state.force, elements.springs, code[:, : elements.rows], CARRIES)
-    rows = np.abs(state.force[:, elements.springs : elements.springs + elements.rows])
-    largest = np.maximum(rows.max(axis=1, initial=0.0), np.finfo(float).tiny)
-    idle = (code[:, : elements.rows] != 0) & (rows <= CARRIES * largest[:, None])
-    return np.asarray(~idle.any(axis=1))

@@ -64,19 +64,25 @@ def _push(force, first, unit, found):  # type: ignore[no-untyped-def]
             found[s, k] = max(force[s, first + k], 0.0) * unit
 
 
-def tied(force: Array, first: int, code: NDArray[np.int8], carries: float) -> NDArray[np.bool_]:
-    """Whether every closed contact carries a force, shape (S,); see `answer.tied`."""
-    found = np.ones(len(force), dtype=bool)
-    _tie(force, first, code, carries, found)
-    return found
+def idle(
+    force: Array, first: int, code: NDArray[np.int8], share: float, least: Array
+) -> tuple[NDArray[np.bool_], Array]:
+    """Whether some closed contact carries nothing, and what a force is at least, both (S,).
+
+    See `determined`: a force is more than `share` of the largest of its sample, and than `least`.
+    """
+    found, carries = np.zeros(len(force), dtype=bool), np.empty(len(force))
+    _idle(force, first, code, share, least, found, carries)
+    return found, carries
 
 
 @njit(cache=True, nogil=True)
-def _tie(force, first, code, carries, found):  # type: ignore[no-untyped-def]
+def _idle(force, first, code, share, least, found, carries):  # type: ignore[no-untyped-def]
     for s in range(code.shape[0]):
-        largest = np.finfo(np.float64).tiny
+        carry = least[s]
         for k in range(code.shape[1]):
-            largest = max(largest, abs(force[s, first + k]))
+            carry = max(carry, share * abs(force[s, first + k]))
+        carries[s] = carry
         for k in range(code.shape[1]):
-            if code[s, k] != 0 and abs(force[s, first + k]) <= carries * largest:
-                found[s] = False
+            if code[s, k] != 0 and force[s, first + k] <= carry:
+                found[s] = True

@@ -265,9 +265,6 @@ class Branch:
                 h.radial.name: -h.force @ gears[h.radial.gear].frame
                 for h in self._holds(z, touches)
             },
-            undetermined=tuple(
-                n for n, free in zip(scene.coordinates, self.loose(z), strict=True) if free
-            ),
         )
 
     def undetermined(self, z: Array) -> Array:

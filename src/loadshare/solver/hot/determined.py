@@ -1,0 +1,189 @@
+"""Whether the forces of a sample determine its place, for many samples, by sets that carry.
+
+The same question as `solver.undetermined` asks of one equilibrium: a contact that is closed without
+a force holds nothing, nor does a radial element on a level piece along it. What holds is put
+together as a set once, and serves all samples that have it. Source: formulation, section 4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.scene.data import Data
+from loadshare.scene.elements import RANK, Elements, unresisted
+from loadshare.scene.scene import Array
+from loadshare.solver.hot import places as at
+from loadshare.solver.hot.exchange import Codes
+from loadshare.solver.hot.state import State, pushes
+from loadshare.solver.hot.vectorised import arc_at, pick
+from loadshare.solver.undetermined.free_set import CARRIES
+from loadshare.solver.undetermined.places import LOOSE, PLAY
+
+Flags = NDArray[np.bool_]
+FREE, LEVEL, HELD = 0, 1, 2
+"""A radial element that carries nothing; on a level piece; at one radius, in one direction."""
+
+
+def determined(
+    elements: Elements, data: Data, state: State, code: Codes, held: Flags, compiled: bool = False
+) -> Flags:
+    """Whether each sample's forces determine all of its displacements, shape (S,).
+
+    Parameters
+    ----------
+    elements : Elements
+    data : Data
+    state : State
+    code : ndarray of int8, shape (S, switches)
+        Elements that act.
+    held : ndarray of bool, shape (S,)
+        Whether these leave no coordinate loose.
+    compiled : bool
+        With Numba where that is faster: the same answer.
+    """
+    first, last = elements.springs, elements.springs + elements.rows
+    carries = CARRIES * pushes(data)
+    if compiled:
+        from loadshare.solver.hot import products
+
+        acts = code[:, : elements.rows]
+        idle, carries = products.idle(state.force, first, acts, CARRIES, carries)
+    else:
+        force = state.force[:, first:last]
+        carries = np.maximum(carries, CARRIES * np.abs(force).max(axis=1, initial=0.0))
+        idle = ((code[:, : elements.rows] != at.OPEN) & (force <= carries[:, None])).any(axis=1)
+    kinds = _kinds(elements, data, state, carries)
+    unlike = (kinds != HELD) & (code[:, elements.rows :] != at.OPEN)
+    found = held & ~idle & ~unlike.any(axis=1)
+    rest = np.flatnonzero(~found)
+    if len(rest):
+        carry = state.force[rest, first:last] > carries[rest, None]
+        for alike, some in _alike(np.hstack([carry.astype(np.int8), kinds[rest]])):
+            found[rest[alike]] = _fixed(elements, data, state, some, rest[alike])
+    return np.asarray(found)
+
+
+def _kinds(elements: Elements, data: Data, state: State, carries: Array) -> Codes:
+    """How every radial element holds, shape (S, radials)."""
+    everyone = np.arange(data.count)
+    kinds = np.empty((data.count, len(elements.scene.radials)), dtype=np.int8)
+    for j in range(kinds.shape[1]):
+        law = at.graph(pick(data.radial, everyone)[:, j], state.force @ data.carried[j])
+        column = elements.radial_column(j)
+        size = np.hypot(state.force[:, column], state.force[:, column + 1])
+        level = (np.abs(size - law.bound) <= carries) & (law.reach > law.stick)
+        kinds[:, j] = np.where(level, np.where(size <= carries, FREE, LEVEL), HELD)
+    return kinds
+
+
+def _alike(codes: Codes) -> Iterator[tuple[NDArray[np.intp], Codes]]:
+    """Yield samples that have one code, and it."""
+    order = np.lexsort(codes.T) if codes.shape[1] else np.arange(len(codes))
+    changes = np.flatnonzero((codes[order][1:] != codes[order][:-1]).any(axis=1)) + 1
+    for part in np.split(order, changes):
+        yield part, codes[part[0]]
+
+
+def _fixed(
+    elements: Elements, data: Data, state: State, some: Codes, rows: NDArray[np.intp]
+) -> Flags:
+    """Whether samples of one set of carrying elements are determined, shape (len(rows),)."""
+    scene, carry, kinds = elements.scene, some[: elements.rows], some[elements.rows :]
+    flat = elements.rows - len(scene.arcs)
+    first = elements.springs
+    holding = [elements.vectors[:first], elements.vectors[first : first + flat][carry[:flat] != 0]]
+    holding += [data.relative[a] for a in np.flatnonzero(carry[flat:])]
+    holding += [_radial(elements, j) for j in np.flatnonzero(kinds == HELD).tolist()]
+    moves = unresisted(np.vstack(holding))
+    if not moves.shape[1]:
+        return np.ones(len(rows), dtype=bool)
+    found = _across_levels(elements, state, np.flatnonzero(kinds == LEVEL).tolist(), moves, rows)
+    rest = np.flatnonzero(~found)
+    directions, touches = _touched(elements, data, state, some, moves, rows[rest])
+    for k in np.flatnonzero(touches.sum(axis=1) > moves.shape[1]).tolist():
+        found[rest[k]] = _pinched(directions[k, touches[k]])
+    return found
+
+
+def _radial(elements: Elements, j: int) -> Array:
+    column = elements.radial_column(j)
+    return elements.vectors[column : column + 2]
+
+
+def _across_levels(
+    elements: Elements, state: State, levels: list[int], moves: Array, rows: NDArray[np.intp]
+) -> Flags:
+    """Whether elements on level pieces, which hold across their force, hold all moves."""
+    size = moves.shape[1]
+    if len(levels) < size:
+        return np.zeros(len(rows), dtype=bool)
+    across = np.stack([_across(elements, state, j, rows) @ moves for j in levels], axis=1)
+    return np.asarray(np.linalg.svd(across, compute_uv=False)[:, size - 1] > RANK)
+
+
+def _touched(
+    elements: Elements, data: Data, state: State, some: Codes, moves: Array, rows: NDArray[np.intp]
+) -> tuple[Array, Flags]:
+    """What carries nothing and cannot close further, seen by the moves.
+
+    Returns
+    -------
+    ndarray, shape (k, m, d)
+        Directions.
+    ndarray of bool, shape (k, m)
+        Whether a sample touches it.
+    """
+    flat, x = elements.rows - len(elements.scene.arcs), state.x[rows]
+    directions: list[Array] = []
+    touches: list[Flags] = []
+
+    def add(direction: Array, room: Array) -> None:
+        if np.abs(direction).max(initial=0.0) > LOOSE:
+            directions.append(np.broadcast_to(direction, (len(rows), moves.shape[1])))
+            touches.append((room <= PLAY) & (np.abs(direction).max(axis=-1) > LOOSE))
+
+    gaps = pick(data.gap, rows)
+    for k in elements.springs + np.flatnonzero(some[:flat] == 0):
+        vector = elements.vectors[k]
+        add(vector @ moves, gaps[:, k] - x @ vector)
+    for a in np.flatnonzero(some[flat : elements.rows] == 0).tolist():
+        normal, margin = arc_at(data, a, rows, x)
+        add(-normal @ data.relative[a] @ moves, margin)
+    for j in np.flatnonzero(some[elements.rows :] != HELD).tolist():
+        column, matrix = elements.radial_column(j), _radial(elements, j)
+        law = at.graph(pick(data.radial, rows)[:, j], state.force[rows] @ data.carried[j])
+        offset = x @ matrix.T - gaps[:, column : column + 2]
+        radius = np.linalg.norm(offset, axis=1)
+        outward = offset / np.where(radius > 0.0, radius, 1.0)[:, None] @ matrix @ moves
+        add(outward, law.reach - radius)
+        if some[elements.rows + j] == LEVEL:
+            add(-outward, radius - law.stick)
+            across = _across(elements, state, j, rows) @ moves
+            for sign in (1.0, -1.0):
+                add(sign * across, np.zeros(len(rows)))
+    if not directions:
+        return np.zeros((len(rows), 0, moves.shape[1])), np.zeros((len(rows), 0), dtype=bool)
+    return np.stack(directions, axis=1), np.stack(np.broadcast_arrays(*touches), axis=1)
+
+
+def _across(elements: Elements, state: State, j: int, rows: NDArray[np.intp]) -> Array:
+    """Direction (k, n) across the force of a radial element."""
+    column = elements.radial_column(j)
+    pull = state.force[rows, column : column + 2]
+    pull = pull / np.linalg.norm(pull, axis=1)[:, None]
+    turned = np.stack([-pull[:, 1], pull[:, 0]], axis=1)
+    return np.asarray(turned @ _radial(elements, j))
+
+
+def _pinched(limits: Array) -> bool:
+    """Whether nothing but rest satisfies L u ≤ 0: the rows (k, d) of L span all, and positively."""
+    from scipy.optimize import nnls
+
+    if len(limits) <= limits.shape[1] or len(unresisted(limits).T):
+        return False
+    total = limits.sum(axis=0)
+    left = float(nnls(limits.T, -total)[1])
+    return bool(left <= LOOSE * max(float(np.linalg.norm(total)), 1.0))

@@ -1,0 +1,175 @@
+"""The least place of an equilibrium, and how far each of its undetermined coordinates may move.
+
+Coordinates that move independently of one another are treated apart: each part is a convex region
+of one or a few unknowns. A part's least and largest values are exact, also in round regions and on
+level pieces; along open arcs, whose outside is not convex, they are those that are reached from the
+least place by renewing the arcs' tangent faces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from loadshare.scene.programme import Array
+from loadshare.scene.scene import Scene
+from loadshare.solver.undetermined.free_set import FreeSet, Round
+from loadshare.solver.undetermined.region import ALMOST, INSIDE, Disc, Region
+from loadshare.train.equilibrium import Range
+
+LOOSE = 1e-9
+"""Part of a coordinate in a move from which on it takes part: round-off of the moves is smaller."""
+PLAY = 1e-9
+"""Range, in lengths of the case, below which a place counts as determined: what contacts that
+carry nothing leave between them but for round-off."""
+RENEWALS = 12
+"""Passes that renew the faces of arcs."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Places:
+    """What the forces of an equilibrium say of its place.
+
+    Attributes
+    ----------
+    x : ndarray, shape (n,)
+        The place of least norm [m]; the one that was known, if it is that.
+    ranges : dict of name to (float, float)
+        Least and largest value of what the forces leave undetermined: [rad] of a gear's rotation,
+        [m] of a displacement or slip; infinite where nothing limits it.
+    """
+
+    x: Array
+    ranges: dict[str, Range]
+
+
+def places(free: FreeSet) -> Places:
+    """Return the least place of an equilibrium, and what is undetermined.
+
+    Parameters
+    ----------
+    free : FreeSet
+        Its places (see `free_set`).
+    """
+    scene, x = free.scene, free.x
+    parts = [_Part(free, moves) for moves in _independent(free)]
+    for part in parts:
+        if part.moves_to_least:
+            x = x + part.across @ (part.least - part.start) * part.unit
+    least_play = PLAY * scene.length_unit() + INSIDE * float(np.abs(x).max(initial=0.0))
+    ranges: dict[str, Range] = {}
+    for part in parts:
+        for k in np.flatnonzero(np.abs(part.moves).max(axis=1) > LOOSE).tolist():
+            low, high = (
+                float(x[k] + part.reach(sign * part.moves[k]) * sign / free.norm.root[k])
+                for sign in (-1.0, 1.0)
+            )
+            if high - low > least_play:
+                ranges |= _named(scene, k, low, high)
+    return Places(x, ranges) if ranges else Places(free.x, {})
+
+
+class _Part:
+    """Moves that have nothing to do with the others.
+
+    Attributes
+    ----------
+    moves : ndarray, shape (n, d)
+        Lengths y, orthonormal.
+    unit : float
+        Length [m] in which their shares u are counted.
+    start, least : ndarray, shape (d,)
+        u of the place that is known, and of the least one.
+    """
+
+    def __init__(self, free: FreeSet, moves: Array) -> None:
+        self.free, self.moves = free, moves
+        self.across = moves / free.norm.root[:, None]
+        limits = free.vectors @ self.across
+        sizes = np.linalg.norm(limits, axis=1)
+        met = sizes > LOOSE
+        self.limits, rooms = limits[met] / sizes[met, None], free.rooms[met] / sizes[met]
+        rounds = [r for r in free.rounds if np.linalg.norm(r.radial.matrix @ self.across) > LOOSE]
+        self.arcs = [a for a in free.arcs if np.linalg.norm(a.relative @ self.across) > LOOSE]
+        shares = moves.T @ free.norm.lengths(free.x)
+        sizes_met = [*rooms, *(r.radius for r in rounds), float(np.abs(shares).max())]
+        self.unit = max(*sizes_met, free.scene.length_unit())
+        self.start = shares / self.unit
+        self.bounds = rooms / self.unit + self.limits @ self.start
+        self.discs = tuple(self._disc(r) for r in rounds)
+        least = self._renewed(self.start, Region.least)
+        assert least is not None
+        self.least = least
+
+    @property
+    def moves_to_least(self) -> bool:
+        """Whether the least place is another than the one that is known."""
+        return float(np.abs(self.least - self.start).max()) > INSIDE
+
+    def reach(self, direction: Array) -> float:
+        """How far along a direction (d,) the part may move from its least place [m]."""
+        end = self._renewed(self.least, lambda region: region.furthest(direction))
+        return np.inf if end is None else float(direction @ (end - self.least)) * self.unit
+
+    def _disc(self, held: Round) -> Disc:
+        radial, matrix = held.radial, held.radial.matrix @ self.across
+        offset = (radial.matrix @ self.free.x - radial.centre) / self.unit
+        return Disc(matrix, matrix @ self.start - offset, held.radius / self.unit)
+
+    def _region(self, u: Array) -> Region:
+        """The region, with the faces of arcs at u."""
+        limits, bounds = [self.limits], [self.bounds]
+        x = self.free.x + self.across @ (u - self.start) * self.unit
+        for arc in self.arcs:
+            row = arc.row(x)
+            limit = row.vector @ self.across
+            size = float(np.linalg.norm(limit))
+            if size > LOOSE:
+                room = max(row.gap - float(row.vector @ x), 0.0)
+                limits.append(limit[None] / size)
+                bounds.append(np.array([room / self.unit + float(limit @ u)]) / size)
+        return Region(np.vstack(limits), np.concatenate(bounds), self.discs)
+
+    def _renewed(self, u: Array, find: Callable[[Region], Array | None]) -> Array | None:
+        """Find a point from u on; None if it is infinitely far."""
+        for _ in range(RENEWALS):
+            region = self._region(u)
+            found = find(region)
+            if found is None or region.beyond(found) > ALMOST:
+                # What is pinched up to round-off stays where it is.
+                return None if found is None else u
+            arrived = float(np.abs(found - u).max()) <= INSIDE
+            u = found
+            if arrived or not self.arcs:
+                break
+        return u
+
+
+def _independent(free: FreeSet) -> Iterator[Array]:
+    """Yield moves (n, d) that nothing ties to the others."""
+    projector = free.moves @ free.moves.T
+    together = np.abs(projector) > LOOSE
+    limits = [v[None] for v in free.vectors] + [a.relative for a in free.arcs]
+    for matrix in (*limits, *(r.radial.matrix for r in free.rounds)):
+        meets = (np.abs(matrix / free.norm.root @ projector) > LOOSE).any(axis=0)
+        together |= np.outer(meets, meets)
+    for _ in range(len(together).bit_length()):
+        together = (together.astype(int) @ together) > 0
+    left = together.diagonal().copy()
+    while left.any():
+        part = together[int(left.argmax())]
+        left &= ~part
+        values, vectors = np.linalg.eigh(projector * np.outer(part, part))
+        yield vectors[:, values > 0.5]
+
+
+def _named(scene: Scene, k: int, low: float, high: float) -> dict[str, Range]:
+    """Names of what coordinate k stands for, each with its own range."""
+    turning = {
+        f"gear {gear} rotation": (r.constant + r.rate * low, r.constant + r.rate * high)
+        for gear, r in scene.rotation.items()
+        if r.index == k
+    }
+    return turning or {scene.coordinates[k]: (low, high)}

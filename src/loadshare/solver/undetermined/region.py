@@ -1,0 +1,217 @@
+r"""A convex region of few unknowns: half-planes and discs; its least point and its extremes.
+
+.. math:: \{u : L u \le b,\; \lVert M_j u - m_j \rVert \le R_j\}
+
+A second-order cone programme says which bounds are reached; with these the point is solved exactly,
+as an equilibrium is (formulation, section 4). One unknown needs no programme.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.scene.programme import Array
+
+INSIDE = 1e-12
+"""How far a point may lie outside, in sizes of the region: round-off of what bounds it."""
+ALMOST = 1e-6
+"""Distance to a bound, in sizes of the region, at which an interior-point answer reaches it."""
+PASSES = 20
+"""Newton passes on the bounds that are reached."""
+ARRIVED = 1e-14
+"""Step, in sizes of the region, that ends them."""
+BALANCED = 1e-9
+"""Part of a pull, in sizes of the region, that its bounds may leave unbalanced."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Disc:
+    """‖M u − m‖ ≤ R.
+
+    Attributes
+    ----------
+    matrix : ndarray, shape (2, d)
+    centre : ndarray, shape (2,)
+    radius : float
+    """
+
+    matrix: Array
+    centre: Array
+    radius: float
+
+    def beyond(self, u: Array) -> float:
+        """How far u lies outside."""
+        return float(np.linalg.norm(self.matrix @ u - self.centre)) - self.radius
+
+    def face(self, u: Array) -> tuple[Array, Array]:
+        """Outward normal (d,) at u and its derivative (d, d)."""
+        offset = self.matrix @ u - self.centre
+        size = float(np.linalg.norm(offset))
+        along = offset / size
+        turning = (np.eye(2) - np.outer(along, along)) / size
+        return self.matrix.T @ along, self.matrix.T @ turning @ self.matrix
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """A region of d unknowns, in lengths of about one.
+
+    Attributes
+    ----------
+    limits : ndarray, shape (k, d)
+        L.
+    bounds : ndarray, shape (k,)
+        b.
+    discs : tuple of Disc
+    """
+
+    limits: Array
+    bounds: Array
+    discs: tuple[Disc, ...]
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns d."""
+        return int(self.limits.shape[1])
+
+    def beyond(self, u: Array) -> float:
+        """How far u lies outside; not above zero inside."""
+        outside = [float((self.limits @ u - self.bounds).max(initial=0.0))]
+        return max(*outside, *(disc.beyond(u) for disc in self.discs), 0.0)
+
+    def least(self) -> Array:
+        """Point of least norm, shape (d,)."""
+        rest = np.zeros(self.size)
+        if self.beyond(rest) <= 0.0:
+            return rest
+        if self.size == 1:
+            low, high = self._interval()
+            return np.array([min(max(0.0, low), high)])
+        found = self._optimum(1.0, rest)
+        assert found is not None  # it is bounded: no point is farther away than one that is known
+        return found
+
+    def furthest(self, direction: Array) -> Array | None:
+        """Point that lies furthest along a direction (d,), or None if nothing limits it."""
+        if self.size == 1:
+            low, high = self._interval()
+            end = high if direction[0] > 0.0 else low
+            return np.array([end]) if np.isfinite(end) else None
+        return self._optimum(0.0, -direction)
+
+    def _interval(self) -> tuple[float, float]:
+        """Ends of a region of one unknown."""
+        slope = self.limits[:, 0]
+        ends = self.bounds[slope != 0.0] / slope[slope != 0.0]
+        rising = slope[slope != 0.0] > 0.0
+        highs, lows = [*ends[rising], np.inf], [*ends[~rising], -np.inf]
+        for disc in self.discs:
+            along = disc.matrix[:, 0]
+            square = float(along @ along)
+            middle = float(along @ disc.centre) / square
+            across = disc.centre - middle * along
+            half = np.sqrt(max(disc.radius**2 - float(across @ across), 0.0) / square)
+            lows.append(middle - half)
+            highs.append(middle + half)
+        low, high = max(lows), min(highs)
+        # Bounds that touch may cross by round-off.
+        return (low, high) if low <= high else (0.5 * (low + high),) * 2
+
+    def _optimum(self, curvature: float, slope: Array) -> Array | None:
+        """Least ½ curvature ‖u‖² + slope·u in the region; None if it has no bound."""
+        found = _proposed(self, curvature, slope)
+        if found is None:
+            return None
+        u, limits, discs = found
+        slack = self.bounds - self.limits @ u
+        gap = np.array([-disc.beyond(u) for disc in self.discs])
+        tries = (
+            (limits > slack, discs > gap),
+            (slack < ALMOST, gap < ALMOST),
+        )
+        for rows, rounds in tries:
+            exact = self._settled(u, curvature, slope, np.flatnonzero(rows), np.flatnonzero(rounds))
+            if exact is not None:
+                return exact
+        return u
+
+    def _settled(
+        self,
+        u: Array,
+        curvature: float,
+        slope: Array,
+        rows: NDArray[np.intp],
+        rounds: NDArray[np.intp],
+    ) -> Array | None:
+        """Newton's method on bounds that are reached; None if others are."""
+        faces, discs = self.limits[rows], [self.discs[j] for j in rounds.tolist()]
+        d, count = self.size, len(rows) + len(discs)
+        pushes, reached = np.zeros(count), faces
+        for _ in range(PASSES):
+            normals, bends = [], curvature * np.eye(d)
+            for disc, push in zip(discs, pushes[len(rows) :], strict=True):
+                normal, turning = disc.face(u)
+                normals.append(normal)
+                bends = bends + max(push, 0.0) * turning
+            reached = np.vstack([faces, np.array(normals).reshape(-1, d)])
+            matrix = np.block([[bends, reached.T], [reached, np.zeros((count, count))]])
+            misfit = [*(self.bounds[rows] - faces @ u), *(-disc.beyond(u) for disc in discs)]
+            right = np.concatenate([-curvature * u - slope, misfit])
+            step = np.linalg.lstsq(matrix, right, rcond=INSIDE)[0]
+            u, pushes = u + step[:d], step[d:]
+            if float(np.abs(step[:d]).max(initial=0.0)) <= ARRIVED * max(1.0, np.abs(u).max()):
+                break
+        scale = max(1.0, float(np.abs(u).max()))
+        pulled = -(curvature * u + slope)
+        inside = self.beyond(u) <= INSIDE * scale
+        return u if inside and _pushed(reached, pulled) <= BALANCED * scale else None
+
+
+def _pushed(reached: Array, pulled: Array) -> float:
+    """How far a pull (d,) is from what bounds with outward normals (k, d) can hold."""
+    from scipy.optimize import nnls
+
+    if not len(reached):
+        return float(np.abs(pulled).max())
+    return float(nnls(reached.T, pulled)[1])
+
+
+def _proposed(region: Region, curvature: float, slope: Array) -> tuple[Array, Array, Array] | None:
+    """Answer of an interior-point method: point, pushes of half-planes, pushes of discs."""
+    import clarabel
+    from scipy.sparse import csc_matrix
+
+    d, k = region.size, len(region.bounds)
+    rows, bounds = [region.limits], [region.bounds]
+    cones: list[object] = [clarabel.NonnegativeConeT(k)] if k else []
+    for disc in region.discs:
+        rows += [np.zeros((1, d)), -disc.matrix]
+        bounds += [np.array([disc.radius]), -disc.centre]
+        cones.append(clarabel.SecondOrderConeT(3))
+    if not cones:
+        return None if slope.any() else (np.zeros(d), np.zeros(0), np.zeros(0))
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    settings.presolve_enable = False
+    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-10
+    answer = clarabel.DefaultSolver(
+        csc_matrix(curvature * np.eye(d)),
+        slope,
+        csc_matrix(np.vstack(rows)),
+        np.concatenate(bounds),
+        cones,
+        settings,
+    ).solve()
+    if "DualInfeasible" in str(answer.status):
+        return None
+    dual = np.array(answer.z)
+    return np.array(answer.x), dual[:k], dual[k::3]
+
+
+def stacked(rows: Iterable[Array], size: int) -> Array:
+    """Stack rows (size,) to a matrix, also where there are none."""
+    return np.array(list(rows)).reshape(-1, size)
