@@ -427,6 +427,7 @@ GIVEN: dict[str, tuple[str, ...]] = {
         r"= 1/k\b",
         r"\b1e-9\b",
         r"of length 1\b",
+        r"^\| `format` \| \d+;",
         r"at force 0\b",
         r"\(95 %\)|95 % interval",
         r"from 1 \|$",
@@ -450,7 +451,7 @@ GIVEN: dict[str, tuple[str, ...]] = {
         r"1024 by default; 0 leaves",
         r"0\.135 % lie beyond",
         r"blocks of (?:at least )?4096",
-        r"about 1e-12 of the value",
+        r"about 1e-12 of the value|round-off, 1e-12 of the largest",
         r"After 120 passes",
     ),
     "defaults and settings of a pair file, and where laws are fitted": (
