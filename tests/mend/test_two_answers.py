@@ -1,7 +1,8 @@
 """A case in which the exclusion arc's inequality holds on both sides of a neighbour.
 
 The hot path once went past the neighbour and found no load on the branch; the whole scene stayed.
-Both passed. All ways must now give the place on the pinion's own side.
+Both passed. All ways must now give the place on the pinion's own side, and refuse it for its
+displacement.
 """
 
 from pathlib import Path
@@ -45,6 +46,15 @@ def test_the_hot_path_and_the_whole_scene_agree(name, engine):
         assert hot.flank_force[flank] == pytest.approx(force, rel=1e-8, abs=1e-9 * largest)
     on_its_own_side(train, whole)
     on_its_own_side(train, hot)
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("reduce", [True, False])
+def test_its_displacement_is_refused(name, reduce):
+    """Teeth yield by more than their height: no answer of the linearised geometry has a meaning."""
+    with pytest.raises(ls.Refused, match="displacements are too large") as refused:
+        ls.solve(HERE / f"{name}.toml", reduce=reduce)
+    assert refused.value.figures["compression"] > 10.0
 
 
 def test_samples_side_by_side_agree():

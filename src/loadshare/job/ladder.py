@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from loadshare.certify import Certificate, certify
 from loadshare.certify.certificate import certify_later
+from loadshare.certify.validity import Validity, refusal_told, validity
 from loadshare.errors import Refused
 from loadshare.job.machine import Answers, Machine, engine_named
 from loadshare.scene import assemble
@@ -30,7 +32,7 @@ AUTO = "auto"
 """Instead of a back-end's name: the hot path, and Clarabel for what it leaves."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Answer:
     """A certified equilibrium, and how it was found.
 
@@ -55,6 +57,11 @@ class Answer:
     def scene(self) -> Scene:
         """The contact problem, assembled anew."""
         return assemble(self.train, self.equilibrium.index)
+
+    @cached_property
+    def validity(self) -> Validity:
+        """Whether its displacements are small enough for the geometry in which it was found."""
+        return validity(self.train, self.equilibrium, self.certificate.deflection)
 
 
 def rungs(options: Options) -> Iterator[tuple[str, Options]]:
@@ -211,6 +218,15 @@ def climb(train: Train, index: int, options: Options, tolerance: float) -> Answe
             "give one of them more clearance or float, or a stiffness"
         )
     raise first or Refused(f"position {index}: nothing was tried")
+
+
+def displaced(answer: Answer) -> Refused | None:
+    """Return why an answer is refused for its displacements; None if it is not."""
+    beyond = answer.validity.refused
+    if not beyond:
+        return None
+    told = f"position {answer.equilibrium.index}: {refusal_told(beyond)}"
+    return Refused(told, {name: m.value for name, m in beyond.items()})
 
 
 def _uncertified(index: int, certificate: Certificate) -> Refused:

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.many import Judge, Verdicts
+from loadshare.certify.validity import Measuring, measuring
 from loadshare.scene import assemble
 from loadshare.scene.data import Data, data_of
 from loadshare.scene.elements import Elements, elements_of
@@ -128,9 +129,15 @@ class Machine:
         """Its certificate."""
         return Judge(self.train)
 
+    @cached_property
+    def measuring(self) -> Measuring:
+        """What is measured on the displacements of its answers."""
+        return measuring(self.train)
+
     def share(self, other: Machine) -> None:
         """Take over what is reduced of a machine that differs in its situations only."""
         self.__dict__["elements"], self.__dict__["judge"] = other.elements, other.judge
+        self.__dict__["measuring"] = other.measuring
 
     def situations(self, indices: Sequence[int]) -> Situations:
         """Return the train's own situations at some positions, kept for the next time."""

@@ -8,7 +8,7 @@ once; single samples that it leaves climb the ladder.
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import islice
@@ -33,7 +33,7 @@ from loadshare.solver.position import of_least_norm
 from loadshare.train import build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.samples import Samples, samples_of
-from loadshare.train.situations import stack
+from loadshare.train.situations import Situations, stack
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -65,6 +65,8 @@ class Block:
         Largest scaled residual; NaN where there is no answer.
     determined : ndarray of bool, shape (S, positions)
         Whether the equilibrium determines every displacement.
+    displaced : ndarray, shape (S, positions)
+        How far displacements go to a warning (see `Measuring.worst`); NaN where there is no answer.
     rung : ndarray of str, shape (S, positions)
         Rung of the ladder that answered; empty where none did.
     message : mapping of (row, position) to str
@@ -77,6 +79,7 @@ class Block:
     certified: NDArray[np.bool_]
     residual: Array
     determined: NDArray[np.bool_]
+    displaced: Array
     rung: NDArray[np.str_]
     message: Mapping[tuple[int, int], str]
 
@@ -194,9 +197,11 @@ def solve_many(
     xarray.Dataset
         Over (sample, position): ``torque`` [N·m] (drive less coast), ``share`` and ``pair_share``
         [-] over mesh; ``displacement`` [m] over gear and axis, for gears that can be displaced;
-        ``contact_force`` [N] of ring contacts; ``residual``, ``certified``, ``determined`` and
-        ``rung``. Samples without a certified answer are NaN; their messages stand in the attribute
-        ``refused``.
+        ``contact_force`` [N] of ring contacts; ``residual``, ``certified``, ``determined``,
+        ``displaced`` and ``rung``. ``displaced`` tells how large displacements are for the geometry
+        in which they were found, over the bound of a warning; the attribute ``warned`` counts the
+        equilibria above 1. Samples without a certified answer, and those whose displacements are
+        refused, are NaN; their messages stand in the attribute ``refused``.
 
     Raises
     ------
@@ -255,12 +260,15 @@ def _block(
     certified, determined = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
     residual = np.full(shape, np.nan)
     rung = np.full(shape, HOT, dtype="<U24")
+    deflection = np.full(shape, np.nan)
     message: dict[tuple[int, int], str] = {}
     every: list[Equilibria] = []
+    stands: list[Situations] = []
     abreast = max(1, TOGETHER // count)
     for at in range(0, len(positions), abreast):
         some = positions[at : at + abreast]
-        situations = stack([samples.situations(index) for index in some])
+        stands += [samples.situations(index) for index in some]
+        situations = stack(stands[at:])
         found = machine.answer(situations, tolerance, engine, starts=some)
         every += [
             found.equilibria.part(slice(p * count, p * count + count)) for p in range(len(some))
@@ -268,6 +276,7 @@ def _block(
         columns = slice(at, at + len(some))
         certified[:, columns] = found.passed.reshape(-1, count).T
         residual[:, columns] = found.verdicts.worst.reshape(-1, count).T
+        deflection[:, columns] = found.verdicts.deflection.reshape(-1, count).T
         determined[:, columns] = found.determined.reshape(-1, count).T
         if least_norm:
             for k in np.flatnonzero(found.passed & ~found.determined).tolist():
@@ -286,8 +295,36 @@ def _block(
         every[p].put(row, answer.equilibrium)
         certified[row, p], rung[row, p] = True, answer.rung
         residual[row, p] = answer.certificate.worst
+        deflection[row, p] = answer.certificate.deflection
         determined[row, p] = not answer.equilibrium.undetermined
-    return Block(rows, positions, tuple(every), certified, residual, determined, rung, message)
+    displaced, refused = _displacements(machine, stands, every, deflection)
+    for (row, p), why in refused.items():
+        message[int(rows[row]), positions[p]] = f"position {positions[p]}: {why}"
+        certified[row, p], rung[row, p] = False, ""
+        residual[row, p] = displaced[row, p] = np.nan
+        every[p].forget(row)
+    return Block(
+        rows, positions, tuple(every), certified, residual, determined, displaced, rung, message
+    )
+
+
+def _displacements(
+    machine: Machine,
+    situations: Sequence[Situations],
+    answers: Sequence[Equilibria],
+    deflection: Array,
+) -> tuple[Array, dict[tuple[int, int], str]]:
+    """How far displacements go to a warning, (S, positions), and why some are refused."""
+    displaced = np.full(deflection.shape, np.nan)
+    refused: dict[tuple[int, int], str] = {}
+    for p, (here, found) in enumerate(zip(situations, answers, strict=True)):
+        displaced[:, p] = machine.measuring.worst(here, found, deflection[:, p])
+        large = np.flatnonzero(displaced[:, p] >= 1.0)
+        if not len(large):
+            continue
+        why = machine.measuring.refusals(here.take(large), found.take(large), deflection[large, p])
+        refused |= {(int(large[k]), p): told for k, told in why.items()}
+    return displaced, refused
 
 
 def _settle_loose(answers: Equilibria, row: int, case: Case, index: int, tolerance: float) -> None:

@@ -14,7 +14,7 @@ from loadshare.case import Case, load_case
 from loadshare.certify.certificate import TOLERANCE
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.errors import Refused
-from loadshare.job.ladder import AUTO, HOT, Answer, climb_all, left_out
+from loadshare.job.ladder import AUTO, HOT, Answer, climb_all, displaced, left_out
 from loadshare.job.machine import Machine
 from loadshare.results.claim import claim_of
 from loadshare.results.derive import position_of, result_from
@@ -78,7 +78,8 @@ def solve(
     CaseError
         If the case cannot be used; all problems are listed.
     Refused
-        If a position has no certified answer. The positions that have one are in its ``partial``.
+        If a position has no certified answer, or one whose displacements are too large for the
+        geometry in which it was found. The other positions are in its ``partial``.
     ValueError
         If a solver, method or position does not exist, or the tolerance is no tolerance.
 
@@ -97,9 +98,10 @@ def solve(
     answers: list[Answer] = []
     refusals: list[Refused] = []
     for done, found in enumerate(climb_all(machine, wanted, options, tolerance, settle), start=1):
-        if isinstance(found, Refused):
-            refusals.append(found)
-        else:
+        refused = found if isinstance(found, Refused) else displaced(found)
+        if refused is not None:
+            refusals.append(refused)
+        elif isinstance(found, Answer):
             answers.append(found)
         if progress is not None:
             progress(done, len(wanted))
@@ -109,8 +111,8 @@ def solve(
         result = result_of(case, machine.train, answers, asked, tolerance, wanted)
     if refusals:
         figures: dict[str, float] = {}
-        for refused in refusals:
-            for name, value in refused.figures.items():
+        for refusal in refusals:
+            for name, value in refusal.figures.items():
                 figures[name] = max(value, figures.get(name, 0.0))
         raise Refused("\n".join(map(str, refusals)), figures, partial=result)
     assert result is not None
@@ -138,7 +140,9 @@ def explain(
     Returns
     -------
     Answer
-        Scene, equilibrium, certificate, and the record of plans, passes and what was left out.
+        Scene, equilibrium, certificate, and the record of plans, passes and what was left out. An
+        answer that :func:`solve` refuses for its displacements is handed out here all the same;
+        its ``validity`` tells.
 
     Raises
     ------

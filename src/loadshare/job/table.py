@@ -75,6 +75,7 @@ class Table:
         self.residual = np.full(shape, np.nan)
         self.certified = np.zeros(shape, dtype=bool)
         self.determined = np.zeros(shape, dtype=bool)
+        self.displaced = np.full(shape, np.nan)
         self.rung = np.full(shape, "", dtype="<U24")
         self.message: dict[str, str] = {}
 
@@ -84,6 +85,7 @@ class Table:
         self.residual[rows] = block.residual
         self.certified[rows] = block.certified
         self.determined[rows] = block.determined
+        self.displaced[rows] = block.displaced
         self.rung[rows] = block.rung
         for (row, index), why in block.message.items():
             self.message[f"sample {row}, position {index}"] = why
@@ -139,6 +141,7 @@ class Table:
                 "residual": (every, self.residual),
                 "certified": (every, self.certified),
                 "determined": (every, self.determined),
+                "displaced": (every, self.displaced),
                 "rung": (every, self.rung),
             },
             coords={k: v for k, v in coords.items() if k in used},
@@ -147,6 +150,7 @@ class Table:
                 "case_hash": case.hash,
                 "version": __version__,
                 "tolerance": tolerance,
+                "warned": int((self.displaced > 1.0).sum()),
                 "refused": self.message,
             },
         )

@@ -27,8 +27,8 @@ def dataset(result: Result) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Dimensions position, mesh, gear, component, float and figure; every variable carries its
-        unit.
+        Dimensions position, mesh, gear, component, float, figure and measure; every variable
+        carries its unit.
     """
     import xarray as xr
 
@@ -101,6 +101,13 @@ def dataset(result: Result) -> xr.Dataset:
             "scaled residual of the certificate",
         ),
     }
+    measures = [name for name, _, _ in result.validity]
+    data["validity"] = variable(
+        ("position", "measure"),
+        over(measures, lambda p: {n: m.value for n, m in p.validity.measures.items()}),
+        "1",
+        "size of the displacements for the geometry in which they were found",
+    )
     stamp = result.stamp
     return xr.Dataset(
         data,
@@ -111,6 +118,7 @@ def dataset(result: Result) -> xr.Dataset:
             "component": ["x", "y"],
             "float": floats,
             "figure": residuals,
+            "measure": measures,
         },
         attrs={
             "title": stamp.title or stamp.case,

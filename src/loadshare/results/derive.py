@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from loadshare.case import Case
 from loadshare.certify import Certificate
+from loadshare.certify.validity import validity
 from loadshare.results.claim import Claim
 from loadshare.results.result import Effort, Position, Result, Stamp
 from loadshare.results.share import largest, pair_shares, stage_shares
@@ -50,6 +51,7 @@ def position_of(
         displacement={n: (float(d[0]), float(d[1])) for n, d in moved.items()},
         floats=certificate.floats,
         certificate=certificate,
+        validity=validity(train, claim.equilibrium(index, undetermined), certificate.deflection),
         undetermined=undetermined,
         effort=effort,
         claim=claim,

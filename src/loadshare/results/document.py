@@ -45,6 +45,7 @@ def plain(given: Any) -> Any:
 def _told(p: Position) -> dict[str, Any]:
     """Every field of a position; those of its certificate stand beside one another."""
     told = {f.name: plain(getattr(p, f.name)) for f in fields(p) if f.name != "certificate"}
+    told["validity"] = {"verdict": p.validity.verdict} | plain(p.validity)
     return told | _judged(p.certificate)
 
 

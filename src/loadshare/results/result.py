@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from loadshare.certify import Certificate, FloatState
+from loadshare.certify.validity import ALIKE, Measure, Validity
 from loadshare.results.claim import Claim, Pair
 from loadshare.train.equilibrium import Equilibrium
 
@@ -97,6 +98,8 @@ class Position:
         [m], in the gear's transverse frame; the global x, y for a gear whose axis is z.
     floats : mapping of gear to FloatState
     certificate : Certificate
+    validity : Validity
+        Whether displacements are small enough for the geometry in which they were found.
     undetermined : mapping of coordinate to (float, float)
         What the forces leave open, as "gear 4 x" [m] or "gear 4 rotation" [rad]: the least and the
         largest value that it may take, infinite without a limit. Rotation and displacement are
@@ -115,6 +118,7 @@ class Position:
     displacement: Mapping[str, Pair]
     floats: Mapping[str, FloatState]
     certificate: Certificate
+    validity: Validity
     undetermined: Mapping[str, Pair]
     effort: Effort
     claim: Claim
@@ -162,6 +166,18 @@ class Result:
     def certificate(self) -> Certificate:
         """The worst certificate over the positions."""
         return max((p.certificate for p in self.positions), key=lambda c: c.worst)
+
+    @property
+    def validity(self) -> tuple[tuple[str, Measure, int], ...]:
+        """Largest figures of the displacements over the positions: name, figure and position."""
+        found: dict[str, list[tuple[Measure, int]]] = {}
+        for p in self.positions:
+            for name, measure in p.validity.measures.items():
+                found.setdefault(name, []).append((measure, p.position))
+        largest = {n: max(m.value for m, _ in every) * (1.0 - ALIKE) for n, every in found.items()}
+        return tuple(
+            (n, *next(f for f in every if f[0].value >= largest[n])) for n, every in found.items()
+        )
 
     @property
     def floats(self) -> tuple[Mapping[str, FloatState], ...]:

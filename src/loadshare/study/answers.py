@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from loadshare.certify.certificate import TOLERANCE
 from loadshare.errors import Refused
-from loadshare.job.ladder import Answer, climb, climb_all
+from loadshare.job.ladder import Answer, climb, climb_all, displaced
 from loadshare.job.machine import Machine
 from loadshare.solver import Options
 from loadshare.train.train import Train
@@ -19,11 +19,15 @@ def certified(train: Train, position: int) -> Answer:
     Raises
     ------
     Refused
-        If it has no certified equilibrium.
+        If it has no certified equilibrium, or one with displacements that are too large.
     """
+    found: Answer | Refused
     if train.slip is not None:
-        return climb(train, position, BACKEND, TOLERANCE)
-    (found,) = climb_all(Machine(train), [position], Options(), TOLERANCE)
-    if isinstance(found, Refused):
-        raise found
+        found = climb(train, position, BACKEND, TOLERANCE)
+    else:
+        (found,) = climb_all(Machine(train), [position], Options(), TOLERANCE)
+    refused = found if isinstance(found, Refused) else displaced(found)
+    if refused is not None:
+        raise refused
+    assert isinstance(found, Answer)
     return found

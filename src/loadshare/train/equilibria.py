@@ -100,6 +100,10 @@ class Equilibria:
         """Return some of the samples, as a view."""
         return self.laid(lambda array: array[samples])
 
+    def take(self, samples: NDArray[np.intp]) -> Equilibria:
+        """Return some of the samples, as a copy."""
+        return self.laid(lambda array: array[samples])
+
     def one(self, sample: int, index: int) -> Equilibrium:
         """Return a sample as an equilibrium of position `index`."""
         names = self.names

@@ -61,7 +61,7 @@ class Outcome:
     worst : float or None
         Largest scaled residual.
     messages : tuple of str
-        What went wrong.
+        What went wrong, and warnings.
     """
 
     name: str
@@ -111,7 +111,7 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
         count = build_train(case).count
         kept, notes = (None, ()) if task.force else _kept(task, case, count)
         if kept is not None:
-            return "kept", kept, ()
+            return "kept", kept, _warnings(kept)
         result = solve(case, solver=task.solver, method=task.method, tolerance=task.tolerance)
     except CaseError as error:
         return "invalid", None, tuple(map(str, error.problems))
@@ -119,7 +119,14 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
         write_document(task.target, refused_document(refusal, task.case.stem))
         return "refused", refusal.partial, tuple(told(refusal))
     result.to_json(task.target)
-    return "certified", result, notes
+    return "certified", result, (*notes, *_warnings(result))
+
+
+def _warnings(result: Result) -> tuple[str, ...]:
+    from loadshare.report.page.validity import advice
+
+    told = advice(result)
+    return (f"warning: {told}",) if told else ()
 
 
 def _kept(task: Task, case: Case, count: int) -> tuple[Result | None, tuple[str, ...]]:

@@ -9,11 +9,12 @@ from loadshare.cli.tables.certificate import print_certificate
 from loadshare.cli.tables.floats import print_floats
 from loadshare.cli.tables.omega import print_omega
 from loadshare.cli.tables.sharing import print_sharing
+from loadshare.cli.tables.validity import print_validity
 from loadshare.results import Result
 
 
 def print_result(console: Console, result: Result, wanted: int) -> None:
-    """Print load sharing, coefficients, floats and the certificate.
+    """Print load sharing, coefficients, floats, displacements and the certificate.
 
     Parameters
     ----------
@@ -29,4 +30,5 @@ def print_result(console: Console, result: Result, wanted: int) -> None:
     print_sharing(console, result)
     print_omega(console, result)
     print_floats(console, result)
+    print_validity(console, result)
     print_certificate(console, result, wanted)

@@ -17,6 +17,7 @@ from loadshare.report.numbers import NONE, omega, small
 from loadshare.report.page import answers
 from loadshare.report.page.inputs import input_tables
 from loadshare.report.page.table import Cell, Table, columns
+from loadshare.report.page.validity import validity_table
 from loadshare.results import Result
 
 CERTIFIED, PARTLY, REFUSED, UNUSABLE = "certified", "partly refused", "refused", "cannot be used"
@@ -187,6 +188,7 @@ def _tables(result: Result) -> Iterator[Table]:
         yield answers.position_table(result)
     if result.positions[0].floats:
         yield answers.float_table(result)
+    yield validity_table(result)
     yield answers.certificate_table(result)
 
 

@@ -1,0 +1,345 @@
+"""How large displacements are for the geometry in which they were found.
+
+Lines of action, stops and tooth flanks are taken where they stand before anything moves. What that
+neglects is estimated here from the answer alone, and so are the bounds:
+
+- **Line of action.** For involutes the approach of two flanks is exactly linear in both rotations:
+  a rotation winds the string of the base circle. A relative displacement Δ of the centres turns the
+  line of action, a straight line of length L = (r_bi ± r_bj) tan α_t between the base circles, by
+  Δ⊥/L, where Δ⊥ is the part of Δ across it. Forces are off in direction by this angle, which is a
+  share of their size. The line vanishes where the base circles touch: it takes Δ = L tan(α_t/2) at
+  least. For a face gear the pinion's part, r_b tan α_t, stands for L, which is on the safe side.
+- **Approach.** The approach is then off by Δ⊥²/2L, which counts by the deflection of the case.
+- **Compression.** A tooth bent by a part ε of its height is shorter by ε²; where the compression is
+  all of the height, the flanks have passed through each other. The height is 2.25 modules where a
+  gear's teeth are given; a gear of 17, the fewest without undercut, stands for one without: teeth
+  may be lower than that, so the figure is then a lower bound.
+- **Ring.** Arcs hold exactly at any displacement, but a drum's stops keep their direction: they are
+  off by the angle by which the arm from the neighbour turns.
+
+Common shifts of gears, rotations and round rings neglect nothing; displacements over base radii,
+rotations, and shifts over backlashes are told without a bound.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.mesh import Mesh
+from loadshare.train.ring import transverse
+from loadshare.train.situations import Situations, situation_of
+from loadshare.train.train import Train
+
+Array = NDArray[np.float64]
+
+TURNED = 0.01
+"""Angle [rad] of a line of action or a ring's arm from which on a warning is given: forces are off
+by 1 % then, about as far as mesh stiffnesses are known."""
+NEGLECTED = 0.01
+"""Share of the case's deflection that the approach neglects, from which on a warning is given: what
+compliances make of it changes torques by about 1 %."""
+MEANINGLESS = 1.0
+"""Share from which on an answer is refused: the neglected approach is all of the deflection, or the
+compression all of a tooth's height."""
+COMPRESSED = 0.1
+"""Share of a tooth's height by which it yields, from which on a warning is given: the square of it,
+1 %, is what linear bending neglects."""
+HEIGHT = 2.25
+"""Height of a tooth in modules: addendum 1, dedendum 1.25."""
+FEWEST = 17
+"""Teeth of a gear of which none are known: the fewest without undercut (20 deg), so that its teeth
+are the highest."""
+
+ALIKE = 1e-9
+"""Relative difference of figures that differ by round-off alone."""
+
+TOLD = {
+    "centre": "centre displaced / base radius",
+    "rotation": "rotation [rad]",
+    "backlash": "shift in a mesh / backlash",
+    "compression": "mesh compression / tooth height",
+    "line_of_action": "line of action turned [rad]",
+    "approach": "approach neglected / deflection",
+    "ring": "arm of a ring turned [rad]",
+}
+"""What is measured, each a pure number, in the order in which it is told."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """One figure of a displacement.
+
+    Attributes
+    ----------
+    value : float
+    where : str
+        Gear, mesh or ring that shows it.
+    warning, refusal : float or None
+        Bounds; None where the figure is told only.
+    """
+
+    value: float
+    where: str
+    warning: float | None = None
+    refusal: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Validity:
+    """How large the displacements of an answer are, and what that means.
+
+    Attributes
+    ----------
+    measures : mapping of str to Measure
+        Keys of `TOLD`; those that a train cannot have are left out.
+    """
+
+    measures: Mapping[str, Measure]
+
+    @property
+    def warned(self) -> dict[str, Measure]:
+        """Figures above the bound of a warning."""
+        return {
+            n: m for n, m in self.measures.items() if m.warning is not None and m.value > m.warning
+        }
+
+    @property
+    def refused(self) -> dict[str, Measure]:
+        """Figures at which the geometry has no meaning."""
+        return {
+            n: m for n, m in self.measures.items() if m.refusal is not None and m.value >= m.refusal
+        }
+
+    @property
+    def verdict(self) -> str:
+        """How it stands: "small", "large" (with a warning) or "meaningless" (refused)."""
+        return "meaningless" if self.refused else "large" if self.warned else "small"
+
+
+def refusal_told(refused: Mapping[str, Measure]) -> str:
+    """Return why an answer is refused, from the figures beyond their bounds."""
+    told = "; ".join(
+        f"{TOLD[name]} {m.value:.3g} at {m.where} (allowed below {m.refusal:.3g})"
+        for name, m in refused.items()
+    )
+    return (
+        f"the displacements are too large for the geometry in which they were found: {told}; "
+        "check the load, the stiffnesses and the clearances"
+    )
+
+
+class Measuring:
+    """What is measured on the answers of a train, many at once.
+
+    Parameters
+    ----------
+    train : Train
+    """
+
+    def __init__(self, train: Train) -> None:
+        self.train = train
+        order = {g: k for k, g in enumerate(train.gears)}
+        meshes = list(train.meshes.values())
+        self.flanks = [(m, d) for m in meshes for d in m.flanks]
+        self.mesh_of = np.array([meshes.index(m) for m, _ in self.flanks], dtype=int)
+        self.is_drive = np.array([d for _, d in self.flanks], dtype=bool)
+        gears, width = len(order), len(self.flanks)
+        self.turning = np.zeros((width, gears))
+        along, across = np.zeros((2, width, gears, 3))
+        normals = np.array([m.direction(d)[2] for m, d in self.flanks]).reshape(-1, 3)
+        axes = np.array([_axis(train, m) for m, _ in self.flanks]).reshape(-1, 3)
+        beside = np.cross(axes, normals)
+        for e, (mesh, drive) in enumerate(self.flanks):
+            driver, driven = order[mesh.driver], order[mesh.driven]
+            self.turning[e, driver], self.turning[e, driven], _ = mesh.direction(drive)
+            for matrix, way in ((along, normals[e]), (across, beside[e])):
+                matrix[e, driver] += way
+                matrix[e, driven] -= way
+        self.along, self.across = along.reshape(width, -1), across.reshape(width, -1)
+        geometry = np.array([_geometry(train, m) for m in meshes]).reshape(-1, 3)[self.mesh_of]
+        self.line, angle, self.height = geometry.T[:, :, None]
+        self.vanishing = float(np.tan(0.5 * angle).min(initial=math.inf))
+        self.radius = np.array([g.base_radius for g in train.gears.values()])
+        self.arms = [
+            (order[r.gear], order[n], _distance(train, r.gear, n), r)
+            for r in train.drums
+            for n in r.neighbours
+        ]
+
+    @property
+    def bounds(self) -> dict[str, tuple[float, float]]:
+        """Warning and refusal of what has bounds."""
+        bounds = {
+            "compression": (COMPRESSED, MEANINGLESS),
+            "line_of_action": (min(TURNED, self.vanishing), self.vanishing),
+            "approach": (NEGLECTED, MEANINGLESS),
+        }
+        if self.arms:
+            bounds["ring"] = (TURNED, self.vanishing)
+        return bounds if self.flanks else {}
+
+    def bounded(
+        self, situations: Situations, answers: Equilibria, deflection: Array
+    ) -> dict[str, Array]:
+        """Return what has bounds, element by element.
+
+        Parameters
+        ----------
+        situations : Situations
+        answers : Equilibria
+            S of them.
+        deflection : ndarray, shape (S,)
+            Of each case [m].
+
+        Returns
+        -------
+        dict of str to ndarray, shape (elements, S)
+            Elements are flanks, or arcs of drums.
+        """
+        if not self.flanks:
+            return {}
+        # Samples lie next to one another: sums and largest values then run along them.
+        shifts = np.ascontiguousarray(
+            (answers.displacement + situations.offset).reshape(len(answers.rotation), -1).T
+        )
+        gap = np.where(
+            self.is_drive, situations.gap[:, self.mesh_of], situations.backlash[:, self.mesh_of]
+        )
+        compression = self.turning @ answers.rotation.T
+        compression += self.along @ shifts
+        compression -= gap.T
+        compression /= self.height
+        turned = np.abs((self.across / self.line) @ shifts)
+        found = {
+            "compression": compression,
+            "line_of_action": turned,
+            "approach": turned * turned * (0.5 * self.line / deflection),
+        }
+        if self.arms:
+            found["ring"] = self._arms(answers)
+        return found
+
+    def _arms(self, answers: Equilibria) -> Array:
+        moved = answers.displacement
+        return np.array(
+            [
+                np.sqrt(((moved[:, g] - moved[:, n]) ** 2).sum(axis=1)) / a
+                for g, n, a, _ in self.arms
+            ]
+        )
+
+    def worst(self, situations: Situations, answers: Equilibria, deflection: Array) -> Array:
+        """Return how far S answers go to a warning: the largest figure over its bound, (S,)."""
+        found, bounds = self.bounded(situations, answers, deflection), self.bounds
+        shares = [v.max(axis=0, initial=0.0) / bounds[name][0] for name, v in found.items()]
+        return np.maximum.reduce(shares) if shares else np.zeros(len(answers.rotation))
+
+    def refusals(
+        self, situations: Situations, answers: Equilibria, deflection: Array
+    ) -> dict[int, str]:
+        """Return why answers are refused, by sample."""
+        beyond: dict[int, dict[str, Measure]] = {}
+        for name, values in self.bounded(situations, answers, deflection).items():
+            for k in np.flatnonzero(values.max(axis=0) >= self.bounds[name][1]).tolist():
+                beyond.setdefault(k, {})[name] = self._largest(name, values[:, k])
+        return {k: refusal_told(found) for k, found in beyond.items()}
+
+    def _largest(self, name: str, values: Array) -> Measure:
+        at = _first(values)
+        return Measure(max(float(values[at]), 0.0), self._where(name, at), *self.bounds[name])
+
+    def _where(self, name: str, element: int) -> str:
+        if name == "ring":
+            return f"ring {self.arms[element][3].gear}"
+        return f"mesh {self.flanks[element][0].name}"
+
+    def one(
+        self, situation: Situations, answers: Equilibria, deflection: float
+    ) -> dict[str, Measure]:
+        """Return all figures of a single answer."""
+        names = list(self.train.gears)
+        moved = np.sqrt((answers.displacement[0] ** 2).sum(axis=1)) / self.radius
+        turned = np.abs(answers.rotation[0])
+        found = {
+            "centre": Measure(float(moved.max()), f"gear {names[_first(moved)]}"),
+            "rotation": Measure(float(turned.max()), f"gear {names[_first(turned)]}"),
+        }
+        shifts = (answers.displacement + situation.offset).reshape(-1)
+        size = np.hypot(self.along @ shifts, self.across @ shifts)
+        backlash = situation.backlash[0, self.mesh_of]
+        some = np.flatnonzero(np.isfinite(backlash) & (backlash > 0.0))
+        if len(some):
+            share = size[some] / backlash[some]
+            at = _first(share)
+            found["backlash"] = Measure(float(share[at]), self._where("", int(some[at])))
+        for name, values in self.bounded(situation, answers, np.array([deflection])).items():
+            found[name] = self._largest(name, values[:, 0])
+        return {name: found[name] for name in TOLD if name in found}
+
+
+def validity(train: Train, answer: Equilibrium, deflection: float) -> Validity:
+    """Measure the displacements of an answer.
+
+    Parameters
+    ----------
+    train : Train
+    answer : Equilibrium
+    deflection : float
+        Of the case [m], as its certificate has it.
+    """
+    answers = Equilibria.empty(train, 1)
+    answers.put(0, answer)
+    here = situation_of(train, answer.index)
+    return Validity(measuring(train).one(here, answers, deflection))
+
+
+@lru_cache(maxsize=16)
+def measuring(train: Train) -> Measuring:
+    """Return what is measured on a train, kept for its other positions."""
+    return Measuring(train)
+
+
+def _first(values: Array) -> int:
+    """The first of the largest values: alike elements differ by round-off."""
+    return int(np.argmax(values >= (1.0 - ALIKE) * values.max()))
+
+
+def _axis(train: Train, mesh: Mesh) -> Array:
+    """Axis of the plane in which the line of action lies: the pinion's, for a face gear."""
+    driver, driven = train.gears[mesh.driver], train.gears[mesh.driven]
+    return (driven if driver.kind == "face" else driver).axis
+
+
+def _distance(train: Train, gear: str, neighbour: str) -> float:
+    """Distance of two gears across the first one's axis [m]."""
+    here = train.gears[gear]
+    apart = transverse(here.centre - train.gears[neighbour].centre, here.axis)
+    return math.sqrt(float(apart @ apart))
+
+
+def _geometry(train: Train, mesh: Mesh) -> tuple[float, float, float]:
+    """Length of the line of action [m], pressure angle [rad], height of the teeth [m]."""
+    gears = train.gears[mesh.driver], train.gears[mesh.driven]
+    kinds = [g.kind for g in gears]
+    # n and n' lean against each other by twice the pressure angle towards the centres.
+    between = mesh.drive_normal + mesh.coast_normal
+    sine = 0.5 * math.sqrt(float(between @ between))
+    angle = math.asin(min(sine, 1.0))
+    first, second = mesh.radii
+    if "face" in kinds:
+        base = first if kinds[1] == "face" else second
+    else:
+        base = abs(first - second) if "internal" in kinds else first + second
+    teeth = [(r, g.teeth) for r, g in zip(mesh.radii, gears, strict=True) if g.teeth]
+    pinions = [(r, FEWEST) for r, k in zip(mesh.radii, kinds, strict=True) if k == "external"]
+    radius, number = min(teeth or pinions or [(min(mesh.radii), FEWEST)], key=lambda t: t[0])
+    module = 2.0 * radius / (number * math.cos(angle))
+    return base * math.tan(angle), angle, HEIGHT * module
