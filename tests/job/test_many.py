@@ -91,7 +91,8 @@ def test_shapes_labels_and_units():
 @pytest.mark.parametrize("keep", [("torque",), ("share", "pair_share"), ("displacement",), ()])
 def test_only_what_is_kept(keep):
     found = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1], keep=keep)
-    assert set(found.data_vars) == {*keep, "residual", "certified", "determined", "rung"}
+    always = {"residual", "certified", "determined", "displaced", "rung"}
+    assert set(found.data_vars) == {*keep, *always}
     whole = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1])
     for name in keep:
         np.testing.assert_array_equal(found[name], whole[name])
