@@ -100,11 +100,28 @@ def _fixed(
     moves = unresisted(np.vstack(holding))
     if not moves.shape[1]:
         return np.ones(len(rows), dtype=bool)
-    found = _across_levels(elements, state, np.flatnonzero(kinds == LEVEL).tolist(), moves, rows)
-    rest = np.flatnonzero(~found)
-    directions, touches = _touched(elements, data, state, some, moves, rows[rest])
-    for k in np.flatnonzero(touches.sum(axis=1) > moves.shape[1]).tolist():
-        found[rest[k]] = _pinched(directions[k, touches[k]])
+    level = [
+        j
+        for j in np.flatnonzero(kinds == LEVEL).tolist()
+        if np.abs(_radial(elements, j) @ moves).max() > LOOSE
+    ]
+    directions, touches = _touched(elements, data, state, some, moves, rows)
+    found = np.zeros(len(rows), dtype=bool)
+    met = np.vstack([np.zeros((1, moves.shape[1])), *(_radial(elements, j) @ moves for j in level)])
+    # What no level piece could hold, whatever its direction, is pinched by contacts or moves.
+    some_left = unresisted(met).shape[1] > 0
+    these = np.flatnonzero(touches.any(axis=1)) if some_left else np.arange(len(rows))
+    if not len(these):
+        return found
+    across = np.zeros((len(these), len(level), moves.shape[1]))
+    for k, j in enumerate(level):
+        across[:, k] = _across(elements, state, j, rows[these]) @ moves
+    left = moves.shape[1] - (np.linalg.svd(across, compute_uv=False) > RANK).sum(axis=1)
+    found[these] = left == 0
+    doubtful = (left > 0) & (touches[these].sum(axis=1) > left)
+    for k in np.flatnonzero(doubtful).tolist():
+        one_sided = directions[these[k], touches[these[k]]]
+        found[these[k]] = _pinched(np.vstack([across[k], -across[k], one_sided]))
     return found
 
 
@@ -113,21 +130,10 @@ def _radial(elements: Elements, j: int) -> Array:
     return elements.vectors[column : column + 2]
 
 
-def _across_levels(
-    elements: Elements, state: State, levels: list[int], moves: Array, rows: NDArray[np.intp]
-) -> Flags:
-    """Whether elements on level pieces, which hold across their force, hold all moves."""
-    size = moves.shape[1]
-    if len(levels) < size:
-        return np.zeros(len(rows), dtype=bool)
-    across = np.stack([_across(elements, state, j, rows) @ moves for j in levels], axis=1)
-    return np.asarray(np.linalg.svd(across, compute_uv=False)[:, size - 1] > RANK)
-
-
 def _touched(
     elements: Elements, data: Data, state: State, some: Codes, moves: Array, rows: NDArray[np.intp]
 ) -> tuple[Array, Flags]:
-    """What carries nothing and cannot close further, seen by the moves.
+    """What carries nothing and must not close further, seen by the moves.
 
     Returns
     -------
@@ -141,19 +147,23 @@ def _touched(
     touches: list[Flags] = []
 
     def add(direction: Array, room: Array) -> None:
-        if np.abs(direction).max(initial=0.0) > LOOSE:
-            directions.append(np.broadcast_to(direction, (len(rows), moves.shape[1])))
-            touches.append((room <= PLAY) & (np.abs(direction).max(axis=-1) > LOOSE))
+        directions.append(np.broadcast_to(direction, (len(rows), moves.shape[1])))
+        touches.append((room <= PLAY) & (np.abs(direction).max(axis=-1) > LOOSE))
 
     gaps = pick(data.gap, rows)
     for k in elements.springs + np.flatnonzero(some[:flat] == 0):
         vector = elements.vectors[k]
-        add(vector @ moves, gaps[:, k] - x @ vector)
+        if _meets(vector, moves):
+            add(vector @ moves, gaps[:, k] - x @ vector)
     for a in np.flatnonzero(some[flat : elements.rows] == 0).tolist():
+        if not _meets(data.relative[a], moves):
+            continue
         normal, margin = arc_at(data, a, rows, x)
         add(-normal @ data.relative[a] @ moves, margin)
     for j in np.flatnonzero(some[elements.rows :] != HELD).tolist():
         column, matrix = elements.radial_column(j), _radial(elements, j)
+        if not _meets(matrix, moves):
+            continue
         law = at.graph(pick(data.radial, rows)[:, j], state.force[rows] @ data.carried[j])
         offset = x @ matrix.T - gaps[:, column : column + 2]
         radius = np.linalg.norm(offset, axis=1)
@@ -161,12 +171,13 @@ def _touched(
         add(outward, law.reach - radius)
         if some[elements.rows + j] == LEVEL:
             add(-outward, radius - law.stick)
-            across = _across(elements, state, j, rows) @ moves
-            for sign in (1.0, -1.0):
-                add(sign * across, np.zeros(len(rows)))
     if not directions:
         return np.zeros((len(rows), 0, moves.shape[1])), np.zeros((len(rows), 0), dtype=bool)
     return np.stack(directions, axis=1), np.stack(np.broadcast_arrays(*touches), axis=1)
+
+
+def _meets(matrix: Array, moves: Array) -> bool:
+    return bool(np.abs(matrix @ moves).max() > LOOSE)
 
 
 def _across(elements: Elements, state: State, j: int, rows: NDArray[np.intp]) -> Array:
