@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -36,6 +37,9 @@ def differences(
     tuple of (key path, str, str, str)
         The key, what was found there, what is wrong with it, what was expected.
     """
+    # On the machine that wrote a file every digit agrees, and text is compared at once.
+    if json.dumps(expected) == json.dumps(found):
+        return
     sizes: dict[Path, float] = {}
     _measure(expected, (), names, sizes)
     yield from _compare(expected, found, (), names, sizes)
