@@ -243,6 +243,7 @@ def _uncertified(positions: Iterable[Position]) -> Iterator[Wrong]:
             f"case, allowed {p.certificate.tolerance:.0e})"
             for name, r in p.certificate.failing.items()
         )
+        failing = failing or "its torques are not bounded closely enough"
         message = f"position {p.position} is no equilibrium of the case under input: {failing}"
         yield ("positions", at, "claim"), "", message, ""
 

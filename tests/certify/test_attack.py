@@ -1,0 +1,84 @@
+"""A slice of the attack on the certificate: tampered answers, judged by torques in 50 digits.
+
+Source: formulation, section 8. The measurement, ``python -m benchmarks.attack``, makes ten
+thousand; here is the first of another seed, and what keeps the attack honest: its self-stress is
+balanced, every way is tried, and most answers that it makes are wrong.
+"""
+
+from itertools import islice
+
+import numpy as np
+import pytest
+from benchmarks.attack.__main__ import text
+from benchmarks.attack.balance import Balance
+from benchmarks.attack.judge import ALLOWED, Attack, attacks
+from benchmarks.attack.victims import victims
+from benchmarks.attack.ways import WAYS, another_case, self_stress_followed
+
+from loadshare.certify import certify
+
+SEED = 7
+
+
+@pytest.fixture(scope="module")
+def some():
+    """The shipped trains, and those in which residuals say little."""
+    return list(islice(victims(SEED), 13))
+
+
+def test_forces_of_right_answers_are_in_balance(some):
+    """The attack's own balance, against answers that it had no part in."""
+    for victim in some:
+        balance = Balance(victim.train, victim.answer)
+        assert balance.unbalance() < 1e-13, victim.case.name
+        assert max(victim.errors(victim.answer).values()) < 1e-13 * victim.largest
+
+
+def test_self_stress_is_balanced_and_changes_torques(some):
+    changed = 0
+    for victim in some:
+        balance = Balance(victim.train, victim.answer)
+        space = balance.null_space(balance.acting)
+        assert np.abs(balance.columns[1] @ space).max(initial=0.0) < 1e-12
+        claim = self_stress_followed(victim, np.random.default_rng(SEED))
+        if claim is not None:
+            assert Balance(victim.train, claim).unbalance() < 1e-9, victim.case.name
+            changed += max(victim.errors(claim).values()) > 0.0
+    assert changed == len(some)
+
+
+def test_another_case_is_another(some):
+    claims = (another_case(some[3], np.random.default_rng(k)) for k in range(12))
+    errors = [max(some[3].errors(claim).values()) for claim in claims if claim is not None]
+    assert len(errors) > 6
+    assert max(errors) > ALLOWED * some[3].largest
+
+
+def test_the_right_answers_pass(some):
+    assert all(certify(victim.train, victim.answer).passed for victim in some)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return list(attacks(SEED, 400, each=20))
+
+
+def test_every_way_is_tried_and_most_are_wrong(found):
+    assert {a.way for a in found} == set(WAYS)
+    assert sum(a.error > ALLOWED for a in found) > 100
+    assert len({a.train for a in found}) == 20
+
+
+def test_attacks_depend_on_their_seed_alone(found):
+    again = list(attacks(SEED, 20, each=20))
+    assert again == found[:20]
+
+
+def test_what_slips_is_told():
+    slip = Attack("a train", "one number", True, 2e-9, -1e-9)
+    fine = Attack("a train", "one number", True, 1e-12, 1e-12)
+    told = text([slip, fine])
+    assert "| one number | 2 | 1 | 1 | 2 | 2.0e-09 |" in told
+    assert "Bounds below the true error: 1." in told
+    assert "slipped: Attack(train='a train'" in told
+    assert (slip.slipped, fine.slipped) == (True, False)
