@@ -91,7 +91,9 @@ def run_console(text: str) -> str:
                 timeout=120,
                 check=False,
             )
-            parts += [line, *(row.rstrip() for row in done.stdout.rstrip().splitlines())]
+            rows = [row.rstrip() for row in done.stdout.rstrip().splitlines()]
+            # Told once in an installation, by whichever command comes first.
+            parts += [line, *(row for row in rows if not row.startswith("Compiling: "))]
     return "\n".join(parts) + "\n"
 
 

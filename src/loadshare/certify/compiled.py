@@ -16,7 +16,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
+
+from loadshare import compilation
 
 # Nothing is allocated in here, so Numba need not count who holds an array: counting would take
 # twice as long as judging. A call would hand over every array of the tuples below, and cost more
@@ -27,8 +28,8 @@ _how: dict[str, Any] = {
     "fastmath": {"reassoc", "contract", "nsz"},
     "_nrt": False,
 }
-compiled = njit(cache=True, **_how)
-inlined = njit(forceinline=True, **_how)
+compiled = compilation.jit(**_how)
+inlined = compilation.within(forceinline=True, **_how)
 
 
 @compiled

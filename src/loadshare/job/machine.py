@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from importlib import import_module
 
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare import compilation
 from loadshare.certify.many import Judge, Verdicts
 from loadshare.certify.validity import Measuring, measuring
 from loadshare.scene import assemble
@@ -24,6 +26,12 @@ from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations, situation_of, stack
 
 ENGINES = ("auto", "compiled", "vectorised")
+COMPILED = (
+    "loadshare.solver.hot.compiled",
+    "loadshare.solver.hot.products",
+    "loadshare.certify.compiled",
+)
+"""What a quick answer calls, all of which must be there."""
 FEW = 2000
 """Equilibria up to which compiling, or reading what was compiled, costs more than it saves."""
 
@@ -40,7 +48,8 @@ def engine_named(name: str, count: int) -> Engine:
     Parameters
     ----------
     name : {"auto", "compiled", "vectorised"}
-        "auto" compiles from a few thousand equilibria on.
+        "auto" compiles from a few thousand equilibria on. Where nothing can be compiled, or kept,
+        the vectorised one comes in place of the compiled one.
     count : int
         Equilibria to solve.
     """
@@ -48,9 +57,22 @@ def engine_named(name: str, count: int) -> Engine:
         raise ValueError(f"unknown engine {name!r}; allowed: {', '.join(ENGINES)}")
     if name == "vectorised" or (name == "auto" and count <= FEW):
         return vectorised.settle
-    from loadshare.solver.hot import compiled
+    return _compiled() or vectorised.settle
 
-    return compiled.settle
+
+def _compiled() -> Engine | None:
+    """Return the compiled engine; None, with a word in the log, where it cannot be used."""
+    try:
+        for name in COMPILED:
+            import_module(name)
+    except Exception as error:  # noqa: BLE001 -- whatever it is, there is another engine
+        compilation.give_up(compilation.words_of(error))
+    if compilation.why_not() is None:
+        from loadshare.solver.hot import compiled
+
+        return compiled.settle
+    compilation.tell_why_not()
+    return None
 
 
 PILOTS, WORTH = 16, 32
@@ -161,10 +183,23 @@ class Machine:
         tolerance : float
             Largest scaled residual of a certified answer.
         engine : Engine
+            Where it does not compile, the vectorised one takes its place.
         starts : sequence of int, optional
             Positions (1-based) at which equal parts of the samples begin where the train itself
             stands.
         """
+        try:
+            return self._answer(situations, tolerance, engine, starts)
+        except Exception as error:
+            if not compilation.is_failure(error):
+                raise
+            compilation.give_up(f"it does not compile ({compilation.words_of(error)})")
+        compilation.tell_why_not()
+        return self._answer(situations, tolerance, vectorised.settle, starts)
+
+    def _answer(
+        self, situations: Situations, tolerance: float, engine: Engine, starts: Sequence[int]
+    ) -> Answers:
         data = data_of(self.elements, situations)
         state, code = at_rest(self.elements, data), first_sets(self.elements, data)
         beside = None if starts else self._beside(data.count)

@@ -182,8 +182,9 @@ def solve_many(
         Largest scaled residual of a certified answer, up to 1e-3.
     engine : {"auto", "compiled", "vectorised"}
         Numba or NumPy; both give the same answers. "auto" compiles from a few thousand equilibria
-        on. The first time it does, in an installation, takes about a minute; what was compiled is
-        kept on disk.
+        on. The first time it does, in an installation, takes one to three minutes of processor
+        time, of which the log ("loadshare") tells; what was compiled is kept on disk. Where nothing
+        can be compiled or kept, the log says so and NumPy answers.
     workers : int
         Threads.
     least_norm : bool

@@ -10,9 +10,10 @@ seconds to compile, for what it says of wrong shapes.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-compiled = njit(cache=True, nogil=True, error_model="numpy")
+from loadshare.compilation import jit
+
+compiled = jit(nogil=True, error_model="numpy")
 
 
 @compiled

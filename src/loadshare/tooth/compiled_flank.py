@@ -9,9 +9,10 @@ stands in this one file, because Numba looks at no other to tell whether what it
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
-compiled = njit(cache=True, nogil=True, error_model="numpy")
+from loadshare.compilation import jit
+
+compiled = jit(nogil=True, error_model="numpy")
 
 
 @compiled

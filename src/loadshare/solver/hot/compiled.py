@@ -11,9 +11,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from loadshare.compilation import jit
 from loadshare.scene.data import Data
 from loadshare.scene.elements import Basis, Elements
 from loadshare.scene.scene import Array
@@ -50,9 +50,7 @@ SETTLED, STALLED, LAW, SIGN, SHRINK, DRIFT = (
 )
 FEW = 4
 """Samples up to which lanes would stand empty for the most part."""
-compiled = njit(
-    cache=True, nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"}
-)
+compiled = jit(nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
 
 
 class _Set(NamedTuple):

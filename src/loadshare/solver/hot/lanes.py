@@ -14,9 +14,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from loadshare.compilation import jit, within
 from loadshare.scene.data import Data
 from loadshare.scene.elements import Basis, Elements
 from loadshare.scene.scene import Array
@@ -59,10 +59,10 @@ _how: dict[str, Any] = {
     "error_model": "numpy",
     "fastmath": {"reassoc", "contract", "nsz", "arcp"},
 }
-compiled = njit(cache=True, **_how)
+compiled = jit(**_how)
 # Without counted references, which would cost more than the sums: nothing is allocated in these.
 _uncounted: dict[str, Any] = {**_how, "_nrt": False}
-bare = njit(**_uncounted)
+bare = within(**_uncounted)
 
 
 class _Room(NamedTuple):

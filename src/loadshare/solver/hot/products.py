@@ -9,9 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from loadshare.compilation import jit
 from loadshare.scene.scene import Array
 
 
@@ -40,7 +40,7 @@ def times(table: Array, matrix: Entries) -> Array:
     return product
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def _times(table, columns, starts, rows, values, product):  # type: ignore[no-untyped-def]
     for s in range(product.shape[0]):
         for c in range(columns.shape[0]):
@@ -57,7 +57,7 @@ def pushes(force: Array, first: int, last: int, unit: float) -> Array:
     return found
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def _push(force, first, unit, found):  # type: ignore[no-untyped-def]
     for s in range(found.shape[0]):
         for k in range(found.shape[1]):
@@ -76,7 +76,7 @@ def idle(
     return found, carries
 
 
-@njit(cache=True, nogil=True)
+@jit(nogil=True)
 def _idle(force, first, code, share, least, found, carries):  # type: ignore[no-untyped-def]
     for s in range(code.shape[0]):
         carry = least[s]

@@ -1,0 +1,275 @@
+"""Compiled code is an advantage, never a condition: what goes wrong with it costs time only."""
+
+import importlib.util
+import itertools
+import logging
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.support import CASES, shipped
+
+import loadshare as ls
+from loadshare import compilation
+from loadshare.job.machine import Machine, engine_named
+from loadshare.solver.hot import vectorised
+from loadshare.train import build_train
+
+PACKAGE = Path(ls.__file__).parent
+CASE = CASES / "fgfbstts" / "limit_ring.toml"
+FLOATS = np.linspace(0.0, 12.0, 9)
+SOLVE = f"""
+import numpy as np, loadshare as ls
+floats = {{f"rings.{{g}}.float [um]": np.linspace(0.0, 12.0, 9) for g in "45"}}
+found = ls.solve_many({str(CASE)!r}, floats, positions=[1], engine="compiled")
+print(found["torque"].values.ravel().tolist())
+"""
+
+
+@pytest.fixture(autouse=True)
+def fresh(monkeypatch):
+    monkeypatch.setattr(compilation, "_reason", None)
+    monkeypatch.setattr(compilation, "_told", False)
+
+
+@pytest.fixture(scope="module")
+def torques() -> list[float]:
+    floats = {f"rings.{g}.float [um]": FLOATS for g in "45"}
+    found = ls.solve_many(CASE, floats, positions=[1], engine="vectorised")
+    return found["torque"].values.ravel().tolist()
+
+
+# --- Nothing can be kept, or nothing can be compiled ---
+
+
+def run(script: str, command: tuple[str, ...] = (), **environment: str):
+    """Run a script of its own; what it prints, and what it says on the side."""
+    done = subprocess.run(
+        [*command, sys.executable, "-c", script],
+        env={**os.environ, **environment},
+        text=True,
+        capture_output=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    return eval(done.stdout), done.stderr
+
+
+def as_a_user() -> tuple[str, ...]:
+    """What takes from root the right to write where it is forbidden."""
+    if os.geteuid() != 0:
+        return ()
+    if shutil.which("setpriv") is None:
+        pytest.skip("root may write everywhere, and there is no setpriv to take that away")
+    return ("setpriv", "--bounding-set=-dac_override,-dac_read_search", "--inh-caps=-all")
+
+
+@pytest.fixture
+def read_only(tmp_path: Path):
+    """The package and a home in folders that cannot be written."""
+    package, home = tmp_path / "package", tmp_path / "home"
+    shutil.copytree(
+        PACKAGE, package / "loadshare", ignore=shutil.ignore_patterns("__pycache__", "*.nb?")
+    )
+    home.mkdir()
+    folders = [home, package, *(p for p in package.rglob("*") if p.is_dir())]
+    for folder in folders:
+        folder.chmod(0o555)
+    yield {"PYTHONPATH": str(package), "HOME": str(home), "XDG_CACHE_HOME": str(home / "cache")}
+    for folder in folders:
+        folder.chmod(0o755)
+
+
+@pytest.mark.parametrize("named", [False, True], ids=["no folder", "an unwritable NUMBA_CACHE_DIR"])
+def test_with_nowhere_to_write_the_vectorised_kernel_answers(read_only, torques, named):
+    environment = {**read_only, "NUMBA_CACHE_DIR": read_only["HOME"] if named else ""}
+    found, said = run(SOLVE, as_a_user(), **environment)
+    assert found == torques
+    assert said.count("The compiled kernel is not used") == 1
+    assert "set NUMBA_CACHE_DIR to one that can be written" in said
+    assert "Traceback" not in said
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        "import sys; sys.modules['numba'] = None",
+        "import numba; numba.njit = None",
+    ],
+    ids=["no numba", "another numba"],
+)
+def test_without_a_usable_numba_the_vectorised_kernel_answers(torques, spoil):
+    found, said = run(spoil + SOLVE)
+    assert found == torques
+    assert said.count("The compiled kernel is not used: Numba cannot be used") == 1
+
+
+def test_without_numba_the_contact_programme_runs_as_it_is_written():
+    script = """
+import sys; sys.modules["numba"] = None
+from loadshare.tooth.compiled_contact import settle
+print(type(settle).__name__ == "function")
+"""
+    assert run(script)[0]
+
+
+def situations(machine: Machine):
+    return machine.situations([1])
+
+
+def test_a_kernel_that_does_not_compile_is_replaced(caplog):
+    from numba import njit
+
+    @njit
+    def broken(x):  # type: ignore[no-untyped-def]
+        return x.no_such_thing
+
+    def engine(*_: object, **__: object):
+        return broken(1.0)
+
+    machine = Machine(build_train(shipped("fgfbstts/base")))
+    with caplog.at_level(logging.WARNING, logger="loadshare"):
+        found = machine.answer(situations(machine), 1e-9, engine)
+    wanted = machine.answer(situations(machine), 1e-9, vectorised.settle)
+    np.testing.assert_array_equal(found.equilibria.flank_force, wanted.equilibria.flank_force)
+    assert found.passed.all()
+    assert [r.message.count("it does not compile (TypingError") for r in caplog.records] == [1]
+    assert engine_named("compiled", 10**6) is vectorised.settle
+
+
+def test_other_errors_are_not_taken_for_the_compilers():
+    def engine(*_: object, **__: object):
+        raise ZeroDivisionError("a mistake of ours")
+
+    machine = Machine(build_train(shipped("fgfbstts/base")))
+    with pytest.raises(ZeroDivisionError):
+        machine.answer(situations(machine), 1e-9, engine)
+    assert compilation.why_not() is None
+
+
+# --- What is kept may be damaged ---
+
+MODULE = """
+from loadshare.compilation import jit
+
+@jit(nogil=True)
+def twice(x):
+    return 2.0 * x
+"""
+_number = itertools.count()
+
+
+def loaded(file: Path):
+    """The function of a module file, as a new process would see it."""
+    spec = importlib.util.spec_from_file_location(f"kept_{next(_number)}", file)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.twice
+
+
+def halved(data: bytes) -> bytes:
+    return data[: len(data) // 2]
+
+
+def flipped(data: bytes) -> bytes:
+    at = len(data) // 2
+    return data[:at] + bytes([data[at] ^ 0xFF]) + data[at + 1 :]
+
+
+DAMAGES = {
+    "empty": lambda data: b"",
+    "halved": halved,
+    "one byte": flipped,
+    "rubbish": lambda data: b"\x80\x05rubbish" * 50,
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+@pytest.mark.parametrize("ending", ["nbi", "nbc"])
+def test_what_was_kept_and_is_damaged_is_compiled_anew(tmp_path, monkeypatch, ending, damage):
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    file = tmp_path / "kept.py"
+    file.write_text(MODULE, encoding="utf-8")
+    assert loaded(file)(2.0) == 4.0
+    again = loaded(file)
+    assert again(2.0) == 4.0
+    assert sum(again.stats.cache_hits.values()) == 1
+    kept = list((tmp_path / "__pycache__").glob(f"*.{ending}"))
+    assert len(kept) == 1
+    kept[0].write_bytes(DAMAGES[damage](kept[0].read_bytes()))
+    spoiled = loaded(file)
+    assert spoiled(2.0) == 4.0
+    assert sum(spoiled.stats.cache_hits.values()) == 0
+    mended = loaded(file)
+    assert mended(2.0) == 4.0
+    assert sum(mended.stats.cache_hits.values()) == 1
+
+
+def test_what_cannot_be_written_any_more_is_told_once(tmp_path, monkeypatch, caplog):
+    file = tmp_path / "kept.py"
+    file.write_text(MODULE, encoding="utf-8")
+    twice = loaded(file)
+    monkeypatch.setattr(compilation._watch, "_complained", False)
+
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(twice._cache._cache_file, "save", full)
+    with caplog.at_level(logging.WARNING, logger="loadshare"):
+        assert (twice(2.0), twice(2)) == (4.0, 4.0)
+    told = [r.message for r in caplog.records if "could not be kept" in r.message]
+    assert len(told) == 1
+    assert "No space left on device" in told[0]
+
+
+# --- Compiling is told ---
+
+
+def test_compiling_is_told_while_it_lasts(monkeypatch, caplog):
+    monkeypatch.setattr(compilation, "PATIENCE", 0.05)
+    monkeypatch.setattr(compilation, "AGAIN", 0.1)
+    watch = compilation._Watch()
+    with caplog.at_level(logging.WARNING, logger="loadshare"):
+        watch.started()
+        watch.started()
+        time.sleep(0.5)
+        watch.ended()
+        watch.ended()
+        teller = watch._teller
+        if teller is not None:
+            teller.join(10.0)
+    messages = [r.message for r in caplog.records]
+    assert messages[0].startswith("Compiling: the first use of this version here")
+    assert any(m.endswith("s so far") for m in messages[1:-1])
+    assert messages[-1].startswith("Compiling: done after")
+
+
+def test_what_takes_no_time_is_not_told(monkeypatch, caplog):
+    monkeypatch.setattr(compilation, "PATIENCE", 0.2)
+    watch = compilation._Watch()
+    with caplog.at_level(logging.WARNING, logger="loadshare"):
+        watch.started()
+        watch.ended()
+        teller = watch._teller
+        if teller is not None:
+            teller.join(10.0)
+    assert caplog.records == []
+
+
+def test_numba_tells_the_watch(tmp_path, monkeypatch):
+    file = tmp_path / "kept.py"
+    file.write_text(MODULE, encoding="utf-8")
+    twice = loaded(file)
+    begun: list[str] = []
+    monkeypatch.setattr(compilation._watch, "started", lambda: begun.append("started"))
+    monkeypatch.setattr(compilation._watch, "ended", lambda: begun.append("ended"))
+    assert twice(2.0) == 4.0
+    assert begun == ["started", "ended"]
+    assert twice(3.0) == 6.0
+    assert len(begun) == 2
