@@ -99,3 +99,19 @@ def test_an_unknown_command_is_wrong_usage(command):
     result = command("slove")
     assert result.exit_code == 2
     assert "No such command" in result.stderr
+
+
+def test_check_certifies_results_again(command, cases, tmp_path):
+    case = cases / "star/floating_sun_3.toml"
+    good, arrays, bad = tmp_path / "good.json", tmp_path / "good.nc", tmp_path / "bad.json"
+    command("run", case, "--json", good, "--netcdf", arrays)
+    result = command("check", good, arrays, case)
+    assert result.exit_code == 0
+    assert result.stdout.count("1 position certified again") == 2
+    document = json.loads(good.read_text(encoding="utf-8"))
+    document["positions"][0]["torque"]["sun-planet1"] *= 1.5
+    bad.write_text(json.dumps(document), encoding="utf-8")
+    result = command("check", good, bad)
+    assert result.exit_code == 2
+    assert 'bad.json: positions[0].torque."sun-planet1" = ' in result.stderr
+    assert "1 problem in 1 of 2 files." in result.stderr

@@ -1,32 +1,52 @@
-"""`loadshare check`: whether cases can be used, without solving them."""
+"""`loadshare check`: whether cases can be used, without solving them, and results believed."""
 
 from __future__ import annotations
+
+from pathlib import Path
 
 import typer
 
 from loadshare.cli.exits import UNUSABLE, counted, fail
 from loadshare.cli.find import find_cases
 from loadshare.cli.options import CasePaths
-from loadshare.errors import CaseError
+from loadshare.errors import CaseError, ResultError
+
+RESULTS = (".json", ".nc")
+"""Endings of result files; all others are cases."""
 
 
 def check(cases: CasePaths) -> None:
-    """List all problems of case files without solving them."""
-    from loadshare.case import load_case
-    from loadshare.train import build_train
+    """List all problems of case files without solving them; certify result files again.
 
+    A result is a .json or .nc file that `run` or `batch` wrote.
+    """
     found = find_cases(cases)
     problems = bad = 0
     for path in found:
         try:
-            build_train(load_case(path))
-        except CaseError as error:
+            told = _result(path) if path.suffix in RESULTS else _case(path)
+        except (CaseError, ResultError) as error:
             bad += 1
             problems += len(error.problems)
-            for problem in error.problems:
-                typer.echo(str(problem), err=True)
+            typer.echo(str(error), err=True)
         else:
-            typer.echo(f"OK  {path}")
+            typer.echo(f"OK  {path}{told}")
     if bad:
-        told = f"{counted(problems, 'problem')} in {bad} of {counted(len(found), 'case')}."
+        noun = "file" if any(path.suffix in RESULTS for path in found) else "case"
+        told = f"{counted(problems, 'problem')} in {bad} of {counted(len(found), noun)}."
         fail([told], UNUSABLE)
+
+
+def _case(path: Path) -> str:
+    from loadshare.case import load_case
+    from loadshare.train import build_train
+
+    build_train(load_case(path))
+    return ""
+
+
+def _result(path: Path) -> str:
+    from loadshare.results import load_result
+
+    result = load_result(path)
+    return f"  {counted(len(result.positions), 'position')} certified again"
