@@ -7,16 +7,18 @@ import json
 import math
 from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
-from tests.support import coasting, round_ring, shipped
+from tests.support import answer, coasting, round_ring, shipped
 
 import loadshare as ls
 from loadshare.certify import certify
 from loadshare.results.claim import claim_of
+from loadshare.results.derive import position_of, result_from
 from loadshare.results.document import FORMAT, plain
 from loadshare.results.files import DOCUMENT
 from loadshare.results.reading import read_document
@@ -223,8 +225,8 @@ def test_a_march_begins_where_the_step_before_ended():
     assert loads(changed(document, path, None)) is None
     # An equilibrium of the same step from another slip, which the march never had.
     train = build_train(found.case).remembering({"4": [1e-5, 0.0, 0.0], "5": np.zeros(3)})
-    answer = stepped(train, 3)
-    claim = plain(claim_of(train, answer.equilibrium))
+    step = stepped(train, 3)
+    claim = plain(claim_of(train, step.equilibrium))
     strange = changed(document, path[:-1], claim)
     assert "is not the slip at the end of the step before" in told(strange)
     later = {**document, "positions": document["positions"][1:]}
@@ -232,6 +234,21 @@ def test_a_march_begins_where_the_step_before_ended():
     assert "a march does not begin at its step 2" in told(later)
     assert found.passed
     assert ls.solve(found.case.replace({"march": None})).positions[0].claim.slip is None
+
+
+def test_a_meaningless_equilibrium_is_refused_on_loading_too(small):
+    """An answer that `solve` refuses for its displacements cannot come in by a file."""
+    soft = shipped("fgfbstts/base").replace({"gears.10.support": "1e5 N/m"})
+    train = build_train(soft)
+    found, _ = answer(train, 1)
+    certificate = certify(train, found)
+    assert certificate.passed
+    p = small.positions[0]
+    claim = claim_of(train, found)
+    position = position_of(train, 1, claim, certificate, found.undetermined, p.effort)
+    stamp = replace(small.stamp, case=soft.name, case_hash=soft.hash, positions=(1,))
+    made = result_from(soft, train, [position], stamp)
+    assert "the displacements are too large for the geometry" in told(made.to_json())
 
 
 def test_a_result_of_some_positions_is_whole_if_no_more_were_asked_for(small):

@@ -20,6 +20,7 @@ from loadshare.case.words import as_given
 from loadshare.certify import certify
 from loadshare.certify.state import State
 from loadshare.certify.tolerance import checked_tolerance
+from loadshare.certify.validity import refusal_told
 from loadshare.errors import CaseError, Problem, ResultError
 from loadshare.results.claim import Claim, misnamed
 from loadshare.results.derive import position_of, result_from
@@ -234,18 +235,20 @@ def _position(train: Train, given: _Position, tolerance: float) -> Position:
 
 
 def _uncertified(positions: Iterable[Position]) -> Iterator[Wrong]:
-    """Yield positions whose claims are no equilibrium of the case."""
+    """Yield positions whose claims are no equilibrium of the case, or meaningless as one."""
     for at, p in enumerate(positions):
-        if p.certificate.passed:
-            continue
-        failing = "; ".join(
-            f"{name.replace('_', ' ')} {r.value:.3g} {r.unit} at {r.where} ({r.scaled:.1e} of the "
-            f"case, allowed {p.certificate.tolerance:.0e})"
-            for name, r in p.certificate.failing.items()
-        )
-        failing = failing or "its torques are not bounded closely enough"
-        message = f"position {p.position} is no equilibrium of the case under input: {failing}"
-        yield ("positions", at, "claim"), "", message, ""
+        path: Path = ("positions", at, "claim")
+        if not p.certificate.passed:
+            failing = "; ".join(
+                f"{name.replace('_', ' ')} {r.value:.3g} {r.unit} at {r.where} ({r.scaled:.1e} of "
+                f"the case, allowed {p.certificate.tolerance:.0e})"
+                for name, r in p.certificate.failing.items()
+            )
+            failing = failing or "its torques are not bounded closely enough"
+            message = f"position {p.position} is no equilibrium of the case under input: {failing}"
+            yield path, "", message, ""
+        elif p.validity.refused:
+            yield path, "", f"position {p.position}: {refusal_told(p.validity.refused)}", ""
 
 
 def _forgotten(train: Train, positions: Iterable[Position]) -> Iterator[Wrong]:
