@@ -16,7 +16,7 @@ from loadshare.certify.certificate import TOLERANCE
 from loadshare.certify.state import State, turned
 from loadshare.errors import Refused
 from loadshare.job import ladder
-from loadshare.job.ladder import HOT, climb, climb_all, hot_answers, rungs
+from loadshare.job.ladder import HOT, SEARCHED, climb, climb_all, hot_answers, rungs
 from loadshare.job.machine import Machine
 from loadshare.scene import assemble
 from loadshare.scene.plan import Role
@@ -52,21 +52,47 @@ def test_what_the_hot_path_leaves_the_next_rung_answers(name, monkeypatch):
     assert furthest(found.positions[0].torque, hot.positions[0].torque) < 1e-9
 
 
-def test_every_way_to_begin_is_tried():
-    """From rest, then one exchange at a time, then with the drive flanks turned round."""
-    visits = []
-
-    def watched(elements, data, basis, code, rows, state, one_only):
-        visits.append((bool(one_only[rows].all()), code.tobytes()))
-        return failing(elements, data, basis, code, rows, state, one_only)
-
+def test_what_exchange_leaves_is_searched_for():
+    """By the proximal method, from which an engine of its own takes over."""
     own = Machine(build_train(shipped("fgfbstts/limit_ring")))
-    assert not own.answer(own.situations([1, 2]), TOLERANCE, watched).passed.any()
-    # Both positions begin on the same set, so that each way is one visit.
-    singly = [single for single, _ in visits]
-    assert {False, True} == set(singly)
-    assert singly == sorted(singly)
-    assert len({code for _, code in visits}) == 2
+    exchanged = own.answer(own.situations([1, 2]), TOLERANCE, vectorised.settle)
+    assert exchanged.passed.all()
+    assert not exchanged.searched.any()
+    searched = own.answer(own.situations([1, 2]), TOLERANCE, failing)
+    assert searched.passed.all()
+    assert searched.searched.all()
+    for one, other in zip(exchanged.equilibria.arrays, searched.equilibria.arrays, strict=True):
+        # Pinion 1 may lie anywhere along one direction, and the search does not settle where.
+        if one is not exchanged.equilibria.displacement:
+            scale = np.abs(one).max(initial=1e-300)
+            assert np.abs(one - other).max(initial=0.0) < 1e-9 * scale
+    (found,) = climb_all(own, [1], Options(), TOLERANCE)
+    assert found.rung == HOT
+
+
+def test_an_answer_that_was_searched_for_says_so(monkeypatch):
+    """And is of least norm, like any other."""
+    settle, visits = vectorised.settle, []
+
+    def slow(elements, data, basis, code, rows, state, one_only):
+        visits.append(bool(state.stays.any()))
+        if not visits[-1]:
+            return failing(elements, data, basis, code, rows, state, one_only)
+        return settle(elements, data, basis, code, rows, state, one_only)
+
+    monkeypatch.setattr(vectorised, "settle", slow)
+    case = shipped("fgfbstts/limit_ring")
+    searched = ls.explain(case)
+    assert searched.rung == SEARCHED
+    assert visits == sorted(visits)
+    monkeypatch.undo()
+    hot = ls.explain(shipped("fgfbstts/limit_ring").replace({}))
+    assert hot.rung == HOT
+    assert searched.equilibrium.undetermined == hot.equilibrium.undetermined
+    forces, places = disagreement(hot.train, searched.equilibrium, hot.equilibrium)
+    assert max(forces, places) < 1e-9
+    moved = [a.equilibrium.displacement["1"] for a in (searched, hot)]
+    assert moved[0] == pytest.approx(moved[1], rel=1e-9, abs=1e-15)
 
 
 def test_a_wrong_set_is_not_handed_out(monkeypatch):

@@ -19,7 +19,7 @@ from loadshare.case import families
 from loadshare.certify.certificate import TOLERANCE
 from loadshare.errors import CaseError
 from loadshare.job import many
-from loadshare.job.ladder import HOT
+from loadshare.job.ladder import HOT, SEARCHED
 from loadshare.job.many import KEEP, solve_blocks
 from loadshare.train.samples import samples_of
 
@@ -255,7 +255,7 @@ def test_what_the_hot_path_leaves_climbs_and_says_so(monkeypatch):
     expected = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1])
     monkeypatch.setattr(vectorised, "settle", moody)
     found = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1])
-    assert found.rung.values[:, 0].tolist() == [HOT, "clarabel + exact", HOT]
+    assert found.rung.values[:, 0].tolist() == [HOT, SEARCHED, HOT]
     assert found.certified.all()
     for name in ("torque", "share", "contact_force"):
         assert apart(expected, found, name) < 1e-9

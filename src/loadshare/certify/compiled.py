@@ -435,7 +435,7 @@ def _cone_membership(of, here, claim, s, sheet, band):  # type: ignore[no-untype
     worst = _worse(worst, np.sqrt(square))
     for d in range(len(of.drum)):
         if of.is_squeezed[d]:
-            worst = _worse(worst, _squeeze(of, here, claim, s, d, band))
+            worst = _worse(worst, _squeeze(of, here, claim, s, sheet, d, band))
     for q in range(len(sheet.pull_law)):
         excess = _excess(sheet.pull_law[q], sheet.pull_offset[q], claim.radial_reaction[s, q], band)
         worst = _worse(worst, excess)
@@ -443,7 +443,7 @@ def _cone_membership(of, here, claim, s, sheet, band):  # type: ignore[no-untype
 
 
 @inlined
-def _squeeze(of, here, claim, s, d, band):  # type: ignore[no-untyped-def]
+def _squeeze(of, here, claim, s, sheet, d, band):  # type: ignore[no-untyped-def]
     """What the squeeze of a drum's opposed arcs leaves open [N] (see `State.squeezes`)."""
     first = 2 * len(of.drum) + 2 * d
     squeeze = min(claim.ring_force[s, first], claim.ring_force[s, first + 1])
@@ -459,7 +459,13 @@ def _squeeze(of, here, claim, s, d, band):  # type: ignore[no-untyped-def]
         unit = (nominal[d, 0, k] + start[r, d, 0, k]) / np.sqrt(one)
         unit += (nominal[d, 1, k] + start[r, d, 1, k]) / np.sqrt(other)
         wedge += unit * unit
-    across = 2.0 * band / min(of.distance[d, 0], of.distance[d, 1])
+    distance = min(of.distance[d, 0], of.distance[d, 1])
+    known = band
+    if wedge * distance > 8.0 * band:
+        overlap = sheet.ring_overlap
+        known = max(abs(overlap[first]), abs(overlap[first + 1]))
+        known += np.finfo(np.float64).eps * _size(claim.displacement[s, of.drum[d, 0]])
+    across = 2.0 * known / distance
     return squeeze * across / (np.sqrt(wedge) + np.sqrt(wedge + across))
 
 
@@ -540,18 +546,19 @@ def _size(vector):  # type: ignore[no-untyped-def]
 
 @inlined
 def _interval(law, radius, band):  # type: ignore[no-untyped-def]
-    """Forces that a graph admits at a radius, corners widened by the band."""
+    """Forces that a graph admits within the band about a radius."""
     first, stick, bound, reach, last = law[0], law[1], law[2], law[3], law[4]
     low, high = np.inf, 0.0
+    inner, outer = radius - band, radius + band
     throughout = np.isinf(stick)
     level_end = max(reach, 0.0 if throughout else stick)
-    if stick > 0.0 and radius <= stick + band:
-        low = high = first * min(radius, stick)
-    if level_end > stick and stick - band <= radius <= level_end + band:
+    if stick > 0.0 and inner <= stick:
+        low, high = first * max(inner, 0.0), first * min(outer, stick)
+    if level_end > stick and stick <= outer and inner <= level_end:
         low, high = min(low, bound), max(high, bound)
-    if np.isfinite(last) and not throughout and radius >= level_end - band:
-        here = bound + last * max(radius - level_end, 0.0)
-        low, high = min(low, here), max(high, here)
+    if np.isfinite(last) and not throughout and outer >= level_end:
+        low = min(low, bound + last * max(inner - level_end, 0.0))
+        high = max(high, bound + last * max(outer - level_end, 0.0))
     if radius <= band:
         low = 0.0
     if np.isinf(last) and radius >= reach - band:

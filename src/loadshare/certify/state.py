@@ -24,6 +24,8 @@ from loadshare.train.radial import RadialLaw, round_ring_law
 from loadshare.train.ring import Arc
 from loadshare.train.train import Situation, Spline, Train
 
+EPS = float(np.finfo(float).eps)
+"""Round-off of a length, relative to it."""
 Scalars = TypeVar("Scalars", float, NDArray[np.float64])
 
 
@@ -190,10 +192,12 @@ class State:
     def squeezes(self, band: float) -> dict[str, float]:
         """Force [N] across the two rigid arcs of a ring that a squeeze between them leaves open.
 
-        A centre in touch with both, up to the band [m], lies anywhere within y across them, where
-        ε y + y²/2a = band and ε is the angle of the wedge; the directions of the two forces are
-        known no better than y/a. Between opposed arcs (ε = 0) a large squeeze could seem to hold a
-        float that would roll away. Neighbours that give way follow the float instead.
+        A centre in touch with both, up to a length, lies anywhere within y across them, where
+        ε y + y²/2a is that length and ε the angle of the wedge; the directions of the two forces
+        are known no better than y/a. The length is what the two arcs overlap or stand open; where
+        the narrowest place of the wedge, ε²a/8 past its mouth, overlaps by less than the band [m],
+        it is the band: through there a float would roll away that a large squeeze seems to hold.
+        Neighbours that give way follow the float instead.
         """
         forces = self.answer.ring_force
         found = {}
@@ -205,7 +209,10 @@ class State:
             wedge = float(np.linalg.norm(sum(a.normal(np.zeros(3)) for a in arcs)))
             squeeze = min(forces[ring.arc_name(n)] for n in ring.neighbours)
             distance = min(a.distance for a in arcs)
-            found[f"ring {ring.gear}: arcs"] = squeeze * turned(wedge, band, distance)
+            moved = self.moved(ring.gear)
+            apart = max(abs(a.margin(moved)) for a in arcs) + EPS * float(np.linalg.norm(moved))
+            known = apart if wedge**2 * distance > 8.0 * band else band
+            found[f"ring {ring.gear}: arcs"] = squeeze * turned(wedge, known, distance)
         return found
 
     @cached_property

@@ -22,12 +22,15 @@ from loadshare.scene import assemble
 from loadshare.scene.plan import Plan, Role
 from loadshare.scene.scene import Scene
 from loadshare.solver import Options, Record, solve_scene
-from loadshare.solver.contradiction import contradiction
+from loadshare.solver.contradiction import OVERLAP, contradiction
 from loadshare.solver.position import coordinates_of, of_least_norm
+from loadshare.solver.runaway import runaway
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.train import Train
 
-HOT = "hot path"
+HOT, SEARCHED = "hot path", "proximal search"
+PLAINLY = 1e-6
+"""Overlap of rigid limits, over the lengths at hand, after which nothing else need be tried."""
 AUTO = "auto"
 """Instead of a back-end's name: the hot path, and Clarabel for what it leaves."""
 
@@ -140,7 +143,8 @@ def hot_answers(
             equilibrium = replace(claimed[row], undetermined=equilibrium.undetermined)
         certificate = certify_later(train, equilibrium, tolerance)
         record = _hot_record(machine, found, row)
-        answers[indices[row]] = Answer(train, equilibrium, certificate, record, HOT)
+        rung = SEARCHED if found.searched[row] else HOT
+        answers[indices[row]] = Answer(train, equilibrium, certificate, record, rung)
     return answers
 
 
@@ -203,7 +207,9 @@ def climb(train: Train, index: int, options: Options, tolerance: float) -> Answe
         try:
             equilibrium, record = solve_scene(scene, rung_options)
         except Refused as refusal:
-            first = first or refusal
+            if first is None:
+                first = refusal
+                _refuse_if_none(scene, PLAINLY)
             continue
         certificate = certify(train, equilibrium, tolerance)
         if certificate.passed:
@@ -211,13 +217,26 @@ def climb(train: Train, index: int, options: Options, tolerance: float) -> Answe
         first = first or _uncertified(index, certificate)
         if not options.polish:
             break
-    against = contradiction(scene)
+    _refuse_if_none(scene)
+    raise first or Refused(f"position {index}: nothing was tried")
+
+
+def _refuse_if_none(scene: Scene, overlap: float = OVERLAP) -> None:
+    """Refuse a position that is shown to have no equilibrium, and name what is in the way."""
+    here = f"position {scene.situation.index}:"
+    against = contradiction(scene, overlap)
     if against:
         raise Refused(
-            f"position {index}: rigid limits contradict one another: {', '.join(against)}; "
+            f"{here} rigid limits contradict one another: {', '.join(against)}; "
             "give one of them more clearance or float, or a stiffness"
         )
-    raise first or Refused(f"position {index}: nothing was tried")
+    moved, *others = runaway(scene) or [""]
+    if moved:
+        also = f", and {', '.join(others)} with it" if others else ""
+        raise Refused(
+            f"{here} nothing balances the load on {moved}: no contact, support or limit holds "
+            f"it{also}; support a gear that floats there, or limit its float"
+        )
 
 
 def displaced(answer: Answer) -> Refused | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import import_module
@@ -20,6 +20,7 @@ from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.answer import equilibria
 from loadshare.solver.hot.determined import determined
 from loadshare.solver.hot.exchange import Codes, Engine, Found, exchange, first_sets
+from loadshare.solver.hot.proximal import search
 from loadshare.solver.hot.state import State, at_rest, pushes
 from loadshare.train import Train
 from loadshare.train.equilibria import Equilibria
@@ -77,8 +78,6 @@ def _compiled() -> Engine | None:
 
 PILOTS, WORTH = 16, 32
 """Samples that show the others where to begin, and how many times as many it takes."""
-Attempt = Callable[[NDArray[np.bool_]], tuple[State, Found]]
-"""Solves some of the samples anew."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,6 +97,8 @@ class Answers:
         Which elements act.
     turns : ndarray of int, shape (S,)
         Sets visited.
+    searched : ndarray of bool, shape (S,)
+        Whether exchange alone found nothing, and the proximal method went ahead.
     """
 
     equilibria: Equilibria
@@ -106,6 +107,7 @@ class Answers:
     determined: NDArray[np.bool_]
     code: Codes
     turns: NDArray[np.intp]
+    searched: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -217,17 +219,23 @@ class Machine:
             self.elements, data, state, engine, code, only=~found.solved if found else None
         )
         found = found.completed(more) if found else more
-        for again in self._again(data, engine):
-            if found.solved.all():
-                break
-            other, more = again(~found.solved)
-            state = state.completed(other, more.solved & ~found.solved)
-            found = found.completed(more)
+        if (starts or beside is not None) and not found.solved.all():
+            # A beginning that leads nowhere: once more from rest.
+            rest, only = at_rest(self.elements, data), ~found.solved
+            more = exchange(self.elements, data, rest, engine, only=only)
+            state, found = state.completed(rest, only & more.solved), found.completed(more)
         if not starts and found.solved.all():
             self._last = self._as_start(data, state, found)
+        searched = np.zeros(data.count, dtype=bool)
+        left = ~found.solved
+        while True:
+            found = self._search(data, state, found, left)
+            searched |= left
+            answers, verdicts = self._judged(situations, state, tolerance, engine)
+            left = found.solved & ~verdicts.passed & ~searched
+            if not left.any():
+                break
         quick = engine is not vectorised.settle
-        answers = equilibria(self.elements, state, quick)
-        verdicts = self.judge.judge(situations, answers, tolerance, compiled=quick)
         return Answers(
             answers,
             verdicts,
@@ -235,7 +243,24 @@ class Machine:
             determined(self.elements, data, state, found.code, found.held, quick),
             found.code,
             found.turns,
+            searched,
         )
+
+    def _judged(
+        self, situations: Situations, state: State, tolerance: float, engine: Engine
+    ) -> tuple[Equilibria, Verdicts]:
+        quick = engine is not vectorised.settle
+        answers = equilibria(self.elements, state, quick)
+        return answers, self.judge.judge(situations, answers, tolerance, compiled=quick)
+
+    def _search(self, data: Data, state: State, found: Found, rows: NDArray[np.bool_]) -> Found:
+        """Search an equilibrium of single samples by the proximal method."""
+        for row in np.flatnonzero(rows).tolist():
+            one, more = search(self.elements, data.one(row))
+            if more.solved[0]:
+                state.put(row, one)
+                found = found.replaced(row, more)
+        return found
 
     def _begin(self, part: slice, begin: _Start, data: Data, state: State, code: Codes) -> None:
         code[part, : self.elements.rows] = begin.code
@@ -261,28 +286,6 @@ class Machine:
             for part in parts:
                 self._begin(slice(part.start + PILOTS, part.stop), begin, data, state, code)
         return found
-
-    def _again(self, data: Data, engine: Engine) -> Iterator[Attempt]:
-        """Further ways for samples that found no consistent set: from rest, then one at a time."""
-        for singly, flip in ((False, False), (True, False), (True, True)):
-
-            def attempt(
-                only: NDArray[np.bool_], singly: bool = singly, flip: bool = flip
-            ) -> tuple[State, Found]:
-                state = at_rest(self.elements, data)
-                code = first_sets(self.elements, data)
-                if flip:
-                    code[:, : self.elements.rows] ^= self._drives
-                return state, exchange(
-                    self.elements, data, state, engine, code, only=only, singly=singly
-                )
-
-            yield attempt
-
-    @cached_property
-    def _drives(self) -> Codes:
-        kinds = [row.kind == "drive flank" for row in self.elements.scene.rows]
-        return np.array(kinds + [False] * len(self.elements.scene.arcs), dtype=np.int8)
 
     def _start(self, index: int, engine: Engine) -> _Start | None:
         """What the train itself does at a position; None if the hot path does not know."""

@@ -22,7 +22,7 @@ from loadshare.case import Case, load_case
 from loadshare.certify.certificate import TOLERANCE, certify
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.errors import CaseError, Refused
-from loadshare.job.ladder import HOT, climb
+from loadshare.job.ladder import HOT, SEARCHED, climb
 from loadshare.job.machine import Machine, engine_named
 from loadshare.job.positions import Progress, wanted_positions
 from loadshare.job.table import Table
@@ -260,7 +260,7 @@ def _block(
     count, shape = len(rows), (len(rows), len(positions))
     certified, determined = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
     residual = np.full(shape, np.nan)
-    rung = np.full(shape, HOT, dtype="<U24")
+    rung = np.full(shape, "", dtype="<U24")
     deflection = np.full(shape, np.nan)
     message: dict[tuple[int, int], str] = {}
     every: list[Equilibria] = []
@@ -276,6 +276,7 @@ def _block(
         ]
         columns = slice(at, at + len(some))
         certified[:, columns] = found.passed.reshape(-1, count).T
+        rung[:, columns] = np.where(found.searched, SEARCHED, HOT).reshape(-1, count).T
         residual[:, columns] = found.verdicts.worst.reshape(-1, count).T
         deflection[:, columns] = found.verdicts.deflection.reshape(-1, count).T
         determined[:, columns] = found.determined.reshape(-1, count).T

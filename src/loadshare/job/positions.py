@@ -14,7 +14,7 @@ from loadshare.case import Case, load_case
 from loadshare.certify.certificate import TOLERANCE
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.errors import Refused
-from loadshare.job.ladder import AUTO, HOT, Answer, climb_all, displaced, left_out
+from loadshare.job.ladder import AUTO, HOT, SEARCHED, Answer, climb_all, displaced, left_out
 from loadshare.job.machine import Machine
 from loadshare.results.claim import claim_of
 from loadshare.results.derive import position_of, result_from
@@ -157,7 +157,7 @@ def explain(
     (found,) = climb_all(machine, wanted, options, tolerance, settle)
     if isinstance(found, Refused):
         raise found
-    if found.rung == HOT:
+    if found.rung in (HOT, SEARCHED):
         return replace(found, record=replace(found.record, removed=left_out(found)))
     return found
 

@@ -7,7 +7,7 @@ the columns of :mod:`loadshare.scene.elements`. Source: formulation, section 11.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -62,6 +62,16 @@ class Data:
     relative: Array
     radial: Array
     carried: Array
+
+    def one(self, row: int) -> Data:
+        """Return a sample alone."""
+        varying = {
+            f.name: value[row : row + 1]
+            for f in fields(self)
+            if f.name not in ("count", "tabulated", "nominal", "relative", "carried")
+            and len(value := getattr(self, f.name)) > 1
+        }
+        return replace(self, count=1, **varying)
 
     @cached_property
     def loaded(self) -> NDArray[np.intp]:

@@ -13,7 +13,7 @@ SHARE = 1e-6
 """Share in a contradiction from which on a limit is named."""
 
 
-def contradiction(scene: Scene) -> tuple[str, ...]:
+def contradiction(scene: Scene, overlap: float = OVERLAP) -> tuple[str, ...]:
     r"""Return the rigid limits that contradict one another; empty if all can hold.
 
     The least overlap t of any displacement,
@@ -36,7 +36,7 @@ def contradiction(scene: Scene) -> tuple[str, ...]:
     bounds = [(None, None)] * scene.size + [(-1.0, None)]
     cost = np.append(np.zeros(scene.size), 1.0)
     found = linprog(cost, matrix, [r.gap / unit for r in rows], bounds=bounds, method="highs")
-    if found.status != 0 or found.x is None or found.x[-1] <= OVERLAP:
+    if found.status != 0 or found.x is None or found.x[-1] <= overlap:
         return ()
     weights = np.abs(np.asarray(found.ineqlin.marginals))
     return tuple(r.name for r, w in zip(rows, weights, strict=True) if w > SHARE * weights.max())

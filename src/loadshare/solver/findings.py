@@ -3,7 +3,3 @@
 
 class Unsolved(RuntimeError):  # noqa: N818 -- a finding, not a fault
     """A programme has no answer, or none was found; the message says which."""
-
-
-class Unbalanced(Unsolved):
-    """No point satisfies a programme; the message names what gives way."""

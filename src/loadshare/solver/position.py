@@ -12,7 +12,7 @@ from loadshare.scene.programme import Array
 from loadshare.scene.scene import Scene
 from loadshare.solver.backend import Backend, backend
 from loadshare.solver.exact import ROUNDING
-from loadshare.solver.findings import Unbalanced, Unsolved
+from loadshare.solver.findings import Unsolved
 from loadshare.solver.outer import Settled, settle
 from loadshare.solver.record import Options, Record
 from loadshare.solver.undetermined import free_set, places
@@ -54,7 +54,7 @@ def solve_scene(scene: Scene, options: Options) -> tuple[Equilibrium, Record]:
         except Unsolved as failure:
             wider = _wider(scene, plan)
             if wider is None:
-                raise Refused(_told(scene, failure)) from failure
+                raise Refused(f"position {scene.situation.index}: {failure}") from failure
             plan = wider
             continue
         margins = _margins(scene, plan, settled)
@@ -88,21 +88,11 @@ def _settle(scene: Scene, plan: Plan, solver: Backend, options: Options) -> tupl
     try:
         return settle(scene, plan, solver, options, options.method), options.method
     except ValueError as error:
-        raise Refused(_told(scene, error)) from error
+        raise Refused(f"position {scene.situation.index}: {error}") from error
     except Unsolved:
         if other is None or all(r.law.is_linear for r in scene.rows):
             raise
     return settle(scene, plan, solver, options, other), other
-
-
-def _told(scene: Scene, failure: Exception) -> str:
-    """Say why there is no answer, and which floats nothing limits if the load found no balance."""
-    told = f"position {scene.situation.index}: {failure}"
-    limited = {*scene.train.splines, *scene.train.rings}
-    loose = [g for g in scene.train.floating if g not in limited]
-    if isinstance(failure, Unbalanced) and loose:
-        told += f"; nothing limits the float of gear {', '.join(loose)}"
-    return told
 
 
 def _wider(scene: Scene, plan: Plan) -> Plan | None:

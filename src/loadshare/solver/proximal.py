@@ -20,7 +20,7 @@ import numpy as np
 
 from loadshare.scene.programme import Array, Point, Programme
 from loadshare.solver.exact import ActiveSet, at_rest, first_guess, solve_exact
-from loadshare.solver.findings import Unbalanced
+from loadshare.solver.findings import Unsolved
 
 PULLS = (*[1e-5] * 8, *(10.0**-k for k in range(6, 12)), *[1e-11] * 6)
 """ε of every pass, in the programme's units (where a flank's compliance is about 1).
@@ -42,7 +42,7 @@ def solve_proximal(programme: Programme, start: Point | None = None) -> tuple[Po
 
     Raises
     ------
-    Unbalanced
+    Unsolved
         If the passes run away or find no active set.
     """
     # Where forces are not unique, passes that begin without any end near the smallest ones.
@@ -56,7 +56,7 @@ def solve_proximal(programme: Programme, start: Point | None = None) -> tuple[Po
             at, stretch, run = replace(at, x=at.x - stretch * drift.x), 0.0, np.inf
             continue
         if found is None:
-            raise Unbalanced("no consistent active set was found")
+            raise Unsolved("no consistent active set was found")
         point, now = found
         if now == active:
             exact = solve_exact(programme, now, point, rounds=1)
@@ -69,7 +69,7 @@ def solve_proximal(programme: Programme, start: Point | None = None) -> tuple[Po
         pace = float(np.abs(drift.x).max(initial=0.0))
         stretch = 4.0 * stretch + 1.0 if now == active and pace > 0.5 * run else 0.0
         at, active, run = replace(point, x=point.x + stretch * drift.x), now, pace
-    raise Unbalanced(_what_gives_way(programme, drift))
+    raise Unsolved("the passes of the proximal method did not settle")
 
 
 def _pulled(programme: Programme, at: Point, pull: float) -> Programme:
@@ -94,15 +94,3 @@ def _arrived(point: Point, before: Point, pull: float) -> bool:
         unbalanced <= ARRIVED * max(1.0, largest(point.forces))
         and misplaced <= ARRIVED * max(1.0, largest(point.x))
     )
-
-
-def _what_gives_way(programme: Programme, drift: Point) -> str:
-    """Name the coordinate that runs away, or the contacts whose forces grow without end."""
-    run, growth = np.abs(drift.x), np.abs(drift.forces)
-    if run.max(initial=0.0) > 1.0:
-        name = programme.coordinates[int(run.argmax())]
-        return f"nothing balances the load on {name}: no contact, support or limit holds it"
-    if growth.max(initial=0.0) > 1e-3:
-        names = [programme.names[k] for k in np.argsort(-growth)[:2] if growth[k] > 1e-3]
-        return f"the constraints contradict each other: {' and '.join(names)} cannot both hold"
-    return "the passes of the proximal method did not settle"

@@ -69,18 +69,21 @@ class RadialLaw:
         return low, high
 
     def interval(self, radius: float, band: float = 0.0) -> tuple[float, float]:
-        """Forces [N] that the graph admits at `radius` [m], corners widened by `band` [m].
+        """Forces [N] that the graph admits within `band` [m] about `radius` [m].
 
-        A band lets an answer that stands on a corner up to round-off be judged by the whole step.
+        So an answer that stands on a corner up to round-off is judged by the whole step, and on a
+        steep piece by its place rather than by the force that round-off of the place makes of it.
         """
         low, high = math.inf, 0.0
         begin = 0.0
         for piece in self.pieces:
             end = begin + piece.length
             if begin - band <= radius <= end + band:
-                inner = min(max(radius, begin), end) - begin
-                here = piece.force + (piece.stiffness * inner if piece.stiffness else 0.0)
-                low, high = min(low, here), max(high, here)
+                slope = piece.stiffness
+                for place in (radius - band, radius + band):
+                    inner = min(max(place, begin), end) - begin
+                    here = piece.force + (slope * inner if slope else 0.0)
+                    low, high = min(low, here), max(high, here)
             begin = end
         if radius <= band:
             low = 0.0

@@ -39,7 +39,7 @@ class Graph(NamedTuple):
 
 
 def interval(graph: Graph, radius: Array, band: Array) -> tuple[Array, Array]:
-    """Forces [N] that a graph admits at a radius [m], corners widened by the band [m]."""
+    """Forces [N] that a graph admits within the band [m] about a radius [m]."""
     first, stick, bound, reach, last = graph
     low, high = np.full(len(radius), np.inf), np.zeros(len(radius))
     level_end = np.maximum(reach, np.where(np.isinf(stick), 0.0, stick))
@@ -56,10 +56,10 @@ def interval(graph: Graph, radius: Array, band: Array) -> tuple[Array, Array]:
     )
     for begin, end, force, slope, there in pieces:
         on = there & (radius >= begin - band) & (radius <= end + band)
-        inner = np.minimum(np.maximum(radius, begin), end) - begin
-        here = force + np.where(slope > 0.0, slope * inner, 0.0)
-        low = np.where(on, np.minimum(low, here), low)
-        high = np.where(on, np.maximum(high, here), high)
+        rising = np.where(slope > 0.0, slope, 0.0)
+        least, most = (np.clip(radius + side, begin, end) - begin for side in (-band, band))
+        low = np.where(on, np.minimum(low, force + rising * least), low)
+        high = np.where(on, np.maximum(high, force + rising * most), high)
     low = np.where(radius <= band, 0.0, low)
     stopped = np.isinf(last) & (radius >= reach - band)
     low = np.where(stopped, np.minimum(low, bound), low)

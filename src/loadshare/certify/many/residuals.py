@@ -9,7 +9,7 @@ from loadshare.certify.certificate import BAND
 from loadshare.certify.many.bench import Bench
 from loadshare.certify.many.graphs import complementary, energy, interval
 from loadshare.certify.many.layout import size, times
-from loadshare.certify.state import turned
+from loadshare.certify.state import EPS, turned
 
 Array = NDArray[np.float64]
 
@@ -153,7 +153,10 @@ def _squeezes(bench: Bench, band: Array) -> Array:
         first = 2 * len(drums) + 2 * d
         squeeze = bench.ring_force[:, first : first + 2].min(axis=1)
         distance = float(size(nominal).min())
-        worst = np.maximum(worst, squeeze * turned(wedge, band, distance))
+        apart = np.abs(bench.ring_approach[:, first : first + 2]).max(axis=1)
+        apart = apart + EPS * size(bench.answers.displacement[:, bench.of.order[ring.gear]])
+        known = np.where(wedge**2 * distance > 8.0 * band, apart, band)
+        worst = np.maximum(worst, squeeze * turned(wedge, known, distance))
     return worst
 
 

@@ -32,8 +32,8 @@ WORD = 8
 _KEYS = np.random.default_rng(11).integers(1 << 62, size=1 << 12) | 1
 TOGETHER = 6
 """Exchanges of all wrong signs at once; after these, one at a time."""
-TURNS = 12
-"""Turns allowed in all, more for more switches."""
+TURNS = 24
+"""Turns allowed in all: of samples that are settled by exchange, one in a thousand takes more."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,6 +65,16 @@ class Found:
             np.where(mine[:, None], self.code, other.code),
             self.turns + other.turns,
             np.where(mine, self.held, other.held),
+        )
+
+    def replaced(self, row: int, other: Found) -> Found:
+        """Return the same with a sample as the only one of another finding."""
+        here = np.arange(len(self.solved)) == row
+        return Found(
+            self.solved | here,
+            np.where(here[:, None], other.code, self.code),
+            self.turns + np.where(here, other.turns, 0),
+            np.where(here, other.held, self.held),
         )
 
 
@@ -114,6 +124,7 @@ def exchange(
     code: Codes | None = None,
     only: NDArray[np.bool_] | None = None,
     singly: bool = False,
+    limit: int | None = None,
 ) -> Found:
     """Lead every sample to a consistent set.
 
@@ -131,6 +142,8 @@ def exchange(
         Samples to solve; all by default.
     singly : bool
         Exchange one element at a time from the beginning.
+    limit : int, optional
+        Sets that a sample visits at most.
 
     Returns
     -------
@@ -146,7 +159,7 @@ def exchange(
     turns = np.zeros(count, dtype=np.intp)
     held = np.zeros(count, dtype=bool)
     one_only = np.full(count, singly)
-    limit = TURNS + 2 * switches
+    limit = limit or TURNS
     waiting = _Waiting()
     rows = np.arange(count) if only is None else np.flatnonzero(only)
     waiting.add(code[rows], rows)
@@ -216,8 +229,10 @@ class _Waiting:
 
 
 def _without_wedges(elements: Elements, data: Data, here: Codes, proposal: Codes) -> Codes:
-    """Let only one of two opposed rigid arcs act: the one that is new."""
+    """Let only one of two opposed rigid arcs act, the one that is new, unless both act here."""
     for one, other in elements.opposed:
+        if here[one] != at.OPEN and here[other] != at.OPEN:
+            continue
         columns = elements.springs + np.array([one, other])
         both = (proposal[:, one] != at.OPEN) & (proposal[:, other] != at.OPEN)
         if both.any() and not data.bending[:, columns].any():

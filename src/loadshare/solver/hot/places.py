@@ -34,6 +34,10 @@ CREEP = 1e-8
 """Change from pass to pass below which what does not settle is left to the certificate."""
 PROXIMAL = 1e-8
 """Term, relative to the largest entry, that makes a singular matrix of redundants definite."""
+SHARED = 1e-9
+"""Part of a redundant in the elements that yield below which only rigid ones take part."""
+NOISE = 1e-13
+"""Distance between rigid elements, over the lengths at hand, that is round-off."""
 REFINEMENTS = 4
 """Refinements of a solution with it."""
 SMALL = 1e-15
@@ -59,6 +63,8 @@ BEYOND = 1.01
 """Radius over S2 from which on it does."""
 BURST = 1e6
 """Force over the load from which on rigid contacts contradict one another."""
+FAR = 1e3
+"""Way from where proximal passes ended, over how far they went, that only a drift explains."""
 DRIFT = 1e-12
 """Share of the load along a loose move from which on it counts."""
 

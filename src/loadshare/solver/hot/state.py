@@ -27,18 +27,27 @@ class State:
         Cube root of the force at which a nonlinear law is replaced by its tangent next.
     floor : ndarray, shape (S,)
         Smallest root that a tangent is taken at.
+    stays : ndarray of bool, shape (S,)
+        Whether coordinates that nothing holds may stay where they are, where those of least norm
+        would overlap.
     """
 
     x: Array
     force: Array
     root: Array
     floor: Array
+    stays: NDArray[np.bool_]
 
     def completed(self, other: State, rows: NDArray[np.bool_]) -> State:
         """Return this state with some samples as they stand in the other."""
-        for name in ("x", "force", "root", "floor"):
+        for name in ("x", "force", "root", "floor", "stays"):
             getattr(self, name)[rows] = getattr(other, name)[rows]
         return self
+
+    def put(self, row: int, other: State) -> None:
+        """Let a sample stand as the only one of another state does."""
+        for name in ("x", "force", "root", "floor", "stays"):
+            getattr(self, name)[row] = getattr(other, name)[0]
 
     def begin(self, samples: slice, share: Array, data: Data) -> None:
         """Take the laws of some samples first at forces in these shares (m,) of the load."""
@@ -57,6 +66,7 @@ def at_rest(elements: Elements, data: Data) -> State:
         force=np.zeros((count, width)),
         root=root,
         floor=FLOOR * np.cbrt(push),
+        stays=np.zeros(count, dtype=bool),
     )
 
 

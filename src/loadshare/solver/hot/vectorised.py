@@ -53,15 +53,25 @@ def settle(
     """
     with np.errstate(all="ignore"):
         passes = _Passes(elements, data, basis, code, rows, state)
-        drifting = passes.drifting()
+        drift = passes.drift()
+        drifting = (drift != 0.0).any(axis=1)
         passes.run(one_only[rows] | drifting)
+        start = state.x[rows]
+        far = state.stays[rows] & (size_of(passes.x - start) > at.FAR * (1.0 + size_of(start)))
+        if far.any():
+            # What all but nothing resists has run away from where it began.
+            drift[far], drifting = (passes.x - start)[far], drifting | far
+            passes.x[far] = start[far]
         wrong, moved = passes.wrong(at.SIGN)
+        staying = state.stays[rows] & wrong.any(axis=1)
+        if staying.any():
+            wrong, moved = passes.left_in_place(state.x[rows], staying, wrong, moved)
         hurried = passes.hurried.any(axis=1)
         wrong[hurried] = passes.hurried[hurried]
         moved[hurried] = passes.hurried_to[hurried]
         if drifting.any():
             # Only what stops the drift is of interest.
-            stopping, places = passes.stopped_by()
+            stopping, places = passes.stopped_by(drift)
             wrong[drifting], moved[drifting] = stopping[drifting], places[drifting]
             passes.settled &= ~drifting
             passes.refused &= ~drifting
@@ -142,6 +152,7 @@ class _Passes:
         self.contact = self.scalar[columns[self.scalar] >= elements.springs]
         n = basis.redundant
         self.products = (n[:, :, None] * n[:, None, :]).reshape(len(columns), n.shape[1] ** 2)
+        self.shared = self._shared()
         self.push = np.abs(self.load).max(axis=1, initial=0.0)
         self.unit = np.where(self.push > 0.0, self.push, 1.0)
         self.settled, self.burst = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
@@ -210,6 +221,8 @@ class _Passes:
             matrix[:, e, :size] = matrix[:, :size, e] = b.along @ n[b.columns]
             sides[:, e] = b.bound - (b.along * statics[:, b.columns]).sum(axis=1)
         sides[:, :size] = -stretch @ n
+        if self.shared.shape[1]:
+            self._set_apart(matrix, sides, np.abs(stretch).max(axis=1))
         solved = solve(matrix, sides, size)
         self.z = self.z + solved[:, :size]
         self.force = statics + solved[:, :size] @ n.T
@@ -221,6 +234,30 @@ class _Passes:
             self.compression[:, b.columns] += solved[:, e, None] * b.along
         self.x = (gap + self.compression) @ particular
         self.misfit = np.abs((gap + self.compression) @ n).max(axis=1, initial=0.0)
+
+    def _shared(self) -> Array:
+        """Redundants (r, q), orthonormal, in which nothing but rigid elements push one another.
+
+        Round-off would settle how much, and does not stop at what is left of zero.
+        """
+        yields = np.asarray(((self.bending > 0.0) | (self.hertz > 0.0)).any(axis=0))
+        yields[self.table] = True
+        for _, place, k in self.radial:
+            yields[k : k + 2] = place != at.PINNED
+        n = self.basis.redundant
+        _, sizes, right = np.linalg.svd(n[yields], full_matrices=True)
+        return right[int((sizes > at.SHARED).sum()) :].T
+
+    def _set_apart(self, matrix: Array, sides: Array, lengths: Array) -> None:
+        """Hold the shares of rigid elements, unless they contradict one another."""
+        q = self.shared
+        size, largest = len(q), np.abs(matrix).max(axis=(1, 2))
+        against = sides[:, :size] @ q
+        against[np.abs(against) <= at.NOISE * lengths[:, None]] = 0.0
+        apart = np.where(largest > 0.0, largest, 1.0)
+        matrix[:, :size, :size] += apart[:, None, None] * (q @ q.T)
+        mild = sides[:, :size] - (sides[:, :size] @ q) @ q.T
+        sides[:, :size] = mild + (against / at.PROXIMAL) @ q.T
 
     def _tangents(self) -> tuple[Array, Array]:
         """Tangent compliance of every scalar element, and what its tangent leaves at no force."""
@@ -364,17 +401,27 @@ class _Passes:
         wrong[:, power] |= opening
         return wrong, moved
 
-    def drifting(self) -> Flags:
-        """Samples whose load pushes along a move that no acting element resists."""
-        along = self.load @ self.basis.loose
-        return np.asarray(np.abs(along).max(axis=1, initial=0.0) > at.DRIFT * self.push)
+    def left_in_place(
+        self, before: Array, these: Flags, wrong: Flags, moved: Codes
+    ) -> tuple[Flags, Codes]:
+        """Leave what no acting element holds where it was before, if that rights all signs."""
+        least, loose = self.x, self.basis.loose
+        self.x = np.where(these[:, None], least + (before - least) @ loose @ loose.T, least)
+        other, places = self.wrong(at.SIGN)
+        these = these & ~other.any(axis=1)
+        self.x = np.where(these[:, None], self.x, least)
+        return np.where(these[:, None], other, wrong), np.where(these[:, None], places, moved)
 
-    def stopped_by(self) -> tuple[Flags, Codes]:
-        """What is first in the way of a drift, if anything, and where it stands then."""
+    def drift(self) -> Array:
+        """Move (k, n) that no acting element resists and the load pushes along; zero without."""
+        along = self.load @ self.basis.loose
+        drifting = np.abs(along).max(axis=1, initial=0.0) > at.DRIFT * self.push
+        return np.asarray(np.where(drifting[:, None], along @ self.basis.loose.T, 0.0))
+
+    def stopped_by(self, drift: Array) -> tuple[Flags, Codes]:
+        """What is first in the way of a drift (k, n), if anything, and where it stands then."""
         elements = self.elements
         stopping = np.zeros((len(self.rows), elements.switches), dtype=bool)
-        loose = self.basis.loose
-        drift = (self.load @ loose) @ loose.T
         rows = slice(elements.springs, elements.springs + elements.rows)
         speed = drift @ elements.vectors[rows].T
         room = pick(self.data.gap, self.rows)[:, rows] - self.x @ elements.vectors[rows].T
@@ -454,6 +501,11 @@ def solve(matrix: Array, sides: Array, size: int) -> Array:
 def times(matrices: Array, vectors: Array) -> Array:
     """Return the products of (k, n, n) with (k, n)."""
     return np.asarray((matrices @ vectors[:, :, None])[:, :, 0])
+
+
+def size_of(vectors: Array) -> Array:
+    """Largest entry of every row."""
+    return np.asarray(np.abs(vectors).max(axis=1, initial=0.0))
 
 
 def change(now: Array, before: Array) -> Array:

@@ -1,0 +1,47 @@
+"""What a scene's load moves without end, if anything."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loadshare.scene.scene import Scene
+
+PUSHED = 1e-9
+"""Load along a move, over the load, from which on it counts: less, and flanks whose normals are
+opposite up to the digits of a case file would seem to give way."""
+SHARE = 1e-6
+"""Share in the move from which on a coordinate is named."""
+
+
+def runaway(scene: Scene) -> tuple[str, ...]:
+    r"""Return the coordinates that the load moves without end; empty if something holds them all.
+
+    Those on which it does work come first. Of all moves d that no contact, spring or limit resists,
+    however far they lead,
+
+    .. math:: \max_d f\cdot d \quad \text{s.t.}\; H d = 0,\; P d = 0,\; a_e\cdot d \le 0,\;
+        |d_i| \le 1 ,
+
+    it is the one along which the load does most work. Where that is positive the potential falls
+    without bound: the scene has no equilibrium. Arcs count by their faces at rest.
+    """
+    from scipy.optimize import linprog
+
+    stiffest = float(np.abs(scene.stiffness).max(initial=0.0)) or 1.0
+    held = np.vstack([scene.stiffness / stiffest, *(r.matrix for r in scene.radials)])
+    rows = scene.rows_at(np.zeros(scene.size))
+    against = np.array([r.vector for r in rows]).reshape(-1, scene.size)
+    found = linprog(
+        -scene.load / scene.force_unit(),
+        against,
+        np.zeros(len(against)),
+        held,
+        np.zeros(len(held)),
+        bounds=(-1.0, 1.0),
+        method="highs",
+    )
+    if found.status != 0 or found.fun is None or found.x is None or found.fun >= -PUSHED:
+        return ()
+    work = scene.load * found.x
+    moving = np.flatnonzero(np.abs(found.x) > SHARE).tolist()
+    return tuple(scene.coordinates[k] for k in sorted(moving, key=lambda k: -float(work[k])))
