@@ -230,12 +230,13 @@ def _refuse_if_none(scene: Scene, overlap: float = OVERLAP) -> None:
             f"{here} rigid limits contradict one another: {', '.join(against)}; "
             "give one of them more clearance or float, or a stiffness"
         )
-    moved, *others = runaway(scene) or [""]
-    if moved:
-        also = f", and {', '.join(others)} with it" if others else ""
+    moves = runaway(scene)
+    if moves:
+        floats = [g for g in scene.displacement if {f"gear {g} x", f"gear {g} y"} & {*moves}]
+        also = f"; nothing limits the float of gear {', '.join(floats)}" if floats else ""
         raise Refused(
-            f"{here} nothing balances the load on {moved}: no contact, support or limit holds "
-            f"it{also}; support a gear that floats there, or limit its float"
+            f"{here} nothing balances the load on {moves[0]}: no contact, support or limit holds "
+            f"it{also}"
         )
 
 
