@@ -446,6 +446,10 @@ GIVEN: dict[str, tuple[str, ...]] = {
     ),
     "exit codes": (r"^\| (?:0|1|2|130) \|", r"exit code (?:then is )?\d(?: or \d)?"),
     "settings, each also a constant of the code": (
+        r"^\| (?:line of action turned|approach neglected|mesh compression|arm of a ring).*$",
+        r"1 % of either is about what mesh stiffnesses",
+        r"height is 2\.25 modules",
+        r"gear of 17 teeth",
         r"16 (?:independently|sequences|Sobol|per stretch)",
         r"over 16 sequences",
         r"1024 by default; 0 leaves",
