@@ -108,6 +108,13 @@ def test_it_is_told_in_every_form(name, tmp_path):
     expected = [-PLAY, PLAY]
     document = result.to_dict()["positions"][0]["undetermined"]
     assert document["gear q2 x"] == pytest.approx(expected, rel=1e-12)
+    arrays = result.dataset.isel(position=0)
+    assert arrays.displacement_range.sel(gear="q2", component="y").values.tolist() == pytest.approx(
+        expected, rel=1e-12
+    )
+    assert np.isnan(arrays.displacement_range.sel(gear="a")).all()
+    turned = dict(result.positions[0].undetermined).get("gear q2 rotation", (np.nan, np.nan))
+    np.testing.assert_array_equal(arrays.rotation_range.sel(gear="q2"), turned)
     for file in ("result.json", "result.nc"):
         path = tmp_path / file
         (result.to_json if file.endswith("json") else result.to_netcdf)(path)

@@ -17,13 +17,14 @@ from loadshare.certify import Certificate, certify
 from loadshare.certify.certificate import certify_later
 from loadshare.certify.validity import Validity, refusal_told, validity
 from loadshare.errors import Refused
+from loadshare.job.least import least_places
 from loadshare.job.machine import Answers, Machine, engine_named
 from loadshare.scene import assemble
 from loadshare.scene.plan import Plan, Role
 from loadshare.scene.scene import Scene
 from loadshare.solver import Options, Record, solve_scene
 from loadshare.solver.contradiction import OVERLAP, contradiction
-from loadshare.solver.position import coordinates_of, of_least_norm
+from loadshare.solver.position import coordinates_of
 from loadshare.solver.runaway import runaway
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.train import Train
@@ -123,28 +124,20 @@ def hot_answers(
 ) -> dict[int, Answer]:
     """Answer what the hot path can, by position."""
     train = machine.train
-    found = machine.answer(
-        machine.situations(indices), tolerance, engine_named(engine, len(indices))
-    )
+    situations = machine.situations(indices)
+    found = machine.answer(situations, tolerance, engine_named(engine, len(indices)))
     answers = {}
-    passed = np.flatnonzero(found.passed)
-    claimed = {row: found.equilibria.one(row, indices[row]) for row in passed.tolist()}
-    least, verdicts = dict(claimed), found.verdicts
-    for row in passed[~found.determined[passed]].tolist():
-        least[row] = of_least_norm(assemble(train, indices[row]), claimed[row])
-    moved = [row for row in least if least[row].displacement is not claimed[row].displacement]
-    if moved:
-        placed = found.equilibria.laid(np.copy)
-        for row in moved:
-            placed.put(row, least[row])
-        verdicts = machine.judge.judge(machine.situations(indices), placed, tolerance)
-    for row, equilibrium in least.items():
-        if not verdicts.passed[row]:
-            equilibrium = replace(claimed[row], undetermined=equilibrium.undetermined)
+    loose = np.flatnonzero(found.passed & ~found.determined).tolist()
+    least = least_places(
+        machine, situations, found, loose, lambda row: assemble(train, indices[row]), tolerance
+    )
+    for row in np.flatnonzero(found.passed).tolist():
+        index = indices[row]
+        equilibrium = least.get(row) or found.equilibria.one(row, index)
         certificate = certify_later(train, equilibrium, tolerance)
         record = _hot_record(machine, found, row)
         rung = SEARCHED if found.searched[row] else HOT
-        answers[indices[row]] = Answer(train, equilibrium, certificate, record, rung)
+        answers[index] = Answer(train, equilibrium, certificate, record, rung)
     return answers
 
 

@@ -8,7 +8,7 @@ once; single samples that it leaves climb the ladder.
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import islice
@@ -19,17 +19,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from loadshare.case import Case, load_case
-from loadshare.certify.certificate import TOLERANCE, certify
+from loadshare.certify.certificate import TOLERANCE
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.errors import CaseError, Refused
 from loadshare.job.ladder import HOT, SEARCHED, climb
+from loadshare.job.least import least_places
 from loadshare.job.machine import Machine, engine_named
 from loadshare.job.positions import Progress, wanted_positions
 from loadshare.job.table import Table
 from loadshare.scene import assemble
+from loadshare.scene.scene import Scene
 from loadshare.solver import Options
 from loadshare.solver.hot.exchange import Engine
-from loadshare.solver.position import of_least_norm
 from loadshare.train import build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.samples import Samples, samples_of
@@ -98,7 +99,7 @@ def solve_blocks(
 
     Parameters and errors are those of :func:`solve_many`. With `least_norm`, displacements that an
     equilibrium leaves undetermined are the least-norm ones, which takes some milliseconds for every
-    sample in which a closed contact carries nothing; otherwise they are one possible choice.
+    sample with any; otherwise they are one possible choice.
 
     Yields
     ------
@@ -189,7 +190,7 @@ def solve_many(
         Threads.
     least_norm : bool
         Move displacements that an equilibrium leaves undetermined to the least-norm ones, as
-        `solve` does: some milliseconds for every sample in which a closed contact carries nothing.
+        `solve` does: some milliseconds for every sample with any.
     progress : Progress, optional
         Called after every block with samples done and in all.
 
@@ -281,9 +282,8 @@ def _block(
         deflection[:, columns] = found.verdicts.deflection.reshape(-1, count).T
         determined[:, columns] = found.determined.reshape(-1, count).T
         if least_norm:
-            for k in np.flatnonzero(found.passed & ~found.determined).tolist():
-                p, row = divmod(k, count)
-                _settle_loose(every[at + p], row, samples.one(row), some[p], tolerance)
+            loose = np.flatnonzero(found.passed & ~found.determined).tolist()
+            least_places(machine, situations, found, loose, _scenes(samples, some), tolerance)
     for row, p in np.argwhere(~certified).tolist():
         index = positions[p]
         try:
@@ -329,9 +329,11 @@ def _displacements(
     return displaced, refused
 
 
-def _settle_loose(answers: Equilibria, row: int, case: Case, index: int, tolerance: float) -> None:
-    """Move an answer to the least-norm one of the displacements that its forces allow."""
-    train = build_train(case)
-    moved = of_least_norm(assemble(train, index), answers.one(row, index))
-    if certify(train, moved, tolerance).passed:
-        answers.put(row, moved)
+def _scenes(samples: Samples, positions: Sequence[int]) -> Callable[[int], Scene]:
+    """Scene of every equilibrium of some positions: position by position, sample by sample."""
+
+    def scene(number: int) -> Scene:
+        p, row = divmod(number, samples.count)
+        return assemble(build_train(samples.one(row)), positions[p])
+
+    return scene

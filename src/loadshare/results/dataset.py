@@ -27,7 +27,7 @@ def dataset(result: Result) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Dimensions position, mesh, gear, component, float, figure and measure; every variable
+        Dimensions position, mesh, gear, component, end, float, figure and measure; every variable
         carries its unit.
     """
     import xarray as xr
@@ -41,6 +41,12 @@ def dataset(result: Result) -> xr.Dataset:
         """Array position × name; what a mapping lacks or leaves open becomes NaN."""
         rows = [[read(p).get(n) for n in names] for p in positions]
         return np.array([[np.nan if v is None else v for v in row] for row in rows], dtype=float)
+
+    def ranges(name: str) -> np.ndarray:
+        """Array position × gear × 2 of what is undetermined; NaN where it is determined."""
+        determined = (np.nan, np.nan)
+        rows = [[p.undetermined.get(name.format(g), determined) for g in gears] for p in positions]
+        return np.array(rows, dtype=float)
 
     def variable(
         dims: tuple[str, ...], values: np.ndarray, units: str, long_name: str
@@ -72,6 +78,18 @@ def dataset(result: Result) -> xr.Dataset:
             displacement.reshape(len(positions), len(gears), 2),
             "m",
             "displacement of the centre in the gear's transverse frame",
+        ),
+        "rotation_range": variable(
+            (*on_gear, "end"),
+            ranges("gear {} rotation"),
+            "rad",
+            "least and largest rotation where forces leave it open",
+        ),
+        "displacement_range": variable(
+            ("position", "gear", "component", "end"),
+            np.stack([ranges(f"gear {{}} {axis}") for axis in "xy"], axis=2),
+            "m",
+            "least and largest displacement where forces leave it open",
         ),
         "margin": variable(
             on_float,
@@ -116,6 +134,7 @@ def dataset(result: Result) -> xr.Dataset:
             "mesh": meshes,
             "gear": gears,
             "component": ["x", "y"],
+            "end": ["least", "largest"],
             "float": floats,
             "figure": residuals,
             "measure": measures,
@@ -162,7 +181,7 @@ def _alike(name: str, expected: xr.Variable, found: xr.Variable) -> bool:
         return bool(np.array_equal(one, other))
     if other.dtype.kind != "f" or not np.array_equal(np.isnan(one), np.isnan(other)):
         return False
-    floor = ROUND_OFF * float(np.nanmax(np.abs(one), initial=0.0))
+    floor = ROUND_OFF * float(np.abs(one[np.isfinite(one)]).max(initial=0.0))
     return name in JUDGED_ARRAYS or np.allclose(one, other, DIGITS, floor, equal_nan=True)
 
 

@@ -27,7 +27,7 @@ def sweep_dataset(sweep: Sweep) -> xr.Dataset:
     -------
     xarray.Dataset
         One dimension per parameter, named after it, with the unit in its attributes; then those of
-        a result (position, mesh, gear, component, float, figure) and "stage". Besides what a
+        a result (position, mesh, gear, component, end, float, figure) and "stage". Besides what a
         result holds: "omega" and "pair_omega" (parameters, stage), "rest" and "spline" (parameters,
         position, float) as words, "status" and "message" (parameters). What was not certified is
         NaN, or an empty text.

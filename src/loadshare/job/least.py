@@ -1,0 +1,60 @@
+"""Answers of the hot path, moved to their places of least norm where forces leave them open."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from loadshare.job.machine import Answers, Machine
+from loadshare.scene.scene import Scene
+from loadshare.solver.position import of_least_norm
+from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.situations import Situations
+
+
+def least_places(
+    machine: Machine,
+    situations: Situations,
+    found: Answers,
+    rows: Sequence[int],
+    scene_of: Callable[[int], Scene],
+    tolerance: float,
+) -> dict[int, Equilibrium]:
+    """Move some answers to their least places, in place, and return them with what is open.
+
+    An answer whose least place is not certified, because round-off of a move far away shows in a
+    stiff element, stays where it is.
+
+    Parameters
+    ----------
+    machine : Machine
+    situations : Situations
+    found : Answers
+        To these situations; renewed.
+    rows : sequence of int
+        Numbers of the answers to move.
+    scene_of : callable
+        Scene of a number.
+    tolerance : float
+        Largest scaled residual of a certified answer.
+    """
+    scenes = {row: scene_of(row) for row in rows}
+    claimed = {
+        row: found.equilibria.one(row, scene.situation.index) for row, scene in scenes.items()
+    }
+    least = {row: of_least_norm(scenes[row], claimed[row]) for row in rows}
+    moved = [row for row in rows if least[row].displacement is not claimed[row].displacement]
+    if not moved:
+        return least
+    placed = found.equilibria.laid(lambda array: array[moved])
+    for k, row in enumerate(moved):
+        placed.put(k, least[row])
+    verdicts = machine.judge.judge(situations.take(np.array(moved)), placed, tolerance)
+    for row, passed in zip(moved, verdicts.passed.tolist(), strict=True):
+        if passed:
+            found.equilibria.put(row, least[row])
+        else:
+            least[row] = replace(claimed[row], undetermined=least[row].undetermined)
+    return least
