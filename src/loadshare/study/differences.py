@@ -1,8 +1,9 @@
 """Derivatives of the train's own equations with respect to an input of the case.
 
-The equations are smooth in every input, and no solve lies between: a central difference at two
-steps, extrapolated (Richardson), leaves an error of fourth order in the step, and the two
-differences tell its size. At a bound of an input the same is done on one side.
+No solve lies between, and the equations are smooth in most inputs: a central difference of fourth
+order, at a step and at twice the step, gives the derivative and tells its error. Where both sides
+disagree beyond that, the equations have a kink in the input, and where it stands at a bound there
+is one side only: then differences of third order are taken to each side.
 """
 
 from __future__ import annotations
@@ -17,51 +18,84 @@ from loadshare.scene.scene import Array
 from loadshare.study.branch.system import BranchLost
 from loadshare.study.parameter import Value
 
-STEP = 1e-4
-"""Step relative to the input's value."""
+STEP = 1e-3
+"""Step relative to the input's value: its fourth power, and round-off over it, are about 1e-12."""
 LEAST = {
-    "": 1e-5,
-    "m": 1e-7,
-    "rad": 1e-5,
-    "rad/s": 1e-2,
-    "W": 1.0,
-    "N*m": 1e-2,
-    "N": 1e-2,
-    "N/m": 1.0,
-    "N*m/rad": 1.0,
-    "rad/(N*m)": 1e-13,
-    "rad/(N*m)^(2/3)": 1e-12,
+    "": 1e-4,
+    "m": 1e-6,
+    "rad": 1e-4,
+    "rad/s": 1e-1,
+    "W": 1e1,
+    "N*m": 1e-1,
+    "N": 1e-1,
+    "N/m": 1e1,
+    "N*m/rad": 1e1,
+    "rad/(N*m)": 1e-12,
+    "rad/(N*m)^(2/3)": 1e-11,
 }
 """Least step of every kind of input, in its SI unit: for inputs that are zero."""
+SHORTER = (1.0, 1.0 / 16.0, 1.0 / 256.0, 1.0 / 4096.0)
+"""Shares of the step that are tried until the input may take it."""
+NEARER = 1.0 / 16.0
+"""Share at which an input that can go to neither side is given up."""
+OTHER = (1.0 / 16.0, 1.0 / 256.0, 16.0)
+"""Steps, over the usual one, that are tried where it leaves a large error."""
+CLOSE = 1e-8
+"""Relative error of a derivative that calls for no other step."""
+KINK = 1e-7
+"""Difference of both sides, over the largest derivative, from which on there is a kink."""
+CENTRAL, FORWARD = 1.5, 5.5
+"""Sums of the weights of a difference: its rounding over that of its terms."""
 # Weights of f(0), f(h), f(2h), f(4h) times 1/h: the forward difference of third order and, without
 # the last point, of second order.
 _FORWARD = np.array([-21.0, 32.0, -12.0, 1.0]) / 12.0
 _FORWARD_CHECK = np.array([-1.5, 2.0, -0.5, 0.0])
+_EPS = float(np.finfo(float).eps)
+
+Points = dict[int, Array]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Derivative:
-    """A derivative with respect to an input, per SI unit.
+class Slope:
+    """A derivative to one side, per SI unit.
 
     Attributes
     ----------
     value : ndarray
     error : ndarray
-        Estimate of its error, from the differences at two steps.
-    sides : tuple of bool
-        Whether the input can be lowered, and raised.
-    step : float
-        In SI units.
+        Bound on its error, from differences at two steps and from round-off.
     """
 
     value: Array
     error: Array
-    sides: tuple[bool, bool]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Derivative:
+    """Derivatives to both sides of an input's value.
+
+    Attributes
+    ----------
+    falling, rising : Slope or Exception
+        The exception says why the input cannot go there.
+    kinked : bool
+        Whether the sides differ.
+    step : float
+        In SI units; four of it are within reach of every side that there is.
+    """
+
+    falling: Slope | Exception
+    rising: Slope | Exception
+    kinked: bool
     step: float
 
+    def to(self, sign: float) -> Slope | Exception:
+        """Return the side of a sign."""
+        return self.rising if sign > 0.0 else self.falling
 
-def differentiate(of: Callable[[float], Array], value: Value) -> Derivative:
-    """Differentiate a smooth function of an input.
+
+def differentiate(of: Callable[[float], Array], value: Value, rounding: Array) -> Derivative:
+    """Differentiate a function of an input to both sides.
 
     Parameters
     ----------
@@ -70,35 +104,108 @@ def differentiate(of: Callable[[float], Array], value: Value) -> Derivative:
         `BranchLost` where the input cannot be.
     value : Value
         Where.
+    rounding : ndarray
+        Bound on the round-off of the function.
 
     Raises
     ------
     CaseError
         If the input can be varied on neither side.
     """
-    least = LEAST[value.si_unit] / value.factor
-    h = max(STEP * abs(value.number), least)
-    offsets = (-2.0, -1.0, 1.0, 2.0)
-    points = [_tried(of, value.number + k * h) for k in offsets]
-    scale = 1.0 / (h * value.factor)
-    low2, low1, high1, high2 = (p if not isinstance(p, Exception) else None for p in points)
-    sides = (low1 is not None, high1 is not None)
-    if low2 is not None and low1 is not None and high1 is not None and high2 is not None:
-        near, far = (high1 - low1) / 2.0, (high2 - low2) / 4.0
-        central = (4.0 * near - far) / 3.0
-        return Derivative(central * scale, np.abs(near - far) * scale, sides, h * value.factor)
-    for sign, one, two, able in ((1.0, high1, high2, sides[1]), (-1.0, low1, low2, sides[0])):
-        four = _tried(of, value.number + sign * 4.0 * h) if able else None
-        if one is None or two is None or four is None or isinstance(four, Exception):
+    usual = max(STEP * abs(value.number), LEAST[value.si_unit] / value.factor)
+    best = _differentiated(of, value, rounding, usual)
+    if _relative(best) <= CLOSE:
+        return best
+    for share in OTHER:
+        try:
+            found = _differentiated(of, value, rounding, share * usual)
+        except (CaseError, ValueError, BranchLost):
             continue
-        values = np.array([of(value.number), one, two, four])
-        found, check = (sign * np.tensordot(w, values, 1) for w in (_FORWARD, _FORWARD_CHECK))
-        return Derivative(found * scale, np.abs(found - check) * scale, sides, h * value.factor)
-    raise next(p for p in points if isinstance(p, Exception))
+        if all(isinstance(s, Slope) for s in (found.falling, found.rising)) and (
+            _relative(found) < _relative(best)
+        ):
+            best = found
+    return best
 
 
-def _tried(of: Callable[[float], Array], number: float) -> Array | Exception:
-    try:
-        return of(number)
-    except (CaseError, ValueError, BranchLost) as error:
-        return error
+def _relative(found: Derivative) -> float:
+    """Largest error over the largest derivative, of sides that there are."""
+    worst = 0.0
+    for side in (found.falling, found.rising):
+        if isinstance(side, Slope):
+            size = float(np.abs(side.value).max(initial=0.0))
+            worst = max(worst, float(side.error.max(initial=0.0)) / size if size else 0.0)
+    return worst
+
+
+def _differentiated(
+    of: Callable[[float], Array], value: Value, rounding: Array, usual: float
+) -> Derivative:
+    here = of(value.number)
+    sides: dict[int, tuple[Points, float] | Exception] = {}
+    for share in SHORTER:
+        h = usual * share
+        for sign in (-1, 1):
+            if isinstance(sides.get(sign), tuple):
+                continue
+            try:
+                sides[sign] = {k: of(value.number + sign * k * h) for k in (1, 2, 4)}, h
+            except (CaseError, ValueError, BranchLost) as error:
+                sides.setdefault(sign, error)
+        # What can go to neither side now, bound by another input, is not taken nearer and nearer.
+        if share <= NEARER and not any(isinstance(side, tuple) for side in sides.values()):
+            break
+    below, above = sides[-1], sides[1]
+    if isinstance(below, Exception) and isinstance(above, Exception):
+        raise above
+    steps = [s[1] for s in (below, above) if not isinstance(s, Exception)]
+    to_si = value.factor
+    low = _forward(here, below, -1.0, value, rounding)
+    high = _forward(here, above, 1.0, value, rounding)
+    if isinstance(low, Exception) or isinstance(high, Exception):
+        return Derivative(low, high, True, min(steps) * to_si)
+    assert not isinstance(below, Exception) and not isinstance(above, Exception)
+    if below[1] == above[1]:
+        both = _central(below[0], above[0], below[1], value, rounding)
+    else:
+        both = low if low.error.max(initial=0.0) < high.error.max(initial=0.0) else high
+    apart = np.abs(low.value - high.value)
+    size = float(np.abs(both.value).max(initial=0.0))
+    kinked = (apart > 3.0 * (low.error + high.error)) & (apart > KINK * size)
+    if kinked.any():
+        return Derivative(low, high, True, min(steps) * to_si)
+    return Derivative(both, both, False, min(steps) * to_si)
+
+
+def _central(below: Points, above: Points, h: float, value: Value, rounding: Array) -> Slope:
+    """Fourth order, at a step and at twice the step."""
+    once, twice, four = ((above[k] - below[k]) / (2.0 * k * h * value.factor) for k in (1, 2, 4))
+    near, far = (4.0 * once - twice) / 3.0, (4.0 * twice - four) / 3.0
+    still = (once == 0.0) & (twice == 0.0) & (four == 0.0)
+    noise = _noise(near, h, value, CENTRAL * rounding)
+    return Slope(near, np.where(still, 0.0, np.abs(near - far) + noise))
+
+
+def _forward(
+    here: Array,
+    side: tuple[Points, float] | Exception,
+    sign: float,
+    value: Value,
+    rounding: Array,
+) -> Slope | Exception:
+    """Third order on one side; its distance from the second order tells the error."""
+    if isinstance(side, Exception):
+        return side
+    points, h = side
+    values = np.array([here, points[1], points[2], points[4]])
+    scale = sign / (h * value.factor)
+    found, check = (scale * np.tensordot(w, values, 1) for w in (_FORWARD, _FORWARD_CHECK))
+    still = (values == here).all(axis=0)
+    noise = _noise(found, h, value, FORWARD * rounding)
+    return Slope(np.where(still, 0.0, found), np.where(still, 0.0, np.abs(found - check) + noise))
+
+
+def _noise(found: Array, h: float, value: Value, rounding: Array) -> Array:
+    """Round-off of a difference: of its terms, and of the places at which they are taken."""
+    places = 2.0 * _EPS * abs(value.number) / h
+    return np.asarray(rounding / (h * value.factor) + places * np.abs(found))

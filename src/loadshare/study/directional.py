@@ -1,36 +1,120 @@
 """How an equilibrium moves with an input, on either side of it.
 
 Where every element stands clear of its limits the answer is one linear solve with the Jacobian of
-the active set. An element on the verge (no gap and no force, or a radius just at a corner) makes a
-kink: each side has its own active set, found by exchanging verge elements until none is violated to
-first order. A body that floats free stands on a verge as well: where the input loads it along its
-free move, the contacts in the way catch it and carry what is new. Source: implicit function
-theorem; for the verge, the directional derivative of a complementarity problem.
+the active set. Where some stand on the verge (no gap and no force, a radius just at a corner), or a
+body floats free and the input loads it, each side has an active set of its own. It is read from a
+certified solve a little way to that side, and followed back: the place where its branch meets the
+value is where a falling body is caught. A set is taken only if it is proved there to first order:
+its equations hold, no element is violated, and none that stands on the verge moves across it. The
+directional derivative of a convex contact problem is unique in its forces, so a set that passes is
+the right one, however it was found. Source: implicit function theorem; for the verge, the
+directional derivative of a complementarity problem.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from itertools import combinations, product
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
+from loadshare.errors import CaseError, Refused
 from loadshare.scene.scene import Array, Scene
-from loadshare.study.branch import ActiveSet, Branch
-from loadshare.study.branch.system import RANK, BranchLost
-from loadshare.study.differences import Derivative
+from loadshare.study.branch import Branch, Units
+from loadshare.study.branch.gauges import LOOSE, Gauge
+from loadshare.study.branch.system import BranchLost, identified
+from loadshare.study.differences import Derivative, Slope
+from loadshare.train.equilibrium import Equilibrium
 
 VERGE = 1e-9
 """Gauge below which an element stands on the verge, in deflections or loads."""
-MOST = 10
-"""Verge elements up to which all their combinations are tried."""
+RANK = 1e-13
+"""Singular values of the equilibrated Jacobian below this, over the largest, count as zero."""
 FOLLOWS = 1e-7
-"""Part of a derivative that an active set may leave unbalanced: what differencing leaves open."""
+"""Part of a derivative that an active set may leave unbalanced; it counts as an error."""
+SLIDES = 1e-7
+"""Rate at which a verge element is violated that counts as none, over the largest rate."""
+WAY = 1e-4
+"""Move over which the gauges are differenced, in deflections and loads."""
+NEAR = (1e-5, 1e-7, 1e-3)
+"""Effects of the steps, in deflections and loads, after which the set of a side is looked for."""
 ROUND_OFF = 1e-11
-"""Effect of an input's step on the equations, in loads and deflections, that counts as none."""
-SLIDES = 1e-5
-"""First-order violation of a verge element that counts as none, relative to the largest."""
+"""Effect of an input's step that counts as none, likewise."""
+_EPS = float(np.finfo(float).eps)
+_NOTHING = (CaseError, ValueError, BranchLost, Refused)
+
+
+Gauges = dict[tuple[str, str], Gauge]
+
+
+class Varied(Protocol):
+    """An input at a position: the scene and its equations as the input varies."""
+
+    def scene(self, amount: float) -> Scene:
+        """Return the scene with the input moved by an amount [SI]."""
+
+    def answer(self, amount: float) -> Equilibrium:
+        """Return the certified equilibrium with the input moved by an amount [SI]."""
+
+    def change(self, branch: Branch, z: Array) -> Derivative:
+        """Return the derivative of a branch's residual, and of what else is asked, at z."""
+
+
+class Tangent:
+    """The linearised equations of a branch at a point, solved in the sense of least squares.
+
+    Parameters
+    ----------
+    branch : Branch
+    z : ndarray, shape (size,)
+
+    Attributes
+    ----------
+    matrix : ndarray, shape (size, size)
+        The Jacobian.
+    inverse : ndarray, shape (size, size)
+        Its pseudo-inverse, of the equilibrated matrix.
+    unbalanced : ndarray, shape (size, d)
+        Orthonormal combinations of equations that no unknown enters.
+    loose : ndarray, shape (n, d)
+        Directions of the coordinates that change no equation.
+    """
+
+    def __init__(self, branch: Branch, z: Array) -> None:
+        self.matrix = branch.jacobian(z)
+        size = len(self.matrix)
+        largest = np.abs(self.matrix).max(axis=1, initial=0.0)
+        scale = 1.0 / np.sqrt(np.where(largest > 0.0, largest, 1.0))
+        left, sizes, right = np.linalg.svd(self.matrix * scale[:, None] * scale)
+        rank = int((sizes > RANK * sizes.max(initial=0.0)).sum())
+        core = (right[:rank].T / sizes[:rank]) @ left[:, :rank].T
+        self.inverse = np.asarray(scale[:, None] * core * scale)
+        self.unbalanced = _orthonormal(scale[:, None] * left[:, rank:], size)
+        spans = _orthonormal(scale[:, None] * right[rank:].T, size)
+        self.loose = spans[: branch.scene.size]
+        # How far z, and with it the Jacobian, is known: round-off carried through the solve.
+        known = np.abs(self.inverse) @ branch.rounding(z)
+        signs = np.where(np.arange(size) % 2, -1.0, 1.0)
+        self.spread = np.zeros_like(self.matrix)
+        for turn in (np.ones(size), signs):
+            try:
+                beside = branch.jacobian(z + turn * known)
+            except BranchLost:
+                continue
+            self.spread = np.maximum(self.spread, np.abs(beside - self.matrix))
+
+    def solve(self, right: Array) -> Array:
+        """Solve, refined once."""
+        found = self.inverse @ right
+        return np.asarray(found + self.inverse @ (right - self.matrix @ found))
+
+
+def _orthonormal(spans: Array, size: int) -> Array:
+    if not spans.shape[1]:
+        return np.zeros((size, 0))
+    return np.asarray(np.linalg.qr(spans)[0])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,146 +126,251 @@ class Motion:
     branch : Branch
         On the active set of that side.
     z : ndarray
-        Its unknowns at the equilibrium.
-    rate : ndarray
-        Their derivative with respect to the input, per SI unit.
-    caught : tuple of str
-        Contacts that catch bodies which floated free.
+        Its unknowns at the value itself; a body that falls stands where it is caught.
+    tangent : Tangent
+    rate : ndarray, shape (size,)
+        Derivative of z with respect to the input, per SI unit.
+    error : ndarray, shape (size,)
+        Bound on the error of the equations that the rate solves.
+    change : Slope
+        Derivative of the residual and of what else was asked for, at z.
+    elements : tuple of str
+        What is in another state than at the value itself.
+    one_sided : bool
+        Whether anything stands on the verge, or is in another state: then it says nothing of the
+        other side.
     """
 
     branch: Branch
     z: Array
+    tangent: Tangent
     rate: Array
-    caught: tuple[str, ...] = ()
+    error: Array
+    change: Slope
+    elements: tuple[str, ...]
+    one_sided: bool
+
+    def bound(self, functionals: Array) -> Array:
+        """Bound on the error of linear functionals (k, size) of the rate."""
+        adjoint = np.abs(functionals @ self.tangent.inverse)
+        terms = np.abs(functionals) @ np.abs(self.rate)
+        return np.asarray(adjoint @ self.error + 4.0 * _EPS * terms)
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A branch and its unknowns where it meets the value."""
+
+    branch: Branch
+    z: Array
+
+    @cached_property
+    def tangent(self) -> Tangent:
+        """Its linearised equations."""
+        return Tangent(self.branch, self.z)
 
 
 class Neighbourhood:
-    """An equilibrium, its active set, and the sets that it stands on the verge of.
+    """A certified equilibrium, and the active sets that meet there.
 
     Parameters
     ----------
-    branch : Branch
-    z : ndarray
-        The unknowns, solved.
+    scene : Scene
+    found : Equilibrium
+        Certified.
+
+    Attributes
+    ----------
+    own : Point or None
+        The equilibrium on its own active set; None where that cannot be read.
+    verge : tuple of str
+        Elements that have neither gap nor force there, or stand at a corner of their law.
     """
 
-    def __init__(self, branch: Branch, z: Array) -> None:
-        self.branch, self.z = branch, z
-        self.verge = {g.element: g for g in branch.gauges(z) if abs(g.value) <= VERGE}
-        self._factors: dict[ActiveSet, tuple[Array, Array]] = {}
+    def __init__(self, scene: Scene, found: Equilibrium) -> None:
+        self.units = Units.of(scene)
+        self._scene = scene
+        self.own: Point | None = None
+        self.verge: tuple[str, ...] = ()
+        self._points: list[Point] = []
+        try:
+            self.own = Point(*identified(scene, found, self.units))
+        except BranchLost:
+            return
+        gauges = self.own.branch.gauges(self.own.z)
+        self.verge = tuple(dict.fromkeys(g.element for g in gauges if abs(g.value) <= VERGE))
+        self._points.append(self.own)
 
-    def sets(self) -> list[ActiveSet]:
-        """All active sets that meet here: the own one first, then by number of exchanges."""
-        gauges = list(self.verge.values())[:MOST]
-        found = []
-        for choice in sorted(product((False, True), repeat=len(gauges)), key=sum):
-            active = self.branch.active
-            for gauge, switch in zip(gauges, choice, strict=True):
-                if switch:
-                    active = active.switched(gauge.element, gauge.to)
-            found.append(active)
-        return found
-
-    def on(self, active: ActiveSet, scene: Scene | None = None) -> Branch:
-        """Return the branch of another active set, or of another scene near by."""
-        if scene is None and active == self.branch.active:
-            return self.branch
-        return Branch(scene or self.branch.scene, active, self.branch.units)
-
-    def unknowns(self, branch: Branch) -> Array:
-        """Return the equilibrium in the unknowns of a branch that meets here."""
-        if branch.active == self.branch.active:
-            return self.z
-        forces = {n: f for n, (f, _) in self.branch.contacts(self.z).items()}
-        pulls = self.branch.pulls(self.z)
-        return branch.start(self.branch.x(self.z), forces, pulls)
-
-    def rate(self, branch: Branch, z: Array, change: Derivative) -> Array | None:
-        """Return dz for a derivative of the residual, or None if the set cannot follow."""
-        explicit = change.value[: branch.size]
-        if branch.active not in self._factors:
-            jacobian = branch.jacobian(z)
-            inverse = np.asarray(np.linalg.pinv(jacobian, rcond=RANK), dtype=np.float64)
-            self._factors[branch.active] = jacobian, inverse
-        jacobian, inverse = self._factors[branch.active]
-        found = -(inverse @ explicit)
-        # A singular set follows only what its equations can balance.
-        left = float(np.abs(jacobian @ found + explicit).max(initial=0.0))
-        size = float(np.abs(explicit).max(initial=0.0))
-        return found if left <= max(FOLLOWS * size, ROUND_OFF / change.step) else None
-
-    def motion(
-        self,
-        sign: float,
-        explicit: Callable[[Branch, Array], Derivative],
-        shifted: Callable[[float], Scene],
-    ) -> Motion | None:
+    def motion(self, sign: float, varied: Varied) -> Motion | None:
         """Return how the equilibrium moves as an input rises (sign 1) or falls (−1).
-
-        Parameters
-        ----------
-        sign : float
-        explicit : callable
-            Derivative of a branch's residual with respect to the input, at unknowns.
-        shifted : callable
-            Scene with the input moved by an amount [SI].
 
         Returns
         -------
         Motion or None
-            None if no active set can follow to that side.
+            None if no active set was found that holds to that side.
         """
-        for active, caught in self._ways():
-            branch = self.on(active)
-            z = self.unknowns(branch)
-            try:
-                change = explicit(branch, z)
-                rate = self.rate(branch, z, change)
-            except BranchLost:
-                continue
-            if rate is None or not self._pressed(branch, z, sign * rate, caught):
-                continue
-            if not self.verge or self._holds(branch, z, sign, rate, change.step, shifted):
-                return Motion(branch, z, rate, caught)
+        for point in self._points:
+            found = self._followed(point, sign, varied)
+            if found is not None:
+                return found
+        for point in self._near(sign, varied):
+            found = self._followed(point, sign, varied)
+            if found is not None:
+                self._points.append(point)
+                return found
         return None
 
-    def _ways(self) -> Iterator[tuple[ActiveSet, tuple[str, ...]]]:
-        """Yield the sets that meet here; then those in which contacts catch what floats free."""
-        for active in self.sets():
-            yield active, ()
-        free = self.branch.undetermined(self.z).shape[1]
-        names = self.branch.catching(self.z)[:MOST]
-        for count in range(1, min(free, len(names)) + 1):
-            for caught in combinations(names, count):
-                for active in self.sets():
-                    yield replace(active, closed=active.closed | set(caught)), caught
+    def _followed(self, point: Point, sign: float, varied: Varied) -> Motion | None:
+        """Return the motion on a set, if the set holds to that side."""
+        branch, z, tangent = point.branch, point.z, point.tangent
+        try:
+            change = varied.change(branch, z)
+        except _NOTHING:
+            return None
+        slope = change.to(sign)
+        if not isinstance(slope, Slope):
+            return None
+        explicit, error = slope.value[: branch.size], slope.error[: branch.size]
+        size = float(np.abs(explicit).max(initial=0.0))
+        left = np.abs(tangent.unbalanced.T @ explicit)
+        known = np.abs(tangent.unbalanced.T) @ error
+        if (left > np.maximum(known + FOLLOWS * size, ROUND_OFF / change.step)).any():
+            return None
+        rate = -tangent.solve(explicit)
+        terms = np.abs(tangent.matrix) @ np.abs(rate) + np.abs(explicit)
+        error = error + len(error) * _EPS * terms + tangent.spread @ np.abs(rate)
+        error = error + float(left.max(initial=0.0))
+        verge = self._verge(point)
+        if verge is None or not self._holds(point, sign, rate, change.step, varied, verge):
+            return None
+        own = self.own.branch.active if self.own is not None else None
+        elements = own.changes(branch.active) if own is not None else ()
+        one_sided = bool(verge or elements)
+        return Motion(branch, z, tangent, rate, error, slope, elements, one_sided)
 
     @staticmethod
-    def _pressed(branch: Branch, z: Array, rate: Array, caught: tuple[str, ...]) -> bool:
-        """Whether the contacts that catch a body are pressed and do not pull."""
-        contacts = branch.contacts(z) if caught else {}
-        return all(float(contacts[name][1] @ rate) >= 0.0 for name in caught)
+    def _verge(point: Point) -> Gauges | None:
+        """Gauges that stand on the verge, undetermined ones with them; None if one is violated."""
+        nothing = np.zeros((point.branch.scene.size, 0))
+        gauges = _by_key(point.branch.gauges(point.z, nothing))
+        if any(g.value < -10.0 * VERGE for g in gauges.values()):
+            return None
+        return {key: g for key, g in gauges.items() if g.value <= 10.0 * VERGE}
 
     def _holds(
-        self,
-        branch: Branch,
-        z: Array,
-        sign: float,
-        rate: Array,
-        step: float,
-        shifted: Callable[[float], Scene],
+        self, point: Point, sign: float, rate: Array, step: float, varied: Varied, verge: Gauges
     ) -> bool:
-        """Whether no verge element is violated to first order after a small step to one side."""
-        # A step well within the neighbourhood, yet far above the round-off of the gauges.
-        step *= min(1.0, 1e-6 / max(float(np.abs(rate).max(initial=0.0)) * step, 1e-300))
+        """Whether nothing moves across the verge on which it stands."""
+        if not verge:
+            return True
+        branch, z = point.branch, point.z
+        nothing = np.zeros((branch.scene.size, 0))
+        fastest = float(np.abs(rate).max(initial=0.0))
+        step = min(step, WAY / fastest) if fastest else step
+        along = []
         try:
-            after = self.on(branch.active, shifted(sign * step)).gauges(z + sign * step * rate)
-        except BranchLost:
+            for k in (1.0, 2.0):
+                there = Branch(varied.scene(k * sign * step), branch.active, self.units, branch.tied)
+                along.append(_by_key(there.gauges(z + k * sign * step * rate, nothing)))
+        except _NOTHING:
             return False
-        before = {(g.element, g.to): g.value for g in branch.gauges(z)}
-        moved: dict[str, float] = {}
-        for g in after:
-            if g.element in self.verge and abs(before.get((g.element, g.to), 1.0)) <= VERGE * 10:
-                moved[g.element] = g.value - before[(g.element, g.to)]
-        size = max(float(np.abs(rate).max(initial=0.0)) * step, 1e-300)
-        return all(change >= -SLIDES * size for change in moved.values())
+        slack = SLIDES * fastest + ROUND_OFF / step
+        tied: list[tuple[Array, float]] = []
+        for key, gauge in verge.items():
+            if any(key not in there for there in along):
+                continue
+            once, twice = (there[key].value for there in along)
+            grows = (4.0 * once - twice - 3.0 * gauge.value) / (2.0 * step)
+            if gauge.gradient is not None:
+                row = gauge.gradient @ point.tangent.loose
+                if np.abs(row).max(initial=0.0) > LOOSE:
+                    tied.append((row, grows + slack))
+                    continue
+            if grows < -slack:
+                return False
+        return _has_room(tied)
+
+    def _near(self, sign: float, varied: Varied) -> Iterator[Point]:
+        """Yield the sets that certified solves a little way to that side stand on."""
+        for amount in self._amounts(sign, varied):
+            try:
+                scene = varied.scene(amount)
+                branch, z = identified(scene, varied.answer(amount), self.units)
+            except _NOTHING:
+                continue
+            # Under a law that is soft at first a contact either carries nothing, to first order,
+            # or what nothing else can.
+            soft = self._soft(branch)
+            for tied in (frozenset[str](), soft) if soft else (frozenset[str](),):
+                try:
+                    yield self._back(branch, z, tied, amount, varied)
+                except _NOTHING:
+                    continue
+
+    def _amounts(self, sign: float, varied: Varied) -> Iterator[float]:
+        """Yield steps of the input [SI] by their effect on the equations and the verge."""
+        if self.own is None:
+            return
+        branch, z = self.own.branch, self.own.z
+        change = varied.change(branch, z)
+        slope, reach = change.to(sign), 4.0 * change.step
+        if not isinstance(slope, Slope):
+            return
+        nothing = np.zeros((branch.scene.size, 0))
+        before = _by_key(branch.gauges(z, nothing))
+        there = Branch(varied.scene(sign * change.step), branch.active, self.units, branch.tied)
+        after = _by_key(there.gauges(z, nothing))
+        shifts = [abs(after[k].value - g.value) for k, g in before.items() if k in after]
+        shifts = [s for s in shifts if np.isfinite(s)]
+        effect = float(np.abs(slope.value[: branch.size]).max(initial=0.0))
+        effect = max([effect, *(s / change.step for s in shifts)])
+        if effect * reach <= ROUND_OFF:
+            return
+        for near in NEAR:
+            yield sign * min(near / effect, reach)
+
+    def _soft(self, branch: Branch) -> frozenset[str]:
+        """Closed contacts that carry nothing at the value itself under a law soft at first."""
+        assert self.own is not None
+        new = branch.active.closed - self.own.branch.active.closed
+        rows = (*branch.scene.rows, *branch.scene.arcs)
+        return frozenset(
+            r.name for r in rows if r.name in new and np.isinf(r.law.tangent(0.0)[0])
+        )
+
+    def _back(
+        self, branch: Branch, z: Array, tied: frozenset[str], amount: float, varied: Varied
+    ) -> Point:
+        """Follow a set back to the value: three points on its branch, and Newton's method."""
+        active = branch.active
+        forces = {n: f for n, (f, _) in branch.contacts(z).items()}
+        pulls, x = branch.pulls(z), branch.x(z)
+        here = Branch(self._scene, active, self.units, tied)
+        places = []
+        for share in (1.0, 0.5, 0.25):
+            there = Branch(varied.scene(share * amount), active, self.units, tied)
+            z = there.solve(there.start(x, forces, pulls))
+            x = there.x(z)
+            places.append(z)
+        first, second, third = places
+        return Point(here, here.solve(first / 3.0 - 2.0 * second + 8.0 / 3.0 * third))
+
+
+def _by_key(gauges: list[Gauge]) -> Gauges:
+    return {(g.element, g.to.label if g.to else ""): g for g in gauges}
+
+
+def _has_room(rows: list[tuple[Array, float]]) -> bool:
+    """Whether what is loose can move so that no verge contact closes: row·v ≤ room for all."""
+    from scipy.optimize import linprog
+
+    if not rows:
+        return True
+    matrix, room = np.array([r for r, _ in rows]), np.array([b for _, b in rows])
+    # Room over the largest one: the free moves are as large as the gaps demand.
+    scale = float(np.abs(room).max()) or 1.0
+    count = matrix.shape[1]
+    found = linprog(
+        np.zeros(count), A_ub=matrix, b_ub=room / scale, bounds=[(None, None)] * count
+    )
+    return bool(found.status == 0)

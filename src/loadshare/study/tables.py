@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -116,9 +116,9 @@ def sensitivity_dataset(found: Sensitivity) -> xr.Dataset:
     xarray.Dataset
         "torque", "share", "pair_share" (position, input, side, mesh), "displacement" (position,
         input, side, gear, component), "omega", "pair_omega" (input, side, stage): derivatives per
-        SI unit of the input; coordinates "value", "unit" and "factor" (SI units per unit) say what
-        the input is, "error" the relative error of its derivative, "kink" (position) whether the
-        sides may differ.
+        SI unit of the input, and each with "_error" at its name its stated error; coordinates
+        "value", "unit" and "factor" (SI units per unit) say what the input is, "error" the largest
+        stated error of a torque's derivative, "kink" (position) whether the sides may differ.
     """
     import xarray as xr
 
@@ -131,15 +131,18 @@ def sensitivity_dataset(found: Sensitivity) -> xr.Dataset:
     gears = list(some.displacement) if some else []
     stages = list(next(iter(found.omega.values()), {}))
 
+    def rates(position: int, key: str, side: str, name: str) -> dict[str, Any]:
+        here = found.rates[position, key, side]
+        of_error = name.endswith("_error")
+        chosen: dict[str, Any] = getattr(here.error if of_error else here, name[:-6] if of_error else name)
+        return chosen
+
     def over(name: str, labels: list[str]) -> np.ndarray:
         rows = [
-            [
-                [[getattr(found.rates[k, key, side], name)[n] for n in labels] for side in SIDES]
-                for key in keys
-            ]
+            [[[rates(k, key, side, name)[n] for n in labels] for side in SIDES] for key in keys]
             for k in found.positions
         ]
-        tail = (2,) if name == "displacement" else ()
+        tail = (2,) if name.startswith("displacement") else ()
         shape = (len(found.positions), len(keys), len(SIDES), len(labels), *tail)
         return np.array(rows, dtype=float).reshape(shape)
 
@@ -150,19 +153,25 @@ def sensitivity_dataset(found: Sensitivity) -> xr.Dataset:
 
     on_mesh = ("position", "input", "side", "mesh")
     on_gear = ("position", "input", "side", "gear", "component")
+    on_stage = ("input", "side", "stage")
     per = "per SI unit of the input"
+    figures = (
+        ("torque", on_mesh, "N m"),
+        ("share", on_mesh, "1"),
+        ("pair_share", on_mesh, "1"),
+        ("displacement", on_gear, "m"),
+        ("omega", on_stage, "1"),
+        ("pair_omega", on_stage, "1"),
+    )
     return xr.Dataset(
         {
-            "torque": (on_mesh, over("torque", meshes), {"units": f"N m {per}"}),
-            "share": (on_mesh, over("share", meshes), {"units": f"1 {per}"}),
-            "pair_share": (on_mesh, over("pair_share", meshes), {"units": f"1 {per}"}),
-            "displacement": (on_gear, over("displacement", gears), {"units": f"m {per}"}),
-            "omega": (("input", "side", "stage"), largest("omega"), {"units": f"1 {per}"}),
-            "pair_omega": (
-                ("input", "side", "stage"),
-                largest("pair_omega"),
-                {"units": f"1 {per}"},
-            ),
+            of: (
+                dims,
+                largest(of) if dims is on_stage else over(of, gears if dims is on_gear else meshes),
+                {"units": f"{unit} {per}"},
+            )
+            for name, dims, unit in figures
+            for of in (name, f"{name}_error")
         },
         coords={
             "position": list(found.positions),

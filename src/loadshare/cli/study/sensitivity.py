@@ -25,6 +25,10 @@ if TYPE_CHECKING:
 SHOWN = 25
 """Inputs that are shown; a file holds all."""
 SIDES = ("falling", "rising")
+DIGITS = 4
+"""Digits of a derivative that is known to more."""
+ALIKE = 1e-6
+"""Relative difference of two sides that no reader needs to see."""
 ROUND_OFF = 1e-13
 """Change of Ω over a unit and over the whole value of an input that says nothing."""
 
@@ -54,22 +58,27 @@ def show_sensitivity(screen: Console, found: Sensitivity) -> None:
     """Print what moves the system's Ω most, per unit of each input and over its whole value."""
     from loadshare.cli.tables.table import show, table
 
-    ordered = sorted(found.inputs, key=lambda item: -_whole(found, item))
-    one_sided = {item.key for item in ordered[:SHOWN] if _apart(found, item)}
+    ordered = sorted(found.inputs, key=lambda item: -_whole(found, item))[:SHOWN]
+    one_sided = {item.key for item in ordered if _apart(found, item)}
     sides = ("dΩ per unit", *(["falling"] if one_sided else []))
     made = table(("input", "value", *sides, "dΩ over its value"), words=("input", "value"))
-    for item in ordered[:SHOWN]:
-        slopes = [found.pair_omega[item.key, s]["system"] * item.value.factor for s in SIDES]
-        changes = [*slopes, _whole(found, item)]
-        if all(abs(change) < ROUND_OFF for change in changes):
-            changes = [0.0, 0.0, 0.0]
-        falling, rising, whole = map(_signed, changes)
-        below = [falling if item.key in one_sided else ""] if one_sided else []
+    for item in ordered:
+        falling, rising = (_figure(found, item, side) for side in SIDES)
+        steepest = max((falling, rising), key=lambda figure: _size(figure[0]))
+        over = abs(item.value.number)
+        whole = abs(steepest[0]) * over, steepest[1] * over
+        figures = [rising, *([falling] if one_sided else []), whole]
+        if all(not _size(v) >= ROUND_OFF for v, _ in (falling, rising, whole)):
+            figures = [(0.0, 0.0)] * len(figures)
+        texts = [good(*figure) for figure in figures]
+        if one_sided and item.key not in one_sided:
+            texts[1] = ""
         value = f"{item.value.number:.6g} {item.value.unit}".strip()
-        made.add_row(item.key, value, rising, *below, whole)
+        made.add_row(item.key, value, *texts)
     show(screen, "Sensitivity of the system's Ω, by group mean", made)
-    if len(ordered) > SHOWN:
-        screen.print(f"{len(ordered) - SHOWN} inputs that matter less are not shown.")
+    screen.print("Every figure is good to one unit of its last digit.")
+    if len(found.inputs) > SHOWN:
+        screen.print(f"{len(found.inputs) - SHOWN} inputs that matter less are not shown.")
     if one_sided:
         screen.print("Where a value stands under falling, the derivative differs to that side.")
     for kink in found.kinks:
@@ -77,22 +86,71 @@ def show_sensitivity(screen: Console, found: Sensitivity) -> None:
             f"Position {kink.position} stands on the verge of another active set: "
             f"{', '.join(kink.elements)}. Its derivatives hold to one side each."
         )
+    for told in _remarks(found, {item.key for item in ordered}):
+        screen.print(told, soft_wrap=True)
     for key, why in found.skipped:
         screen.print(f"Left out: {key}: {why}.", soft_wrap=True)
 
 
+def _figure(found: Sensitivity, item: Input, side: str) -> tuple[float, float]:
+    """Derivative of the system's Ω per unit of an input, and its stated error."""
+    of = item.key, side
+    rate, error = found.pair_omega[of]["system"], found.pair_omega_error[of]["system"]
+    return rate * item.value.factor, error * item.value.factor
+
+
+def _size(value: float) -> float:
+    return 0.0 if math.isnan(value) else abs(value)
+
+
+def _remarks(found: Sensitivity, keys: set[str]) -> list[str]:
+    """What is remarked of some inputs, the positions of one remark together."""
+    positions: dict[tuple[str, str], list[int]] = {}
+    for remark in found.remarks:
+        if remark.key in keys:
+            positions.setdefault((remark.key, remark.message), []).append(remark.position)
+    told = []
+    for (key, message), at in positions.items():
+        places = sorted(set(at))
+        where = "" if len(places) == len(found.positions) else f" at {', '.join(map(str, places))}"
+        told.append(f"{key}{where}: {message}.")
+    return told
+
+
 def _apart(found: Sensitivity, item: Input) -> bool:
-    """Whether the derivatives to both sides differ."""
-    falling, rising = (found.pair_omega[item.key, s]["system"] for s in SIDES)
-    return not math.isclose(falling, rising, rel_tol=1e-6, abs_tol=1e-300)
+    """Whether the derivatives to both sides differ, or there is one only."""
+    (falling, low), (rising, high) = (_figure(found, item, side) for side in SIDES)
+    if math.isnan(falling) or math.isnan(rising):
+        return not (math.isnan(falling) and math.isnan(rising))
+    return abs(falling - rising) > low + high + ALIKE * max(abs(falling), abs(rising))
 
 
 def _whole(found: Sensitivity, item: Input) -> float:
     """Change of Ω over the whole value of an input, to first order; 0 where it has none."""
-    slopes = [found.pair_omega[item.key, s]["system"] for s in SIDES]
-    sizes = [abs(s * item.value.si) for s in slopes if not math.isnan(s)]
-    return max(sizes, default=0.0)
+    rates = [_figure(found, item, side)[0] for side in SIDES]
+    return max(_size(rate * item.value.number) for rate in rates)
 
 
-def _signed(value: float) -> str:
-    return "–" if math.isnan(value) else f"{value:+.4g}" if value else "0"
+def good(value: float, error: float) -> str:
+    """Write as many digits, four at most, as make the last one good to one unit.
+
+    Rounding takes half a unit, the error must not take more than the other half.
+    """
+    if math.isnan(value):
+        return "–"
+    if not value and not error:
+        return "0"
+    if not error < 0.05 * abs(value):
+        digits = 1 if 2.0 * error <= 10.0 ** math.floor(math.log10(abs(value) or 1e-300)) else 0
+        if not digits:
+            return f"0 ± {_above(abs(value) + error)}"
+        return f"{value:+.1g}"
+    leading = math.floor(math.log10(abs(value)))
+    digits = 1 + leading - math.ceil(math.log10(2.0 * error)) if error else DIGITS
+    return f"{value:+.{min(max(digits, 1), DIGITS)}g}"
+
+
+def _above(value: float) -> str:
+    """One digit, rounded up."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return f"{math.ceil(value / power) * power:.1g}"

@@ -27,6 +27,8 @@ __all__ = ["RANK", "Branch", "BranchLost", "Gauge", "Units", "identified"]
 
 RANK = 1e-14
 """Singular values of the Jacobian below this, relative to the largest, count as zero."""
+ROUNDINGS = 4.0
+"""Roundings that a term of the residual has behind it: radii, directions, sums."""
 SOLVED = 1e-10
 """Residual up to which a branch that no longer improves is an answer, in loads and deflections."""
 
@@ -44,16 +46,21 @@ class Branch:
     active : ActiveSet
     units : Units
         Kept fixed along a path, so that z means the same everywhere on it.
+    tied : frozenset of str
+        Closed contacts that are held as if they were rigid: those that begin to carry under a law
+        which is infinitely soft at first (c > 0), where nothing else can.
     """
 
-    def __init__(self, scene: Scene, active: ActiveSet, units: Units) -> None:
-        self.scene, self.active, self.units = scene, active, units
+    def __init__(
+        self, scene: Scene, active: ActiveSet, units: Units, tied: frozenset[str] = frozenset()
+    ) -> None:
+        self.scene, self.active, self.units, self.tied = scene, active, units, tied
         self._contacts: tuple[Row | ArcRow, ...] = (*scene.rows, *scene.arcs)
         self._places = dict(active.places)
         at = scene.size
         self._rigid: dict[str, int] = {}
         for row in self._contacts:
-            if row.name in active.closed and is_rigid(row.law):
+            if row.name in active.closed and (is_rigid(row.law) or row.name in tied):
                 self._rigid[row.name] = at
                 at += 1
         self._steps: dict[str, slice] = {}
@@ -156,6 +163,31 @@ class Branch:
         found[:n] = balance / self.units.force
         return found
 
+    def rounding(self, z: Array) -> Array:
+        """Bound on the round-off of the residual: of its terms' sizes, in the same units."""
+        n, scene, (force, length) = self.scene.size, self.scene, self.units
+        x = np.abs(self.x(z))
+        touches = self._touches(z)
+        found = np.zeros(self.size)
+        balance = np.abs(scene.stiffness) @ x + np.abs(scene.load)
+        for touch in touches:
+            # What an approach is the difference of: along an arc, of the clearance and the way.
+            fixed = touch.row.arc.clearance if isinstance(touch.row, ArcRow) else touch.row.gap
+            terms = float(np.abs(touch.vector) @ x) + abs(fixed)
+            balance += np.abs(touch.vector) * (abs(touch.force) + abs(touch.slope) * terms)
+            if touch.unknown is not None:
+                found[touch.unknown] = terms / length
+        for hold in self._holds(z, touches):
+            matrix, sizes = np.abs(hold.radial.matrix), np.abs(hold.force)
+            terms = float(np.hypot(*(matrix @ x + np.abs(hold.radial.centre))))
+            if hold.unknown is None:
+                sizes = sizes + np.abs(hold.stiffness()).sum(axis=1) * terms
+            else:
+                found[hold.unknown] = (terms + hold.limit) / length
+            balance += matrix.T @ sizes
+        found[:n] = balance / force
+        return np.asarray(ROUNDINGS * np.finfo(float).eps * found)
+
     def jacobian(self, z: Array) -> Array:
         """Derivative of the residual, shape (size, size)."""
         n, (force, length) = self.scene.size, self.units
@@ -227,9 +259,17 @@ class Branch:
             previous = size
         raise BranchLost("the equations of the active set have no solution near by")
 
-    def gauges(self, z: Array) -> list[Gauge]:
-        """How far every element is from leaving its state; what is undetermined is left out."""
-        touches, loose = self._touches(z), self.undetermined(z)
+    def gauges(self, z: Array, loose: Array | None = None) -> list[Gauge]:
+        """How far every element is from leaving its state; what is undetermined is left out.
+
+        Parameters
+        ----------
+        z : ndarray, shape (size,)
+        loose : ndarray, shape (n, d), optional
+            Directions of the coordinates that count as undetermined; by default those that are.
+        """
+        touches = self._touches(z)
+        loose = self.undetermined(z) if loose is None else loose
         found: list[Gauge] = []
         for touch in touches:
             is_closed = touch.row.name in self.active.closed
@@ -237,16 +277,6 @@ class Branch:
         for hold in self._holds(z, touches):
             found += radial_gauges(hold, self.units)
         return found
-
-    def catching(self, z: Array) -> list[str]:
-        """Open contacts that a move which nothing resists may close, the nearest first."""
-        loose = self.undetermined(z)
-        ways: dict[str, float] = {}
-        for touch in self._touches(z):
-            closing = float(np.linalg.norm(touch.vector @ loose))
-            if touch.row.name not in self.active.closed and closing > LOOSE:
-                ways[touch.row.name] = -touch.approach / closing
-        return sorted(ways, key=ways.__getitem__)
 
     def equilibrium(self, z: Array) -> Equilibrium:
         """Return a point in physical terms, to be judged by the certificate."""

@@ -8,7 +8,7 @@ The equilibrium equations of the active set are differentiated implicitly: with 
 The Jacobian is factorised once for all inputs; no equilibrium is solved again.
 """
 
-from loadshare.study.sensitivity.result import SIDES, Input, Kink, Rates, Sensitivity
+from loadshare.study.sensitivity.result import SIDES, Input, Kink, Rates, Remark, Sensitivity
 from loadshare.study.sensitivity.study import sensitivity
 
-__all__ = ["SIDES", "Input", "Kink", "Rates", "Sensitivity", "sensitivity"]
+__all__ = ["SIDES", "Input", "Kink", "Rates", "Remark", "Sensitivity", "sensitivity"]

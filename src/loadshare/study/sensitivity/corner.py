@@ -2,22 +2,43 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from functools import lru_cache
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
-from loadshare.errors import CaseError
+from loadshare.errors import CaseError, Problem
 from loadshare.scene import assemble
-from loadshare.scene.scene import Array, Scene
+from loadshare.scene.scene import Array
 from loadshare.study.answers import certified
-from loadshare.study.branch import Branch
-from loadshare.study.branch.system import identified
-from loadshare.study.differences import Derivative, differentiate
-from loadshare.study.directional import ROUND_OFF, Motion, Neighbourhood
+from loadshare.study.directional import Motion, Neighbourhood
 from loadshare.study.parameter import Value
-from loadshare.study.sensitivity.result import SIDES, Rates
+from loadshare.study.sensitivity.differenced import NoDifference, differenced
+from loadshare.study.sensitivity.result import SIDES, Rates, Remark
+from loadshare.study.sensitivity.variation import Variation, torque_gradients, torques_of
 from loadshare.train import Train
+from loadshare.train.equilibrium import Equilibrium
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Motions:
+    """Derivatives of torques and displacements to one side, with bounds on their errors.
+
+    Attributes
+    ----------
+    torque, torque_error : ndarray, shape (meshes,)
+        [N·m] per SI unit.
+    share_error : callable
+        Bound on the errors of linear combinations (k, meshes) of the torques' derivatives.
+    displacement, displacement_error : mapping of gear to ndarray, shape (2,)
+        [m] per SI unit; NaN where undetermined.
+    """
+
+    torque: Array
+    torque_error: Array
+    share_error: Callable[[Array], Array]
+    displacement: dict[str, Array]
+    displacement_error: dict[str, Array]
 
 
 class Corner:
@@ -34,8 +55,8 @@ class Corner:
     neighbourhood : Neighbourhood
     torque : dict of mesh to float
         On the driver [N·m].
-    loose : ndarray of bool, shape (n,)
-        Which coordinates the equilibrium leaves undetermined.
+    remarks : list of Remark
+        What was found about the inputs differentiated by so far.
 
     Raises
     ------
@@ -45,11 +66,10 @@ class Corner:
 
     def __init__(self, train: Train, position: int) -> None:
         self.train, self.position = train, position
-        answer = certified(train, position)
-        branch, z = identified(assemble(train, position), answer.equilibrium)
-        self.neighbourhood = Neighbourhood(branch, z)
-        self.torque = _torques(branch, z)
-        self.loose = branch.loose(z)
+        self._answer = certified(train, position).equilibrium
+        self.neighbourhood = Neighbourhood(assemble(train, position), self._answer)
+        self.torque = torques_of(train, self._answer)
+        self.remarks: list[Remark] = []
         self._caught: dict[str, None] = {}
 
     @property
@@ -57,109 +77,173 @@ class Corner:
         """Elements for which the derivatives found so far hold to one side only."""
         return tuple(dict.fromkeys((*self.neighbourhood.verge, *self._caught)))
 
-    def rates(
-        self, trains: Callable[[float], Train], value: Value
-    ) -> tuple[dict[str, Rates], float]:
-        """Return the derivatives to both sides, and the relative error of those of the equations.
+    def rates(self, trains: Callable[[float], Train], value: Value, key: str) -> dict[str, Rates]:
+        """Return the derivatives to both sides.
 
         Raises
         ------
         CaseError
             If the input can be varied to neither side.
         """
-        scenes = lru_cache(maxsize=None)(lambda number: assemble(trains(number), self.position))
-        derivatives: dict[object, Derivative] = {}
-
-        def explicit(branch: Branch, z: Array) -> Derivative:
-            if branch.active not in derivatives:
-
-                def of(number: float) -> Array:
-                    there = Branch(scenes(number), branch.active, branch.units)
-                    return np.concatenate([there.residual(z), list(_torques(there, z).values())])
-
-                derivatives[branch.active] = differentiate(of, value)
-            return derivatives[branch.active]
-
-        def shifted(amount: float) -> Scene:
-            return scenes(value.number + amount / value.factor)
-
-        found = {}
-        here = self.neighbourhood
-        both: Motion | None = None
+        varied = Variation(trains, value, self.position)
+        found: dict[str, Rates] = {}
+        both: Rates | None = None
         for side, sign in zip(SIDES, (-1.0, 1.0), strict=True):
-            motion = both
-            if motion is None:
-                try:
-                    motion = here.motion(sign, explicit, shifted)
-                except CaseError:
-                    if not derivatives:
-                        raise
-            able = next(iter(derivatives.values())).sides[sign > 0] if derivatives else False
-            found[side] = self._told(motion if able else None, derivatives)
-            caught = motion.caught if motion is not None else ()
-            self._caught |= dict.fromkeys(caught)
-            both = motion if not here.verge and not caught else None
-        return found, max([0.0, *map(_error, derivatives.values())])
+            if both is None:
+                made, shared = self._side(varied, sign, key, side)
+                both = made if shared else None
+            found[side] = both or made
+        return found
 
-    def _told(self, motion: Motion | None, derivatives: dict[object, Derivative]) -> Rates:
-        meshes, scene = self.train.meshes, self.neighbourhood.branch.scene
-        moved = {
-            g: np.full(2, np.nan) if g in scene.displacement else np.zeros(2)
-            for g in self.train.gears
-        }
-        if motion is None:
-            nothing = dict.fromkeys(meshes, np.nan)
-            return Rates(nothing, dict(nothing), dict(nothing), moved)
-        branch = motion.branch
-        direct = derivatives[branch.active].value[branch.size :]
-        contacts = branch.contacts(motion.z)
-        torque = {}
-        for (name, mesh), explicit in zip(meshes.items(), direct, strict=True):
-            total = float(explicit)
-            for drive in mesh.flanks:
-                _, gradient = contacts[mesh.flank_name(drive)]
-                total += mesh.lever(drive) * float(gradient @ motion.rate)
-            torque[name] = total
-        for gear, where in scene.displacement.items():
-            rate = motion.rate[where] * branch.units.length
-            moved[gear] = np.where(self.loose[where], np.nan, rate)
-        stages = self.train.stages
-        return Rates(
-            torque,
-            _share_rates(self.torque, torque, [s.meshes for s in stages], meshes),
-            _share_rates(self.torque, torque, [g for s in stages for g in s.groups], meshes),
-            moved,
+    def _side(
+        self, varied: Variation, sign: float, key: str, side: str
+    ) -> tuple[Rates, bool]:
+        """Return the derivatives to one side, and whether they are those to the other as well."""
+        place = self.neighbourhood.own
+        step, kinked = None, True
+        if place is not None:
+            change = varied.change(place.branch, place.z)
+            step, kinked = change.step, change.kinked
+            slope = change.to(sign)
+            if isinstance(slope, Exception):
+                self._remark(key, side, f"cannot be {_word(side)}: {_told(slope)}")
+                return self._nothing(), False
+            passing = varied.steps(sign, step)
+            if passing:
+                self._remark(
+                    key,
+                    side,
+                    f"meshes {', '.join(passing)} pass to the next place of their cycle right "
+                    "there, a step; the derivative holds with them where they are",
+                )
+        motion = self.neighbourhood.motion(sign, varied)
+        if motion is not None:
+            self._caught |= dict.fromkeys(motion.elements)
+            shared = not motion.one_sided and not kinked
+            return self._rates(self._moved(motion)), shared
+        try:
+            torque, displacement = differenced(self._answer, varied, sign, step)
+        except NoDifference as why:
+            self._remark(key, side, f"has no derivative when it is {_word(side)}: {why}")
+            return self._nothing(), False
+        self._remark(key, side, f"differenced when it is {_word(side)}: no active set was proved")
+        order = list(self.train.meshes)
+        error = np.array([torque[m][1] for m in order])
+        loose = self._loose
+        told = Motions(
+            np.array([torque[m][0] for m in order]),
+            error,
+            lambda weights: np.abs(weights) @ error,
+            {g: np.where(loose[g], np.nan, rate) for g, (rate, _) in displacement.items()},
+            {g: np.where(loose[g], np.nan, off) for g, (_, off) in displacement.items()},
+        )
+        return self._rates(told), False
+
+    def _moved(self, motion: Motion) -> Motions:
+        """Torques and displacements of a motion."""
+        branch, size = motion.branch, motion.branch.size
+        gradients = torque_gradients(branch, motion.z)
+        direct, direct_error = motion.change.value[size:], motion.change.error[size:]
+
+        def bound(weights: Array) -> Array:
+            return np.asarray(
+                motion.bound(weights @ gradients) + np.abs(weights) @ direct_error
+            )
+
+        loose, length = self._loose, branch.units.length
+        moved = {g: np.zeros(2) for g in self.train.gears}
+        error = {g: np.zeros(2) for g in self.train.gears}
+        for gear, where in branch.scene.displacement.items():
+            pick = np.eye(size)[where]
+            moved[gear] = np.where(loose[gear], np.nan, pick @ motion.rate * length)
+            error[gear] = np.where(loose[gear], np.nan, motion.bound(pick) * length)
+        return Motions(
+            direct + gradients @ motion.rate, bound(np.eye(len(direct))), bound, moved, error
         )
 
+    def _rates(self, told: Motions) -> Rates:
+        meshes = list(self.train.meshes)
+        stages = self.train.stages
+        share, share_error = self._shares(told, [s.meshes for s in stages])
+        pair, pair_error = self._shares(told, [g for s in stages for g in s.groups])
+        return Rates(
+            dict(zip(meshes, told.torque.tolist(), strict=True)),
+            share,
+            pair,
+            told.displacement,
+            Rates(
+                dict(zip(meshes, told.torque_error.tolist(), strict=True)),
+                share_error,
+                pair_error,
+                told.displacement_error,
+            ),
+        )
 
-def _error(derivative: Derivative) -> float:
-    """Relative error of a derivative; 0 where its input does not move the equations."""
-    size = float(np.abs(derivative.value).max(initial=0.0))
-    if not size * derivative.step > ROUND_OFF:
-        return 0.0
-    return float(derivative.error.max(initial=0.0)) / size
+    def _shares(
+        self, told: Motions, groups: list[tuple[str, ...]]
+    ) -> tuple[dict[str, float], dict[str, float]]:
+        """Derivatives of Ω = T / mean(T) of every branch, and bounds on their errors."""
+        order = list(self.train.meshes)
+        value, error = dict.fromkeys(order, np.nan), dict.fromkeys(order, np.nan)
+        for group, weights in self._weights(order, groups):
+            rates, bounds = weights @ told.torque, told.share_error(weights)
+            value |= dict(zip(group, rates.tolist(), strict=True))
+            error |= dict(zip(group, bounds.tolist(), strict=True))
+        return value, error
+
+    def _weights(
+        self, order: list[str], groups: list[tuple[str, ...]]
+    ) -> Iterator[tuple[tuple[str, ...], Array]]:
+        """Yield groups that carry, and dΩ over dT (group, meshes)."""
+        for group in groups:
+            mean = sum(self.torque[m] for m in group) / len(group)
+            if not mean:
+                continue
+            weights = np.zeros((len(group), len(order)))
+            for row, m in zip(weights, group, strict=True):
+                row[[order.index(other) for other in group]] -= (
+                    self.torque[m] / mean / len(group)
+                )
+                row[order.index(m)] += 1.0
+            yield group, weights / mean
+
+    @property
+    def _loose(self) -> dict[str, Array]:
+        """Which components of each gear's displacement the equilibrium leaves undetermined."""
+        free = set(self._answer.undetermined)
+        loose = {
+            g: np.array([f"gear {g} {c}" in free for c in "xy"]) for g in self.train.gears
+        }
+        place = self.neighbourhood.own
+        if place is not None:
+            moves = np.abs(place.tangent.loose).max(axis=1, initial=0.0) > LOOSE
+            for gear, where in place.branch.scene.displacement.items():
+                loose[gear] = loose[gear] | moves[where]
+        return loose
+
+    def _nothing(self) -> Rates:
+        """Not a number, wherever something might move."""
+        nothing = dict.fromkeys(self.train.meshes, np.nan)
+        moved = {
+            name: np.full(2, np.nan if gear.moves else 0.0)
+            for name, gear in self.train.gears.items()
+        }
+        none = Rates(dict(nothing), dict(nothing), dict(nothing), dict(moved))
+        return Rates(nothing, dict(nothing), dict(nothing), moved, none)
+
+    def _remark(self, key: str, side: str, message: str) -> None:
+        self.remarks.append(Remark(key, self.position, side, message))
 
 
-def _torques(branch: Branch, z: Array) -> dict[str, float]:
-    """Torque on the driver of every mesh, drive flank less coast flank [N·m]."""
-    contacts = branch.contacts(z)
-    return {
-        name: sum(mesh.lever(d) * contacts[mesh.flank_name(d)][0] for d in mesh.flanks)
-        for name, mesh in branch.scene.train.meshes.items()
-    }
+LOOSE = 1e-9
+"""Part of a coordinate in a loose move from which on it counts as undetermined."""
 
 
-def _share_rates(
-    torque: dict[str, float],
-    rate: dict[str, float],
-    groups: Iterable[tuple[str, ...]],
-    meshes: Iterable[str],
-) -> dict[str, float]:
-    """Derivative of Ω = T / mean(T) of every branch."""
-    found = dict.fromkeys(meshes, np.nan)
-    for group in groups:
-        mean = sum(torque[m] for m in group) / len(group)
-        slope = sum(rate[m] for m in group) / len(group)
-        if mean:
-            found |= {m: (rate[m] - torque[m] / mean * slope) / mean for m in group}
-    return found
+def _word(side: str) -> str:
+    return "raised" if side == "rising" else "lowered"
+
+
+def _told(error: Exception) -> str:
+    """Return the first problem of a case, or what was said."""
+    problems: list[Problem] = list(error.problems) if isinstance(error, CaseError) else []
+    return problems[0].message if problems else str(error)

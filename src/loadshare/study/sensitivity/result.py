@@ -57,12 +57,34 @@ class Rates:
         [N·m], [-]; NaN where nothing can follow to that side, or a group carries nothing.
     displacement : mapping of gear to ndarray, shape (2,)
         [m], in the gear's transverse frame; NaN where the equilibrium leaves it undetermined.
+    error : Rates or None
+        Stated errors of all these, ≥ 0; None for errors themselves.
     """
 
     torque: dict[str, float]
     share: dict[str, float]
     pair_share: dict[str, float]
     displacement: dict[str, Array]
+    error: Rates | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Remark:
+    """What a reader of one derivative must know: why there is none, or what it leaves out.
+
+    Attributes
+    ----------
+    key : str
+    position : int
+    side : str
+        "falling" or "rising".
+    message : str
+    """
+
+    key: str
+    position: int
+    side: str
+    message: str
 
 
 @dataclass(frozen=True)
@@ -77,9 +99,14 @@ class Sensitivity:
         Side is "falling" or "rising"; both agree where there is no kink.
     omega, pair_omega : mapping of (key, side) to mapping of stage to float
         Derivative of the largest Ω of each stage and of the system.
+    omega_error, pair_omega_error : mapping of (key, side) to mapping of stage to float
+        Their stated errors.
     kinks : tuple of Kink
     error : mapping of key to float
-        Estimated relative error of the derivative of the equations.
+        Largest stated error of a torque's derivative [N·m per SI unit]; each derivative's own
+        stands in `Rates.error`.
+    remarks : tuple of Remark
+        Derivatives that do not exist or leave something out, by name.
     skipped : tuple of (str, str)
         Inputs that cannot be varied on their own, and why.
     """
@@ -89,8 +116,11 @@ class Sensitivity:
     rates: dict[tuple[int, str, str], Rates]
     omega: dict[tuple[str, str], dict[str, float]]
     pair_omega: dict[tuple[str, str], dict[str, float]]
+    omega_error: dict[tuple[str, str], dict[str, float]]
+    pair_omega_error: dict[tuple[str, str], dict[str, float]]
     kinks: tuple[Kink, ...]
     error: dict[str, float]
+    remarks: tuple[Remark, ...]
     skipped: tuple[tuple[str, str], ...]
 
     @cached_property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -21,6 +22,9 @@ from loadshare.train import Train, build_train
 
 TIE = 1e-9
 """Shares that differ by no more are both the largest."""
+
+Slope = tuple[float, float, float]
+"""A share, its derivative, and the stated error of that."""
 
 
 def sensitivity(
@@ -71,7 +75,6 @@ def sensitivity(
     found = inputs_of(case, inputs)
     corners = [Corner(train, position) for position in chosen]
     rates: dict[tuple[int, str, str], Rates] = {}
-    error: dict[str, float] = {}
     skipped: list[tuple[str, str]] = []
     usable = []
     for done, item in enumerate(found, start=1):
@@ -84,8 +87,7 @@ def sensitivity(
         )
         try:
             for corner in corners:
-                sides, worst = corner.rates(trains, item.value)
-                error[item.key] = max(worst, error.get(item.key, 0.0))
+                sides = corner.rates(trains, item.value, item.key)
                 rates |= {(corner.position, item.key, s): r for s, r in sides.items()}
         except CaseError as refusal:
             if named:
@@ -93,24 +95,42 @@ def sensitivity(
             skipped.append((item.key, refusal.problems[0].message))
             continue
         usable.append(item)
-    stages = {
-        kind: {
-            (item.key, side): _largest(train, corners, rates, item.key, side, kind)
-            for item in usable
-            for side in SIDES
-        }
+    largest = {
+        (kind, item.key, side): _largest(train, corners, rates, item.key, side, kind)
         for kind in ("share", "pair_share")
+        for item in usable
+        for side in SIDES
     }
+
+    def told(kind: str, part: int) -> dict[tuple[str, str], dict[str, float]]:
+        return {
+            (key, side): {stage: figures[part] for stage, figures in by_stage.items()}
+            for (of, key, side), by_stage in largest.items()
+            if of == kind
+        }
+
     return Sensitivity(
         inputs=tuple(usable),
         positions=tuple(chosen),
         rates=rates,
-        omega=stages["share"],
-        pair_omega=stages["pair_share"],
+        omega=told("share", 1),
+        pair_omega=told("pair_share", 1),
+        omega_error=told("share", 2),
+        pair_omega_error=told("pair_share", 2),
         kinks=tuple(Kink(c.position, elements) for c in corners if (elements := c.on_the_verge)),
-        error={item.key: error[item.key] for item in usable},
+        error={item.key: _error(rates, item.key, chosen) for item in usable},
+        remarks=tuple(r for c in corners for r in c.remarks),
         skipped=tuple(skipped),
     )
+
+
+def _error(
+    rates: dict[tuple[int, str, str], Rates], key: str, positions: Sequence[int]
+) -> float:
+    """Largest stated error of a torque's derivative."""
+    errors = [rates[position, key, side].error for position in positions for side in SIDES]
+    stated = [v for e in errors if e is not None for v in e.torque.values()]
+    return max((v for v in stated if not math.isnan(v)), default=math.nan)
 
 
 def _largest(
@@ -120,25 +140,28 @@ def _largest(
     key: str,
     side: str,
     kind: str,
-) -> dict[str, float]:
+) -> dict[str, Slope]:
     """Derivative of the largest Ω of each stage, and of the system, to one side."""
-    found: dict[str, tuple[float, float]] = {}
+    found: dict[str, Slope] = {}
     for stage in train.stages:
         groups = [stage.meshes] if kind == "share" else stage.groups
-        near: list[tuple[float, float]] = []
+        near: list[Slope] = []
         for corner in corners:
             shares = coefficients(corner.torque, groups)
-            slopes = getattr(rates[corner.position, key, side], kind)
-            near += [(s, slopes[m]) for m, s in shares.items() if s is not None]
+            here = rates[corner.position, key, side]
+            slopes, errors = getattr(here, kind), getattr(here.error, kind)
+            near += [(s, slopes[m], errors[m]) for m, s in shares.items() if s is not None]
         found[stage.name] = _steepest(near, side)
     found["system"] = _steepest(list(found.values()), side)
-    return {name: slope for name, (_, slope) in found.items()}
+    return found
 
 
-def _steepest(near: list[tuple[float, float]], side: str) -> tuple[float, float]:
-    """Return the largest share and its derivative; among equals the one that is largest beyond."""
+def _steepest(near: list[Slope], side: str) -> Slope:
+    """Return the largest share, its derivative and its error; of equals, the largest beyond."""
     if not near:
-        return np.nan, np.nan
-    top = max(share for share, _ in near)
-    slopes = [slope for share, slope in near if share >= top - TIE]
-    return top, max(slopes) if side == "rising" else min(slopes)
+        return np.nan, np.nan, np.nan
+    top = max(share for share, _, _ in near)
+    equal = [(slope, error) for share, slope, error in near if share >= top - TIE]
+    slopes = [slope for slope, _ in equal]
+    steepest = max(slopes) if side == "rising" else min(slopes)
+    return top, steepest, max(error for _, error in equal)

@@ -1,0 +1,296 @@
+"""Sensitivities against one-sided differences of certified solves.
+
+    python benchmarks/sensitivities.py --count 2000
+
+Cases are shipped ones, stress problems and drawn trains, also put exactly on their critical values;
+inputs are drawn from all numbers that a case has. Every derivative is compared to each side with
+differences over steps that shrink by four, extrapolated; where doubles are too noisy to decide, the
+equilibria are those of the 50-digit reference. What is compared knows nothing of active sets, and
+of the sensitivities only their stated errors.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+import loadshare as ls
+from benchmarks.random_trains.draw import draw
+from loadshare.evidence.reference import NoReference, reference
+from loadshare.evidence.stress.families import FAMILIES
+from loadshare.study.answers import certified
+from loadshare.study.parameter import Value
+from loadshare.study.sensitivity import SIDES, Input, Sensitivity
+from loadshare.study.sensitivity.inputs import inputs_of
+from loadshare.train import Train, build_train
+
+CASES = Path(__file__).parents[1] / "cases"
+SHIPPED = sorted(p for p in CASES.rglob("*.toml") if p.parent.name != "pairs")
+STRESS = ("verge", "free-pinion", "friction", "lost-contact", "stick-limit", "soft-supports")
+FIRST, STEPS = 1e-3, 8
+"""First step over the input's value, and how many steps there are at most."""
+LEAST = {"m": 1e-6, "rad": 1e-4, "": 1e-4}
+"""First step of inputs that are zero, in SI units; 1 for others."""
+NOISE = {False: 2e-13, True: 1e-15}
+"""Round-off of a torque over the largest: of a solve in doubles, and of the train's own data."""
+TEETH = 1e-4
+"""Relative error of a difference beyond which it does not say enough."""
+KEYS = 6
+"""Inputs of a case that are drawn."""
+
+Array = np.ndarray
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One derivative to one side, compared.
+
+    Attributes
+    ----------
+    outcome : str
+        "agrees", "outside" (of its stated error), "missed" (none, yet differences converge),
+        "undefined" (none, and said so), "unnamed" (none, and not said why), "undecided"
+        (differences do not converge).
+    excess : float
+        Distance over the sum of both errors.
+    stated, known : float
+        Errors of the derivative and of the difference, over the largest derivative.
+    """
+
+    outcome: str
+    excess: float = math.nan
+    stated: float = math.nan
+    known: float = math.nan
+
+
+def differenced(
+    case: ls.Case, item: Input, position: int, sign: float, fine: bool = False
+) -> tuple[Array, Array] | None:
+    """Return the one-sided derivatives of torques and displacements, and their errors.
+
+    None where there is no equilibrium to that side, or differences do not converge.
+    """
+    train = build_train(case)
+    cycle = train.situation(position).mesh_position
+    value = item.value
+
+    def laid(number: float) -> Array | None:
+        try:
+            changed = case.replace({item.key: value.at(number).text})
+            return figures(held(build_train(changed), cycle), position, fine)
+        except (ls.CaseError, ls.Refused, NoReference, ValueError):
+            return None
+
+    here = laid(value.number)
+    if here is None:
+        return None
+    first = FIRST * abs(value.number) or LEAST.get(value.si_unit, 1.0) / value.factor
+    # Torques and displacements have round-off of their own.
+    count = len(train.meshes)
+    sizes = np.concatenate(
+        [np.full(len(p), np.abs(p).max(initial=0.0)) for p in (here[:count], here[count:])]
+    )
+    slopes: list[tuple[Array, Array]] = []
+    limits: list[tuple[Array, Array]] = []
+    best: tuple[Array, Array] | None = None
+    for k in range(STEPS):
+        number = value.number + sign * first * 0.25**k
+        there, step = laid(number), (number - value.number) * value.factor
+        if there is None:
+            slopes.clear()
+            limits.clear()
+            continue
+        slopes.append(((there - here) / step, NOISE[fine] * sizes / abs(step)))
+        if len(slopes) < 2:
+            continue
+        (far, coarse), (near, noise) = slopes[-2:]
+        limits.append(((4.0 * near - far) / 3.0, (4.0 * noise + coarse) / 3.0))
+        if len(limits) < 2:
+            continue
+        error = 2.0 * np.abs(limits[-1][0] - limits[-2][0]) + limits[-1][1]
+        if best is None:
+            best = limits[-1][0], error
+        else:
+            better = error < best[1]
+            best = np.where(better, limits[-1][0], best[0]), np.where(better, error, best[1])
+        if _said(best[1][:count], best[0][:count]) < 1e-3 * TEETH:
+            break
+    return best
+
+
+def _said(error: Array, value: Array) -> float:
+    size = float(np.abs(value).max(initial=0.0))
+    return float(error.max(initial=0.0)) / size if size else math.inf
+
+
+def held(train: Train, cycle: dict[str, int]) -> Train:
+    """Return a train that stands still in its mesh cycle."""
+    meshes = {
+        n: replace(m, laws=(m.law(cycle[n]),), gaps=(m.gap(cycle[n], True),))
+        for n, m in train.meshes.items()
+    }
+    return replace(train, meshes=meshes)
+
+
+def figures(train: Train, position: int, fine: bool) -> Array:
+    """Torques on drivers, then displacements in the gears' frames."""
+    found = certified(train, position).equilibrium
+    if fine:
+        exact = reference(train, position, found)
+        moved = [exact.displacement.get(g, np.zeros(2)) for g in train.gears]
+        return np.concatenate([list(exact.torque.values()), *moved])
+    torque = [
+        m.radii[0]
+        * sum((1.0 if d else -1.0) * found.flank_force[m.flank_name(d)] for d in m.flanks)
+        for m in train.meshes.values()
+    ]
+    moved = [g.frame @ found.displacement[n] for n, g in train.gears.items()]
+    return np.concatenate([torque, *moved])
+
+
+def judged(case: ls.Case, found: Sensitivity, item: Input, position: int, side: str) -> Verdict:
+    """Compare a derivative to one side with differences."""
+    rates = found.rates[position, item.key, side]
+    sign = 1.0 if side == "rising" else -1.0
+    value = np.array(list(rates.torque.values()))
+    if np.isnan(value).any():
+        named = [r for r in found.remarks if (r.key, r.position, r.side) == (item.key, position, side)]
+        if not named:
+            return Verdict("unnamed")
+        known = differenced(case, item, position, sign)
+        count = len(value)
+        if known is not None and _said(known[1][:count], known[0][:count]) < TEETH:
+            return Verdict("missed")
+        return Verdict("undefined")
+    verdict = Verdict("undecided")
+    for fine in (False, True):
+        known = differenced(case, item, position, sign, fine)
+        if known is None:
+            continue
+        verdict = _compared(rates, known, len(value))
+        if verdict.outcome == "agrees":
+            return verdict
+    return verdict
+
+
+def _compared(rates: object, known: tuple[Array, Array], count: int) -> Verdict:
+    def laid(of: object) -> Array:
+        return np.concatenate([list(of.torque.values()), *of.displacement.values()])  # type: ignore[attr-defined]
+
+    value, stated = laid(rates), laid(rates.error)  # type: ignore[attr-defined]
+    told = ~np.isnan(value)
+    off = np.abs(value - known[0])
+    allowed = stated + known[1]
+    excess = np.where(told & (off > 0.0), off / np.maximum(allowed, 1e-300), 0.0)
+    worst = float(excess.max(initial=0.0))
+    return Verdict(
+        "agrees" if worst <= 1.0 else "outside",
+        worst,
+        _said(stated[:count], value[:count]),
+        _said(known[1][:count], value[:count]),
+    )
+
+
+def problems(seed: int) -> Iterator[tuple[str, ls.Case, int]]:
+    """Yield cases and positions without end: shipped, stressed, drawn, and on critical values."""
+    rng = np.random.default_rng(seed)
+    drawn = 0
+    while True:
+        path = SHIPPED[int(rng.integers(len(SHIPPED)))]
+        shipped = ls.load_case(path)
+        yield f"shipped {path.stem}", shipped, int(rng.integers(build_train(shipped).count)) + 1
+        name = STRESS[int(rng.integers(len(STRESS)))]
+        family = FAMILIES[name]
+        number = int(rng.integers(family.count))
+        yield f"stress {name} {number}", family.problem(number).case, 1
+        for _ in range(2):
+            drawn += 1
+            case = draw(seed, drawn)
+            yield f"drawn {drawn}", case, int(rng.integers(build_train(case).count)) + 1
+        kink = critical(shipped, rng)
+        if kink is not None:
+            yield (f"critical {path.stem} {kink[0]}", *kink[1:])
+
+
+def critical(case: ls.Case, rng: np.random.Generator) -> tuple[str, ls.Case, int] | None:
+    """Put a case on one of its critical values along a length that it gives."""
+    keys = [i for i in inputs_of(case, None) if i.value.si_unit == "m" and _varies(i.key)]
+    if not keys:
+        return None
+    item = keys[int(rng.integers(len(keys)))]
+    high = max(4.0 * abs(item.value.number), 2e-5 / item.value.factor)
+    unit = item.value.unit
+    try:
+        found = ls.critical(case, item.key, f"0 {unit}", f"{high!r} {unit}", positions=[1])
+        if not found.events:
+            return None
+        event = found.events[int(rng.integers(len(found.events)))]
+        text = f"{event.value!r} {unit}"
+        return f"{item.key} = {text}", case.replace({item.key: text}), event.position
+    except (ls.CaseError, ls.Refused):
+        return None
+
+
+def _varies(key: str) -> bool:
+    return key.split(".")[0] in ("errors", "rings", "splines") or "backlash" in key
+
+
+def run(count: int, seed: int, say: Callable[[str], None] = print) -> list[Verdict]:
+    """Compare that many derivatives; both sides of an input are one."""
+    rng = np.random.default_rng([seed, 1])
+    verdicts: list[Verdict] = []
+    inputs = 0
+    for name, case, position in problems(seed):
+        usable = inputs_of(case, None)
+        chosen = [usable[int(k)] for k in rng.permutation(len(usable))[:KEYS]]
+        for item in chosen:
+            try:
+                found = ls.sensitivity(case, [item.key], positions=[position])
+            except ls.Refused:
+                break
+            except ls.CaseError:
+                continue
+            except Exception as fault:  # noqa: BLE001 -- counted, and told
+                say(f"{name}, position {position}, {item.key}: {fault!r}")
+                verdicts += [Verdict("exception")]
+                continue
+            inputs += 1
+            for side in SIDES:
+                verdict = judged(case, found, item, position, side)
+                verdicts.append(verdict)
+                if verdict.outcome not in ("agrees", "undefined"):
+                    say(f"{name}, position {position}, {item.key} {side}: {verdict}")
+        if inputs >= count:
+            return verdicts
+    return verdicts
+
+
+def main() -> None:
+    """Run it, and print what was found."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("--count", type=int, default=2000, help="inputs to differentiate by")
+    parser.add_argument("--seed", type=int, default=1)
+    given = parser.parse_args()
+    begun = time.perf_counter()
+    verdicts = run(given.count, given.seed)
+    print(f"{len(verdicts)} one-sided derivatives in {time.perf_counter() - begun:.0f} s")
+    for outcome, number in Counter(v.outcome for v in verdicts).most_common():
+        print(f"{outcome:10} {number}")
+    agreed = [v for v in verdicts if v.outcome == "agrees"]
+    for name in ("stated", "known", "excess"):
+        figures = np.array([getattr(v, name) for v in agreed])
+        figures = figures[np.isfinite(figures)]
+        if len(figures):
+            median, high = np.quantile(figures, [0.5, 0.99])
+            print(f"{name:10} median {median:.1e}, 99 % below {high:.1e}")
+
+
+if __name__ == "__main__":
+    main()

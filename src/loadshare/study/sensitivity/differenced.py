@@ -1,0 +1,106 @@
+"""One-sided differences of certified solves, where no active set could be proved.
+
+The difference over a step, a quarter of it, and so on converges as the step or as its square root
+(a law that is soft at first). Two neighbours give the limit and tell what is left.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loadshare.errors import CaseError, Refused
+from loadshare.scene.scene import Array
+from loadshare.study.sensitivity.variation import Variation, torques_of
+from loadshare.train import Train
+from loadshare.train.equilibrium import Equilibrium
+
+FIRST = 1e-4
+"""First step, relative to the input's value or to the step that differencing takes."""
+STEPS = 6
+"""Steps that are tried, each a quarter of the one before."""
+SOLVED = 1e-12
+"""What a certified solve leaves open of the largest force and displacement."""
+SAFE = 3.0
+"""Error over the distance of two neighbouring limits."""
+
+Figures = dict[str, tuple[float, float]]
+Moves = dict[str, tuple[Array, Array]]
+
+
+class NoDifference(RuntimeError):  # noqa: N818 -- a finding, not a fault
+    """There is no certified equilibrium to a side; the message says why."""
+
+
+def differenced(
+    here: Equilibrium, varied: Variation, sign: float, step: float | None
+) -> tuple[Figures, Moves]:
+    """Return the derivatives of torques and displacements to one side, and their errors.
+
+    Parameters
+    ----------
+    here : Equilibrium
+        At the value itself.
+    varied : Variation
+    sign : float
+    step : float or None
+        Step [SI] that the input can take for certain.
+
+    Raises
+    ------
+    NoDifference
+        If there is no certified equilibrium to that side, however near.
+    """
+    train = varied.scene(0.0).train
+    start = _laid(train, here)
+    first = 4.0 * step if step is not None else FIRST * (abs(varied.value.si) or 1e-3)
+    slopes: list[tuple[Array, Array]] = []
+    why = ""
+    for k in range(STEPS):
+        amount = first * 0.25**k
+        try:
+            there = _laid(varied.scene(sign * amount).train, varied.answer(sign * amount))
+        except (Refused, CaseError, ValueError) as error:
+            why = str(error)
+            slopes.clear()
+            continue
+        noise = SOLVED * np.maximum(_sizes(start), _sizes(there)) / amount
+        slopes.append(((there - start) * sign / amount, noise))
+    if len(slopes) < 3:
+        raise NoDifference(why or "its equilibrium cannot be told from steps that near")
+    best, error = _limit(slopes)
+    count = len(train.meshes)
+    torque = {
+        m: (float(best[k]), float(error[k])) for k, m in enumerate(train.meshes)
+    }
+    moves = {
+        g: (best[count + 2 * k : count + 2 * k + 2], error[count + 2 * k : count + 2 * k + 2])
+        for k, g in enumerate(train.gears)
+    }
+    return torque, moves
+
+
+def _limit(slopes: list[tuple[Array, Array]]) -> tuple[Array, Array]:
+    """Extrapolate every pair of neighbours; take, figure by figure, the least error."""
+    limits = [
+        ((4.0 * near - far) / 3.0, (4.0 * noise + coarse) / 3.0)
+        for (far, coarse), (near, noise) in zip(slopes[:-1], slopes[1:], strict=True)
+    ]
+    best, error = np.zeros(0), np.zeros(0)
+    for (before, _), (value, noise) in zip(limits[:-1], limits[1:], strict=True):
+        bound = SAFE * np.abs(value - before) + noise
+        if not len(best):
+            best, error = value, bound
+            continue
+        better = bound < error
+        best, error = np.where(better, value, best), np.where(better, bound, error)
+    return best, error
+
+
+def _laid(train: Train, found: Equilibrium) -> Array:
+    """Torques, then displacements in every gear's frame, side by side."""
+    moved = [gear.frame @ found.displacement[name] for name, gear in train.gears.items()]
+    return np.concatenate([list(torques_of(train, found).values()), *moved])
+
+
+def _sizes(laid: Array) -> Array:
+    return np.full(len(laid), float(np.abs(laid).max(initial=0.0)))
