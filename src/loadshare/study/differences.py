@@ -34,10 +34,8 @@ LEAST = {
     "rad/(N*m)^(2/3)": 1e-11,
 }
 """Least step of every kind of input, in its SI unit: for inputs that are zero."""
-SHORTER = (1.0, 1.0 / 16.0, 1.0 / 256.0, 1.0 / 4096.0)
+SHORTER = (1.0, 1.0 / 16.0, 1.0 / 256.0)
 """Shares of the step that are tried until the input may take it."""
-NEARER = 1.0 / 16.0
-"""Share at which an input that can go to neither side is given up."""
 OTHER = (1.0 / 16.0, 1.0 / 256.0, 16.0)
 """Steps, over the usual one, that are tried where it leaves a large error."""
 CLOSE = 1e-8
@@ -152,19 +150,17 @@ def _differentiated(
                 sides[sign] = {k: of(value.number + sign * k * h) for k in (1, 2, 4)}, h
             except (CaseError, ValueError, BranchLost) as error:
                 sides.setdefault(sign, error)
-        # What can go to neither side now, bound by another input, is not taken nearer and nearer.
-        if share <= NEARER and not any(isinstance(side, tuple) for side in sides.values()):
-            break
     below, above = sides[-1], sides[1]
-    if isinstance(below, Exception) and isinstance(above, Exception):
+    if isinstance(below, CaseError) and isinstance(above, CaseError):
         raise above
-    steps = [s[1] for s in (below, above) if not isinstance(s, Exception)]
+    steps = [s[1] for s in (below, above) if not isinstance(s, Exception)] or [usual]
     to_si = value.factor
     low = _forward(here, below, -1.0, value, rounding)
     high = _forward(here, above, 1.0, value, rounding)
     if isinstance(low, Exception) or isinstance(high, Exception):
         return Derivative(low, high, True, min(steps) * to_si)
-    assert not isinstance(below, Exception) and not isinstance(above, Exception)
+    assert not isinstance(below, Exception)
+    assert not isinstance(above, Exception)
     if below[1] == above[1]:
         both = _central(below[0], above[0], below[1], value, rounding)
     else:

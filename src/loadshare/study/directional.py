@@ -21,7 +21,7 @@ from typing import Protocol
 import numpy as np
 
 from loadshare.errors import CaseError, Refused
-from loadshare.scene.scene import Array, Scene
+from loadshare.scene.scene import ArcRow, Array, Row, Scene
 from loadshare.study.branch import Branch, Units
 from loadshare.study.branch.gauges import LOOSE, Gauge
 from loadshare.study.branch.system import BranchLost, identified
@@ -270,7 +270,9 @@ class Neighbourhood:
         along = []
         try:
             for k in (1.0, 2.0):
-                there = Branch(varied.scene(k * sign * step), branch.active, self.units, branch.tied)
+                there = Branch(
+                    varied.scene(k * sign * step), branch.active, self.units, branch.tied
+                )
                 along.append(_by_key(there.gauges(z + k * sign * step * rate, nothing)))
         except _NOTHING:
             return False
@@ -333,10 +335,8 @@ class Neighbourhood:
         """Closed contacts that carry nothing at the value itself under a law soft at first."""
         assert self.own is not None
         new = branch.active.closed - self.own.branch.active.closed
-        rows = (*branch.scene.rows, *branch.scene.arcs)
-        return frozenset(
-            r.name for r in rows if r.name in new and np.isinf(r.law.tangent(0.0)[0])
-        )
+        rows: tuple[Row | ArcRow, ...] = (*branch.scene.rows, *branch.scene.arcs)
+        return frozenset(r.name for r in rows if r.name in new and np.isinf(r.law.tangent(0.0)[0]))
 
     def _back(
         self, branch: Branch, z: Array, tied: frozenset[str], amount: float, varied: Varied
@@ -370,7 +370,5 @@ def _has_room(rows: list[tuple[Array, float]]) -> bool:
     # Room over the largest one: the free moves are as large as the gaps demand.
     scale = float(np.abs(room).max()) or 1.0
     count = matrix.shape[1]
-    found = linprog(
-        np.zeros(count), A_ub=matrix, b_ub=room / scale, bounds=[(None, None)] * count
-    )
+    found = linprog(np.zeros(count), A_ub=matrix, b_ub=room / scale, bounds=[(None, None)] * count)
     return bool(found.status == 0)

@@ -134,7 +134,9 @@ def sensitivity_dataset(found: Sensitivity) -> xr.Dataset:
     def rates(position: int, key: str, side: str, name: str) -> dict[str, Any]:
         here = found.rates[position, key, side]
         of_error = name.endswith("_error")
-        chosen: dict[str, Any] = getattr(here.error if of_error else here, name[:-6] if of_error else name)
+        chosen: dict[str, Any] = getattr(
+            here.error if of_error else here, name[:-6] if of_error else name
+        )
         return chosen
 
     def over(name: str, labels: list[str]) -> np.ndarray:

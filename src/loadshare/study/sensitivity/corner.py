@@ -17,7 +17,6 @@ from loadshare.study.sensitivity.differenced import NoDifference, differenced
 from loadshare.study.sensitivity.result import SIDES, Rates, Remark
 from loadshare.study.sensitivity.variation import Variation, torque_gradients, torques_of
 from loadshare.train import Train
-from loadshare.train.equilibrium import Equilibrium
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,9 +94,7 @@ class Corner:
             found[side] = both or made
         return found
 
-    def _side(
-        self, varied: Variation, sign: float, key: str, side: str
-    ) -> tuple[Rates, bool]:
+    def _side(self, varied: Variation, sign: float, key: str, side: str) -> tuple[Rates, bool]:
         """Return the derivatives to one side, and whether they are those to the other as well."""
         place = self.neighbourhood.own
         step, kinked = None, True
@@ -105,7 +102,7 @@ class Corner:
             change = varied.change(place.branch, place.z)
             step, kinked = change.step, change.kinked
             slope = change.to(sign)
-            if isinstance(slope, Exception):
+            if isinstance(slope, CaseError):
                 self._remark(key, side, f"cannot be {_word(side)}: {_told(slope)}")
                 return self._nothing(), False
             passing = varied.steps(sign, step)
@@ -146,9 +143,7 @@ class Corner:
         direct, direct_error = motion.change.value[size:], motion.change.error[size:]
 
         def bound(weights: Array) -> Array:
-            return np.asarray(
-                motion.bound(weights @ gradients) + np.abs(weights) @ direct_error
-            )
+            return np.asarray(motion.bound(weights @ gradients) + np.abs(weights) @ direct_error)
 
         loose, length = self._loose, branch.units.length
         moved = {g: np.zeros(2) for g in self.train.gears}
@@ -201,9 +196,7 @@ class Corner:
                 continue
             weights = np.zeros((len(group), len(order)))
             for row, m in zip(weights, group, strict=True):
-                row[[order.index(other) for other in group]] -= (
-                    self.torque[m] / mean / len(group)
-                )
+                row[[order.index(other) for other in group]] -= self.torque[m] / mean / len(group)
                 row[order.index(m)] += 1.0
             yield group, weights / mean
 
@@ -211,9 +204,7 @@ class Corner:
     def _loose(self) -> dict[str, Array]:
         """Which components of each gear's displacement the equilibrium leaves undetermined."""
         free = set(self._answer.undetermined)
-        loose = {
-            g: np.array([f"gear {g} {c}" in free for c in "xy"]) for g in self.train.gears
-        }
+        loose = {g: np.array([f"gear {g} {c}" in free for c in "xy"]) for g in self.train.gears}
         place = self.neighbourhood.own
         if place is not None:
             moves = np.abs(place.tangent.loose).max(axis=1, initial=0.0) > LOOSE

@@ -6,6 +6,8 @@ The difference over a step, a quarter of it, and so on converges as the step or 
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from loadshare.errors import CaseError, Refused
@@ -59,8 +61,8 @@ def differenced(
         amount = first * 0.25**k
         try:
             there = _laid(varied.scene(sign * amount).train, varied.answer(sign * amount))
-        except (Refused, CaseError, ValueError) as error:
-            why = str(error)
+        except (Refused, CaseError, ValueError) as fault:
+            why = str(fault)
             slopes.clear()
             continue
         noise = SOLVED * np.maximum(_sizes(start), _sizes(there)) / amount
@@ -69,9 +71,7 @@ def differenced(
         raise NoDifference(why or "its equilibrium cannot be told from steps that near")
     best, error = _limit(slopes)
     count = len(train.meshes)
-    torque = {
-        m: (float(best[k]), float(error[k])) for k, m in enumerate(train.meshes)
-    }
+    torque = {m: (float(best[k]), float(error[k])) for k, m in enumerate(train.meshes)}
     moves = {
         g: (best[count + 2 * k : count + 2 * k + 2], error[count + 2 * k : count + 2 * k + 2])
         for k, g in enumerate(train.gears)
@@ -83,10 +83,10 @@ def _limit(slopes: list[tuple[Array, Array]]) -> tuple[Array, Array]:
     """Extrapolate every pair of neighbours; take, figure by figure, the least error."""
     limits = [
         ((4.0 * near - far) / 3.0, (4.0 * noise + coarse) / 3.0)
-        for (far, coarse), (near, noise) in zip(slopes[:-1], slopes[1:], strict=True)
+        for (far, coarse), (near, noise) in pairwise(slopes)
     ]
     best, error = np.zeros(0), np.zeros(0)
-    for (before, _), (value, noise) in zip(limits[:-1], limits[1:], strict=True):
+    for (before, _), (value, noise) in pairwise(limits):
         bound = SAFE * np.abs(value - before) + noise
         if not len(best):
             best, error = value, bound

@@ -124,9 +124,7 @@ def sensitivity(
     )
 
 
-def _error(
-    rates: dict[tuple[int, str, str], Rates], key: str, positions: Sequence[int]
-) -> float:
+def _error(rates: dict[tuple[int, str, str], Rates], key: str, positions: Sequence[int]) -> float:
     """Largest stated error of a torque's derivative."""
     errors = [rates[position, key, side].error for position in positions for side in SIDES]
     stated = [v for e in errors if e is not None for v in e.torque.values()]

@@ -16,6 +16,7 @@ from loadshare.scene import assemble
 from loadshare.scene.scene import Array, Scene
 from loadshare.study.answers import certified
 from loadshare.study.branch import ActiveSet, Branch
+from loadshare.study.branch.system import BranchLost
 from loadshare.study.differences import Derivative, differentiate
 from loadshare.study.parameter import Value
 from loadshare.train import Train
@@ -78,6 +79,8 @@ class Variation:
 
             def of(number: float) -> Array:
                 there = Branch(self._scene(number), branch.active, branch.units, branch.tied)
+                if there.size != branch.size:
+                    raise BranchLost("a limit without play is another element than one with some")
                 return np.concatenate([there.residual(z), torques(there, z)])
 
             rounding = np.concatenate([branch.rounding(z), torque_rounding(branch, z)])
@@ -100,9 +103,7 @@ def held(train: Train, cycle: Mapping[str, int]) -> Train:
     return replace(
         train,
         meshes={
-            name: replace(
-                mesh, laws=(mesh.law(cycle[name]),), gaps=(mesh.gap(cycle[name], True),)
-            )
+            name: replace(mesh, laws=(mesh.law(cycle[name]),), gaps=(mesh.gap(cycle[name], True),))
             for name, mesh in train.meshes.items()
         },
     )
