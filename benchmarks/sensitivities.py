@@ -160,8 +160,7 @@ def figures(train: Train, position: int, fine: bool) -> Array:
         moved = [exact.displacement.get(g, np.zeros(2)) for g in train.gears]
         return np.concatenate([list(exact.torque.values()), *moved])
     torque = [
-        m.radii[0]
-        * sum((1.0 if d else -1.0) * found.flank_force[m.flank_name(d)] for d in m.flanks)
+        sum(m.lever(d) * found.flank_force[m.flank_name(d)] for d in m.flanks)
         for m in train.meshes.values()
     ]
     moved = [g.frame @ found.displacement[n] for n, g in train.gears.items()]

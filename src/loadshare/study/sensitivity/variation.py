@@ -110,12 +110,11 @@ def held(train: Train, cycle: Mapping[str, int]) -> Train:
 
 
 def torques(branch: Branch, z: Array) -> Array:
-    """Torque on the driver of every mesh, drive flank less coast flank [N·m]."""
+    """Torque of every mesh, drive flank less coast flank, as results tell it [N·m]."""
     contacts = branch.contacts(z)
     return np.array(
         [
-            mesh.radii[0]
-            * sum((1.0 if d else -1.0) * contacts[mesh.flank_name(d)][0] for d in mesh.flanks)
+            sum(mesh.lever(d) * contacts[mesh.flank_name(d)][0] for d in mesh.flanks)
             for mesh in branch.scene.train.meshes.values()
         ]
     )
@@ -127,7 +126,7 @@ def torque_gradients(branch: Branch, z: Array) -> Array:
     found = np.zeros((len(branch.scene.train.meshes), branch.size))
     for row, mesh in zip(found, branch.scene.train.meshes.values(), strict=True):
         for drive in mesh.flanks:
-            row += (1.0 if drive else -1.0) * mesh.radii[0] * contacts[mesh.flank_name(drive)][1]
+            row += mesh.lever(drive) * contacts[mesh.flank_name(drive)][1]
     return found
 
 
@@ -139,9 +138,8 @@ def torque_rounding(branch: Branch, z: Array) -> Array:
 
 
 def torques_of(train: Train, found: Equilibrium) -> dict[str, float]:
-    """Torque on the driver of every mesh of an equilibrium, drive less coast flank [N·m]."""
+    """Torque of every mesh of an equilibrium, drive flank less coast flank [N·m]."""
     return {
-        name: mesh.radii[0]
-        * sum((1.0 if d else -1.0) * found.flank_force[mesh.flank_name(d)] for d in mesh.flanks)
+        name: sum(mesh.lever(d) * found.flank_force[mesh.flank_name(d)] for d in mesh.flanks)
         for name, mesh in train.meshes.items()
     }
