@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from loadshare.case import Case
 from loadshare.certify import Certificate
+from loadshare.certify.uniqueness import uniqueness
 from loadshare.certify.validity import validity
 from loadshare.results.claim import Claim
 from loadshare.results.result import Effort, Position, Result, Stamp
@@ -52,6 +53,7 @@ def position_of(
         floats=certificate.floats,
         certificate=certificate,
         validity=validity(train, claim.equilibrium(index, undetermined), certificate.deflection),
+        uniqueness=uniqueness(claim.train(train), claim.equilibrium(index, undetermined)),
         undetermined=undetermined,
         effort=effort,
         claim=claim,

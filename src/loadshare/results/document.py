@@ -46,6 +46,7 @@ def _told(p: Position) -> dict[str, Any]:
     """Every field of a position; those of its certificate stand beside one another."""
     told = {f.name: plain(getattr(p, f.name)) for f in fields(p) if f.name != "certificate"}
     told["validity"] = {"verdict": p.validity.verdict} | plain(p.validity)
+    told["uniqueness"] = plain(p.uniqueness) | {"told": p.uniqueness.told}
     return told | _judged(p.certificate)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -9,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from loadshare.certify import Certificate, FloatState
+from loadshare.certify.uniqueness import TOLD, Uniqueness
 from loadshare.certify.validity import ALIKE, Measure, Validity
 from loadshare.results.claim import Claim, Pair
 from loadshare.train.equilibrium import Equilibrium
@@ -100,6 +102,8 @@ class Position:
     certificate : Certificate
     validity : Validity
         Whether displacements are small enough for the geometry in which they were found.
+    uniqueness : Uniqueness
+        Whether it is proved to be the only answer.
     undetermined : mapping of coordinate to (float, float)
         What the forces leave open, as "gear 4 x" [m] or "gear 4 rotation" [rad]: the least and the
         largest value that it may take, infinite without a limit. Rotation and displacement are
@@ -119,6 +123,7 @@ class Position:
     floats: Mapping[str, FloatState]
     certificate: Certificate
     validity: Validity
+    uniqueness: Uniqueness
     undetermined: Mapping[str, Pair]
     effort: Effort
     claim: Claim
@@ -177,6 +182,15 @@ class Result:
         largest = {n: max(m.value for m, _ in every) * (1.0 - ALIKE) for n, every in found.items()}
         return tuple(
             (n, *next(f for f in every if f[0].value >= largest[n])) for n, every in found.items()
+        )
+
+    @property
+    def uniqueness(self) -> Uniqueness:
+        """The weakest of the positions' verdicts, whether the answer is the only one."""
+        order = list(TOLD)
+        return max(
+            (p.uniqueness for p in self.positions),
+            key=lambda u: (order.index(u.kind), math.inf if u.curvature is None else u.curvature),
         )
 
     @property

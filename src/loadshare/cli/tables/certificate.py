@@ -37,6 +37,8 @@ def print_certificate(console: Console, result: Result, wanted: int) -> None:
         made.add_row(name.replace("_", " "), *shown, where, *((at,) if many else ()))
     show(console, "Certificate: the worst residuals", made)
     console.print(_verdict(result, wanted))
+    told = result.uniqueness.told
+    console.print(f"{told[0].upper()}{told[1:]}.")
 
 
 def _verdict(result: Result, wanted: int) -> Text:

@@ -173,7 +173,8 @@ def certificate_table(result: Result) -> Table:
         rows,
         [
             "Recomputed from the answer and the physics alone; a scaled residual is a part of the "
-            f"case's load or deflection. Allowed: {result.stamp.tolerance:.0e}."
+            f"case's load or deflection. Allowed: {result.stamp.tolerance:.0e}.",
+            f"{result.uniqueness.told[0].upper()}{result.uniqueness.told[1:]}.",
         ],
     )
 

@@ -1,0 +1,148 @@
+"""Whether an answer is the only one: closed forms in which the verdict must flip, and energies.
+
+A disc stands between two arcs at distances a_1 and a_2 that squeeze it with F each, held sideways
+by a spring k alone. Rolling off sideways by y gains F y²/2 (1/a_1 + 1/a_2) and costs k y²/2: the
+place between them is a minimum below F* = k/(1/a_1 + 1/a_2), and a saddle above.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.support import potential, shipped
+
+import loadshare as ls
+from loadshare.certify.uniqueness import uniqueness
+from loadshare.train import build_train
+from loadshare.train.equilibrium import Equilibrium
+
+A1, A2 = 0.16, 0.25
+SPRING, WALL = 2.0e6, 1.0e10
+CRITICAL = SPRING / (1.0 / A1 + 1.0 / A2)
+
+
+def squeezed(force: float) -> tuple[object, Equilibrium]:
+    """A disc without tooth load, its neighbours shifted against it until the arcs bear `force`."""
+    shift = force / WALL
+    gears = {
+        "p": {"base_radius": "0.05 m", "centre": ["0 m", "0 m"],
+              "support": ["1e3 N/m", f"{SPRING} N/m"]},
+        "1": {"base_radius": "0.1 m", "centre": [f"{-A1} m", "0 m"]},
+        "2": {"base_radius": "0.18 m", "centre": [f"{A2} m", "0 m"]},
+    }  # fmt: skip
+    case = ls.Case(
+        {
+            "gears": gears,
+            "meshes": {
+                m: {"pressure_angle": f"{math.acos(r / a)!r} rad", "stiffness": "1e6 N*m/rad"}
+                for m, r, a in (("p-1", 0.15, A1), ("2-p", 0.23, A2))
+            },
+            "rings": {
+                "p": {
+                    "neighbours": ["1", "2"],
+                    "clearance": "0 m",
+                    "float": "1 mm",
+                    "stiffness": f"{WALL} N/m",
+                    "measured": "nominal",
+                }
+            },
+            "errors": {
+                "1": {"installation": [f"{shift!r} m", "0 m"]},
+                "2": {"installation": [f"{-shift!r} m", "0 m"]},
+            },
+            "operating": {
+                "input": "2", "output": "1", "running": "counter-clockwise", "torque": "0 N*m"
+            },
+        }
+    )  # fmt: skip
+    train = build_train(case)
+    (ring,) = train.drums
+    forces = dict.fromkeys(ring.stop_names, 0.0) | {ring.arc_name(n): force for n in "12"}
+    answer = Equilibrium(
+        index=1,
+        rotation=dict.fromkeys(train.gears, 0.0),
+        displacement={g: np.zeros(3) for g in train.gears},
+        flank_force=dict.fromkeys(("p-1", "2-p"), 0.0),
+        ring_force=forces,
+        radial_reaction={},
+    )
+    return train, answer
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 0.99, 0.999, 1.001, 1.01, 3.0])
+def test_a_disc_between_two_arcs_flips_at_the_critical_squeeze(share):
+    """The curvature is F/F*, whatever the distances; and the exact energy agrees with the verdict.
+
+    The wall gives by F/WALL, so that the centres stand nearer than a by that.
+    """
+    force = share * CRITICAL
+    train, answer = squeezed(force)
+    given = force / WALL
+    found = uniqueness(train, answer)
+    exact = force * (1.0 / (A1 - given) + 1.0 / (A2 - given)) / SPRING
+    assert found.curvature == pytest.approx(exact, rel=1e-9)
+    assert found.curvature == pytest.approx(share, rel=3.0 * given / A1 + 1e-9)
+    assert found.kind == ("local" if exact < 1.0 else "not proved")
+    # Sideways along y; the neighbours' rotations make the flanks open, and x follows by symmetry.
+    ring = train.drums[0]
+    for y in (3e-6, 1e-5):
+        moved = replace(answer, displacement=answer.displacement | {"p": y * ring.across})
+        work = _sideways(train, moved, answer)
+        assert np.sign(work) == np.sign(1.0 - exact), (y, work)
+
+
+def _sideways(train, moved, answer) -> float:
+    """Energy of springs and walls [J] that a move costs, flanks left out."""
+    without = {m: replace(mesh, gaps=(1.0,)) for m, mesh in train.meshes.items()}
+    bare = replace(train, meshes=without)
+    return potential(bare, moved) - potential(bare, answer)
+
+
+def test_what_is_convex_is_said_to_be():
+    base = ls.solve(shipped("fgfbstts/full_float"), positions=[1])
+    assert base.uniqueness.kind == "convex"
+    assert base.uniqueness.told == "only answer: the problem is convex"
+
+
+def test_an_arc_that_does_not_carry_leaves_the_least_energy():
+    result = ls.solve(shipped("fgfbstts/limit_ring").replace({
+        "rings.4.clearance": "1 mm", "rings.5.clearance": "1 mm",
+        "rings.4.float": "1 mm", "rings.5.float": "1 mm",
+    }), positions=[1])  # fmt: skip
+    assert result.uniqueness.kind == "least energy"
+
+
+def test_a_float_on_an_elastic_ring_is_unique_and_the_energy_says_so():
+    """Random moves around the answer of an elastic ring cost energy; the claim stands in JSON."""
+    case = shipped("fgfbstts/limit_ring").replace(
+        {"rings.4.stiffness": "1e9 N/m", "rings.5.stiffness": "1e9 N/m"}
+    )
+    result = ls.solve(case, positions=[1])
+    (position,) = result.positions
+    assert position.uniqueness.kind == "local"
+    assert 0.0 < position.uniqueness.curvature < 1e-3
+    assert "arc" in position.uniqueness.where
+    train, answer = build_train(case), position.equilibrium
+    rest = potential(train, answer)
+    rng = np.random.default_rng(5)
+    floats = [r.gear for r in train.drums]
+    for size in (1e-6, 1e-5, 1e-4):
+        for _ in range(20):
+            moved = {
+                g: answer.displacement[g] + size * rng.normal(size=2) @ train.gears[g].frame
+                for g in floats
+            }
+            there = replace(answer, displacement=dict(answer.displacement) | moved)
+            assert potential(train, there) > rest
+    told = result.to_dict()["positions"][0]["uniqueness"]
+    assert told["kind"] == "local"
+    assert told["curvature"] == position.uniqueness.curvature
+
+
+def test_friction_that_follows_the_torque_is_no_convex_problem():
+    case = shipped("fgfbstts/all_elements")
+    result = ls.solve(case, positions=[1])
+    assert result.uniqueness.kind == "local"
+    assert "spline 5" in result.uniqueness.where
+    assert math.isfinite(result.uniqueness.curvature)
