@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from loadshare.case.schema import case_schema
     from loadshare.job import explain, solve
     from loadshare.job.many import solve_many
+    from loadshare.job.search import search
     from loadshare.results import Result, load_result
     from loadshare.study.compare import compare
     from loadshare.study.critical import critical
@@ -42,6 +43,7 @@ _LAZY = {
     "load_result": "loadshare.results",
     "march": "loadshare.study.march",
     "run_study": "loadshare.study.named",
+    "search": "loadshare.job.search",
     "sensitivity": "loadshare.study.sensitivity",
     "solve": "loadshare.job",
     "solve_many": "loadshare.job.many",
@@ -67,6 +69,7 @@ __all__ = [
     "load_result",
     "march",
     "run_study",
+    "search",
     "sensitivity",
     "solve",
     "solve_many",

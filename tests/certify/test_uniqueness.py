@@ -10,11 +10,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.support import potential, shipped
+from tests.support import loaded, potential, shipped
 
 import loadshare as ls
 from loadshare.certify.uniqueness import uniqueness
-from loadshare.train import build_train
+from loadshare.job.search import search
+from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium
 
 A1, A2 = 0.16, 0.25
@@ -22,7 +23,7 @@ SPRING, WALL = 2.0e6, 1.0e10
 CRITICAL = SPRING / (1.0 / A1 + 1.0 / A2)
 
 
-def squeezed(force: float) -> tuple[object, Equilibrium]:
+def squeezed_case(force: float) -> ls.Case:
     """A disc without tooth load, its neighbours shifted against it until the arcs bear `force`."""
     shift = force / WALL
     gears = {
@@ -31,7 +32,7 @@ def squeezed(force: float) -> tuple[object, Equilibrium]:
         "1": {"base_radius": "0.1 m", "centre": [f"{-A1} m", "0 m"]},
         "2": {"base_radius": "0.18 m", "centre": [f"{A2} m", "0 m"]},
     }  # fmt: skip
-    case = ls.Case(
+    return ls.Case(
         {
             "gears": gears,
             "meshes": {
@@ -52,11 +53,17 @@ def squeezed(force: float) -> tuple[object, Equilibrium]:
                 "2": {"installation": [f"{-shift!r} m", "0 m"]},
             },
             "operating": {
-                "input": "2", "output": "1", "running": "counter-clockwise", "torque": "0 N*m"
+                "input": "2", "output": "1", "running": "counter-clockwise", "torque": "0 N*m",
+                # Borne by the held output: it only says what force counts as large.
+                "external": {"1": "1e5 N*m"},
             },
         }
     )  # fmt: skip
-    train = build_train(case)
+
+
+def squeezed(force: float) -> tuple[Train, Equilibrium]:
+    """The place between the arcs, which is an equilibrium whatever the squeeze."""
+    train = build_train(squeezed_case(force))
     (ring,) = train.drums
     forces = dict.fromkeys(ring.stop_names, 0.0) | {ring.arc_name(n): force for n in "12"}
     answer = Equilibrium(
@@ -146,3 +153,39 @@ def test_friction_that_follows_the_torque_is_no_convex_problem():
     assert result.uniqueness.kind == "local"
     assert "spline 5" in result.uniqueness.where
     assert math.isfinite(result.uniqueness.curvature)
+
+
+def test_many_answers_say_what_single_ones_say():
+    """Convex where nothing carries; the arcs' part as Σ F/a of the ring where it is largest."""
+    case = shipped("fgfbstts/limit_ring")
+    clearances = {f"rings.{r}.clearance [mm]": [0.0, 1.0] for r in "45"}
+    floats = {"rings.4.float [um]": [8.24, 1e3], "rings.5.float [um]": [2.74, 1e3]}
+    found = ls.solve_many(case, clearances | floats, positions=[1])
+    assert found.convex.values[:, 0].tolist() == [False, True]
+    known = ls.explain(case, 1)
+    train, forces = known.train, known.equilibrium.ring_force
+    largest = max(
+        sum(
+            forces[r.arc_name(n)] / train.arc(r, side, train.situation(1)).distance
+            for side, n in enumerate(r.neighbours)
+        )
+        for r in train.drums
+    )
+    np.testing.assert_allclose(found.arc_curvature.values[:, 0], [largest, 0.0], rtol=1e-6)
+    following = loaded(shipped("fgfbstts/all_elements"), "3000 N*m")
+    many = ls.solve_many(following, {"operating.torque [N*m]": [3000.0]}, positions=[1, 2])
+    assert not many.convex.values.any()
+
+
+def test_a_search_finds_the_places_beside_a_saddle():
+    """Above the critical squeeze the disc rolls off to either stop, so there is another answer than
+    any one that is found; below it there is none.
+    """
+    beyond = search(squeezed_case(3.0 * CRITICAL))
+    places = [o.displacement["p"][1] for o in (beyond.answer.equilibrium, *beyond.others)]
+    assert len(beyond.others) >= 1
+    assert max(abs(y) for y in places) > 1e-4
+    assert "other answer" in beyond.told
+    below = search(squeezed_case(0.5 * CRITICAL))
+    assert below.others == ()
+    assert below.starts > 0

@@ -92,6 +92,7 @@ def test_shapes_labels_and_units():
 def test_only_what_is_kept(keep):
     found = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1], keep=keep)
     always = {"residual", "certified", "determined", "displaced", "rung"}
+    always |= {"convex", "arc_curvature"}
     assert set(found.data_vars) == {*keep, *always}
     whole = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1])
     for name in keep:

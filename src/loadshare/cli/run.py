@@ -41,6 +41,14 @@ def run(
             "--explain", help="Tell how each --position, or the first, was solved and certified."
         ),
     ] = False,
+    search: Annotated[
+        bool,
+        typer.Option(
+            "--search",
+            help="Search each --position, or the first, for other answers: random starts, and a "
+            "path from generous clearance.",
+        ),
+    ] = False,
     change: Annotated[
         list[str] | None,
         typer.Option(
@@ -83,6 +91,12 @@ def run(
         refusal, result = refused, refused.partial
     if result is not None:
         print_result(screen, result, len(wanted))
+    if search and result is not None:
+        from loadshare.job.search import search as searched
+
+        there = [p.position for p in result.positions]
+        for index in there if position else there[:1]:
+            screen.print(f"Position {index}: {searched(loaded, index).told}", soft_wrap=True)
     if explain:
         from loadshare.cli.tables.explanation import print_explanation
         from loadshare.job import explain as explained

@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from loadshare.case import Case, load_case
 from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify.many.nonconvex import arc_curvature, is_convex
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.errors import CaseError, Refused
 from loadshare.job.ladder import HOT, SEARCHED, climb
@@ -68,6 +69,10 @@ class Block:
         Whether the equilibrium determines every displacement.
     displaced : ndarray, shape (S, positions)
         How far displacements go to a warning (see `Measuring.worst`); NaN where there is no answer.
+    convex : ndarray of bool, shape (S, positions)
+        Whether nothing that is not convex carries, so that the answer is the only one.
+    arc_curvature : ndarray, shape (S, positions)
+        Stiffness that arcs take across them [N/m]; NaN where there is no answer.
     rung : ndarray of str, shape (S, positions)
         Rung of the ladder that answered; empty where none did.
     message : mapping of (row, position) to str
@@ -81,6 +86,8 @@ class Block:
     residual: Array
     determined: NDArray[np.bool_]
     displaced: Array
+    convex: NDArray[np.bool_]
+    arc_curvature: Array
     rung: NDArray[np.str_]
     message: Mapping[tuple[int, int], str]
 
@@ -200,10 +207,13 @@ def solve_many(
         Over (sample, position): ``torque`` [N·m] (drive less coast), ``share`` and ``pair_share``
         [-] over mesh; ``displacement`` [m] over gear and axis, for gears that can be displaced;
         ``contact_force`` [N] of ring contacts; ``residual``, ``certified``, ``determined``,
-        ``displaced`` and ``rung``. ``displaced`` tells how large displacements are for the geometry
-        in which they were found, over the bound of a warning; the attribute ``warned`` counts the
-        equilibria above 1. Samples without a certified answer, and those whose displacements are
-        refused, are NaN; their messages stand in the attribute ``refused``.
+        ``displaced``, ``convex``, ``arc_curvature`` and ``rung``. ``displaced`` tells how large
+        displacements are for the geometry in which they were found, over the bound of a warning;
+        the attribute ``warned`` counts the equilibria above 1. ``convex`` tells where nothing that
+        is not convex carries, so that the answer is the only one; elsewhere ``arc_curvature`` [N/m]
+        is what ring arcs take from the stiffness across them, to be compared as `solve` does.
+        Samples without a certified answer, and those whose displacements are refused, are NaN;
+        their messages stand in the attribute ``refused``.
 
     Raises
     ------
@@ -262,7 +272,7 @@ def _block(
     certified, determined = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
     residual = np.full(shape, np.nan)
     rung = np.full(shape, "", dtype="<U24")
-    deflection = np.full(shape, np.nan)
+    deflection, load = np.full((2, *shape), np.nan)
     message: dict[tuple[int, int], str] = {}
     every: list[Equilibria] = []
     stands: list[Situations] = []
@@ -280,6 +290,7 @@ def _block(
         rung[:, columns] = np.where(found.searched, SEARCHED, HOT).reshape(-1, count).T
         residual[:, columns] = found.verdicts.worst.reshape(-1, count).T
         deflection[:, columns] = found.verdicts.deflection.reshape(-1, count).T
+        load[:, columns] = found.verdicts.load.reshape(-1, count).T
         determined[:, columns] = found.determined.reshape(-1, count).T
         if least_norm:
             loose = np.flatnonzero(found.passed & ~found.determined).tolist()
@@ -298,6 +309,7 @@ def _block(
         certified[row, p], rung[row, p] = True, answer.rung
         residual[row, p] = answer.certificate.worst
         deflection[row, p] = answer.certificate.deflection
+        load[row, p] = answer.certificate.load
         determined[row, p] = not answer.equilibrium.undetermined
     displaced, refused = _displacements(machine, stands, every, deflection)
     for (row, p), why in refused.items():
@@ -305,8 +317,22 @@ def _block(
         certified[row, p], rung[row, p] = False, ""
         residual[row, p] = displaced[row, p] = np.nan
         every[p].forget(row)
+    curvature, convex = np.full(shape, np.nan), np.zeros(shape, dtype=bool)
+    for p, (here, answers) in enumerate(zip(stands, every, strict=True)):
+        curvature[:, p] = arc_curvature(machine.train, answers)
+        convex[:, p] = is_convex(machine.train, here, answers, load[:, p]) & certified[:, p]
     return Block(
-        rows, positions, tuple(every), certified, residual, determined, displaced, rung, message
+        rows,
+        positions,
+        tuple(every),
+        certified,
+        residual,
+        determined,
+        displaced,
+        convex,
+        curvature,
+        rung,
+        message,
     )
 
 

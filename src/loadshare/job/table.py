@@ -75,7 +75,8 @@ class Table:
         self.residual = np.full(shape, np.nan)
         self.certified = np.zeros(shape, dtype=bool)
         self.determined = np.zeros(shape, dtype=bool)
-        self.displaced = np.full(shape, np.nan)
+        self.displaced, self.arc_curvature = np.full((2, *shape), np.nan)
+        self.convex = np.zeros(shape, dtype=bool)
         self.rung = np.full(shape, "", dtype="<U24")
         self.message: dict[str, str] = {}
 
@@ -86,6 +87,8 @@ class Table:
         self.certified[rows] = block.certified
         self.determined[rows] = block.determined
         self.displaced[rows] = block.displaced
+        self.convex[rows] = block.convex
+        self.arc_curvature[rows] = block.arc_curvature
         self.rung[rows] = block.rung
         for (row, index), why in block.message.items():
             self.message[f"sample {row}, position {index}"] = why
@@ -142,6 +145,8 @@ class Table:
                 "certified": (every, self.certified),
                 "determined": (every, self.determined),
                 "displaced": (every, self.displaced),
+                "convex": (every, self.convex),
+                "arc_curvature": (every, self.arc_curvature, {"units": "N/m"}),
                 "rung": (every, self.rung),
             },
             coords={k: v for k, v in coords.items() if k in used},

@@ -1,0 +1,156 @@
+"""Search for other answers: many starts, and a path from generous clearance.
+
+A proof covers the neighbours of an answer (`certify.uniqueness`); this looks further, where ring
+arcs make a problem that is not convex. It is a search, not a proof: what it does not find may still
+be there, and the result says how far it went.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from loadshare.case import Case
+from loadshare.certify.certificate import TOLERANCE
+from loadshare.errors import Refused
+from loadshare.job.ladder import Answer, climb_all
+from loadshare.job.machine import Machine
+from loadshare.job.positions import prepared
+from loadshare.scene.data import data_of
+from loadshare.solver import Options
+from loadshare.solver.hot import vectorised
+from loadshare.solver.hot.answer import equilibria
+from loadshare.solver.hot.exchange import exchange, first_sets
+from loadshare.solver.hot.state import at_rest
+from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.ring import DrumRing
+from loadshare.train.situations import situation_of, stack
+from loadshare.train.train import Train
+
+STARTS = 64
+"""Starts: sets of contacts and places drawn at random."""
+STEPS = 12
+"""Steps of the path, each with half the extra clearance of the one before, and at last none."""
+GENEROUS = 100.0
+"""Extra clearance at which the path begins, in deflections of the case: no arc carries there."""
+SAME = 1e-6
+"""Largest difference of flank forces, in loads, of answers that are the same."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Search:
+    """What a search for other answers found at a position.
+
+    Attributes
+    ----------
+    answer : Answer
+        The one that is known.
+    starts : int
+        Starts that led to a certified equilibrium, of `STARTS`.
+    path : bool or None
+        Whether the path from generous clearance ends in the answer; None where it broke off.
+    others : tuple of Equilibrium
+        Certified equilibria with other forces, each once.
+    """
+
+    answer: Answer
+    starts: int
+    path: bool | None
+    others: tuple[Equilibrium, ...]
+
+    @property
+    def told(self) -> str:
+        """What was done and found, as a sentence."""
+        found = (
+            "no other answer"
+            if not self.others
+            else f"{len(self.others)} other answer{'s' if len(self.others) > 1 else ''}"
+        )
+        path = {True: "leads to the same", False: "leads elsewhere", None: "broke off"}[self.path]
+        return (
+            f"Search: {found} from {self.starts} of {STARTS} random starts that were certified; "
+            f"the path from generous clearance {path}."
+        )
+
+
+def search(case: Case | str | Path, position: int = 1, *, seed: int = 0) -> Search:
+    """Look for other answers of a position.
+
+    Parameters
+    ----------
+    case : Case or path
+    position : int
+        1-based.
+    seed : int
+        Of the random starts.
+
+    Raises
+    ------
+    CaseError, Refused
+        As :func:`loadshare.solve`.
+    """
+    _, machine = prepared(case)
+    (known,) = climb_all(machine, [position], Options(), TOLERANCE)
+    if isinstance(known, Refused):
+        raise known
+    others: list[Equilibrium] = []
+    certified = _starts(machine, position, np.random.default_rng(seed))
+    for found in certified:
+        if not any(_same(found, one, known) for one in (known.equilibrium, *others)):
+            others.append(found)
+    end = _path(machine.train, position, known.certificate.deflection)
+    path = None if end is None else _same(end, known.equilibrium, known)
+    if end is not None and not any(_same(end, o, known) for o in (known.equilibrium, *others)):
+        others.append(end)
+    return Search(known, len(certified), path, tuple(others))
+
+
+def _same(one: Equilibrium, other: Equilibrium, known: Answer) -> bool:
+    forces = (one.flank_force, one.ring_force), (other.flank_force, other.ring_force)
+    apart = [abs(a[name] - b[name]) for a, b in zip(*forces, strict=True) for name in a]
+    return max(apart, default=0.0) <= SAME * known.certificate.load
+
+
+def _starts(machine: Machine, position: int, rng: np.random.Generator) -> list[Equilibrium]:
+    """Certified equilibria from random sets of contacts and random places."""
+    elements = machine.elements
+    situations = stack([situation_of(machine.train, position)] * STARTS)
+    data = data_of(elements, situations)
+    state, code = at_rest(elements, data), first_sets(elements, data)
+    rows = elements.rows
+    code[:, :rows] = np.where(
+        rng.random((STARTS, rows)) < 0.5, rng.integers(0, 2, (STARTS, rows)), code[:, :rows]
+    )
+    scale = np.abs(data.nominal).max(initial=0.0)
+    # From a thousandth of a millionth of the rings' distance up to a tenth of it.
+    state.x[:] = rng.normal(size=state.x.shape) * scale * 10.0 ** -rng.uniform(1, 9, (STARTS, 1))
+    found = exchange(elements, data, state, vectorised.settle, code)
+    answers = equilibria(elements, state, False)
+    verdicts = machine.judge.judge(situations, answers, TOLERANCE)
+    good = np.flatnonzero(found.solved & verdicts.passed).tolist()
+    return [answers.one(row, position) for row in good]
+
+
+def _path(train: Train, position: int, deflection: float) -> Equilibrium | None:
+    """The answer at the end of a path on which clearances shrink to what they are."""
+    near: Machine | None = None
+    extra = [GENEROUS * deflection * 0.5**k for k in range(STEPS)] + [0.0]
+    found: Answer | Refused | None = None
+    for more in extra:
+        near = Machine(_widened(train, more), near=near)
+        (found,) = climb_all(near, [position], Options(), TOLERANCE)
+        if isinstance(found, Refused):
+            return None
+    return found.equilibrium if isinstance(found, Answer) else None
+
+
+def _widened(train: Train, more: float) -> Train:
+    rings = {
+        name: replace(r, clearances=(r.clearances[0] + more, r.clearances[1] + more))
+        if isinstance(r, DrumRing)
+        else r
+        for name, r in train.rings.items()
+    }
+    return replace(train, rings=rings)
