@@ -448,6 +448,10 @@ GIVEN: dict[str, tuple[str, ...]] = {
     "settings, each also a constant of the code": (
         r"^\| (?:line of action turned|approach neglected|mesh compression|arm of a ring).*$",
         r"1 % of either is about what mesh stiffnesses",
+        r"κ [<≥] 1\b",
+        r"some \$2/\\kappa - 1\$ times",
+        r"64 starts from random contacts",
+        r"a wedge of some 10⁻⁵ rad",
         r"height is 2\.25 modules",
         r"gear of 17 teeth",
         r"16 (?:independently|sequences|Sobol|per stretch)",
