@@ -246,17 +246,20 @@ def test_what_is_no_input_is_told(key, said):
         ls.sensitivity(shipped("fgfbstts/limit_ring"), key)
 
 
-def test_a_free_body_is_caught_where_it_falls():
+LAW = {"a": "0 rad", "b": "1e-6 rad/(N*m)", "c": "3e-6 rad/(N*m)^(2/3)"}
+
+
+@pytest.mark.parametrize("law", [None, LAW], ids=["springs", "soft at first"])
+def test_a_free_body_is_caught_where_it_falls(law):
     """A free input pinion between two wheels: an angle that loads it across its teeth lets it fall
-    through the backlash, on whichever coast flank is in that way.
+    through the backlash, on whichever coast flank is in that way. How soft that is does not matter.
     """
-    case = shipped("fgfbstts/base").replace(
-        {
-            "gears.1.support": "free",
-            'meshes."1-2".backlash': "150 um",
-            'meshes."1-3".backlash': "150 um",
-        }
-    )
+    changes: dict[str, object] = {"gears.1.support": "free"}
+    for mesh in ("1-2", "1-3"):
+        changes[f'meshes."{mesh}".backlash'] = "150 um"
+        if law:
+            changes |= {f'meshes."{mesh}".law': law, f'meshes."{mesh}".stiffness': None}
+    case = shipped("fgfbstts/base").replace(changes)
     key = 'meshes."1-3".pressure_angle'
     found = sensitivity(case, key, positions=[1])
     assert not disagreeing(verdicts(case, found))

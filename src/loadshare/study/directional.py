@@ -14,7 +14,7 @@ directional derivative of a complementarity problem.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
 
@@ -159,10 +159,20 @@ class Motion:
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A branch and its unknowns where it meets the value."""
+    """A branch and its unknowns where it meets the value.
+
+    Attributes
+    ----------
+    branch : Branch
+    z : ndarray
+    idle : frozenset of str
+        Open contacts on the verge that may close: under a law that is infinitely soft at first they
+        carry nothing, to first order.
+    """
 
     branch: Branch
     z: Array
+    idle: frozenset[str] = frozenset()
 
     @cached_property
     def tangent(self) -> Tangent:
@@ -252,7 +262,11 @@ class Neighbourhood:
     def _verge(point: Point) -> Gauges | None:
         """Gauges that stand on the verge, undetermined ones with them; None if one is violated."""
         nothing = np.zeros((point.branch.scene.size, 0))
-        gauges = _by_key(point.branch.gauges(point.z, nothing))
+        gauges = {
+            key: g
+            for key, g in _by_key(point.branch.gauges(point.z, nothing)).items()
+            if g.element not in point.idle
+        }
         if any(g.value < -10.0 * VERGE for g in gauges.values()):
             return None
         return {key: g for key, g in gauges.items() if g.value <= 10.0 * VERGE}
@@ -300,12 +314,12 @@ class Neighbourhood:
                 branch, z = identified(scene, varied.answer(amount), self.units)
             except _NOTHING:
                 continue
-            # Under a law that is soft at first a contact either carries nothing, to first order,
-            # or what nothing else can.
+            # Under a law that is infinitely soft at first a contact carries either nothing, to
+            # first order, or what nothing else can.
             soft = self._soft(branch)
-            for tied in (frozenset[str](), soft) if soft else (frozenset[str](),):
+            for tied in (False, True) if soft else (False,):
                 try:
-                    yield self._back(branch, z, tied, amount, varied)
+                    yield self._back(branch, z, soft, tied, amount, varied)
                 except _NOTHING:
                     continue
 
@@ -339,21 +353,29 @@ class Neighbourhood:
         return frozenset(r.name for r in rows if r.name in new and np.isinf(r.law.tangent(0.0)[0]))
 
     def _back(
-        self, branch: Branch, z: Array, tied: frozenset[str], amount: float, varied: Varied
+        self,
+        branch: Branch,
+        z: Array,
+        soft: frozenset[str],
+        tied: bool,
+        amount: float,
+        varied: Varied,
     ) -> Point:
         """Follow a set back to the value: three points on its branch, and Newton's method."""
-        active = branch.active
+        held = soft if tied else frozenset[str]()
+        active = replace(branch.active, closed=branch.active.closed - soft | held)
         forces = {n: f for n, (f, _) in branch.contacts(z).items()}
         pulls, x = branch.pulls(z), branch.x(z)
-        here = Branch(self._scene, active, self.units, tied)
+        here = Branch(self._scene, active, self.units, held)
         places = []
         for share in (1.0, 0.5, 0.25):
-            there = Branch(varied.scene(share * amount), active, self.units, tied)
+            there = Branch(varied.scene(share * amount), active, self.units, held)
             z = there.solve(there.start(x, forces, pulls))
             x = there.x(z)
             places.append(z)
         first, second, third = places
-        return Point(here, here.solve(first / 3.0 - 2.0 * second + 8.0 / 3.0 * third))
+        z = here.solve(first / 3.0 - 2.0 * second + 8.0 / 3.0 * third)
+        return Point(here, z, soft - held)
 
 
 def _by_key(gauges: list[Gauge]) -> Gauges:
