@@ -115,7 +115,7 @@ def test_critical(command, tmp_path):
     assert float(row.split()[0]) == pytest.approx(8.35, abs=0.01)
     assert "float leaves boundary" in row
     assert row.split()[-1] == "1-5"
-    assert "confirmed by certified solves on both sides" in result.stdout
+    assert "Proved between certified solves: there are no others." in result.stdout
     with file.open() as lines:
         events = list(csv.DictReader(lines))
     assert {e["position"] for e in events} == set("12345")

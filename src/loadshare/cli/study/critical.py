@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
     from loadshare.study.critical import Critical
 
+SHOWN = 5
+"""Intervals that are named one by one."""
+
 
 def critical(
     case: CaseFile,
@@ -49,10 +52,18 @@ def critical(
 
 
 def unconfirmed(found: Critical) -> list[str]:
-    """Return what is to be said of events that were not confirmed; nothing if all were."""
+    """Return what is to be said of what was not proved; nothing if all was."""
     count = sum(not event.confirmed for event in found.events)
-    told = "not confirmed by certified solves on both sides."
-    return [f"{counted(count, 'event')} of {len(found.events)} {told}"] if count else []
+    told = [f"{counted(count, 'event')} of {len(found.events)} not confirmed."] if count else []
+    named = sorted({(u.start, u.stop, u.why) for u in found.unproved})
+    unit = f" {found.parameter.unit}" if found.parameter.unit else ""
+    told += [
+        f"Not proved to hold no other event: {start:.12g} to {stop:.12g}{unit} ({why})."
+        for start, stop, why in named[:SHOWN]
+    ]
+    if len(named) > SHOWN:
+        told.append(f"{counted(len(named) - SHOWN, 'further interval')} not proved.")
+    return told
 
 
 def events_frame(found: Critical) -> pd.DataFrame:
@@ -91,7 +102,7 @@ def show_critical(screen: Console, found: Critical) -> None:
     title = f"Events from {found.start:g} to {found.stop:g}{unit}"
     if not alike:
         screen.print(f"\n{title}: none")
-        return
-    show(screen, title, made)
-    if not doubtful:
-        screen.print("Each is confirmed by certified solves on both sides.")
+    else:
+        show(screen, title, made)
+    if not doubtful and not found.unproved:
+        screen.print("Proved between certified solves: there are no others.")

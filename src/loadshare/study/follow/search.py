@@ -1,0 +1,517 @@
+"""Every change of the set along a parameter: stretches are proved, or halved until they are.
+
+A stretch between two certified points that stand on one set is proved to hold no event. One whose
+ends differ is cut at the value where a gauge of either end vanishes: its two parts are proved on
+their own sets, up to the event itself. Whatever is not proved is cut again, down to a width at
+which it is named. Nothing depends on where the range ends.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from scipy.optimize import linprog
+
+from loadshare.errors import Refused
+from loadshare.scene.data import data_of
+from loadshare.scene.scene import Array
+from loadshare.solver.hot import places as at
+from loadshare.study.follow.equations import Equations, Flags, Held, free_moves, scaling
+from loadshare.study.follow.line import Codes, Line, Numbers, Solved
+from loadshare.study.follow.proof import NODES, VERGE, Stretches
+from loadshare.train.situations import situation_of
+
+FIRST = 8
+"""Stretches at the beginning."""
+CUT = 0.4877
+"""Where a stretch is cut: no simple fraction, for those are where thresholds stand."""
+BESIDE = 0.05
+"""Distance from an event at which a stretch is cut, over its width."""
+LEAST = 1e-10
+"""Width of a stretch that is not cut any more, over the largest value."""
+MOST = 2000
+"""Stretches of a position; what is left then is named as not proved."""
+IDLE = 1e-11
+"""Force and compression, over load and deflection, at which a closed contact carries nothing."""
+UNREAD = "the active set of its equilibrium could not be told"
+"""Why a certified answer is no point."""
+SECTIONS = 9
+"""Values between two ends at which the gauges of one are looked at."""
+REFINED = 8
+"""Refinements of a zero; three are taken as a rule."""
+GRADE = 0.5
+"""Ratio of stretches that shrink towards an event."""
+RESOLVED = 1e-9
+"""Distance from an event that counts as the event itself, over its value."""
+FACETS = 24
+"""Sides of the polygon that stands for a round ring in which a body floats."""
+BINDS = 1e-6
+"""Room [deflections] left by the linear programme at which a limit binds."""
+ROOM = 1.0
+"""Room [deflections] around a floating body that is as good as any more."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Point:
+    """A certified point on a set.
+
+    Attributes
+    ----------
+    value : float
+    held : Held
+    z : ndarray
+    worst : float
+        Worst scaled residual of its certificate.
+    """
+
+    value: float
+    held: Held
+    z: Array
+    worst: float
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """A change of the set.
+
+    Attributes
+    ----------
+    value : float
+    before, after : Held
+    confirmed : bool
+        Whether both sides were proved up to it.
+    worst : float
+        Larger one of the worst residuals on both sides.
+    apart : float
+        Distance of the certified points on both sides.
+    """
+
+    value: float
+    before: Held
+    after: Held
+    confirmed: bool
+    worst: float
+    apart: float
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """An interval in which nothing was proved, and why."""
+
+    start: float
+    stop: float
+    why: str
+
+
+_AROUND = np.array([-1e-2, -1e-4, -1e-7, -1e-10, 1e-10, 1e-7, 1e-4, 1e-2])
+
+Stretch = tuple[Point | str, Point | str, float, float]
+
+
+class Search:
+    """The changes of one position between two values.
+
+    Parameters
+    ----------
+    line : Line
+    position : int
+        1-based.
+    low, high : float
+    """
+
+    def __init__(self, line: Line, position: int, low: float, high: float) -> None:
+        self.line, self.position, self.low, self.high = line, position, low, high
+        first = data_of(line.elements, situation_of(line.machine.train, position))
+        self.tabulated = first.tabulated
+        # Which contacts are rigid or curved anywhere on the way.
+        self._anywhere = line.numbers(position, np.linspace(low, high, 3))
+        self.least = LEAST * max(abs(low), abs(high))
+        self.changes: list[Change] = []
+        self.gaps: list[Gap] = []
+        self._equations: dict[Held, Equations] = {}
+        self._hints: dict[tuple[float, float], float] = {}
+
+    def run(self) -> None:
+        """Find all changes, by value, and what could not be proved.
+
+        Raises
+        ------
+        Refused
+            If an end has no certified equilibrium.
+        """
+        values = np.linspace(self.low, self.high, FIRST + 1)
+        points = self.points(values)
+        for end, point in ((self.low, points[0]), (self.high, points[-1])):
+            if isinstance(point, str) and point != UNREAD:
+                parameter = self.line.parameter
+                shown = f"{parameter.name} = {end:.12g} {parameter.unit}".rstrip()
+                raise Refused(f"at {shown}: {point}")
+        ends = values.tolist()
+        stretches = list(zip(points[:-1], points[1:], ends[:-1], ends[1:], strict=True))
+        count = 0
+        while stretches:
+            count += len(stretches)
+            left = [s for s in stretches if not self._settled(s)]
+            left = self._proved_alike(left)
+            left = [s for s in left if not self._crossed(s)] if count <= MOST else left
+            if count > MOST:
+                for stretch in left:
+                    self._give_up(stretch, "too many stretches")
+                break
+            stretches = self._cut(left)
+        self.changes.sort(key=lambda c: c.value)
+        self.gaps = merged(self.gaps)
+
+    # --- Points ---------------------------------------------------------------------------------
+
+    def points(self, values: Array) -> list[Point | str]:
+        """Return certified points, or why there is none."""
+        found: list[Point | str] = []
+        groups: dict[tuple[int, ...], list[int]] = {}
+        for k, solved in enumerate(self.line.solved(self.position, values)):
+            found.append(solved if isinstance(solved, str) else UNREAD)
+            if isinstance(solved, Solved):
+                groups.setdefault(tuple(solved.code.tolist()), []).append(k)
+                found[k] = solved  # type: ignore[call-overload]
+        for code, rows in groups.items():
+            known = [found[k] for k in rows]
+            for k, point in zip(rows, self._read(code, known), strict=True):  # type: ignore[arg-type]
+                found[k] = point
+        return found
+
+    def _read(self, code: tuple[int, ...], solved: list[Solved]) -> list[Point | str]:
+        """Solve points of one code to round-off, on the set of what carries."""
+        numbers = self.line.numbers(self.position, np.array([s.value for s in solved]))
+        found: list[Point | str] = [UNREAD] * len(solved)
+        waiting = [(k, code, s.x) for k, s in enumerate(solved)]
+        for _ in range(3):
+            groups: dict[Held, list[tuple[int, Array]]] = {}
+            for k, own, x in waiting:
+                held = Held(own, self._pieces(own, x, numbers.take(slice(k, k + 1))))
+                groups.setdefault(held, []).append((k, x))
+            waiting = []
+            for held, members in groups.items():
+                rows = np.array([k for k, _ in members])
+                some = numbers.take(rows)
+                equations = self.equations(held)
+                z = equations.start(np.array([x for _, x in members]), some)
+                z, good = equations.solve(z, some)
+                carries = self._carrying(equations, z, some)
+                z = self._centred(equations, z, some)
+                for i, k in enumerate(rows.tolist()):
+                    x, own = z[i, : equations.n], tuple(carries[i].tolist())
+                    if not good[i]:
+                        continue
+                    if Held(own, self._pieces(own, x, numbers.take(slice(k, k + 1)))) == held:
+                        found[k] = Point(solved[k].value, held, z[i], solved[k].worst)
+                    else:
+                        waiting.append((k, own, x))
+        return found
+
+    def _pieces(self, code: tuple[int, ...], x: Array, numbers: Numbers) -> tuple[int, ...]:
+        """On which piece of its table each closed tabulated contact stands."""
+        found = []
+        springs = self.line.elements.springs
+        for k in np.flatnonzero(self.tabulated >= 0).tolist():
+            if code[k - springs] == at.CLOSED:
+                approach = float(numbers.vectors[0, k] @ x - numbers.gap[0, k])
+                points = numbers.tables[0, self.tabulated[k], 1]
+                last = int(np.isfinite(points).sum()) - 2
+                found.append(int(np.clip(np.searchsorted(points, approach) - 1, 0, last)))
+        return tuple(found)
+
+    def _carrying(self, equations: Equations, z: Array, numbers: Numbers) -> Codes:
+        """Codes (S, switches) of the elements that carry something at points z."""
+        code = np.repeat(equations.code[None], len(z), axis=0)
+        state = equations.state(z, numbers)
+        push = np.abs(numbers.load).max(axis=1, initial=0.0)
+        band = IDLE * np.where(push > 0.0, push, 1.0)
+        springs = equations.elements.springs
+        columns = np.arange(springs, equations.scalars)
+        moved = np.abs(state.approach[:, columns])
+        moved[:, np.isin(columns, equations.rigid)] = 0.0
+        idle = (np.abs(state.force[:, columns]) <= band[:, None]) & (moved <= IDLE)
+        code[:, : len(columns)][idle] = at.OPEN
+        for a, where in equations.arc_at.items():
+            loose = np.abs(state.arcs[a].size) <= band
+            if where is None:
+                loose &= np.abs(state.margin[:, a]) <= IDLE
+            code[loose, len(columns) + a] = at.OPEN
+        for j, place in enumerate(equations.places.tolist()):
+            if place == at.WALL:
+                loose = np.abs(state.radials[j].size) <= band
+                code[loose, equations.elements.rows + j] = at.OPEN
+        return code
+
+    def equations(self, held: Held) -> Equations:
+        """Return the equations of a set, set up once."""
+        if held not in self._equations:
+            self._equations[held] = Equations(
+                self.line.elements, held, self._anywhere, self.tabulated
+            )
+        return self._equations[held]
+
+    def _centred(self, equations: Equations, z: Array, numbers: Numbers) -> Array:
+        """Move bodies that nothing holds, at points z (S, size), away from what they may touch."""
+        jacobian = np.nan_to_num(equations.jacobian(z, numbers))
+        if not equations.leaves_free(jacobian):
+            return z
+        factor = scaling(jacobian)
+        right, null = free_moves(jacobian * factor[:, :, None] * factor[:, None, :])
+        z = z.copy()
+        for k in np.flatnonzero(null.any(axis=1)).tolist():
+            moves = (right[k][null[k]] * factor[k])[:, : equations.n]
+            z[k] = _into_the_middle(equations, z[k], numbers.take(slice(k, k + 1)), moves)
+        return z
+
+    # --- Proofs ---------------------------------------------------------------------------------
+
+    def _settled(self, stretch: Stretch) -> bool:
+        """Give up a stretch that is not worth cutting."""
+        first, last, low, high = stretch
+        if isinstance(first, str) and isinstance(last, str):
+            self._give_up(stretch, first)
+            return True
+        if high - low <= self.least:
+            self._give_up(stretch, "nothing could be proved however near")
+            return True
+        return False
+
+    def _give_up(self, stretch: Stretch, why: str) -> None:
+        """Name a stretch as not proved, with the change between its ends if there is one."""
+        first, last, low, high = stretch
+        self.gaps.append(Gap(low, high, why))
+        if (
+            isinstance(first, Point)
+            and isinstance(last, Point)
+            and first.held.code != last.held.code
+        ):
+            value = 0.5 * (low + high)
+            worst = max(first.worst, last.worst)
+            change = Change(value, first.held, last.held, False, worst, high - value)
+            self.changes.append(change)
+
+    def _stretches(
+        self, equations: Equations, ends: list[tuple[float, float, Array, Array]]
+    ) -> Stretches:
+        """Set up stretches (low, high, z at both) of one set."""
+        tau = np.linspace(0.0, 1.0, NODES)
+        values = np.concatenate([low + tau * (high - low) for low, high, *_ in ends])
+        numbers = self.line.numbers(self.position, values)
+        return Stretches(equations, np.array([[a, b] for _, _, a, b in ends]), numbers)
+
+    def _proved_alike(self, stretches: list[Stretch]) -> list[Stretch]:
+        """Prove those whose ends stand on one set, and return the others."""
+        groups: dict[Held, list[Stretch]] = {}
+        left: list[Stretch] = []
+        for stretch in stretches:
+            first, last, *_ = stretch
+            if isinstance(first, Point) and isinstance(last, Point) and first.held == last.held:
+                groups.setdefault(first.held, []).append(stretch)
+            else:
+                left.append(stretch)
+        for held, group in groups.items():
+            ends = [(low, high, a.z, b.z) for a, b, low, high in group]  # type: ignore[union-attr]
+            holds = self._stretches(self._equations[held], ends).prove().holds
+            left += [s for s, good in zip(group, holds, strict=True) if not good]
+        return left
+
+    def _crossed(self, stretch: Stretch) -> bool:
+        """Find and prove the change between two ends; on failure note where it may stand."""
+        first, last, low, high = stretch
+        if not (isinstance(first, Point) and isinstance(last, Point)) or first.held == last.held:
+            return False
+        # Where a body comes to float, room is exacter than forces that vanish all together.
+        ways = [(first, last), (last, first)]
+        ways.sort(key=lambda way: not self._equations[way[0].held].floats)
+        value = self._exit(*ways[0])
+        if value is None:
+            value = self._exit(*ways[1])
+        if value is None:
+            return False
+        self._hints[low, high] = value
+        if not all(self._reaches(point, value) for point in (first, last)):
+            return False
+        apart = float(max(value - low, high - value))
+        worst = max(first.worst, last.worst)
+        if first.held.code != last.held.code:
+            self.changes.append(Change(value, first.held, last.held, True, worst, apart))
+        return True
+
+    def _reaches(self, point: Point, value: float) -> bool:
+        """Whether a point's set is proved to hold up to an event at a value."""
+        if value == point.value:
+            return True
+        equations = self._equations[point.held]
+        z, good = self._solved(equations, np.array([value]), point.z[None])
+        if good[0] and self._proved(equations, [point.value, value], np.array([point.z, z[0]])):
+            return True
+        # Bodies held by vanishing forces alone: their equations become singular at the event, so
+        # stretches shrink towards it, down to what counts as the event itself.
+        parts = [(value - point.value) * GRADE**k for k in range(200)]
+        near = RESOLVED * max(abs(value), abs(value - point.value))
+        values = np.array([value - part for part in parts if abs(part) > near])
+        if len(values) < 2:
+            return True
+        z, good = self._solved(equations, values, np.repeat(point.z[None], len(values), axis=0))
+        return bool(good.all()) and self._proved(equations, values.tolist(), z)
+
+    def _proved(self, equations: Equations, values: list[float], z: Array) -> bool:
+        """Whether a set is proved to hold between neighbouring values."""
+        pairs = list(zip(values[:-1], values[1:], z[:-1], z[1:], strict=True))
+        ends = [(a, b, p, q) if a < b else (b, a, q, p) for a, b, p, q in pairs]
+        return bool(self._stretches(equations, ends).prove().holds.all())
+
+    def _solved(self, equations: Equations, values: Array, near: Array) -> tuple[Array, Flags]:
+        """Solve a set at values (S,), from unknowns near by; what nothing holds is centred."""
+        numbers = self.line.numbers(self.position, values)
+        z, good = equations.solve(near, numbers)
+        return self._centred(equations, z, numbers), good
+
+    def _gauges(self, equations: Equations, values: Array, near: Array) -> tuple[Array, Flags]:
+        """Gauges (S, gauges) of a set at values, and whether it has a solution there."""
+        numbers = self.line.numbers(self.position, values)
+        z, good = equations.solve(near, numbers)
+        z = self._centred(equations, z, numbers)
+        rows = np.repeat(np.arange(len(values)), NODES)
+        here = Stretches(equations, np.stack([z, z], axis=1), numbers.take(rows))
+        with np.errstate(all="ignore"):
+            return here.standing(), good
+
+    def _exit(self, near: Point, far: Point) -> float | None:
+        """Value at which the first gauge of one end's set vanishes on the way to the other."""
+        equations = self._equations[near.held]
+        values = np.linspace(near.value, far.value, SECTIONS)
+        found = self._sections(equations, values, near.z)
+        if found is None:
+            return None
+        values, gauges = found
+        negative = gauges < 0.0
+        negative[0] &= gauges[0] < -VERGE
+        if negative[0].any():
+            return float(near.value)
+        beyond = np.flatnonzero(negative.any(axis=1))
+        if not len(beyond):
+            return None
+        due = np.flatnonzero(negative[beyond[0]])
+        low, high = values[beyond[0] - 1], values[beyond[0]]
+        least = gauges[:, due].min(axis=1)
+        f_low, f_high = float(least[beyond[0] - 1]), float(least[beyond[0]])
+        if f_low <= VERGE:
+            return float(low)
+        for _ in range(REFINED):
+            guess = low + (high - low) * f_low / (f_low - f_high)
+            inner = guess + (high - low) * _AROUND
+            inside = (inner - low) * (high - inner) > 0.0
+            inner = np.unique(np.append(inner[inside], guess))
+            inner = inner if high > low else inner[::-1]
+            found = self._sections(equations, inner, near.z)
+            if found is None or len(found[0]) < len(inner):
+                return None
+            least = found[1][:, due].min(axis=1)
+            values = np.concatenate([[low], inner, [high]])
+            least = np.concatenate([[f_low], least, [f_high]])
+            k = int(np.flatnonzero(least[1:] <= 0.0)[0]) + 1
+            low, high, f_low, f_high = values[k - 1], values[k], least[k - 1], least[k]
+            if f_high == 0.0 or abs(high - low) <= 4e-16 * abs(high):
+                break
+        return float(high)
+
+    def _sections(
+        self, equations: Equations, values: Array, near: Array
+    ) -> tuple[Array, Array] | None:
+        """Gauges of a set at values, up to the first at which it has no solution."""
+        start = np.repeat(near[None], len(values), axis=0)
+        gauges, good = self._gauges(equations, values, start)
+        count = len(values) if good.all() else int(np.argmin(good))
+        return (values[:count], gauges[:count]) if count else None
+
+    # --- Cuts -----------------------------------------------------------------------------------
+
+    def _cut(self, stretches: list[Stretch]) -> list[Stretch]:
+        """Cut stretches, beside an event where one is expected."""
+        cuts: list[list[float]] = []
+        for _, _, low, high in stretches:
+            width, hint = high - low, self._hints.pop((low, high), None)
+            inner = [low + CUT * width]
+            if hint is not None:
+                inner = [hint - BESIDE * width, hint + BESIDE * width]
+            cuts.append([v for v in inner if low + 0.01 * width < v < high - 0.01 * width])
+        flat = np.array([v for some in cuts for v in some])
+        points = iter(self.points(flat) if len(flat) else [])
+        found: list[Stretch] = []
+        for (first, last, low, high), some in zip(stretches, cuts, strict=True):
+            ends = [(low, first), *((v, next(points)) for v in some), (high, last)]
+            for (a, one), (b, other) in pairwise(ends):
+                found.append((one, other, a, b))
+        return found
+
+
+def _into_the_middle(equations: Equations, z: Array, numbers: Numbers, moves: Array) -> Array:
+    """Move a point (size,) along moves (k, n) that nothing resists, to where room is largest."""
+    moves = moves / np.maximum(np.abs(moves).max(axis=1, initial=0.0), 1e-300)[:, None]
+    count = len(moves)
+    # Limits that curve are straight around the point: the second time they are nearly exact.
+    for _ in range(2):
+        room, closing = _rooms(equations, z[None], numbers)
+        speed = closing @ moves.T
+        near = np.abs(speed).max(axis=1, initial=0.0) > 1e-9
+        if not near.any():
+            break
+        rows = np.hstack([speed[near], np.ones((int(near.sum()), 1))])
+        answer = linprog(
+            np.append(np.zeros(count), -1.0),
+            A_ub=rows,
+            b_ub=room[near],
+            bounds=[*[(None, None)] * count, (None, ROOM)],
+            method="highs-ds",
+        )
+        if answer.x is None:
+            break
+        # The programme is solved to its tolerance; what binds is met to round-off.
+        left = room[near] - rows @ answer.x
+        binds = left <= BINDS
+        found = answer.x + np.linalg.lstsq(rows[binds], left[binds], rcond=None)[0]
+        z = z.copy()
+        z[: equations.n] += found[:count] @ moves
+        if not len(equations.arc_acts) and not (equations.places == at.OPEN).any():
+            break
+    return z
+
+
+def _rooms(equations: Equations, z: Array, numbers: Numbers) -> tuple[Array, Array]:
+    """Room before every open limit, and how fast the coordinates close it, (k,), (k, n)."""
+    state = equations.state(z, numbers)
+    room: list[float] = []
+    closing: list[Array] = []
+    springs = equations.elements.springs
+    for k in range(springs, equations.scalars):
+        if not equations.acts[k] and np.isfinite(state.approach[0, k]):
+            room.append(-float(state.approach[0, k]))
+            closing.append(numbers.vectors[0, k])
+    for a, polar in state.arcs.items():
+        if a not in equations.arc_at:
+            room.append(float(state.margin[0, a]))
+            closing.append(-polar.along[0] @ polar.matrix[0])
+    turns = 2.0 * np.pi * np.arange(FACETS) / FACETS
+    for j, polar in state.radials.items():
+        reach = float(state.laws[j].reach[0])
+        if equations.places[j] == at.OPEN and np.isfinite(reach):
+            ways = np.stack([np.cos(turns), np.sin(turns)], axis=1)
+            room += (reach - ways @ polar.offset[0]).tolist()
+            closing += list(ways @ polar.matrix[0])
+    return np.array(room), np.array(closing).reshape(-1, equations.n)
+
+
+def merged(gaps: Iterable[Gap]) -> list[Gap]:
+    """Join gaps that touch."""
+    found: list[Gap] = []
+    for gap in sorted(gaps, key=lambda g: g.start):
+        if found and gap.start <= found[-1].stop:
+            found[-1] = replace(found[-1], stop=max(gap.stop, found[-1].stop))
+        else:
+            found.append(gap)
+    return found
