@@ -33,6 +33,10 @@ largest displacement: what soft supports make of torques that are right."""
 OPEN = 1e-5
 """Play, in deflections, from which on a place is open: ten times what the linear programmes that
 find it leave open."""
+BEYOND = "displacements are too large for the geometry"
+"""What a refusal says where small displacements are none."""
+FAR = 1e-2
+"""Displacement, over the smallest base radius, from which on such a refusal is right."""
 NO_FORCE = 1e-40
 """Force, in loads, that is none in 70 digits."""
 SOLVING, REFERRING = 60.0, 60.0
@@ -48,8 +52,8 @@ class Finding:
     position : int
     outcome : str
         "agrees", "wrong", "unchecked" (certified, without reference), "refused" (has an answer),
-        "no answer" (refused, and known to have none), "open" (refused, neither is known),
-        "crashed".
+        "too far" (refused as its displacements have no meaning), "no answer" (refused, and known
+        to have none), "open" (refused, neither is known), "crashed".
     told : str
         Refusal, exception, or why there is no reference.
     rung : str
@@ -122,6 +126,9 @@ def _compare(case: Case, train: Train, found: Position | None, told: str, findin
     machine, settled = _settled(case, train, found, finding)
     if found is None:
         finding.told = told
+        if BEYOND in told and _far(train, machine, settled):
+            finding.outcome = "too far"
+            return
         if machine is None or settled is None:
             finding.outcome = "open" if solvable(train, finding.position) else "no answer"
         else:
@@ -140,6 +147,15 @@ def _compare(case: Case, train: Train, found: Position | None, told: str, findin
     finding.misplaced = misplaced(train, found, exact, machine, settled)
     claimed = torque_bounds(found.certificate)
     finding.bound = [(claimed[n], error) for n, error in errors.items() if n in claimed]
+
+
+def _far(train: Train, machine: Machine | None, settled: Settled | None) -> bool:
+    """Tell whether the reference moves far as well; where there is none, it is believed."""
+    if machine is None or settled is None:
+        return True
+    smallest = min(g.base_radius for g in train.gears.values())
+    furthest = max(abs(float(v)) for v in settled.at.x) * machine.length
+    return furthest > FAR * smallest
 
 
 def _settled(

@@ -16,6 +16,7 @@ MEANING = {
     "unchecked": "certified, no reference found",
     "refused": "refused, has an answer",
     "open": "refused, an answer should exist, no reference found",
+    "too far": "refused, as its displacements are too large for the geometry",
     "no answer": "refused, and known to have none",
     "crashed": "exception",
 }
@@ -26,7 +27,7 @@ def text(rows: list[dict[str, Any]]) -> str:
     positions = [p for row in rows for p in row["positions"]]
     outcomes = Counter(p["outcome"] for p in positions)
     misplaced = [p for p in positions if p["misplaced"]]
-    solvable = sum(outcomes[o] for o in MEANING if o != "no answer")
+    solvable = sum(outcomes[o] for o in MEANING if o not in ("no answer", "too far"))
     refused = outcomes["refused"] + outcomes["open"]
     lines = [f"{len(rows)} trains, {len(positions)} positions", ""]
     counts = [(o, str(outcomes[o]), m) for o, m in MEANING.items()]
@@ -38,7 +39,7 @@ def text(rows: list[dict[str, Any]]) -> str:
     lines += _table(("outcome", "positions", "meaning"), counts)
     part = refused / solvable if solvable else 0.0
     lines += [f"Refused of what has an answer: {100.0 * part:.2f} %.", ""]
-    for outcome in ("refused", "open", "unchecked", "no answer"):
+    for outcome in ("refused", "open", "unchecked", "too far", "no answer"):
         lines += _reasons(outcome, [p for p in positions if p["outcome"] == outcome])
     lines += _times(rows)
     rungs = Counter(p["rung"] for p in positions if p["rung"])

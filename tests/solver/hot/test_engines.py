@@ -159,10 +159,10 @@ def test_radial_elements_move_alike_from_place_to_place(data):
     place = data.draw(st.sampled_from([at.STICK, at.CORNER, at.PINNED, at.SLIP, at.STOP, at.OPEN]))
     u, p = data.draw(length), data.draw(length) * data.draw(st.sampled_from([-1.0, 1.0]))
     graph = at.Graph(*(np.array([v]) for v in law))
-    bands = np.array([1e-12]), np.array([1e-12])
+    bands = (np.array([1e-12]),) * 3
     offset, force = np.array([[0.6 * u, 0.8 * u]]), np.array([[0.6 * p, 0.8 * p]])
     wrong, moved = vectorised.misplaced(place, graph, offset, force, *bands)
-    other = compiled._misplaced(place, law, *offset[0], *force[0], 1e-12, 1e-12)
+    other = compiled._misplaced(place, law, *offset[0], *force[0], 1e-12, 1e-12, 1e-12)
     assert other == (moved[0] if wrong[0] else place)
 
 

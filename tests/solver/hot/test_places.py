@@ -148,7 +148,7 @@ FORCE_BAND, LENGTH_BAND = 1e-9, 1e-15
 
 def moved(law: at.Graph, place: int, radius: float, pull: float) -> int:
     """Where an element that is out by `radius` and pulled by `pull` should stand."""
-    bands = np.array([FORCE_BAND]), np.array([LENGTH_BAND])
+    bands = np.array([FORCE_BAND]), np.array([LENGTH_BAND]), np.array([FORCE_BAND])
     offset, load = np.array([[0.6, 0.8]]) * radius, np.array([[0.6, 0.8]]) * pull
     wrong, other = vectorised.misplaced(place, law, offset, load, *bands)
     return int(other[0]) if wrong[0] else place

@@ -38,7 +38,8 @@ STICK, CORNER, PINNED, SLIP, STOP, WALL = (
 DONE, OTHER, FAILED = at.DONE, at.OTHER, at.FAILED
 PASSES, PATIENCE, OUTSIDE = at.PASSES, at.PATIENCE, at.OUTSIDE
 BEYOND, BURST = at.BEYOND, at.BURST
-CREEP, PROXIMAL, REFINEMENTS, SMALL = at.CREEP, at.PROXIMAL, at.REFINEMENTS, at.SMALL
+CREEP, FAINT, PROXIMAL = at.CREEP, at.FAINT, at.PROXIMAL
+REFINEMENTS, SMALL = at.REFINEMENTS, at.SMALL
 HURRY, NEARLY = at.HURRY, at.NEARLY
 SETTLED, STALLED, LAW, SIGN, SHRINK, DRIFT = (
     at.SETTLED,
@@ -325,7 +326,7 @@ def _tangent(place, law, u, v, p, q, push):  # type: ignore[no-untyped-def]
     if place == PINNED:
         return 0.0, 0.0, 0.0, du, dv
     if place == SLIP:
-        return 0.0, min(max(radius, stick), reach) / bound, 0.0, du, dv
+        return 0.0, min(max(radius, stick), reach) / max(bound, FAINT * push), 0.0, du, dv
     reached = max(radius, reach)
     pull = bound + last * (reached - reach)
     inner = 1.0 / last
@@ -333,7 +334,7 @@ def _tangent(place, law, u, v, p, q, push):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def _misplaced(place, law, u, v, p, q, force_band, length_band):  # type: ignore[no-untyped-def]
+def _misplaced(place, law, u, v, p, q, force_band, length_band, faint):  # type: ignore[no-untyped-def]
     """Where a radial element should stand; its own place if that is right. See `misplaced`."""
     first, stick, bound, reach, last, _ = law
     radius, size = np.sqrt(u * u + v * v), np.sqrt(p * p + q * q)
@@ -341,7 +342,8 @@ def _misplaced(place, law, u, v, p, q, force_band, length_band):  # type: ignore
     beyond = STOP
     if np.isinf(last):
         beyond = WALL if reach > 0.0 else PINNED
-    level = SLIP if reach > stick else beyond
+    rubs = bound > faint
+    level = (SLIP if rubs else OPEN) if reach > stick else beyond
     back = PINNED
     if bound == 0.0 and reach > 0.0:
         back = OPEN
@@ -349,24 +351,32 @@ def _misplaced(place, law, u, v, p, q, force_band, length_band):  # type: ignore
         back = CORNER if jump else STICK
     inward = u * p + v * q < 0.0
     if place == OPEN:
-        return beyond if radius > reach + length_band else OPEN
+        if radius > reach + length_band:
+            return beyond
+        if rubs and radius > length_band:
+            return STICK if radius < stick else level
+        return OPEN
     if place == STICK:
-        if size > first * stick + force_band:
-            return CORNER if jump else level
-        return STICK
+        if size <= first * stick + force_band:
+            return STICK
+        gone = beyond if radius > reach + length_band else level
+        return CORNER if jump else gone
     if place == CORNER:
         if size > bound + force_band:
             return level
         return STICK if size < first * stick - force_band else CORNER
     if place == PINNED:
-        return level if size > bound + force_band and bound > 0.0 else PINNED
+        yields = bound > 0.0 or reach > 0.0 or np.isfinite(last)
+        return level if size > bound + force_band and yields else PINNED
     if place == SLIP:
+        if not rubs:
+            return level
         if radius > reach + length_band:
             return beyond
         return back if radius < stick - length_band or inward else SLIP
     if place == STOP:
         if (radius < reach - length_band or inward) and reach > 0.0:
-            return SLIP if reach > stick and bound > 0.0 else back
+            return level if reach > stick and radius >= stick else back
         return STOP
     return OPEN if size <= force_band else WALL
 
@@ -685,9 +695,10 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal)
             for j in range(radials):
                 if s.radial_at[j] >= 0 and s.code[s.rows + j] == SLIP:
                     u, v = _offset(s, i, j, x)
-                    reach = _graph(s, i, j, force)[3]
-                    beyond = u * u + v * v > BEYOND * BEYOND * reach * reach
-                    outside[j] = outside[j] + 1 if beyond else 0
+                    law = _graph(s, i, j, force)
+                    left = u * u + v * v > BEYOND * BEYOND * law[3] * law[3]
+                    left = left or law[2] <= SIGN * push
+                    outside[j] = outside[j] + 1 if left else 0
                     hopeless = hopeless or outside[j] >= OUTSIDE
             if not np.isfinite(misfit):
                 refused = True
@@ -836,7 +847,7 @@ def _signs(  # type: ignore[no-untyped-def]
             p, q = (force[e], force[e + 1]) if e >= 0 else (0.0, 0.0)
             u, v = _offset(s, i, j, x)
             law = _graph(s, i, j, force)
-            better = _misplaced(place, law, u, v, p, q, force_band, length_band)
+            better = _misplaced(place, law, u, v, p, q, force_band, length_band, SIGN * strongest)
             if better != place:
                 proposal[s.rows + j] = better
                 wrong += 1

@@ -32,6 +32,8 @@ WORD = 8
 _KEYS = np.random.default_rng(11).integers(1 << 62, size=1 << 12) | 1
 TOGETHER = 6
 """Exchanges of all wrong signs at once; after these, one at a time."""
+RETURNS = 3
+"""Visits of one set that show a sample to go around."""
 TURNS = 24
 """Turns allowed in all: of samples that are settled by exchange, one in a thousand takes more."""
 
@@ -160,6 +162,7 @@ def exchange(
     held = np.zeros(count, dtype=bool)
     one_only = np.full(count, singly)
     limit = limit or TURNS
+    rounds = _Rounds()
     waiting = _Waiting()
     rows = np.arange(count) if only is None else np.flatnonzero(only)
     waiting.add(code[rows], rows)
@@ -170,6 +173,9 @@ def exchange(
         basis = elements.basis(here[:switches])
         verdict, proposal = engine(elements, data, basis, here[:switches], rows, state, one_only)
         onward = (verdict == at.OTHER) & (visited < limit)
+        for k in np.flatnonzero(onward & (visited > TOGETHER)).tolist():
+            verdict[k] = rounds.judged(int(rows[k]), here[:switches], proposal[k])
+            onward[k] = verdict[k] == at.OTHER
         stay, done = rows[~onward], verdict[~onward] == at.DONE
         code[stay], solved[stay] = here, done
         held[stay] = done & (not basis.loose.shape[1])
@@ -180,6 +186,30 @@ def exchange(
             other[:, :switches] = proposal[onward]
             waiting.add(_without_wedges(elements, data, here, other), rows)
     return Found(solved, code[:, :switches], turns, held)
+
+
+class _Rounds:
+    """Sets that single samples went through, so that they do not go around for long.
+
+    To and fro between two sets that differ in what carries nothing, a contact on the verge or a
+    gear that no load holds against its ring, is no question of forces: the larger set stands, and
+    the certificate says whether it may.
+    """
+
+    def __init__(self) -> None:
+        self._visits: dict[int, list[bytes]] = {}
+
+    def judged(self, row: int, here: Codes, proposal: Codes) -> int:
+        """DONE, OTHER or FAILED for a sample that is to go from one set to another."""
+        visits = self._visits.setdefault(row, [])
+        visits.append(here.tobytes())
+        if visits.count(visits[-1]) < RETURNS:
+            return at.OTHER
+        to_and_fro = visits[-2] == proposal.tobytes() == visits[-4:-3][0]
+        if not to_and_fro:
+            return at.FAILED
+        larger = np.count_nonzero(here) >= np.count_nonzero(proposal)
+        return at.DONE if larger else at.OTHER
 
 
 class _Waiting:

@@ -24,6 +24,8 @@ against a rigid stop."""
 
 PASSES = 60
 """Newton passes on one set."""
+SWING, DAMPED = 15, 5
+"""Of so many passes the last few go half the way; sets that settle at all mostly do in ten."""
 SETTLED = 1e-14
 """Change of forces and coordinates between passes, relative to the largest, that ends them."""
 STALLED = 1e-11
@@ -65,6 +67,8 @@ BURST = 1e6
 """Force over the load from which on rigid contacts contradict one another."""
 FAR = 1e3
 """Way from where proximal passes ended, over how far they went, that only a drift explains."""
+FAINT = 1e-12
+"""Friction bound, over the load, at which a slipping element is held at least across its slip."""
 DRIFT = 1e-12
 """Share of the load along a loose move from which on it counts."""
 

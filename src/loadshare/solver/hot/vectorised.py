@@ -11,6 +11,7 @@ from loadshare.scene.data import Data
 from loadshare.scene.elements import Basis, Elements
 from loadshare.scene.scene import Array
 from loadshare.solver.hot import places as at
+from loadshare.solver.hot.rest import rest
 from loadshare.solver.hot.state import State
 
 Rows = NDArray[np.intp]
@@ -75,8 +76,11 @@ def settle(
             wrong[drifting], moved[drifting] = stopping[drifting], places[drifting]
             passes.settled &= ~drifting
             passes.refused &= ~drifting
-    passes.store(state)
     single = one_only[rows]
+    if basis.loose.shape[1]:
+        for k in np.flatnonzero(single & passes.settled & wrong.any(axis=1)).tolist():
+            wrong[k] &= not passes.rests(k, wrong[k])
+    passes.store(state)
     first = np.zeros_like(wrong)
     first[np.arange(len(rows)), wrong.argmax(axis=1)] = True
     wrong &= first | ~single[:, None]
@@ -138,6 +142,7 @@ class _Passes:
         self.x, self.floor = state.x[rows], state.floor[rows]
         self.force, self.root = state.force[rows][:, columns], state.root[rows][:, columns]
         self.z = self.force @ basis.redundant
+        self.lean = self.x, self.force
         self.compression, self.misfit = np.zeros(shape), np.zeros(count)
         first_arc = elements.springs + len(elements.scene.rows)
         arcs = columns - first_arc
@@ -177,15 +182,24 @@ class _Passes:
         for number in range(at.PASSES):
             x, force = self.x, self.force
             self._pass(self._blocks())
+            roots = self.root
             laws = self._renew_laws()
+            self.lean = self.x, self.force
+            if number % at.SWING >= at.SWING - at.DAMPED:
+                # Newton's steps that swing to and fro around an answer settle between.
+                self.lean = 0.5 * (x + self.x), 0.5 * (force + self.force)
+                self.root = 0.5 * (roots + self.root)
             if curved and number < 2:
                 self._hurry((laws <= at.NEARLY) & ~patient)
             yielded = np.abs(self.compression[:, self.contact]).max(axis=1, initial=0.0)
             closing = self.misfit / np.where(yielded > 0.0, yielded, np.inf)
             misfit = np.maximum(closing, laws * (at.SETTLED / at.LAW))
             if curved:
-                step = np.maximum(change(self.force, force), change(self.x, x))
-                misfit = np.maximum(misfit, step)
+                misfit = np.maximum(misfit, change(self.force, force))
+                balanced = misfit <= at.SETTLED
+                misfit = np.maximum(misfit, change(self.x, x))
+            else:
+                balanced = misfit <= at.SETTLED
             # A law's tangent leaves a misfit of second order, so a small one need not be repeated.
             stalled = (number > 2) & (misfit <= at.STALLED) & (misfit >= 0.5 * previous)
             self.settled = (misfit <= at.SETTLED) | stalled
@@ -197,7 +211,8 @@ class _Passes:
             if (self.settled | self.refused | hopeless).all():
                 break
         # What creeps on without end is left to the certificate.
-        self.settled |= previous <= at.CREEP
+        # Where the forces stand, what still moves is held by none.
+        self.settled |= (previous <= at.CREEP) | balanced
         self.settled &= ~self.burst
         self.settled &= ~self.refused
 
@@ -325,29 +340,32 @@ class _Passes:
             law = self._graph(j)
             self.refused |= ~law.valid
             columns = slice(k, k + 2)
-            offset = self._offset(j)
+            x, force = self.lean
             size = np.maximum(self.push, 1e-300)
-            blocks.append(block(columns, place, law, offset, self.force[:, columns], size))
+            blocks.append(block(columns, place, law, self._offset(j, x), force[:, columns], size))
         return blocks
 
     def _slipped_out(self) -> Flags:
-        """Samples with a radial element that stays far beyond the end of its level piece."""
+        """Samples with a radial element that has left its level piece.
+
+        It stays far beyond the end of it, or friction that follows the torque is gone.
+        """
         for j, place, _ in self.radial:
             if place == at.SLIP:
-                radius = np.sqrt((self._offset(j) ** 2).sum(axis=1))
-                beyond = radius > at.BEYOND * self._graph(j).reach
-                self.outside[:, j] = np.where(beyond, self.outside[:, j] + 1, 0)
+                radius, law = np.sqrt((self._offset(j) ** 2).sum(axis=1)), self._graph(j)
+                left = (radius > at.BEYOND * law.reach) | (law.bound <= at.SIGN * self.push)
+                self.outside[:, j] = np.where(left, self.outside[:, j] + 1, 0)
         return np.asarray((self.outside >= at.OUTSIDE).any(axis=1))
 
     def _graph(self, j: int) -> at.Graph:
         carried = self.force @ self.data.carried[j, self.basis.columns]
         return at.graph(pick(self.data.radial, self.rows)[:, j], carried)
 
-    def _offset(self, j: int) -> Array:
+    def _offset(self, j: int, x: Array | None = None) -> Array:
         column = self.elements.radial_column(j)
         matrix = self.elements.vectors[column : column + 2]
         centre = pick(self.data.gap, self.rows)[:, column : column + 2]
-        return np.asarray(self.x @ matrix.T - centre)
+        return np.asarray((self.x if x is None else x) @ matrix.T - centre)
 
     def _hurry(self, these: Flags) -> None:
         """Give up sets that are clearly wrong before they are settled."""
@@ -369,7 +387,7 @@ class _Passes:
         largest_force = np.maximum(np.abs(self.force).max(axis=1, initial=0.0), self.push)
         furthest = np.abs(self.x).max(axis=1, initial=0.0)
         yielded = np.abs(self.compression[:, self.scalar]).max(axis=1, initial=0.0)
-        force_band = sign * largest_force
+        force_band, faint = sign * largest_force, at.SIGN * largest_force
         length_band = sign * np.maximum(yielded, 1e-3 * furthest)
         rows = slice(elements.springs, elements.springs + elements.rows)
         approach = self.x @ elements.vectors[rows].T - pick(data.gap, self.rows)[:, rows]
@@ -388,7 +406,13 @@ class _Passes:
             s, k = elements.rows + j, acting.get(j)
             force = self.force[:, k : k + 2] if k is not None else np.zeros((len(self.rows), 2))
             wrong[:, s], moved[:, s] = misplaced(
-                int(self.code[s]), self._graph(j), self._offset(j), force, force_band, length_band
+                int(self.code[s]),
+                self._graph(j),
+                self._offset(j),
+                force,
+                force_band,
+                length_band,
+                faint,
             )
         slipped = (self.outside >= at.OUTSIDE) & ~self.settled[:, None]
         pulled = wrong & self.burst[:, None] & np.append(closed, np.zeros_like(slipped[0]))
@@ -446,6 +470,34 @@ class _Passes:
         everyone, nearest = np.arange(len(self.rows)), ways.argmin(axis=1)
         stopping[everyone, nearest] = np.isfinite(ways[everyone, nearest])
         return stopping, places
+
+    def rests(self, k: int, wrong: Flags) -> bool:
+        """Find sample `k` a place where nothing that is open overlaps, if only places are wrong."""
+        elements, rows, here = self.elements, self.elements.rows, self.rows[k : k + 1]
+        if (wrong & (self.code != at.OPEN)).any():
+            return False
+        opened = np.flatnonzero(self.code[:rows] == at.OPEN)
+        x, loose = self.x[k : k + 1], self.basis.loose
+        vectors = np.array(elements.vectors[elements.springs + opened])
+        room = pick(self.data.gap, here)[0, elements.springs + opened] - vectors @ x[0]
+        first = len(elements.scene.rows)
+        for a, place in zip(
+            opened[opened >= first] - first, np.flatnonzero(opened >= first), strict=True
+        ):
+            normal, margin = arc_at(self.data, a, here, x)
+            vectors[place], room[place] = (-normal @ self.data.relative[a])[0], margin[0]
+        discs = []
+        for j in np.flatnonzero(self.code[rows:] == at.OPEN).tolist():
+            column = elements.radial_column(j)
+            matrix = elements.vectors[column : column + 2] @ loose
+            discs.append((matrix, self._offset(j)[k], float(self._graph(j).reach[k])))
+        closes = vectors @ loose
+        finite = np.isfinite(room)
+        share = rest(closes[finite], room[finite], discs, float(np.abs(x).max()))
+        if share is None:
+            return False
+        self.x[k] += loose @ share
+        return True
 
     def store(self, state: State) -> None:
         """Write back where the samples stand."""
@@ -598,7 +650,7 @@ def block(
         elif place == at.SLIP:
             # Beyond the piece the true tangent is too soft to find the way back.
             inner, start = np.zeros(count), np.zeros(count)
-            outer = np.clip(radius, law.stick, law.reach) / law.bound
+            outer = np.clip(radius, law.stick, law.reach) / np.maximum(law.bound, at.FAINT * push)
         else:
             reached = np.maximum(radius, law.reach)
             pull = law.bound + law.last * (reached - law.reach)
@@ -612,36 +664,50 @@ def block(
 
 
 def misplaced(
-    place: int, law: at.Graph, offset: Array, force: Array, force_band: Array, length_band: Array
+    place: int,
+    law: at.Graph,
+    offset: Array,
+    force: Array,
+    force_band: Array,
+    length_band: Array,
+    faint: Array,
 ) -> tuple[Flags, Codes]:
-    """Whether a radial element has left its place, and where it should stand instead."""
+    """Whether a radial element has left its place, and where it should stand instead.
+
+    A friction bound up to `faint` is none.
+    """
     radius, size = (np.sqrt((v * v).sum(axis=1)) for v in (offset, force))
     jump = law.bound > law.first * law.stick * (1.0 + 1e-9)
     past = beyond(law)
-    level = np.where(law.reach > law.stick, at.SLIP, past)
+    rubs = law.bound > faint
+    level = np.where(law.reach > law.stick, np.where(rubs, at.SLIP, at.OPEN), past)
     back = np.where(law.stick > 0.0, np.where(jump, at.CORNER, at.STICK), at.PINNED)
     back = np.where((law.bound == 0.0) & (law.reach > 0.0), at.OPEN, back)
     inward = (offset * force).sum(axis=1) < 0.0
     stays = np.full(len(radius), place)
     if place == at.OPEN:
-        up, down, after, before = radius > law.reach + length_band, False, past, stays
+        up, down = radius > law.reach + length_band, rubs & (radius > length_band)
+        after, before = past, np.where(radius < law.stick, at.STICK, level)
     elif place == at.STICK:
         up, down = size > law.first * law.stick + force_band, False
-        after, before = np.where(jump, at.CORNER, level), stays
+        gone = np.where(radius > law.reach + length_band, past, level)
+        after, before = np.where(jump, at.CORNER, gone), stays
     elif place == at.CORNER:
         up, down = size > law.bound + force_band, size < law.first * law.stick - force_band
         after, before = level, np.full(len(radius), at.STICK)
     elif place == at.PINNED:
-        up = (size > law.bound + force_band) & (law.bound > 0.0)
+        yields = (law.bound > 0.0) | (law.reach > 0.0) | np.isfinite(law.last)
+        up = (size > law.bound + force_band) & yields
         down, after, before = False, level, stays
     elif place == at.SLIP:
-        up, down = radius > law.reach + length_band, (radius < law.stick - length_band) | inward
-        after, before = past, back
+        up = (radius > law.reach + length_band) & rubs
+        down = (radius < law.stick - length_band) | inward | ~rubs
+        after, before = past, np.where(rubs, back, level)
     elif place == at.STOP:
         up, down = False, ((radius < law.reach - length_band) | inward) & (law.reach > 0.0)
         after, before = (
             stays,
-            np.where(law.reach > law.stick, np.where(law.bound > 0.0, at.SLIP, back), back),
+            np.where((law.reach > law.stick) & (radius >= law.stick), level, back),
         )
     else:
         up, down = False, size <= force_band
