@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from benchmarks.random_trains.draw import draw
 from benchmarks.sensitivities import Verdict, judged, run
 from tests.support import SHIPPED, shipped
 
@@ -352,3 +353,13 @@ def test_differences_state_an_error_that_covers(number):
     found = differentiate(bounded, value, np.array([2e-16, 0.0]))
     assert isinstance(found.rising, CaseError)
     assert abs(found.falling.value[0] - exact) <= found.falling.error[0]
+
+
+def test_friction_of_a_torque_that_is_round_off_has_no_sign():
+    """No shaft and no load turns gear r1; its spline's friction follows a torque of zero."""
+    case = draw(2, 22)
+    assert case.splines["r1"].friction
+    found = sensitivity(case, "gears.r1.base_radius", positions=[1])
+    assert not disagreeing(verdicts(case, found))
+    rates = [found.rates[1, "gears.r1.base_radius", side] for side in SIDES]
+    assert rates[0].torque == pytest.approx(rates[1].torque, rel=1e-6, abs=1e-3)

@@ -76,9 +76,23 @@ class Branch:
         """Whether a step stands at radius zero; that does not depend on the size of the torque."""
         train = self.scene.train
         ratio = train.gears[radial.gear].ratio or 1.0
-        law = radial.law(self.scene.situation.torque[train.input] / ratio)
+        torque = self.scene.situation.torque[train.input] / ratio
+        law = radial.law(0.0 if self._idles(radial.gear) else torque)
         k = index_of(law, place)
         return k is not None and law.start(k) == 0.0
+
+    def _transmitted(self, gear: str, flanks: Mapping[str, float]) -> float:
+        """Torque [N·m] that reaches a gear over its spline."""
+        return 0.0 if self._idles(gear) else self.scene.train.transmitted(gear, flanks)
+
+    def _idles(self, gear: str) -> bool:
+        """Whether no shaft and no load turns a gear: its meshes balance, and its spline has none.
+
+        The sum of their torques is round-off then, whose sign says nothing.
+        """
+        train, loads = self.scene.train, self.scene.situation.torque
+        turned = any(gear in (s.first, s.second) for s in train.shafts.values())
+        return not turned and gear != train.output and not loads.get(gear, 0.0)
 
     # --- At a point -----------------------------------------------------------------------------
 
@@ -121,7 +135,7 @@ class Branch:
         flanks = _forces(touches)
         for radial in self.scene.radials:
             try:
-                law = radial.law(self.scene.train.transmitted(radial.gear, flanks))
+                law = radial.law(self._transmitted(radial.gear, flanks))
             except ValueError as error:
                 raise BranchLost(str(error)) from error
             place = self._places[radial.name]
@@ -221,7 +235,7 @@ class Branch:
 
     def _friction(self, hold: Hold, touches: list[Touch], found: Array, stiffness: Array) -> None:
         """Add what a friction bound that follows the torque makes of the flank forces, in place."""
-        if not hold.radial.follows_torque or hold.springs:
+        if not hold.radial.follows_torque or hold.springs or self._idles(hold.radial.gear):
             return
         train, n = self.scene.train, self.scene.size
         spline = train.splines[hold.radial.gear]
