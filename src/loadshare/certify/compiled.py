@@ -482,7 +482,8 @@ def _excess(law, offset, reaction, band):  # type: ignore[no-untyped-def]
             along -= reaction[k] * offset[k] / radius
         for k in range(3):
             sideways += (reaction[k] + along * offset[k] / radius) ** 2
-    return max(low - along, along - high, np.sqrt(sideways))
+        sideways = np.sqrt(sideways) - _size(reaction) * band / radius
+    return max(low - along, along - high, sideways)
 
 
 @inlined

@@ -107,6 +107,7 @@ def cone_membership(state: State, band: float) -> tuple[float, str]:
             outward = pull.offset / radius
             along = -float(pull.reaction @ outward)
             sideways = float(np.linalg.norm(pull.reaction + along * outward))
+            sideways -= size * band / radius
         excess[pull.name] = max(low - along, along - high, sideways)
     return _worst(excess)
 

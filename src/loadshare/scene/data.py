@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from loadshare.scene.elements import Elements, wind_up
 from loadshare.scene.scene import Array
+from loadshare.train.memory import SlipFriction, SlipStop
 from loadshare.train.ring import RoundRing
 from loadshare.train.situations import Situations
 from loadshare.train.train import Spline
@@ -200,6 +201,10 @@ def _springs_of(
             if stiffness > 0.0:
                 gaps.append(np.zeros(1))
                 bends.append(1.0 / situations.support[:, g, k])
+    for radial in scene.radials:
+        if isinstance(radial.source, SlipFriction):
+            gaps += [np.zeros(1)] * 2
+            bends += [np.full(1, 0.5 / radial.source.spline.bending_stiffness)] * 2
     return gaps, bends, [np.zeros(1)] * len(gaps)
 
 
@@ -218,6 +223,12 @@ def _radials(elements: Elements, situations: Situations) -> Array:
             table[:, j, 1:3] = given[:, 1:3] / elements.length
             table[:, j, 3] = given[:, 3] / elements.force
             table[:, j, 4] = given[:, 4]
+        elif isinstance(radial.source, SlipFriction | SlipStop):
+            # Friction is level for ever; its stop is a rigid ring. Both bounds are fixed.
+            (piece,) = radial.source.law(0.0).pieces
+            table[:, j, 2] = piece.length / elements.length
+            table[:, j, 3] = piece.force / elements.force
+            table[:, j, 5] = np.inf
         else:
             q = rounds.index(radial.gear)
             table[:, j, 2] = situations.round_radius[:, q] / elements.length

@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.scene.scene import Array, Scene
+from loadshare.train.memory import SlipFriction
 from loadshare.train.ring import DrumRing
 
 OPPOSED = 1e-4
@@ -211,6 +212,12 @@ def spring_directions(scene: Scene) -> tuple[list[Array], list[str]]:
             if stiffness > 0.0:
                 vectors.append(np.eye(scene.size)[where.start + k])
                 kinds.append("support")
+    for radial in scene.radials:
+        if isinstance(radial.source, SlipFriction):
+            # The shaft of a spline that remembers its slip bends by p − s.
+            bent = np.eye(scene.size)[scene.displacement[radial.gear]] - radial.matrix
+            vectors += list(bent / np.sqrt(2.0))
+            kinds += ["bending"] * 2
     return vectors, kinds
 
 

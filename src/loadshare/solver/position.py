@@ -79,7 +79,7 @@ def solve_scene(scene: Scene, options: Options) -> tuple[Equilibrium, Record]:
         removed,
         coordinates,
     )
-    return _equilibrium(scene, settled), record
+    return equilibrium_of(scene, settled), record
 
 
 def _settle(scene: Scene, plan: Plan, solver: Backend, options: Options) -> tuple[Settled, str]:
@@ -133,7 +133,7 @@ def _margins(scene: Scene, plan: Plan, settled: Settled) -> dict[str, tuple[bool
     return found
 
 
-def _equilibrium(scene: Scene, settled: Settled) -> Equilibrium:
+def equilibrium_of(scene: Scene, settled: Settled) -> Equilibrium:
     """Turn an answer into physical terms, least-norm where it leaves displacements undetermined."""
     train = scene.train
     settled = _without_noise(scene, settled)

@@ -27,9 +27,13 @@ from loadshare.study.memory import stepped
 from loadshare.study.positions import loaded
 from loadshare.train import Train, build_train
 from loadshare.train.gear import Vector
+from loadshare.train.train import Spline
 
 if TYPE_CHECKING:
     import xarray as xr
+
+UNCHANGED = 1e-11
+"""Change of a slip, over the deflection of the case, that is round-off of an answer."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -155,7 +159,7 @@ def _marched(case: Case, train: Train, progress: Progress | None) -> March:
                 refusal.partial = result_of(case, train, answers, BACKEND, TOLERANCE, steps)
             raise
         state = State(remembering, answer.equilibrium)
-        after = {g: state.slip(s) for g, s in train.splines.items()}
+        after = {g: _slipped(state, s, before[g]) for g, s in train.splines.items()}
         slips.append({g: _slip(state, answer, g, before[g], after[g]) for g in after})
         answers.append(answer)
         before = after
@@ -171,12 +175,21 @@ def _marched(case: Case, train: Train, progress: Progress | None) -> March:
     )
 
 
+def _slipped(state: State, spline: Spline, before: Vector) -> Vector:
+    """Slip at the end of a step; what differs by round-off from the one before has not changed."""
+    after = state.slip(spline)
+    round_off = UNCHANGED * state.length_scale
+    return before if float(np.linalg.norm(after - before)) <= round_off else after
+
+
 def _slip(state: State, answer: Answer, gear: str, before: Vector, after: Vector) -> Slip:
     spline = state.train.splines[gear]
     friction = np.asarray(answer.equilibrium.radial_reaction[spline.name])
     stage = answer.certificate.floats[gear].spline or ""
-    # Where a spline sticks, its slip changes by round-off only, to either side.
-    work = 0.0 if stage == "stick" else max(float(-friction @ (after - before)), 0.0)
+    if stage == "stick" and after is not before:
+        # Friction that is next to nothing can be told from none by what has slipped only.
+        stage = "slip"
+    work = max(float(-friction @ (after - before)), 0.0)
     return Slip(
         slip=state.train.gears[gear].frame @ after,
         stage=stage,

@@ -8,7 +8,7 @@ that the stop takes no more than friction leaves. The certificate judges it by t
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations, islice
 
@@ -16,18 +16,31 @@ import numpy as np
 
 from loadshare.certify import certify
 from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify.state import State
 from loadshare.errors import Refused
-from loadshare.job.ladder import Answer, rungs
+from loadshare.job.ladder import SEARCHED, Answer, rungs
 from loadshare.scene import assemble
+from loadshare.scene.data import data_of
+from loadshare.scene.elements import elements_of
+from loadshare.scene.plan import Plan
 from loadshare.scene.scene import Array, Scene
-from loadshare.solver import Options, solve_scene
-from loadshare.solver.position import of_least_norm
+from loadshare.solver import Options, Record, solve_scene
+from loadshare.solver.hot.proximal import search
+from loadshare.solver.outer import Settled
+from loadshare.solver.position import equilibrium_of, of_least_norm
 from loadshare.study.answers import BACKEND, certified
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
 from loadshare.train.memory import SlipStop
+from loadshare.train.situations import situation_of
 from loadshare.train.train import Spline, Train
 
+NEGLIGIBLE = 1e-10
+"""Friction, over the load, that an answer without it is in balance with, as far as certified."""
+TURNS, HALVINGS = 40, 60
+"""Turns between slips and displacements, and halvings of an angle, to round-off."""
+ROUND_OFF = 1e-15
+"""Change of a slip over the displacement, or of a force over its bound, that is none."""
 AT_END = 1e-6
 """Room left in a clearance, over the clearance, below which its end is near."""
 
@@ -50,8 +63,12 @@ def stepped(train: Train, index: int) -> Answer:
     assert train.slip is not None
     # A slip that stood at the end of its clearance mostly stays there.
     ends = [g for g, s in train.splines.items() if _at_end(s, train.slip[g])]
-    for gears in _subsets(ends):
+    for gears in (*_subsets(ends), ()):
         answer = _held(train, index, gears, islice(rungs(BACKEND), 1))
+        if answer is not None:
+            return answer
+    for other in (_all_but_free, _searched, _in_turn):
+        answer = other(train, index)
         if answer is not None:
             return answer
     try:
@@ -62,6 +79,147 @@ def stepped(train: Train, index: int) -> Answer:
             if answer is not None:
                 return answer
         raise refusal from None
+
+
+def _searched(train: Train, index: int) -> Answer | None:
+    """Return a certified answer by the proximal search, if there is one.
+
+    It knows friction with fixed bounds only, as elements of their own beside a shaft that bends.
+    """
+    if any(spline.friction_force is None for spline in train.splines.values()):
+        return None
+    scene = assemble(train, index)
+    elements = elements_of(scene)
+    try:
+        data = data_of(elements, situation_of(train, index))
+    except ValueError:
+        # A spline has no law with memory; the general programme says why.
+        return None
+    state, found = search(elements, data)
+    if not found.solved[0]:
+        return None
+    force, row = state.force[0] * elements.force, elements.springs
+    forces = dict(zip(elements.row_names, force[row:].tolist(), strict=False))
+    columns = {r.name: elements.radial_column(j) for j, r in enumerate(scene.radials)}
+    settled = Settled(
+        x=state.x[0] * elements.length,
+        forces=forces,
+        radial_forces={name: force[k : k + 2] for name, k in columns.items()},
+        laws={r.name: r.law(0.0) for r in scene.radials},
+        kind="force method",
+        iterations=(),
+    )
+    equilibrium = equilibrium_of(scene, settled)
+    certificate = certify(train, equilibrium, TOLERANCE)
+    if not certificate.passed:
+        return None
+    plan = Plan.full(scene)
+    record = Record(
+        SEARCHED, "force", settled.kind, (), plan, int(found.turns[0]), scene.removed,
+        scene.coordinates,
+    )  # fmt: skip
+    return Answer(train, equilibrium, certificate, record, SEARCHED)
+
+
+def _all_but_free(train: Train, index: int) -> Answer | None:
+    """Return a certified answer for friction that is next to nothing.
+
+    That without it, to which friction is added along the way that each slip has gone.
+    """
+    load = assemble(train, index).force_unit()
+    bounds = {g: s.friction_force for g, s in train.splines.items()}
+    if any(b is None or not 0.0 < b <= NEGLIGIBLE * load for b in bounds.values()):
+        return None
+    free = {
+        g: replace(s, friction_force=0.0, clearance=SlipStop(s).law(0.0).reach, stick_limit=None)
+        for g, s in train.splines.items()
+    }
+    try:
+        answer = certified(replace(train, splines=free), index)
+    except Refused:
+        return None
+    state, reactions = State(answer.train, answer.equilibrium), {}
+    for gear, spline in train.splines.items():
+        stop = state.answer.radial_reaction[spline.stop_name]
+        way = state.slip(free[gear]) - _before(train)[gear]
+        far = float(np.linalg.norm(way)) or 1.0
+        friction = -spline.bound(0.0) / far * way
+        pushes = float(np.linalg.norm(stop)) > spline.bound(0.0)
+        reactions[spline.stop_name] = stop - friction if pushes else np.zeros(3)
+        reactions[spline.name] = friction
+    equilibrium = replace(
+        answer.equilibrium, radial_reaction={**answer.equilibrium.radial_reaction, **reactions}
+    )
+    certificate = certify(train, equilibrium, TOLERANCE)
+    if not certificate.passed:
+        return None
+    return Answer(train, equilibrium, certificate, answer.record, f"{answer.rung}, friction added")
+
+
+def _in_turn(train: Train, index: int) -> Answer | None:
+    """Return a certified answer by giving slips and displacements in turn, if that settles.
+
+    Each step lessens a convex energy. It settles fast where the slips have little room, which is
+    where active sets fail: a slip turns about a centre that is nearer than a step.
+    """
+    if any(spline.friction_force is None for spline in train.splines.values()):
+        return None
+    gears, slips = tuple(train.splines), dict(_before(train))
+    for _ in range(TURNS):
+        scene = _without_slip(assemble(train, index), gears, slips)
+        try:
+            found, record = solve_scene(scene, BACKEND)
+        except Refused:
+            return None
+        other = {
+            g: _slip_at(s, found.displacement[g], _before(train)[g])
+            for g, s in train.splines.items()
+        }
+        change = max(float(np.linalg.norm(other[g] - slips[g])) for g in gears)
+        far = max(float(np.linalg.norm(found.displacement[g])) for g in gears)
+        if change <= ROUND_OFF * far:
+            split = _split(train, found, gears, slips)
+            certificate = certify(train, split, TOLERANCE)
+            if not certificate.passed:
+                return None
+            return Answer(train, split, certificate, record, "slips in turn")
+        slips = other
+    return None
+
+
+def _slip_at(spline: Spline, place: Vector, before: Vector) -> Vector:
+    """Slip s that a displacement p gives: least ½ K_w |p − s|² + F_m |s − s₀| within the room."""
+    stiffness, bound = spline.bending_stiffness, spline.bound(0.0)
+    room = SlipStop(spline).law(0.0).reach
+    force = stiffness * (place - before)
+    size = float(np.linalg.norm(force))
+    free = before + max(1.0 - bound / size, 0.0) * (place - before) if size > 0.0 else before
+    if float(np.linalg.norm(free)) <= room or room == 0.0:
+        return free if room > 0.0 else np.zeros(3)
+    start = np.asarray(before)
+    if float(np.linalg.norm(start)) >= room * (1.0 - AT_END):
+        left = force - _least(force, start, bound)
+        if float(np.linalg.norm(left)) <= bound * (1.0 + ROUND_OFF):
+            return start
+    # On the edge of the room, between the way to the slip before and the way to the displacement.
+    out = place / float(np.linalg.norm(place))
+    across = start - (start @ out) * out
+    width = float(np.linalg.norm(across))
+    if width == 0.0:
+        return np.asarray(room * out)
+    across /= width
+    low, high = 0.0, float(np.arctan2(start @ across, start @ out))
+    for _ in range(HALVINGS):
+        angle = 0.5 * (low + high)
+        slip = room * (np.cos(angle) * out + np.sin(angle) * across)
+        along = np.cos(angle) * across - np.sin(angle) * out
+        way = float(np.linalg.norm(slip - start))
+        pull = bound / way * (slip - start) if way > 0.0 else np.zeros(3)
+        if float((pull - stiffness * (place - slip)) @ along) > 0.0:
+            high = angle
+        else:
+            low = angle
+    return np.asarray(slip)
 
 
 def _subsets(gears: list[str]) -> Iterator[tuple[str, ...]]:
@@ -82,29 +240,35 @@ def _held(
     train: Train, index: int, gears: tuple[str, ...], tries: Iterable[tuple[str, Options]]
 ) -> Answer | None:
     """Return a certified answer with the slip of some splines held, if there is one."""
-    scene = _without_slip(assemble(train, index), gears)
+    scene = assemble(train, index)
+    if gears:
+        scene = _without_slip(scene, gears, _before(train))
     for rung, options in tries:
         try:
             found, record = solve_scene(scene, options)
         except Refused:
             continue
-        split = _split(train, found, gears)
+        split = _split(train, found, gears, _before(train))
         certificate = certify(train, split, TOLERANCE)
         if certificate.passed:
             ranges = of_least_norm(assemble(train, index), split).undetermined
             split = replace(split, undetermined=ranges)
             certificate = certify(train, split, TOLERANCE)
-            return Answer(train, split, certificate, record, f"{rung}, slip held")
+            return Answer(train, split, certificate, record, rung + ", slip held" * bool(gears))
     return None
 
 
-def _without_slip(scene: Scene, gears: tuple[str, ...]) -> Scene:
-    """Return the scene with the slip of some splines held where it was."""
-    train = scene.train
+def _before(train: Train) -> Mapping[str, Vector]:
     assert train.slip is not None
+    return {gear: np.asarray(slip) for gear, slip in train.slip.items()}
+
+
+def _without_slip(scene: Scene, gears: tuple[str, ...], slips: Mapping[str, Vector]) -> Scene:
+    """Return the scene with the slips of some splines held."""
+    train = scene.train
     gone: dict[int, float] = {}
     for gear in gears:
-        before = train.gears[gear].frame @ train.slip[gear]
+        before = train.gears[gear].frame @ slips[gear]
         first = scene.coordinates.index(f"spline {gear} slip x")
         gone |= {first: float(before[0]), first + 1: float(before[1])}
     kept = np.array([k for k in range(scene.size) if k not in gone])
@@ -132,18 +296,22 @@ def _holds(name: str, train: Train, gears: tuple[str, ...]) -> bool:
     return any(name in (train.splines[g].name, train.splines[g].stop_name) for g in gears)
 
 
-def _split(train: Train, found: Equilibrium, gears: tuple[str, ...]) -> Equilibrium:
+def _split(
+    train: Train, found: Equilibrium, gears: tuple[str, ...], slips: Mapping[str, Vector]
+) -> Equilibrium:
     """Share the force that holds a slip between friction and the stop."""
-    assert train.slip is not None
     reactions = dict(found.radial_reaction)
     for gear in gears:
-        spline, before = train.splines[gear], np.asarray(train.slip[gear])
-        force = spline.bending_stiffness * (found.displacement[gear] - before)
+        spline, before, slip = train.splines[gear], _before(train)[gear], slips[gear]
+        force = spline.bending_stiffness * (found.displacement[gear] - slip)
         torque = train.transmitted(gear, found.flank_force)
         bound, reach = spline.bound(torque), SlipStop(spline).law(torque).reach
+        way = float(np.linalg.norm(slip - before))
         stop = np.zeros(3)
-        if float(np.linalg.norm(before)) >= reach * (1.0 - AT_END):
-            stop = _least(force, before, bound)
+        if way > 0.0:
+            stop = force - bound / way * (slip - before)
+        elif float(np.linalg.norm(slip)) >= reach * (1.0 - AT_END):
+            stop = _least(force, slip, bound)
         reactions[spline.name], reactions[spline.stop_name] = stop - force, -stop
     return replace(found, radial_reaction=reactions)
 

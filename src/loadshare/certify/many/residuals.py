@@ -134,7 +134,7 @@ def cone_membership(bench: Bench, band: Array) -> Array:
         leaning = -(pull.reaction * outward).sum(axis=1)
         along = np.where(radius > band, leaning, force)
         sideways = size(pull.reaction + leaning[:, None] * outward)
-        sideways = np.where(radius > band, sideways, 0.0)
+        sideways = np.where(radius > band, sideways - force * band / radius, 0.0)
         worst = np.maximum(worst, np.maximum(np.maximum(low - along, along - high), sideways))
     return np.asarray(worst)
 

@@ -65,6 +65,8 @@ BEYOND = 1.01
 """Radius over S2 from which on it does."""
 BURST = 1e6
 """Force over the load from which on rigid contacts contradict one another."""
+SOFTEST = 1e8
+"""Largest compliance of a radial element across its offset."""
 FAR = 1e3
 """Way from where proximal passes ended, over how far they went, that only a drift explains."""
 FAINT = 1e-12

@@ -657,6 +657,9 @@ def block(
             inner = 1.0 / law.last
             outer = np.where(pull > 0.0, reached / np.where(pull > 0.0, pull, 1.0), inner)
             start = law.reach - law.bound / law.last
+    # Across its offset a force vanishes in the end, whatever its compliance there: one that a small
+    # force makes immense would only drown all others.
+    outer = np.minimum(outer, at.SOFTEST)
     dyad = along[:, :, None] * along[:, None, :]
     compliance = inner[:, None, None] * dyad + outer[:, None, None] * (one - dyad)
     bound = law.bound if place == at.SLIP else None

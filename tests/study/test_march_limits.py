@@ -1,0 +1,60 @@
+"""Marches at the limits: no room beside friction, next to none, and friction next to nothing.
+
+Source: formulation, section 5. A clearance of F_m/K_w leaves a slip no room, so the spline is the
+spring K_w; without friction it is the holonomic one.
+"""
+
+import numpy as np
+import pytest
+from tests.study.test_march import both, floating
+
+import loadshare as ls
+
+KW = 1.78e7
+
+
+def spline(friction: float, clearance: float) -> ls.Case:
+    """The seed's full float with a fixed friction [N] and a clearance [m] of both splines."""
+    gone = both("normal_force", None) | both("friction", None)
+    given = both("friction_force", f"{friction!r} N") | both("clearance", f"{clearance!r} m")
+    return floating(assumed=["errors.*"], **gone, **given)
+
+
+@pytest.mark.parametrize("friction", [1e-6, 1.0, 50.0, 500.0])
+def test_a_clearance_that_friction_needs_leaves_a_spring(friction):
+    found = ls.march(spline(friction, friction / KW))
+    springs = {f"gears.{g}.support": f"{KW!r} N/m" for g in "45"}
+    alone = ls.solve(floating(splines=None, assumed=["errors.*"], **springs))
+    assert found.result.passed
+    assert found.dissipated == 0.0
+    for here, there in zip(found.result.positions, alone.positions, strict=True):
+        assert here.torque == pytest.approx(there.torque, rel=1e-9)
+
+
+@pytest.mark.parametrize("room", [1e-13, 1e-11, 1e-10, 1e-9])
+@pytest.mark.parametrize("friction", [1e-6, 1.0, 500.0])
+def test_next_to_no_room_is_next_to_a_spring(friction, room):
+    """A slip that has so little room changes a displacement by no more than that."""
+    found = ls.march(spline(friction, friction / KW + room))
+    without = ls.march(spline(friction, friction / KW))
+    assert found.result.passed
+    for here, there in zip(found.result.positions, without.result.positions, strict=True):
+        for gear in "45":
+            apart = np.subtract(here.displacement[gear], there.displacement[gear])
+            assert np.abs(apart).max() <= 2.0 * room + 1e-15
+
+
+@pytest.mark.parametrize("clearance", [1e-5, 1.19e-4, 4e-4])
+def test_friction_of_a_millionth_of_a_newton(clearance):
+    found = ls.march(spline(1e-6, clearance))
+    without = ls.march(spline(0.0, clearance))
+    assert found.result.passed
+    for here, there in zip(found.result.positions, without.result.positions, strict=True):
+        assert here.torque == pytest.approx(there.torque, rel=1e-9)
+    path = sum(
+        float(np.linalg.norm(after[g].slip - before[g].slip))
+        for before, after in zip(found.slips, found.slips[1:], strict=False)
+        for g in after
+    )
+    first = sum(float(np.linalg.norm(s.slip)) for s in found.slips[0].values())
+    assert found.dissipated == pytest.approx(1e-6 * (first + path), rel=1e-6)
