@@ -13,6 +13,7 @@ from functools import cached_property, partial
 from typing import TypeVar
 
 from loadshare.certify import residuals
+from loadshare.certify.bound import Bound, bound_of
 from loadshare.certify.floats import FloatState, float_states
 from loadshare.certify.state import State
 from loadshare.train.equilibrium import Equilibrium
@@ -59,6 +60,8 @@ class Certificate:
         Largest scaled residual allowed.
     load, deflection : float
         Scales [N], [m].
+    bound : Bound
+        How far every torque, force and displacement is from the exact equilibrium, at most.
     """
 
     residuals: Mapping[str, Residual]
@@ -66,6 +69,7 @@ class Certificate:
     tolerance: float
     load: float
     deflection: float
+    bound: Bound
 
     @property
     def worst(self) -> float:
@@ -74,8 +78,11 @@ class Certificate:
 
     @property
     def passed(self) -> bool:
-        """Whether every scaled residual is within the tolerance."""
-        return self.worst <= self.tolerance
+        """Whether every residual, and the error of every torque, is within the tolerance.
+
+        The error of a torque counts over the largest torque of the train.
+        """
+        return self.worst <= self.tolerance and self.bound.relative <= self.tolerance
 
     @property
     def failing(self) -> dict[str, Residual]:
@@ -106,7 +113,7 @@ class _Later(Mapping[str, Value]):
         return len(self._made)
 
 
-def certify_later(train: Train, answer: Equilibrium, tolerance: float) -> Certificate:
+def certify_later(train: Train, answer: Equilibrium, tolerance: float, bound: Bound) -> Certificate:
     """Return the certificate of an answer that passed when it was judged with many others.
 
     Its figures are computed, as `certify` computes them, when they are first asked for.
@@ -115,6 +122,8 @@ def certify_later(train: Train, answer: Equilibrium, tolerance: float) -> Certif
     ----------
     train, answer, tolerance
         As for `certify`.
+    bound : Bound
+        As it was found with the many others.
     """
     # The batch's scales may differ in the last digit, and a result that is loaded again would.
     state = State(train, answer)
@@ -124,6 +133,7 @@ def certify_later(train: Train, answer: Equilibrium, tolerance: float) -> Certif
         tolerance=tolerance,
         load=state.force_scale,
         deflection=state.length_scale,
+        bound=bound,
     )
 
 
@@ -136,7 +146,9 @@ def _floats(train: Train, answer: Equilibrium) -> Mapping[str, FloatState]:
     return {} if state.fault else float_states(state, BAND)
 
 
-def certify(train: Train, answer: Equilibrium, tolerance: float = TOLERANCE) -> Certificate:
+def certify(
+    train: Train, answer: Equilibrium, tolerance: float = TOLERANCE, rigorous: bool = False
+) -> Certificate:
     """Judge a claimed equilibrium.
 
     Parameters
@@ -144,7 +156,11 @@ def certify(train: Train, answer: Equilibrium, tolerance: float = TOLERANCE) -> 
     train : Train
     answer : Equilibrium
     tolerance : float
-        Largest scaled residual of a certified answer.
+        Largest scaled residual, and largest error of a torque over the largest torque, of a
+        certified answer.
+    rigorous : bool
+        Find the residuals behind the bound in twice the working precision in any case, not only
+        where plain arithmetic does not suffice.
 
     Returns
     -------
@@ -184,4 +200,5 @@ def certify(train: Train, answer: Equilibrium, tolerance: float = TOLERANCE) -> 
         tolerance=tolerance,
         load=load,
         deflection=deflection,
+        bound=Bound.none(train) if state.fault else bound_of(train, answer, rigorous),
     )

@@ -7,6 +7,7 @@ to the exact power-cone programme; then it is refused with figures.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -14,6 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from loadshare.certify import Certificate, certify
+from loadshare.certify.bound import Bound, bound_of
 from loadshare.certify.certificate import certify_later
 from loadshare.certify.validity import Validity, refusal_told, validity
 from loadshare.errors import Refused
@@ -134,7 +136,10 @@ def hot_answers(
     for row in np.flatnonzero(found.passed).tolist():
         index = indices[row]
         equilibrium = least.get(row) or found.equilibria.one(row, index)
-        certificate = certify_later(train, equilibrium, tolerance)
+        bounds = found.verdicts.bounds
+        moved = row in least or bounds.force is None
+        bound = bound_of(train, equilibrium) if moved else Bound.of(bounds, row)
+        certificate = certify_later(train, equilibrium, tolerance, bound)
         record = _hot_record(machine, found, row)
         rung = SEARCHED if found.searched[row] else HOT
         answers[index] = Answer(train, equilibrium, certificate, record, rung)
@@ -249,7 +254,14 @@ def _uncertified(index: int, certificate: Certificate) -> Refused:
         f"({r.scaled:.1e} of the case, allowed {certificate.tolerance:.0e})"
         for name, r in failing.items()
     )
+    figures = {name: r.scaled for name, r in failing.items()}
+    if failing:
+        return Refused(f"position {index}: the answer is not an equilibrium: {told}", figures)
+    error, allowed = certificate.bound.relative, certificate.tolerance
+    proved = "not proved at all" if math.isinf(error) else f"proved to {error:.1e} only"
     return Refused(
-        f"position {index}: the answer is not an equilibrium: {told}",
-        {name: r.scaled for name, r in failing.items()},
+        f"position {index}: forces and laws are in balance to {certificate.worst:.1e}, but the "
+        f"torques are {proved} (of the largest torque; allowed {allowed:.0e}): parts of very "
+        "unlike stiffness share the load, or contacts stand on the verge",
+        {"torque_bound": error},
     )

@@ -65,6 +65,8 @@ class Block:
     certified : ndarray of bool, shape (S, positions)
     residual : ndarray, shape (S, positions)
         Largest scaled residual; NaN where there is no answer.
+    bound : ndarray, shape (S, positions)
+        Largest distance of a torque from the exact one, over the largest torque; likewise.
     determined : ndarray of bool, shape (S, positions)
         Whether the equilibrium determines every displacement.
     displaced : ndarray, shape (S, positions)
@@ -84,6 +86,7 @@ class Block:
     equilibria: tuple[Equilibria, ...]
     certified: NDArray[np.bool_]
     residual: Array
+    bound: Array
     determined: NDArray[np.bool_]
     displaced: Array
     convex: NDArray[np.bool_]
@@ -206,7 +209,8 @@ def solve_many(
     xarray.Dataset
         Over (sample, position): ``torque`` [N·m] (drive less coast), ``share`` and ``pair_share``
         [-] over mesh; ``displacement`` [m] over gear and axis, for gears that can be displaced;
-        ``contact_force`` [N] of ring contacts; ``residual``, ``certified``, ``determined``,
+        ``contact_force`` [N] of ring contacts; ``residual``, ``torque_bound`` (largest distance of
+        a torque from the exact one, over the largest torque), ``certified``, ``determined``,
         ``displaced``, ``convex``, ``arc_curvature`` and ``rung``. ``displaced`` tells how large
         displacements are for the geometry in which they were found, over the bound of a warning;
         the attribute ``warned`` counts the equilibria above 1. ``convex`` tells where nothing that
@@ -270,7 +274,7 @@ def _block(
     """Solve one block; what the hot path leaves climbs the ladder."""
     count, shape = len(rows), (len(rows), len(positions))
     certified, determined = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
-    residual = np.full(shape, np.nan)
+    residual, bound = np.full(shape, np.nan), np.full(shape, np.nan)
     rung = np.full(shape, "", dtype="<U24")
     deflection, load = np.full((2, *shape), np.nan)
     message: dict[tuple[int, int], str] = {}
@@ -291,6 +295,7 @@ def _block(
         residual[:, columns] = found.verdicts.worst.reshape(-1, count).T
         deflection[:, columns] = found.verdicts.deflection.reshape(-1, count).T
         load[:, columns] = found.verdicts.load.reshape(-1, count).T
+        bound[:, columns] = found.verdicts.bounds.relative.reshape(-1, count).T
         determined[:, columns] = found.determined.reshape(-1, count).T
         if least_norm:
             loose = np.flatnonzero(found.passed & ~found.determined).tolist()
@@ -302,12 +307,13 @@ def _block(
             answer = climb(train, index, Options(), tolerance)
         except (CaseError, Refused) as refusal:
             message[int(rows[row]), index] = str(refusal)
-            residual[row, p], rung[row, p] = np.nan, ""
+            residual[row, p], bound[row, p], rung[row, p] = np.nan, np.nan, ""
             every[p].forget(row)
             continue
         every[p].put(row, answer.equilibrium)
         certified[row, p], rung[row, p] = True, answer.rung
         residual[row, p] = answer.certificate.worst
+        bound[row, p] = answer.certificate.bound.relative
         deflection[row, p] = answer.certificate.deflection
         load[row, p] = answer.certificate.load
         determined[row, p] = not answer.equilibrium.undetermined
@@ -315,7 +321,7 @@ def _block(
     for (row, p), why in refused.items():
         message[int(rows[row]), positions[p]] = f"position {positions[p]}: {why}"
         certified[row, p], rung[row, p] = False, ""
-        residual[row, p] = displaced[row, p] = np.nan
+        residual[row, p] = bound[row, p] = displaced[row, p] = np.nan
         every[p].forget(row)
     curvature, convex = np.full(shape, np.nan), np.zeros(shape, dtype=bool)
     for p, (here, answers) in enumerate(zip(stands, every, strict=True)):
@@ -327,6 +333,7 @@ def _block(
         tuple(every),
         certified,
         residual,
+        bound,
         determined,
         displaced,
         convex,

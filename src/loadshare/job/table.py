@@ -73,6 +73,7 @@ class Table:
         }
         self.values = {name: np.full((*shape, *sizes[name]), np.nan) for name in keep}
         self.residual = np.full(shape, np.nan)
+        self.bound = np.full(shape, np.nan)
         self.certified = np.zeros(shape, dtype=bool)
         self.determined = np.zeros(shape, dtype=bool)
         self.displaced, self.arc_curvature = np.full((2, *shape), np.nan)
@@ -84,6 +85,7 @@ class Table:
         """Write a block in its place."""
         rows = block.rows
         self.residual[rows] = block.residual
+        self.bound[rows] = block.bound
         self.certified[rows] = block.certified
         self.determined[rows] = block.determined
         self.displaced[rows] = block.displaced
@@ -142,6 +144,7 @@ class Table:
             {
                 **variables,
                 "residual": (every, self.residual),
+                "torque_bound": (every, self.bound),
                 "certified": (every, self.certified),
                 "determined": (every, self.determined),
                 "displaced": (every, self.displaced),

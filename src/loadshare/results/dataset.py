@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from loadshare.results.result import Position, Result
 
 
-JUDGED_ARRAYS = ("residual",)
+JUDGED_ARRAYS = ("residual", "torque_bound")
 """Figures of certificates, which are round-off themselves (see `differences.JUDGED`)."""
 
 
@@ -108,6 +108,12 @@ def dataset(result: Result) -> xr.Dataset:
             reaction.reshape(len(positions), len(floats), 2),
             "N",
             "force of the ring on the float",
+        ),
+        "torque_bound": variable(
+            on_mesh,
+            over(meshes, lambda p: p.certificate.bound.torque),
+            "N m",
+            "largest distance of the torque from the exact equilibrium's",
         ),
         "residual": variable(
             ("position", "figure"),

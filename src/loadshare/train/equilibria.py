@@ -48,10 +48,12 @@ class Names:
 
     @cached_property
     def radials(self) -> tuple[tuple[str, str], ...]:
-        """Round rings, then splines: name and gear."""
+        """Round rings, then splines: name and gear; last, with memory, the splines' stops."""
+        splines = self.train.splines
         return (
             *((r.name, r.gear) for r in self.train.rounds),
-            *((s.name, g) for g, s in self.train.splines.items()),
+            *((s.name, g) for g, s in splines.items()),
+            *((s.stop_name, g) for g, s in splines.items() if self.train.slip is not None),
         )
 
 

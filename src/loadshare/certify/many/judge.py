@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.certify.bound import Bounds, Columns, bounds
 from loadshare.certify.certificate import TOLERANCE
 from loadshare.certify.many.bench import Bench
 from loadshare.certify.many.residuals import scaled_residuals
@@ -100,6 +101,11 @@ class Judge:
         )
 
     @cached_property
+    def columns(self) -> Columns:
+        """The mechanics as columns, for bounds."""
+        return Columns(self.train)
+
+    @cached_property
     def _mechanics(self) -> Mechanics:
         return mechanics(self)
 
@@ -122,21 +128,26 @@ class Judge:
             With Numba, one answer after another, instead of NumPy: the same figures up to
             round-off, several times as fast once it is compiled.
         """
+        limits = bounds(self.columns, situations, answers)
         if compiled:
             residuals, load, deflection = judged(self._mechanics, situations, answers)
-            return Verdicts(residuals, tolerance, load, deflection)
+            return Verdicts(residuals, tolerance, load, deflection, limits)
         count = len(answers.rotation)
         if count <= TOGETHER:
-            return self._together(situations, answers, tolerance)
+            return self._together(situations, answers, tolerance, limits)
         parts = [slice(at, at + TOGETHER) for at in range(0, count, TOGETHER)]
         return Verdicts.joined(
-            [self._together(situations.take(p), answers.part(p), tolerance) for p in parts]
+            [self._together(situations.take(p), answers.part(p), tolerance, limits) for p in parts],
+            limits,
         )
 
-    def _together(self, situations: Situations, answers: Equilibria, tolerance: float) -> Verdicts:
+    def _together(
+        self, situations: Situations, answers: Equilibria, tolerance: float, limits: Bounds
+    ) -> Verdicts:
         with np.errstate(all="ignore"):
             bench = Bench(self, situations, answers)
-            return Verdicts(scaled_residuals(bench), tolerance, bench.load, bench.deflection)
+            residuals = scaled_residuals(bench)
+            return Verdicts(residuals, tolerance, bench.load, bench.deflection, limits)
 
 
 def _apart(train: Train, gear: str, neighbour: str) -> Array:

@@ -9,6 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.certify.bound import Bounds
+
 Array = NDArray[np.float64]
 
 RESIDUALS = (
@@ -33,21 +35,25 @@ class Verdicts:
     tolerance : float
     load, deflection : ndarray, shape (S,)
         Scales [N], [m].
+    bounds : Bounds
+        How far the answers are from the exact ones, at most.
     """
 
     residuals: Array
     tolerance: float
     load: Array
     deflection: Array
+    bounds: Bounds
 
     @classmethod
-    def joined(cls, parts: Sequence[Verdicts]) -> Verdicts:
-        """Return the verdicts of parts, one after another."""
+    def joined(cls, parts: Sequence[Verdicts], bounds: Bounds) -> Verdicts:
+        """Return the verdicts of parts, one after another, with the bounds of all of them."""
         return cls(
             np.concatenate([v.residuals for v in parts]),
             parts[0].tolerance,
             np.concatenate([v.load for v in parts]),
             np.concatenate([v.deflection for v in parts]),
+            bounds,
         )
 
     @cached_property
@@ -58,5 +64,5 @@ class Verdicts:
 
     @cached_property
     def passed(self) -> NDArray[np.bool_]:
-        """Whether every scaled residual is within the tolerance."""
-        return np.asarray(self.worst <= self.tolerance)
+        """Whether every residual, and the error of every torque, is within the tolerance."""
+        return np.asarray((self.worst <= self.tolerance) & (self.bounds.relative <= self.tolerance))

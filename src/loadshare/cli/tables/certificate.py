@@ -46,8 +46,10 @@ def _verdict(result: Result, wanted: int) -> Text:
     word = ("PASSED", "bold green") if passed else ("REFUSED", "bold red")
     certified = sum(p.certificate.passed for p in result.positions)
     worst = result.certificate.worst
+    proved = max(p.certificate.bound.relative for p in result.positions)
     return Text.assemble(
         word,
         f"  {certified} of {counted(wanted, 'position')} certified; "
-        f"worst {small(worst)}, allowed {result.stamp.tolerance:.0e}",
+        f"worst {small(worst)}, torques proved to {small(proved)} of the largest, "
+        f"allowed {result.stamp.tolerance:.0e}",
     )

@@ -1,0 +1,404 @@
+r"""A bound on the distance of a claimed equilibrium from the exact one.
+
+Residuals that are small in force and length do not bound torques where stiff parts share through
+soft ones. Here the error is bounded itself. With the residuals of a claim, in twice the working
+precision,
+
+.. math:: r_f = f - A^T F, \qquad r_o = A X - g - \delta(F),
+
+the linearised error is :math:`\Delta F = P r_f + N z`, where :math:`A^T P = 1`, :math:`A^T N = 0`
+and
+
+.. math:: N^T D N\, z = N^T (r_o - D P r_f), \qquad \Delta X = P^T (D\,\Delta F - r_o),
+
+D the compliances of what acts. Common shifts drop out with :math:`N^T A = 0`, whatever the ratio
+of stiffnesses. What the linearisation leaves out (curvature of laws, turning directions, rounding
+of all that is computed here) is bounded over a box around the claim, and the box is accepted only
+if the exact error is thereby shown to lie in it (Krawczyk; Rump, Acta Numerica 19, 2010). Last,
+every force and gap that decides which elements act must keep its sign all over the box: then what
+acts was identified rightly, and the exact equilibrium of the case is the one in the box. Source:
+formulation, section 16.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.certify.bound.claim import EPS, Claim
+from loadshare.certify.bound.laws import Act, Codes, Elements, elements
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+WIDER = ((2.0, 1e-4), (8.0, 1e-2), (16.0, 1.0))
+"""Boxes tried: times what rounding alone may do, and a part of the largest error."""
+REFERENCES = 16
+"""Claims whose linear operators are tried on all that have the same columns acting."""
+SINGULAR = 1e-15
+"""Compliance of a self-stress, over the largest, below which it is shared by rigid parts alone."""
+SHARED = 1e-7
+"""Part of a force in a self-stress of rigid parts from which on it is undetermined."""
+BALANCED = 1e-12
+"""Load along a move that nothing resists, over the claim's load, that is rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """Where the exact equilibria of S claims lie; infinite where nothing was proved.
+
+    Attributes
+    ----------
+    force : ndarray, shape (S, m)
+        Largest error of the columns' forces [N].
+    coordinate : ndarray, shape (S, n)
+        Largest error of the coordinates [m]; infinite for those that nothing determines.
+    doubtful : ndarray of bool, shape (S, elements)
+        Elements of which it is not proved how they act.
+    above : ndarray of bool, shape (S, elements)
+        Whether a doubtful radial element may act as further out or under more force.
+    unbalanced : ndarray of bool, shape (S,)
+        Whether what acts cannot carry the load.
+    """
+
+    force: Array
+    coordinate: Array
+    doubtful: Flags
+    above: Flags
+    unbalanced: Flags
+
+    def part(self, row: int) -> Box:
+        """Return the box of one claim."""
+        return Box(*(getattr(self, f.name)[row : row + 1] for f in fields(self)))
+
+    @classmethod
+    def unproved(cls, claim: Claim, act: Codes) -> Box:
+        """Return boxes without end."""
+        columns = claim.columns
+        return cls(
+            np.full((claim.count, len(columns.names)), np.inf),
+            np.full((claim.count, len(columns.coordinates)), np.inf),
+            np.zeros(act.shape, dtype=bool),
+            np.zeros(act.shape, dtype=bool),
+            np.zeros(claim.count, dtype=bool),
+        )
+
+
+def boxes(claim: Claim, act: Codes, scale: Array, verge: Flags | None = None) -> Box:
+    """Bound the errors of S claims, taking their elements to act as given.
+
+    Parameters
+    ----------
+    claim : Claim
+    act : ndarray of int8, shape (S, elements)
+    scale : ndarray, shape (S,)
+        Load of the claims [N].
+    """
+    verge = np.zeros(act.shape, dtype=bool) if verge is None else verge
+    found = elements(claim, act, scale, verge)
+    left, rounding = claim.balance(found.force)
+    rounding = rounding + found.rounding @ np.abs(claim.columns.matrix.high)
+    box = Box.unproved(claim, act)
+    _, first, group = np.unique(
+        np.packbits(found.active, axis=1), axis=0, return_index=True, return_inverse=True
+    )
+    for number, sample in enumerate(first):
+        rows = np.flatnonzero(group.reshape(-1) == number)
+        part = _Part(claim, found, rows, np.flatnonzero(found.active[sample]), left, rounding)
+        force, coordinate = part.solve(scale[rows])
+        box.force[rows] = aside(claim, found, rows)
+        box.force[np.ix_(rows, part.columns)] += force + part.shared + part.stray[:, None]
+        box.coordinate[rows] = coordinate + np.where(part.statics.loose, np.inf, 0.0)
+        box.doubtful[rows], box.above[rows] = part.doubts(found, force, coordinate)
+        box.unbalanced[rows] = part.stray > BALANCED * scale[rows]
+    return box
+
+
+def _yielding(soft: Array, skew: Array, at: NDArray[np.intp], force: Array) -> Array:
+    """D F: compliances, and those off the diagonal of the pairs that begin at some columns."""
+    moved = soft * force
+    moved[..., at] += skew * force[..., at + 1]
+    moved[..., at + 1] += skew * force[..., at]
+    return np.asarray(moved)
+
+
+def aside(claim: Claim, found: Elements, rows: NDArray[np.intp] | slice) -> Array:
+    """Part of the claimed forces that what acts cannot carry, shape (rows, m) [N]."""
+    claimed, force = claim.forces[rows], found.force[rows]
+    apart = np.abs(claimed - force)
+    arcs = claim.columns.arcs
+    if arcs.start < arcs.stop:
+        size = np.abs(claimed[:, arcs][:, ::2])
+        left = np.where(found.active[rows][:, arcs][:, ::2], 0.0, size)
+        apart[:, arcs] = np.repeat(left, 2, axis=1)
+    return np.asarray(apart)
+
+
+class _Response:
+    """How forces and coordinates answer a load [N] and a gap [m], with one claim's compliances.
+
+    Parameters
+    ----------
+    part : _Part
+    row : int
+        The claim.
+    """
+
+    def __init__(self, part: _Part, row: int) -> None:
+        known = part.statics
+        p, n = known.particular, known.redundant
+        self.soft, self.skew = part.soft[row], part.skew[row]
+
+        def bent(forces: Array) -> Array:
+            return _yielding(self.soft, self.skew, part.at, forces.T).T
+
+        m = n.T @ bent(n)
+        if not np.isfinite(m).all():
+            m = np.zeros_like(m)
+        values, vectors = np.linalg.eigh(0.5 * (m + m.T))
+        # A self-stress among rigid parts has no compliance: it is left as it is claimed.
+        kept = np.abs(values) > SINGULAR * np.abs(values).max(initial=0.0)
+        basis = n @ vectors[:, kept]
+        free = n @ vectors[:, ~kept]
+        self.shared = np.where(np.abs(free).max(axis=1, initial=0.0) > SHARED, np.inf, 0.0)
+        by_gap = basis / values[kept] @ basis.T
+        by_load = p - by_gap @ bent(p)
+        self.force_by = by_load, by_gap
+        self.moved_by = p.T @ bent(by_load), p.T @ (bent(by_gap) - np.eye(len(p)))
+        exact = vectors[:, kept].T @ m @ vectors[:, kept] / values[kept]
+        self.defect = float(np.abs(exact - np.eye(int(kept.sum()))).sum(axis=1).max(initial=0.0))
+        self._sizes = tuple(np.abs(v) for v in (*self.force_by, *self.moved_by))
+
+    def step(self, load: Array, gap: Array) -> tuple[Array, Array]:
+        """Forces and coordinates, of S loads and gaps."""
+        forces, moved = self.force_by, self.moved_by
+        return load @ forces[0].T + gap @ forces[1].T, load @ moved[0].T + gap @ moved[1].T
+
+    def reach(self, load: Array, gap: Array) -> tuple[Array, Array]:
+        """Largest forces and coordinates under loads and gaps of these sizes."""
+        f, g, x, y = self._sizes
+        enough = 1.0 / (1.0 - self.defect) if self.defect < 0.5 else np.inf
+        return enough * (load @ f.T + gap @ g.T), enough * (load @ x.T + gap @ y.T)
+
+
+class _Part:
+    """Claims of which the same columns act."""
+
+    def __init__(
+        self,
+        claim: Claim,
+        found: Elements,
+        rows: NDArray[np.intp],
+        columns: NDArray[np.intp],
+        left: Array,
+        rounding: Array,
+    ) -> None:
+        self.claim, self.found, self.rows, self.columns = claim, found, rows, columns
+        self.statics = claim.columns.statics(columns)
+        pick = np.ix_(rows, columns)
+        self.soft, self.misfit, self.width = found.soft[pick], found.misfit[pick], found.width[pick]
+        self.left, self.rounding = left[rows], rounding[rows]
+        moves = self.statics.moves
+        # Balance along moves that nothing resists is the case's own; only rounding may be left.
+        self.stray = np.abs(self.left @ moves).max(axis=1, initial=0.0)
+        if moves.size:
+            self.stray += EPS * np.abs(found.force[rows]).max(axis=1, initial=0.0)
+        self.left = self.left - self.left @ moves @ moves.T
+        first = claim.columns.first_pair
+        at = np.searchsorted(columns, np.arange(first, found.active.shape[1], 2))
+        self.pairs = np.flatnonzero(found.active[rows[0], first::2])
+        self.at = at[self.pairs]
+        self.skew = found.skew[np.ix_(rows, self.pairs)]
+        self.shared = np.zeros(len(columns))
+
+    def solve(self, scale: Array) -> tuple[Array, Array]:
+        """Largest errors of the forces of these columns and of the coordinates.
+
+        Claims that yield alike share the linear operators of one of them; what they differ by is
+        bounded with the rest.
+        """
+        force = np.full(self.soft.shape, np.inf)
+        coordinate = np.full((len(self.rows), len(self.statics.directions.T)), np.inf)
+        left = np.flatnonzero(self.stray <= BALANCED * scale)
+        for _ in range(REFERENCES):
+            if not len(left):
+                break
+            middle = int(left[len(left) // 2])
+            response = _Response(self, middle)
+            force[left], coordinate[left] = self._errors(response, left)
+            self.shared = np.maximum(self.shared, response.shared)
+            left = left[(left != middle) & np.isinf(force[left]).any(axis=1)]
+        return force, coordinate
+
+    def _errors(self, response: _Response, rows: NDArray[np.intp]) -> tuple[Array, Array]:
+        """Errors of some claims; infinite where they are not proved."""
+        known, size = self.statics, len(self.columns)
+        soft, skew, misfit = self.soft[rows], self.skew[rows], self.misfit[rows]
+        force, moved = response.step(self.left[rows], misfit)
+        # What the step leaves of the linear equations, and the rounding of this very figure.
+        yielded = _yielding(soft, skew, self.at, force)
+        over = np.abs(self.left[rows] - force @ known.directions) + self.rounding[rows]
+        over += EPS * size * (np.abs(force) @ np.abs(known.directions))
+        apart = np.abs(misfit + moved @ known.directions.T - yielded) + self.width[rows]
+        apart += EPS * size * (np.abs(moved) @ np.abs(known.directions).T + np.abs(misfit))
+        apart += EPS * size * _yielding(np.abs(soft), np.abs(skew), self.at, np.abs(force))
+        unlike = np.abs(soft - response.soft), np.abs(skew - response.skew)
+        found = np.full(force.shape, np.inf), np.full(moved.shape, np.inf)
+        start, shift = response.reach(over, apart)
+        left = np.ones(len(rows), dtype=bool)
+        for factor, floor in WIDER:
+            box = factor * start + floor * (start + np.abs(force)).max(1, initial=0.0)[:, None]
+            way = factor * shift + floor * (shift + np.abs(moved)).max(1, initial=0.0)[:, None]
+            push, gap = self._left_out(rows, box + np.abs(force), way + np.abs(moved))
+            gap += _yielding(*unlike, self.at, box)
+            forces, places = response.reach(over + push, apart + gap)
+            proved = (forces <= box).all(axis=1) & (places <= way).all(axis=1) & left
+            found[0][proved] = forces[proved] + np.abs(force[proved])
+            found[1][proved] = places[proved] + np.abs(moved[proved])
+            left &= ~proved
+        return found
+
+    def _left_out(self, rows: NDArray[np.intp], reach: Array, ways: Array) -> tuple[Array, Array]:
+        """What the linearisation leaves out of balance [N] and of lengths [m] in a box."""
+        found, columns = self.found, self.columns
+        lengths = ways @ np.abs(self.statics.directions).T
+        gap = np.zeros_like(reach)
+        pick = np.ix_(self.rows[rows], columns)
+        curve, force = found.curve[pick], np.abs(found.force[pick])
+        light = force <= 2.0 * reach
+        # Over half to twice the force the tangent of a Hertz contact changes by its curvature.
+        gap += np.where(curve > 0.0, 0.5 * curve * reach**2, 0.0)
+        gap += np.where(curve < 0.0, -curve * reach, 0.0)
+        gap = np.where((curve > 0.0) & light, np.inf, gap)
+        extra = np.zeros_like(reach)
+        if len(self.at):
+            where = np.ix_(self.rows[rows], self.pairs)
+            size, distance = np.abs(found.size[where]), found.distance[where]
+            moved = np.hypot(lengths[:, self.at], lengths[:, self.at + 1])
+            pushed = np.hypot(reach[:, self.at], reach[:, self.at + 1])
+            lined = found.stiff_error[where] != 0.0
+            near = np.where(distance > 2.0 * moved, distance, np.nan)
+            bow = np.where(lined, moved**2 / near, 0.0)
+            turn = np.where(
+                lined,
+                2.0 * pushed * moved / near
+                + 2.0 * size * (moved / near) ** 2
+                + found.stiff_error[where] * moved,
+                0.0,
+            )
+            follow = found.follows[where] * self._torque_errors(reach)
+            turn += follow
+            for k in (0, 1):
+                gap[:, self.at + k] += bow
+                extra[:, self.at + k] += turn
+        return extra @ np.abs(self.statics.directions), gap
+
+    def _torque_errors(self, reach: Array) -> Array:
+        """Largest error of the torque over the spline of each pair [N·m]."""
+        claim = self.claim
+        arcs = (claim.columns.arcs.stop - claim.columns.arcs.start) // 2
+        rounds, splines = len(claim.columns.train.rounds), len(claim.columns.train.splines)
+        wide = np.zeros((len(reach), claim.columns.flanks.stop))
+        some = self.columns < claim.columns.flanks.stop
+        wide[:, self.columns[some]] = reach[:, some]
+        torque = wide @ np.abs(claim.columns.moments).T
+        errors = np.zeros((len(reach), len(self.pairs)))
+        for j, pair in enumerate(self.pairs):
+            q = pair - arcs
+            if q >= rounds and splines:
+                errors[:, j] = torque[:, (q - rounds) % splines]
+        return errors
+
+    def doubts(self, found: Elements, force: Array, coordinate: Array) -> tuple[Flags, Flags]:
+        """Elements of which the errors do not show how they act."""
+        columns = self.claim.columns
+        errors = np.zeros((len(self.rows), len(columns.names)))
+        errors[:, self.columns] = force
+        moved = coordinate @ np.abs(columns.matrix.high).T
+        doubtful, above = doubts(self.claim, found, self.rows, errors, moved)
+        # Errors without a bound tell nothing of the elements.
+        bounded = np.asarray(np.isfinite(coordinate).all(axis=1))[:, None]
+        return doubtful & bounded, above & bounded
+
+
+def doubts(
+    claim: Claim, found: Elements, rows: NDArray[np.intp], errors: Array, moved: Array
+) -> tuple[Flags, Flags]:
+    """Elements whose force or gap may change its sign within errors, shape (rows, elements).
+
+    Parameters
+    ----------
+    claim : Claim
+    found : Elements
+    rows : ndarray of int
+        Claims.
+    errors, moved : ndarray, shape (rows, m)
+        Errors of the forces [N] and of the lengths [m] of all columns.
+
+    Returns
+    -------
+    doubtful, above : ndarray of bool
+        As in `Box`.
+    """
+    columns = claim.columns
+    pick = slice(None) if len(rows) == claim.count else rows
+    act = found.act[pick]
+    length = claim.lengths[0].value[pick]
+    doubtful, above = np.zeros(act.shape, bool), np.zeros(act.shape, bool)
+    scalar = np.array(columns.contacts, dtype=np.intp)
+    acting = found.force[pick][:, scalar] > errors[:, scalar]
+    away = -length[:, scalar] > moved[:, scalar] + found.width[pick][:, scalar]
+    closed = act[:, : len(scalar)] != Act.OPEN
+    doubtful[:, : len(scalar)] = ~np.where(closed, acting, away)
+    if columns.pairs:
+        first = columns.first_pair
+        error, way = (
+            np.sqrt((v[:, first:].reshape(len(v), -1, 2) ** 2).sum(axis=2)) for v in (errors, moved)
+        )
+        low, high = _room(claim, found, pick, act[:, len(scalar) :], error, way)
+        doubtful[:, len(scalar) :] = ~(low & high)
+        above[:, len(scalar) :] = ~high
+    return doubtful, above
+
+
+def _room(
+    claim: Claim,
+    found: Elements,
+    rows: NDArray[np.intp] | slice,
+    act: Codes,
+    error: Array,
+    moved: Array,
+) -> tuple[Flags, Flags]:
+    """Whether each arc and radial element stays above and below the ends of its piece."""
+    arcs = claim.arcs[1].shape[1]
+    size, distance = found.size[rows], found.distance[rows]
+    low, high = np.ones(act.shape, bool), np.ones(act.shape, bool)
+    gap = claim.arcs[1][rows]
+    low[:, :arcs] = np.where(
+        act[:, :arcs] != Act.OPEN, size[:, :arcs] > error[:, :arcs], gap > moved[:, :arcs]
+    )
+    stiffness, stick, level, reach, _ = np.moveaxis(claim.graphs[rows], 2, 0)
+    part, acts = slice(arcs, None), act[:, arcs:]
+    size, distance, error, moved = (v[:, part] for v in (size, distance, error, moved))
+    follow = found.follows[rows][:, part] > 0.0
+    level_error = np.where(follow, error, 0.0)
+    end = np.where(np.isinf(stick), np.inf, np.where(stick > 0.0, stiffness * stick, 0.0))
+    is_low = {
+        Act.STEP: size - error > end,
+        Act.SLIP: distance - moved > stick,
+        Act.STOP: size - error > level + level_error,
+    }
+    is_high = {
+        Act.OPEN: distance + moved < reach,
+        Act.STICK: np.isinf(stick) | (reach == 0.0) | (size + error < end),
+        Act.PINNED: (level == 0.0) | (size + error < level),
+        Act.STEP: size + error < level,
+        Act.SLIP: distance + moved < reach,
+    }
+    for kind, held in is_low.items():
+        low[:, part] &= (acts != kind) | held
+    for kind, held in is_high.items():
+        high[:, part] &= (acts != kind) | held
+    return low, high

@@ -1,0 +1,266 @@
+"""Claimed equilibria as coordinates, forces and lengths of the columns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.certify.bound.columns import Columns
+from loadshare.certify.bound.twofold import Twofold, exact, minus, plus, product, quotient
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.radial import ROUNDING
+from loadshare.train.situations import Situations
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Claim:
+    """S claims at the situations in which they stand.
+
+    Attributes
+    ----------
+    columns : Columns
+    situations : Situations
+    answers : Equilibria
+    fine : bool
+        Whether residuals are found in twice the working precision.
+    """
+
+    columns: Columns
+    situations: Situations
+    answers: Equilibria
+    fine: bool = True
+
+    @property
+    def count(self) -> int:
+        """S."""
+        return len(self.answers.rotation)
+
+    def take(self, rows: NDArray[np.intp]) -> Claim:
+        """Return some of the claims."""
+        answers = self.answers.laid(lambda array: array[rows])
+        here = self.situations
+        return Claim(self.columns, here.take(rows) if here.count > 1 else here, answers, self.fine)
+
+    def _each(self, array: Array) -> Array:
+        """An array of the situations with one row for every claim."""
+        return np.broadcast_to(array, (self.count, *array.shape[1:]))
+
+    @cached_property
+    def coordinates(self) -> Array:
+        """X, shape (S, n) [m]."""
+        columns, train = self.columns, self.columns.train
+        x = np.zeros((self.count, len(columns.coordinates)))
+        for gear, turn in columns.turns.items():
+            if turn.coordinate is not None and not turn.shafts:
+                x[:, turn.coordinate] = turn.radius * self.answers.rotation[:, columns.order[gear]]
+        for gear, at in columns.places.items():
+            moved = self.answers.displacement[:, columns.order[gear]]
+            x[:, at : at + 2] = moved @ train.gears[gear].frame.T
+        first = len(train.rounds)
+        for k, (gear, at) in enumerate(columns.slips.items()):
+            # The spline's shaft bends under the friction and the stop that act on its slip.
+            force = sum(
+                self.answers.radial_reaction[:, q]
+                for q in (first + k, first + len(columns.slips) + k)
+            )
+            bent = -force @ train.gears[gear].frame.T / self.situations.spline[:, k, :1]
+            place = columns.places[gear]
+            x[:, at : at + 2] = x[:, place : place + 2] - bent
+        return x
+
+    @cached_property
+    def forces(self) -> Array:
+        """F as claimed, shape (S, m) [N]; of arcs their size stands in the first of two columns."""
+        columns, train, answers = self.columns, self.columns.train, self.answers
+        found = np.zeros((self.count, len(columns.names)))
+        found[:, columns.flanks] = answers.flank_force
+        arms = [train.gears[s.first].base_radius for s in train.shafts.values()]
+        for at, k in enumerate(columns.elastic_shafts, columns.shafts.start):
+            found[:, at] = answers.shaft_torque[:, k] / arms[k]
+        for number, gear in enumerate(columns.places):
+            at = columns.bearings.start + 2 * number
+            found[:, at : at + 2] = answers.support_force[:, columns.order[gear]]
+        stops = 2 * len(train.drums)
+        found[:, columns.stops] = answers.ring_force[:, :stops]
+        found[:, columns.arcs.start : columns.arcs.stop : 2] = answers.ring_force[:, stops:]
+        for q, gear in enumerate(self.radial_gears):
+            at = columns.radials.start + 2 * q
+            frame = train.gears[gear].frame
+            found[:, at : at + 2] = -answers.radial_reaction[:, q] @ frame.T
+        first = columns.radials.start + 2 * len(train.rounds)
+        for k in range(len(columns.slips)):
+            friction, stop = (first + 2 * (k + j * len(columns.slips)) for j in (0, 1))
+            at = columns.bends.start + 2 * k
+            found[:, at : at + 2] = found[:, friction : friction + 2] + found[:, stop : stop + 2]
+        return found
+
+    @cached_property
+    def radial_gears(self) -> tuple[str, ...]:
+        """Gear of every radial element."""
+        train = self.columns.train
+        splines = tuple(train.splines) * (1 if train.slip is None else 2)
+        return (*(r.gear for r in train.rounds), *splines)
+
+    @cached_property
+    def rest(self) -> tuple[Twofold, Array]:
+        """Lengths at X = 0, shape (S, m) [m], and the sum of the sizes of their terms."""
+        here, (on, _) = self.situations, self.columns.constants
+        offset = here.offset.reshape(len(here.offset), -1)
+        rows = max(len(offset), len(here.clocking))
+        varying = np.concatenate(
+            [np.broadcast_to(a, (rows, a.shape[1])) for a in (here.clocking, offset)], axis=1
+        )
+        gaps = self._gaps()
+        if not self.fine:
+            return exact(varying @ on - gaps), np.abs(gaps)
+        total, sizes = product(varying, on)
+        return minus(total, exact(gaps)), sizes + np.abs(gaps)
+
+    def _gaps(self) -> Array:
+        """Gaps, limits and centres, shape (S or 1, m) [m]."""
+        columns, train, here = self.columns, self.columns.train, self.situations
+        rows = max(len(here.gap), len(here.backlash), len(here.stop), len(here.offset))
+        gaps = np.zeros((rows, len(columns.names)))
+        for e, (mesh, drive) in enumerate(columns.constants[1]):
+            gaps[:, e] = (here.gap if drive else here.backlash)[:, mesh]
+        gaps[:, columns.stops] = here.stop.reshape(len(here.stop), -1)
+        for q, ring in enumerate(train.rounds):
+            at = columns.radials.start + 2 * q
+            gaps[:, at : at + 2] = train.gears[ring.gear].frame @ ring.offset
+        if train.slip is not None:
+            for k, gear in enumerate(train.splines):
+                at = columns.radials.start + 2 * (len(train.rounds) + k)
+                before = np.asarray(train.slip[gear])
+                gaps[:, at : at + 2] = train.gears[gear].frame @ before
+        return gaps
+
+    @cached_property
+    def lengths(self) -> tuple[Twofold, Array]:
+        """A X − g in twice the precision, shape (S, m) [m], and the sum of the sizes of its terms.
+
+        Of arcs, the displacement from where their centres stand.
+        """
+        matrix, x = self.columns.matrix, self.coordinates
+        if not self.fine:
+            rest = self.rest[0].high
+            plain = x @ matrix.high.T
+            plain += rest
+            widest = np.abs(x).max(axis=1, initial=0.0) + np.abs(rest).max(axis=1, initial=0.0)
+            spread = EPS / TINY * (widest + self.widest_offset)[:, None]
+            return exact(plain), np.broadcast_to(spread, plain.shape)
+        moved, sizes = product(x, matrix.high.T)
+        still, more = self.rest
+        total = plus(plus(moved, exact(x @ matrix.low.T)), still)
+        return total, sizes + more
+
+    @cached_property
+    def arcs(self) -> tuple[Array, Array, Array]:
+        """Ways from the neighbours' centres, margins, and the sizes that margins are made of.
+
+        Shapes (S, arcs, 2), (S, arcs), (S, arcs) [m]. The margin is that of the train's own arcs,
+        free of cancellation.
+        """
+        columns, train, here = self.columns, self.columns.train, self.situations
+        first = columns.arcs.start
+        ways, margins, sizes = [], [], []
+        for drum, ring in enumerate(train.drums):
+            gear = train.gears[ring.gear]
+            for side, neighbour in enumerate(ring.neighbours):
+                at = first + 2 * (2 * drum + side)
+                nominal = gear.frame @ (gear.centre - train.gears[neighbour].centre)
+                moved = self.lengths[0].value[:, at : at + 2]
+                moved = moved + here.arc_shift[:, drum, side] @ gear.frame.T
+                way = nominal + moved
+                grown = 2.0 * moved @ nominal + (moved**2).sum(axis=1)
+                both = np.sqrt((way**2).sum(axis=1)) + np.sqrt(nominal @ nominal)
+                clearance = here.arc_clearance[:, drum, side]
+                ways.append(way)
+                margins.append(grown / both + clearance)
+                sizes.append(np.sqrt((moved**2).sum(axis=1)) + np.abs(clearance))
+        if not ways:
+            none = np.zeros((self.count, 0))
+            return np.zeros((self.count, 0, 2)), none, none
+        return np.stack(ways, axis=1), np.stack(margins, axis=1), np.stack(sizes, axis=1)
+
+    @cached_property
+    def load(self) -> tuple[Twofold, Array]:
+        """f, shape (S, n) [N], and the sum of the sizes of its terms."""
+        columns, torque = self.columns, self.situations.torque
+        total = exact(np.zeros((len(torque), len(columns.coordinates))))
+        for gear, turn in columns.turns.items():
+            pushed = torque[:, columns.order[gear]]
+            if turn.coordinate is None or not pushed.any():
+                continue
+            part = quotient(pushed, np.full_like(pushed, turn.radius))
+            at = turn.coordinate
+            here = Twofold(total.high[:, at], total.low[:, at])
+            total.high[:, at], total.low[:, at] = plus(here, part)
+        return total, np.abs(total.high)
+
+    @cached_property
+    def widest_offset(self) -> Array:
+        """Largest centre offset, shape (S or 1,) [m]."""
+        return np.asarray(np.abs(self.situations.offset).max(axis=(1, 2), initial=0.0))
+
+    def balance(self, forces: Array) -> tuple[Array, Array]:
+        """Return f − Aᵀ F, shape (S, n) [N], and its rounding, at given forces."""
+        matrix = self.columns.matrix
+        if not self.fine:
+            due = self.load[0].value
+            left = due - forces @ matrix.high
+            most = np.abs(forces).max(axis=1, initial=0.0) + np.abs(due).max(axis=1, initial=0.0)
+            return left, np.broadcast_to(EPS * most[:, None], left.shape)
+        pushed, sizes = product(forces, matrix.high)
+        load, more = self.load
+        left = minus(minus(load, pushed), exact(forces @ matrix.low)).value
+        return left, EPS * np.abs(left) + TINY * (sizes + more)
+
+    @cached_property
+    def torque_on_splines(self) -> Array:
+        """Torque that each spline's gear takes over it, shape (S, splines) [N·m]."""
+        return np.asarray(self.answers.flank_force @ self.columns.moments.T)
+
+    @cached_property
+    def graphs(self) -> Array:
+        """Graphs of the radial elements, shape (S, radials, 5).
+
+        First stiffness, stick radius S1 (infinite without slip), level F_m, reach S2, last
+        stiffness (infinite for a rigid stop); not a number where a law has no meaning.
+        """
+        train, here = self.columns.train, self.situations
+        found = np.zeros((self.count, len(self.radial_gears), 5))
+        for q in range(len(train.rounds)):
+            found[:, q, 3] = here.round_radius[:, q]
+            found[:, q, 4] = here.round_stiffness[:, q]
+        first = len(train.rounds)
+        for k in range(len(train.splines)):
+            stiffness, given, reach, fixed, per_torque = self._each(here.spline[:, k]).T
+            torque = np.abs(self.torque_on_splines[:, k])
+            bound = np.where(np.isnan(fixed), per_torque * torque, fixed)
+            until = bound / stiffness
+            stick = np.where(np.isnan(given), until, np.fmin(given, until))
+            drops = stiffness * given > bound * (1.0 + ROUNDING)
+            faulty = drops | (~np.isnan(given) & (reach < stick))
+            if train.slip is None:
+                stick = np.where((reach < stick) & np.isnan(given), np.inf, stick)
+                parts = [(stiffness, stick, bound, reach, stiffness)]
+            else:
+                zero, endless = np.zeros(self.count), np.full(self.count, np.inf)
+                room = np.maximum(reach - until, 0.0)
+                parts = [(zero, zero, bound, endless, endless), (zero, zero, zero, room, endless)]
+            for j, part in enumerate(parts):
+                values = np.stack(part, axis=1)
+                values[faulty] = np.nan
+                found[:, first + k + j * len(train.splines)] = values
+        return found
+
+
+EPS = 4.0 * np.finfo(float).eps
+"""Rounding of a handful of operations, relative to their result."""
+TINY = 2.0**-98
+"""Rounding of sums in twice the precision, relative to the sizes of their terms."""

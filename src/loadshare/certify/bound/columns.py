@@ -1,0 +1,337 @@
+r"""The mechanics of a train as columns: which force does work on which coordinate.
+
+A claim is a set of coordinates X (rotations times a radius, displacements; all lengths) and of
+forces F. Flanks, shafts, bearings and stops are one column each, arcs and radial elements two, the
+components of a vector in the transverse frame. Balance and compatibility of the exact equilibrium
+are
+
+.. math:: A^T F = f, \qquad A X - g = \delta(F),
+
+with A from the train's geometry alone. It is built here from the train's meshes, not from the
+programme that a solver sees, so that a slip of one shows in the other. Source: formulation,
+sections 2 and 16.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.certify.bound.statics import Statics
+from loadshare.certify.bound.twofold import Twofold, quotient, two_product
+from loadshare.train.mesh import Mesh
+from loadshare.train.train import Train
+
+Array = NDArray[np.float64]
+
+
+SETS = 2000
+"""Sets of columns of which the statics are kept, so that memory is bounded."""
+
+
+@dataclass(frozen=True, slots=True)
+class Turn:
+    """How a gear turns: φ = X/R − lag, or −lag alone where its group is held.
+
+    Attributes
+    ----------
+    coordinate : int or None
+        Number of X.
+    radius : float
+        R [m], the largest base radius of the gears that turn as one.
+    shafts : tuple of (int, float)
+        Rigid shafts between the group's first gear and this one, with the sign of their clocking.
+    """
+
+    coordinate: int | None
+    radius: float
+    shafts: tuple[tuple[int, float], ...]
+
+
+class Columns:
+    """The columns of a train.
+
+    Parameters
+    ----------
+    train : Train
+
+    Attributes
+    ----------
+    coordinates : tuple of str
+        Names, "gear rotation" or "gear x", "gear y".
+    turns : dict of gear to Turn
+    places : dict of gear to int
+        First of the two coordinates of a gear that can be displaced.
+    slips : dict of gear to int
+        First of the two coordinates of the slip of a spline with memory.
+    names : tuple of str
+        Element of every column.
+    flanks, shafts, bearings, stops, arcs, radials, bends : slice
+        Columns by kind; arcs and radials in pairs, `bends` the shafts of splines with memory.
+    matrix : Twofold
+        A, shape (m, n).
+    first_pair, pairs : int
+        Column from which on elements have two, and how many such elements there are.
+    """
+
+    def __init__(self, train: Train) -> None:
+        self.train = train
+        self.order = {g: k for k, g in enumerate(train.gears)}
+        self.turns, names = _turns(train)
+        self.places: dict[str, int] = {}
+        self.slips: dict[str, int] = {}
+        for gear in train.gears.values():
+            if gear.moves:
+                self.places[gear.name] = len(names)
+                names += [f"{gear.name} x", f"{gear.name} y"]
+        for spline in train.splines if train.slip is not None else ():
+            self.slips[spline] = len(names)
+            names += [f"{spline} slip x", f"{spline} slip y"]
+        self.coordinates = tuple(names)
+        rows: list[Twofold] = []
+        self._labels: list[str] = []
+        self.flanks = self._add(rows, self._flank_rows())
+        self.shafts = self._add(rows, self._shaft_rows())
+        self.bearings = self._add(rows, self._bearing_rows())
+        self.stops = self._add(rows, self._stop_rows())
+        self.bends = self._add(rows, self._bend_rows())
+        self.arcs = self._add(rows, self._arc_rows())
+        self.radials = self._add(rows, self._radial_rows())
+        self.names = tuple(self._labels)
+        shape = (len(rows), len(names))
+        self.matrix = Twofold(
+            np.array([r.high for r in rows]).reshape(shape),
+            np.array([r.low for r in rows]).reshape(shape),
+        )
+        self.first_pair = self.arcs.start
+        self.pairs = (len(rows) - self.first_pair) // 2
+        self._statics: dict[bytes, Statics] = {}
+
+    @cached_property
+    def elastic_shafts(self) -> tuple[int, ...]:
+        """Numbers of the shafts that yield."""
+        return tuple(
+            k for k, s in enumerate(self.train.shafts.values()) if not math.isinf(s.stiffness)
+        )
+
+    @cached_property
+    def loads(self) -> Array:
+        """Part of every gear's torque in f, shape (gears, n) [1/m]."""
+        part = np.zeros((len(self.order), len(self.coordinates)))
+        for gear, turn in self.turns.items():
+            if turn.coordinate is not None:
+                part[self.order[gear], turn.coordinate] = 1.0 / turn.radius
+        return part
+
+    @cached_property
+    def moments(self) -> Array:
+        """Torque that each spline's gear takes over it, per flank force, (splines, flanks) [m]."""
+        found = np.zeros((len(self.train.splines), self.flanks.stop))
+        for k, gear in enumerate(self.train.splines):
+            for e, (mesh, drive) in enumerate(self.all_flanks):
+                on_driver, on_driven, _ = mesh.direction(drive)
+                found[k, e] += on_driver if gear == mesh.driver else 0.0
+                found[k, e] += on_driven if gear == mesh.driven else 0.0
+        return found
+
+    @cached_property
+    def all_flanks(self) -> tuple[tuple[Mesh, bool], ...]:
+        """Flanks that can touch: mesh, drive or coast."""
+        return tuple((m, d) for m in self.train.meshes.values() for d in m.flanks)
+
+    @cached_property
+    def constants(self) -> tuple[Array, tuple[tuple[int, bool], ...]]:
+        """What lengths take from clockings and centre offsets, and where flanks have their gaps.
+
+        A matrix, shape (shafts + 3 gears, m), and the mesh and side of every flank.
+        """
+        shafts = list(self.train.shafts.values())
+        order = {m: k for k, m in enumerate(self.train.meshes)}
+        on = np.zeros((len(shafts) + 3 * len(self.order), len(self.names)))
+        for e, (mesh, drive) in enumerate(self.all_flanks):
+            on_driver, on_driven, normal = mesh.direction(drive)
+            for gear, arm, sign in ((mesh.driver, on_driver, 1.0), (mesh.driven, on_driven, -1.0)):
+                for k, lag in self.turns[gear].shafts:
+                    on[k, e] -= lag * arm
+                at = len(shafts) + 3 * self.order[gear]
+                on[at : at + 3, e] += sign * normal
+        for at, k in enumerate(self.elastic_shafts, self.shafts.start):
+            arm = self.train.gears[shafts[k].first].base_radius
+            on[k, at] -= arm
+            for gear, sign in ((shafts[k].first, 1.0), (shafts[k].second, -1.0)):
+                for j, lag in self.turns[gear].shafts:
+                    on[j, at] -= sign * lag * arm
+        return on, tuple((order[m.name], d) for m, d in self.all_flanks)
+
+    @cached_property
+    def meshes(self) -> NDArray[np.intp]:
+        """Number of the mesh of every flank."""
+        return np.array([mesh for mesh, _ in self.constants[1]], dtype=np.intp)
+
+    @cached_property
+    def units(self) -> Array:
+        """Radius [m] by which a rotation was multiplied; 1 for displacements, shape (n,)."""
+        found = np.ones(len(self.coordinates))
+        for turn in self.turns.values():
+            if turn.coordinate is not None:
+                found[turn.coordinate] = turn.radius
+        return found
+
+    @cached_property
+    def contacts(self) -> tuple[int, ...]:
+        """Columns of flanks and stops."""
+        return (*range(self.flanks.stop), *range(self.stops.start, self.stops.stop))
+
+    @cached_property
+    def arms(self) -> Array:
+        """Driver's base radius of every flank [m]."""
+        return np.array([m.radii[0] for m, _ in self.all_flanks])
+
+    def statics(self, columns: NDArray[np.intp]) -> Statics:
+        """Return the statics of columns that act, computed once."""
+        key = columns.tobytes()
+        known = self._statics.get(key)
+        if known is None:
+            if len(self._statics) >= SETS:
+                self._statics.clear()
+            known = self._statics[key] = Statics.of(self.matrix.high[columns])
+        return known
+
+    def _add(self, rows: list[Twofold], new: list[tuple[str, Twofold]]) -> slice:
+        start = len(rows)
+        self._labels += [name for name, _ in new]
+        rows += [row for _, row in new]
+        return slice(start, len(rows))
+
+    def _empty(self) -> Twofold:
+        return Twofold(np.zeros(len(self.coordinates)), np.zeros(len(self.coordinates)))
+
+    def _put_turn(self, row: Twofold, gear: str, arm: float) -> None:
+        """Add what a gear's rotation times an arm [m] contributes."""
+        turn = self.turns[gear]
+        if turn.coordinate is not None:
+            part = quotient(np.array(arm), np.array(turn.radius))
+            row.high[turn.coordinate] += part.high
+            row.low[turn.coordinate] += part.low
+
+    def _put_place(self, row: Twofold, first: int, frame: Array, direction: Array) -> None:
+        """Add what a displacement in a frame contributes along a direction (3,)."""
+        for k in (0, 1):
+            term = [two_product(a, b) for a, b in zip(frame[k], direction, strict=True)]
+            high = math.fsum(float(v) for t in term for v in t)
+            low = math.fsum([*(float(v) for t in term for v in t), -high])
+            row.high[first + k] += high
+            row.low[first + k] += low
+
+    def _flank_rows(self) -> list[tuple[str, Twofold]]:
+        rows = []
+        for mesh, drive in self.all_flanks:
+            row = self._empty()
+            on_driver, on_driven, normal = mesh.direction(drive)
+            for gear, arm, sign in ((mesh.driver, on_driver, 1.0), (mesh.driven, on_driven, -1.0)):
+                self._put_turn(row, gear, arm)
+                if gear in self.places:
+                    frame = self.train.gears[gear].frame
+                    self._put_place(row, self.places[gear], frame, sign * normal)
+            rows.append((mesh.flank_name(drive), row))
+        return rows
+
+    def _shaft_rows(self) -> list[tuple[str, Twofold]]:
+        rows = []
+        for shaft in self.train.shafts.values():
+            if math.isinf(shaft.stiffness):
+                continue
+            row, arm = self._empty(), self.train.gears[shaft.first].base_radius
+            self._put_turn(row, shaft.first, arm)
+            self._put_turn(row, shaft.second, -arm)
+            rows.append((shaft.name, row))
+        return rows
+
+    def _unit(self, *entries: tuple[int, float]) -> Twofold:
+        row = self._empty()
+        for where, value in entries:
+            row.high[where] += value
+        return row
+
+    def _bearing_rows(self) -> list[tuple[str, Twofold]]:
+        return [
+            (f"bearing {gear}", self._unit((first + k, 1.0)))
+            for gear, first in self.places.items()
+            for k in (0, 1)
+        ]
+
+    def _stop_rows(self) -> list[tuple[str, Twofold]]:
+        rows = []
+        for ring in self.train.drums:
+            for name, sign in zip(ring.stop_names, (1.0, -1.0), strict=True):
+                row = self._empty()
+                frame = self.train.gears[ring.gear].frame
+                self._put_place(row, self.places[ring.gear], frame, sign * ring.across)
+                rows.append((name, row))
+        return rows
+
+    def _bend_rows(self) -> list[tuple[str, Twofold]]:
+        return [
+            (
+                f"{self.train.splines[g].name} shaft",
+                self._unit((self.places[g] + k, 1.0), (s + k, -1.0)),
+            )
+            for g, s in self.slips.items()
+            for k in (0, 1)
+        ]
+
+    def _arc_rows(self) -> list[tuple[str, Twofold]]:
+        rows = []
+        for ring in self.train.drums:
+            frame = self.train.gears[ring.gear].frame
+            for neighbour in ring.neighbours:
+                for k in (0, 1):
+                    row = self._unit((self.places[ring.gear] + k, 1.0))
+                    if neighbour in self.places:
+                        other = self.train.gears[neighbour].frame
+                        self._put_place(row, self.places[neighbour], other, -frame[k])
+                    rows.append((ring.arc_name(neighbour), row))
+        return rows
+
+    def _radial_rows(self) -> list[tuple[str, Twofold]]:
+        train = self.train
+        pairs = [(r.name, self.places[r.gear]) for r in train.rounds]
+        if train.slip is None:
+            pairs += [(s.name, self.places[g]) for g, s in train.splines.items()]
+        else:
+            pairs += [(s.name, self.slips[g]) for g, s in train.splines.items()]
+            pairs += [(s.stop_name, self.slips[g]) for g, s in train.splines.items()]
+        return [(name, self._unit((at + k, 1.0))) for name, at in pairs for k in (0, 1)]
+
+
+def _turns(train: Train) -> tuple[dict[str, Turn], list[str]]:
+    """How every gear turns, and the names of the rotations."""
+    shafts = list(train.shafts.values())
+    ways: dict[str, tuple[tuple[int, float], ...]] = {}
+    turns: dict[str, Turn] = {}
+    names: list[str] = []
+    for start in (train.output, *train.gears):
+        if start in ways:
+            continue
+        ways[start], group = (), [start]
+        for gear in group:
+            for k, shaft in enumerate(shafts):
+                if not math.isinf(shaft.stiffness) or gear not in (shaft.first, shaft.second):
+                    continue
+                # The second gear of a shaft lags the first by its clocking.
+                ahead = gear == shaft.first
+                other = shaft.second if ahead else shaft.first
+                if other not in ways:
+                    ways[other] = (*ways[gear], (k, 1.0 if ahead else -1.0))
+                    group.append(other)
+        radius = max(train.gears[g].base_radius for g in group)
+        held = start == train.output
+        for gear in group:
+            turns[gear] = Turn(None if held else len(names), radius, ways[gear])
+        if not held:
+            names.append(f"{start} rotation")
+    return turns, names

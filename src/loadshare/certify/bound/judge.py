@@ -1,0 +1,135 @@
+"""Bounds of many claims: on every torque, force and displacement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.certify.bound.batch import Batch, is_plain
+from loadshare.certify.bound.bound import Box, boxes
+from loadshare.certify.bound.claim import EPS, Claim
+from loadshare.certify.bound.columns import Columns
+from loadshare.certify.bound.laws import Codes, first_acts
+from loadshare.certify.bound.quick import quick_boxes
+from loadshare.certify.bound.verge import on_the_verge
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.situations import Situations
+
+Array = NDArray[np.float64]
+
+
+NOISE = 1e-12
+"""Force, in loads of the claim, below which a contact may as well be open."""
+
+
+ENOUGH = 1e-11
+"""Relative bound with which double precision is content."""
+TOGETHER = 512
+"""Claims that are looked at in twice the precision at a time."""
+
+
+MANY = 1000
+"""Claims from which on only the largest error is found where that is enough."""
+
+
+@dataclass(frozen=True, eq=False)
+class Bounds:
+    """How far S claims are from the exact equilibria of their cases, at most.
+
+    Infinite where nothing could be proved, and for what an equilibrium does not determine.
+
+    Attributes
+    ----------
+    columns : Columns
+    relative : ndarray, shape (S,)
+        Largest error of a torque, over the largest torque.
+    force : ndarray, shape (S, m), or None
+        Of the forces of all columns [N]; None for large batches.
+    coordinate : ndarray, shape (S, n), or None
+        Of the coordinates [m]; likewise.
+    """
+
+    columns: Columns
+    relative: Array
+    force: Array | None
+    coordinate: Array | None
+
+
+def torques(columns: Columns, force: Array) -> Array:
+    """Errors of the torques of all flanks on their drivers, (…, flanks) [N·m], from the forces'."""
+    return np.asarray(force[..., columns.flanks] * columns.arms * (1.0 + EPS))
+
+
+def bounds(
+    columns: Columns, situations: Situations, answers: Equilibria, rigorous: bool = False
+) -> Bounds:
+    """Bound the errors of S claimed equilibria, from the claims and the train alone.
+
+    Parameters
+    ----------
+    columns : Columns
+    situations : Situations
+    answers : Equilibria
+    rigorous : bool
+        Find all residuals in twice the working precision; otherwise only where that is needed.
+    """
+    with np.errstate(all="ignore"):
+        return _bounds(Claim(columns, situations, answers, fine=False), rigorous)
+
+
+def _bounds(claim: Claim, rigorous: bool) -> Bounds:
+    columns, answers = claim.columns, claim.answers
+    relative: Array | None = None
+    if not rigorous and claim.count >= MANY and is_plain(columns, answers):
+        relative = Batch(columns, claim.situations, answers).relative()
+        left = np.flatnonzero(~(relative <= ENOUGH))
+        if len(left):
+            relative[left] = _boxes(claim.take(left), rigorous).relative
+        return Bounds(columns, relative, None, None)
+    return _boxes(claim, rigorous)
+
+
+def _boxes(claim: Claim, rigorous: bool) -> Bounds:
+    """Bound all forces and coordinates."""
+    columns, torque, answers = claim.columns, claim.situations.torque, claim.answers
+    radius = np.array([g.base_radius for g in columns.train.gears.values()])
+    flanks = np.abs(answers.flank_force)
+    pushed = (np.abs(torque) / radius).max(axis=1, initial=0.0)
+    scale = np.maximum(flanks.max(axis=1, initial=0.0), pushed)
+    largest = (flanks * columns.arms).max(axis=1, initial=0.0)
+    largest = np.maximum(largest, np.abs(torque).max(axis=1, initial=0.0))
+    scale, largest = (np.where(v > 0.0, v, 1.0) for v in (scale, largest))
+    act = first_acts(claim)
+    box = Box.unproved(claim, act)
+    finite = np.logical_and.reduce(
+        [np.isfinite(a).reshape(claim.count, -1).all(axis=1) for a in answers.arrays]
+    )
+    finite &= np.isfinite(claim.lengths[0].high).all(axis=1)
+    finite &= ~np.isnan(claim.graphs).any(axis=(1, 2))
+    if not rigorous and finite.all():
+        box = quick_boxes(claim, act, scale)
+
+    def relative() -> Array:
+        return np.asarray(torques(columns, box.force).max(axis=1, initial=0.0) / largest)
+
+    left = np.flatnonzero(~(relative() <= ENOUGH) & finite)
+    for at in range(0, len(left), TOGETHER):
+        rows = left[at : at + TOGETHER]
+        fine = replace(claim.take(rows), fine=True)
+        box.force[rows], box.coordinate[rows] = _fine(fine, act[rows], scale[rows])
+    return Bounds(columns, relative(), box.force, box.coordinate)
+
+
+def _fine(claim: Claim, act: Codes, scale: Array) -> tuple[Array, Array]:
+    """Errors from residuals in twice the precision."""
+    box = boxes(claim, act, scale)
+    contacts = np.abs(claim.forces[:, claim.columns.contacts])
+    noise = (contacts > 0.0) & (contacts <= NOISE * scale[:, None])
+    box.doubtful[:, : noise.shape[1]] |= noise
+    for row in np.flatnonzero(box.doubtful.any(axis=1)).tolist():
+        one = np.array([row])
+        single = on_the_verge(claim.take(one), act[one], scale[one], box.part(row))
+        box.force[row], box.coordinate[row] = single.force[0], single.coordinate[0]
+    return box.force, box.coordinate

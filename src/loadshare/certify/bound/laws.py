@@ -1,0 +1,379 @@
+r"""Every element at the claim: whether it acts, how it yields, and what its law leaves over.
+
+Scalar columns yield by a compliance. Arcs and radial elements push along the line from their centre
+and yield as
+
+.. math:: \Delta o = \left(c_n\, u u^T \pm \frac{|d|}{F}\,(1 - u u^T)\right)\Delta F,
+
+u the direction and |d| the distance from the centre: a turn of the direction is a compliance too.
+Source: formulation, sections 3, 5, 6 and 16.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.certify.bound.claim import EPS, TINY, Claim
+from loadshare.certify.bound.twofold import exact, minus, plus, power_two_thirds, two_product
+
+Array = NDArray[np.float64]
+Codes = NDArray[np.int8]
+Flags = NDArray[np.bool_]
+
+SOFT, SOFTEST = 1e5, 1e11
+"""Compliance that stands for "does not resist", and the largest one, in those of the claim."""
+LIGHT = 1e-9
+"""Force, in loads of the claim, at which the tangent of a contact without force is taken.
+
+Below it a Hertz contact is softer still, which only lessens what it moves."""
+CORNER = 1e-12
+"""Relative distance from a level within which a force is on it, up to rounding."""
+
+
+class Act(IntEnum):
+    """How an element acts."""
+
+    OPEN = 0
+    """Not at all."""
+    STICK = 1
+    """As a spring about its centre."""
+    PINNED = 2
+    """Rigidly."""
+    STEP = 3
+    """Rigidly along its line, at the radius S1 where the force steps up to the level."""
+    SLIP = 4
+    """With a given force along its line."""
+    STOP = 5
+    """Along its line: a closed flank, stop or arc, a ring, a spline at its clearance."""
+
+
+@dataclass(frozen=True, eq=False)
+class Elements:
+    """Elements at S claims.
+
+    Attributes
+    ----------
+    act : ndarray of int8, shape (S, elements)
+        Flanks, stops, arcs, radial elements.
+    active : ndarray of bool, shape (S, m)
+        Columns that act.
+    force : ndarray, shape (S, m)
+        F of the columns [N]: what is claimed, along the line of the element where it has one.
+    rounding : ndarray, shape (S, m)
+        Of that [N].
+    soft, skew : ndarray, shape (S, m) and (S, pairs)
+        Compliance: diagonal, and the one off it of elements with two columns [m/N].
+    misfit, width : ndarray, shape (S, m)
+        A X − g − δ(F) [m], and its rounding.
+    curve : ndarray, shape (S, m)
+        Curvature of the law, as the part of the compliance that goes with F^(−1/3), over F.
+    line, distance, size : ndarray, shape (S, pairs, 2), (S, pairs), (S, pairs)
+        u, |d| [m] and the force along it [N].
+    along : ndarray, shape (S, pairs)
+        Compliance along the line [m/N].
+    stiff_error : ndarray, shape (S, pairs)
+        Lateral stiffness that `soft` and `skew` leave out or add [N/m].
+    follows : ndarray, shape (S, pairs)
+        Change of the level per torque over the spline [1/m]; 0 where it does not enter.
+    """
+
+    act: Codes
+    active: Flags
+    force: Array
+    rounding: Array
+    soft: Array
+    skew: Array
+    misfit: Array
+    width: Array
+    curve: Array
+    line: Array
+    distance: Array
+    size: Array
+    along: Array
+    stiff_error: Array
+    follows: Array
+
+
+def first_acts(claim: Claim) -> Codes:
+    """How the elements act by the claim's own forces, shape (S, elements)."""
+    columns = claim.columns
+    force = claim.forces
+    contacts = np.concatenate(
+        [force[:, columns.flanks], force[:, columns.stops], force[:, columns.arcs][:, ::2]], axis=1
+    )
+    scalar = np.where(contacts != 0.0, Act.STOP, Act.OPEN).astype(np.int8)
+    radials = _radial_acts(claim) if claim.radial_gears else np.zeros((claim.count, 0), np.int8)
+    return np.concatenate([scalar, radials], axis=1)
+
+
+def _radial_acts(claim: Claim) -> Codes:
+    columns = claim.columns
+    pair = claim.forces[:, columns.radials].reshape(claim.count, -1, 2)
+    where = claim.lengths[0].value[:, columns.radials].reshape(claim.count, -1, 2)
+    size, distance = (np.sqrt((v**2).sum(axis=2)) for v in (pair, where))
+    first, stick, level, reach, last = np.moveaxis(claim.graphs, 2, 0)
+    with np.errstate(invalid="ignore"):
+        end = np.where(stick > 0.0, first * stick, 0.0)
+    held = np.where(np.isinf(last), Act.PINNED, Act.STICK)
+    below = size < level * (1.0 - CORNER)
+    steps = end < level * (1.0 - CORNER)
+    return np.select(
+        [
+            np.isinf(stick),
+            (level == 0.0) & (stick == 0.0) & (reach == 0.0),
+            (level == 0.0) & (size == 0.0),
+            steps & below & (stick == 0.0),
+            steps & below & (size > end),
+            (distance < stick) & (stick > 0.0),
+            (size <= end) & steps & (stick > 0.0),
+            (distance < reach) & (distance > 0.0) & (level > 0.0),
+            (distance == 0.0) & (level > 0.0) & (stick == 0.0),
+        ],
+        [
+            Act.STICK,
+            held,
+            Act.OPEN,
+            Act.PINNED,
+            Act.STEP,
+            Act.STICK,
+            Act.STICK,
+            Act.SLIP,
+            Act.PINNED,
+        ],
+        Act.STOP,
+    ).astype(np.int8)
+
+
+def elements(claim: Claim, act: Codes, scale: Array, verge: Flags) -> Elements:
+    """Describe the elements at S claims.
+
+    Parameters
+    ----------
+    claim : Claim
+    act : ndarray of int8, shape (S, elements)
+        How they are taken to act.
+    scale : ndarray, shape (S,)
+        Load of the claims [N].
+    verge : ndarray of bool, shape (S, elements)
+        Elements of which it is open how they act: contacts among them carry next to nothing.
+    """
+    columns, count = claim.columns, claim.count
+    m, pairs = len(columns.names), columns.pairs
+    shape = (count, m)
+    active = np.zeros(shape, dtype=bool)
+    soft, width, curve = np.zeros(shape), np.zeros(shape), np.zeros(shape)
+    force = claim.forces.copy()
+    rounding = np.zeros(shape)
+    lengths, sizes = claim.lengths
+    misfit = lengths.value
+    flanks, stops = columns.flanks.stop, columns.stops.stop - columns.stops.start
+    active[:, columns.flanks] = act[:, :flanks] != Act.OPEN
+    active[:, columns.stops] = act[:, flanks : flanks + stops] != Act.OPEN
+    at = np.maximum(claim.forces[:, columns.flanks], 0.0)
+    light = verge[:, :flanks] | (at == 0.0)
+    at = np.where(light, np.maximum(at, LIGHT * scale[:, None]), at)
+    _flanks(claim, scale, at, soft, curve, misfit, width)
+    curve[:, columns.flanks][light] = 0.0
+    _springs(claim, active, soft, misfit, width)
+    scalar = slice(0, columns.first_pair)
+    width[:, scalar] += EPS * np.abs(misfit[:, scalar]) + TINY * sizes[:, scalar]
+    force[:, scalar] = np.where(active[:, scalar], force[:, scalar], 0.0)
+    lines = [np.zeros((count, pairs)) for _ in range(4)]
+    found = Elements(
+        act,
+        active,
+        force,
+        rounding,
+        soft,
+        np.zeros((count, pairs)),
+        misfit,
+        width,
+        curve,
+        np.zeros((count, pairs, 2)),
+        np.ones((count, pairs)),
+        *lines,
+    )
+    if pairs:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            _pairs(claim, act[:, flanks + stops :], found)
+    return found
+
+
+def _flanks(
+    claim: Claim, scale: Array, at: Array, soft: Array, curve: Array, misfit: Array, width: Array
+) -> None:
+    """Compliance (at a force), curvature and misfit of flanks, in twice the precision."""
+    columns, here = claim.columns, claim.situations
+    order = {m: k for k, m in enumerate(columns.train.meshes)}
+    mesh = np.array([order[m.name] for m, _ in columns.all_flanks], dtype=int)
+    b, c = here.bending[:, mesh], here.hertz[:, mesh]
+    force = np.maximum(claim.forces[:, columns.flanks], 0.0)
+    part = slice(0, columns.flanks.stop)
+    hertz = 2.0 / 3.0 * c / np.cbrt(at)
+    soft[:, part] = b + hertz
+    curve[:, part] = hertz / at
+    length, sizes = claim.lengths
+    length = type(length)(length.high[:, part], length.low[:, part])
+    if not claim.fine:
+        root = np.cbrt(force)
+        yielded = exact(b * force + c * (root * root))
+        width[:, part] += EPS * yielded.high
+    else:
+        yielded = two_product(np.broadcast_to(b, force.shape), force)
+    if claim.fine and c.any():
+        power = power_two_thirds(force)
+        wide = np.broadcast_to(c, force.shape)
+        yielded = plus(yielded, plus(two_product(wide, power.high), exact(wide * power.low)))
+    tabled = [e for e, (m, _) in enumerate(columns.all_flanks) if hasattr(m.laws[0], "forces")]
+    if tabled:
+        yielded = type(yielded)(yielded.high.copy(), yielded.low.copy())
+    for e in tabled:
+        slope, value, jump = _table(claim, mesh[e], force[:, e], scale)
+        soft[:, e], yielded.high[:, e], yielded.low[:, e] = slope, value, 0.0
+        width[:, e] += EPS * value
+        curve[:, e] = jump
+    misfit[:, part] = minus(length, yielded).value
+    width[:, part] += TINY * (yielded.high + sizes[:, part])
+
+
+def _table(claim: Claim, mesh: int, force: Array, scale: Array) -> tuple[Array, Array, Array]:
+    """Slope and value of a tabulated law, and a curvature that covers a corner close by."""
+    table = np.broadcast_to(
+        claim.situations.table[:, mesh], (claim.count, *claim.situations.table.shape[2:])
+    )
+    forces, values = table[:, 0], table[:, 1]
+    last = (~np.isnan(forces)).sum(axis=1) - 2
+    k = np.clip((forces <= force[:, None]).sum(axis=1) - 1, 0, last)
+    rows = np.arange(claim.count)
+    slopes = np.diff(values, axis=1) / np.diff(forces, axis=1)
+    slope = slopes[rows, k]
+    value = values[rows, k] + slope * (force - forces[rows, k])
+    near = LIGHT * scale
+    jump = np.zeros(claim.count)
+    for j, corner in ((k - 1, forces[rows, k]), (k + 1, forces[rows, k + 1])):
+        there = (j >= 0) & (j <= last) & (np.abs(force - corner) <= near)
+        other = slopes[rows, np.clip(j, 0, slopes.shape[1] - 1)]
+        with np.errstate(invalid="ignore"):
+            # A bend of the law within reach counts as if it were spread over the reach.
+            jump = np.maximum(jump, np.where(there, 3.0 * np.abs(other - slope), 0.0))
+    return slope, value, -jump
+
+
+def _springs(claim: Claim, active: Flags, soft: Array, misfit: Array, width: Array) -> None:
+    """Shafts, bearings, stops and the shafts of splines with memory: linear columns."""
+    columns, here, train = claim.columns, claim.situations, claim.columns.train
+    given: list[tuple[int, Array]] = []
+    for at, k in enumerate(columns.elastic_shafts, columns.shafts.start):
+        arm = train.gears[list(train.shafts.values())[k].first].base_radius
+        given.append((at, arm**2 / here.torsion[:, k]))
+    for number, gear in enumerate(columns.places):
+        for k in (0, 1):
+            stiffness = here.support[:, columns.order[gear], k]
+            held = stiffness > 0.0
+            compliance = np.where(held, 1.0 / np.where(held, stiffness, 1.0), np.nan)
+            given.append((columns.bearings.start + 2 * number + k, compliance))
+    stops, bends = columns.stops, columns.bends
+    given += [(stops.start + k, here.wall[:, k // 2]) for k in range(stops.stop - stops.start)]
+    given += [
+        (bends.start + k, 1.0 / here.spline[:, k // 2, 0]) for k in range(bends.stop - bends.start)
+    ]
+    for at, compliance in given:
+        held = np.broadcast_to(~np.isnan(compliance), (claim.count,))
+        value = np.nan_to_num(compliance)
+        if not columns.stops.start <= at < columns.stops.stop:
+            active[:, at] = held
+        soft[:, at] = value
+        yielded = value * claim.forces[:, at]
+        length = claim.lengths[0]
+        misfit[:, at] = (length.high[:, at] - yielded) + length.low[:, at]
+        width[:, at] += EPS * np.abs(yielded)
+
+
+def _pairs(claim: Claim, act: Codes, found: Elements) -> None:
+    """Arcs and radial elements."""
+    columns, here = claim.columns, claim.situations
+    first, count = columns.first_pair, claim.count
+    where = claim.lengths[0].value[:, first:].reshape(count, -1, 2)
+    arcs = (columns.arcs.stop - columns.arcs.start) // 2
+    claimed = claim.forces[:, first:].reshape(count, -1, 2)
+    ways, margins, sizes = claim.arcs
+    walls = np.repeat(np.broadcast_to(here.wall, (count, here.wall.shape[1])), 2, axis=1)
+    radials = np.zeros((count, where.shape[1] - arcs))
+    vector = np.concatenate([ways, where[:, arcs:]], axis=1)
+    normal, reach, yields = (np.concatenate([v, radials], axis=1) for v in (margins, sizes, walls))
+    distance = np.sqrt((vector**2).sum(axis=2))
+    line = vector / np.where(distance > 0.0, distance, 1.0)[:, :, None]
+    size = np.sqrt((claimed**2).sum(axis=2))
+    # An arc pushes outwards: its force does work against the distance.
+    sign = np.ones(where.shape[1])
+    sign[:arcs] = -1.0
+    size[:, :arcs] = claimed[:, :arcs, 0]
+    graph = np.moveaxis(claim.graphs, 2, 0)
+    stick_stiffness, stick, level, radius, last = graph
+    acts = act[:, arcs:]
+    size[:, arcs:] = np.where(acts == Act.SLIP, level, size[:, arcs:])
+    part = slice(arcs, None)
+    stopped, stepped = acts == Act.STOP, acts == Act.STEP
+    yields[:, part] = np.where(stopped & np.isfinite(last), 1.0 / last, 0.0)
+    begin = np.where(stopped, radius, np.where(stepped, stick, 0.0))
+    preload = np.where(stopped, level, 0.0)
+    normal[:, part] = distance[:, part] - begin
+    reach[:, part] = distance[:, part] + np.where(np.isfinite(begin), begin, 0.0)
+    preload = np.concatenate([np.zeros((count, arcs)), preload], axis=1)
+    on = act != Act.OPEN
+    lined = (act == Act.STOP) | (act == Act.STEP) | (act == Act.SLIP)
+    off = normal - sign * yields * (size - preload)
+    off = np.where(act == Act.SLIP, 0.0, off)
+    spread = EPS * (reach + yields * np.abs(size))
+    most = np.maximum(found.soft.max(axis=1, initial=0.0), np.finfo(float).tiny)
+    softest = SOFT * most[:, None]
+    across = np.where(size > 0.0, distance / np.where(size > 0.0, size, 1.0), np.inf)
+    lateral = sign * np.minimum(across, SOFTEST * most[:, None])
+    along = np.where(act == Act.SLIP, softest, yields)
+    springs = np.where(act == Act.STICK, 1.0, 0.0)
+    stiffness = np.concatenate(
+        [np.ones((count, arcs)), np.where(np.isinf(stick) | (stick > 0.0), stick_stiffness, last)],
+        axis=1,
+    )
+    spring = np.where(springs > 0.0, 1.0 / stiffness, 0.0)
+    along, lateral = (np.where(lined, v, spring) for v in (along, lateral))
+    x, y = line[:, :, 0], line[:, :, 1]
+    diagonal = np.stack([along * x * x + lateral * y * y, along * y * y + lateral * x * x], axis=2)
+    found.soft[:, first:] = diagonal.reshape(count, -1)
+    found.skew[:] = np.where(lined, (along - lateral) * x * y, 0.0)
+    misfit = np.where(
+        lined[:, :, None], off[:, :, None] * line, where - spring[:, :, None] * claimed
+    )
+    found.misfit[:, first:] = misfit.reshape(count, -1)
+    wide = np.where(lined, spread, EPS * (np.abs(where).sum(axis=2) + spring * np.abs(size)))
+    found.width[:, first:] = np.repeat(wide, 2, axis=1)
+    force = np.where(lined[:, :, None], (sign * size)[:, :, None] * line, claimed)
+    force = np.where(on[:, :, None], force, 0.0)
+    found.force[:, first:] = force.reshape(count, -1)
+    found.rounding[:, first:] = np.repeat(np.where(lined & on, 2.0 * EPS * np.abs(size), 0.0), 2, 1)
+    found.active[:, first:] = np.repeat(on, 2, axis=1)
+    found.line[:], found.distance[:], found.size[:] = line, distance, size
+    found.along[:] = yields
+    true = np.where(size > 0.0, sign / across, 0.0)
+    wrong = np.abs(true - 1.0 / lateral) * (1.0 + EPS) + np.where(act == Act.SLIP, 1.0 / along, 0.0)
+    found.stiff_error[:] = np.where(lined, np.maximum(wrong, np.finfo(float).tiny), 0.0)
+    _follow(claim, acts, stopped, yields[:, part], found.follows[:, part])
+
+
+def _follow(claim: Claim, acts: Codes, stopped: Flags, yields: Array, follows: Array) -> None:
+    """Change of a spline's level with its torque, where the level enters."""
+    train, here = claim.columns.train, claim.situations
+    rounds, splines = len(train.rounds), len(train.splines)
+    for q in range(rounds, acts.shape[1]):
+        k = (q - rounds) % splines
+        fixed, rate = here.spline[:, k, 3], here.spline[:, k, 4]
+        rate = np.where(np.isnan(fixed), np.abs(rate), 0.0)
+        enters = (acts[:, q] == Act.SLIP) | (stopped[:, q] & (yields[:, q] > 0.0))
+        if q >= rounds + splines:
+            # With memory the room of a rigid stop shrinks by F_m/K_w.
+            enters = stopped[:, q]
+        follows[:, q] = np.where(enters, rate, 0.0)

@@ -1,0 +1,106 @@
+"""The bound of a single claim, by the names of what it bounds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from loadshare.certify.bound.columns import Columns
+from loadshare.certify.bound.judge import Bounds, bounds, torques
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.situations import situation_of
+from loadshare.train.train import Train
+
+KEPT = 64
+"""Trains of which the columns are kept: more than the positions of a march judged in turn."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """How far a claim is from the exact equilibrium, at most.
+
+    Infinite where nothing was proved, and for what an equilibrium does not determine.
+
+    Attributes
+    ----------
+    relative : float
+        Largest error of a torque, over the largest torque.
+    torque : mapping of mesh to float
+        Of the torque on the driver [N·m].
+    force : mapping of element to float
+        Of the force of every flank, bearing, stop, arc, round ring and spline [N], and of the
+        torque of every elastic shaft [N·m].
+    place : mapping of coordinate to float
+        Of every rotation [rad] and displacement [m].
+    """
+
+    relative: float
+    torque: Mapping[str, float]
+    force: Mapping[str, float]
+    place: Mapping[str, float]
+
+    @classmethod
+    def none(cls, train: Train) -> Bound:
+        """Return the bound of a claim that cannot be judged."""
+        return cls(math.inf, dict.fromkeys(train.meshes, math.inf), {}, {})
+
+    @classmethod
+    def of(cls, found: Bounds, row: int) -> Bound:
+        """Return one of not too many, of which all errors were found.
+
+        Raises
+        ------
+        ValueError
+            If only the largest errors were found.
+        """
+        if found.force is None or found.coordinate is None:
+            raise ValueError("of so many claims only the largest error of each was found")
+        columns, force = found.columns, found.force[row]
+        torque: dict[str, float] = {}
+        for (mesh, _), error in zip(columns.all_flanks, torques(columns, force), strict=True):
+            torque[mesh.name] = torque.get(mesh.name, 0.0) + float(error)
+        forces: dict[str, float] = {}
+        for name, error in zip(columns.names, force.tolist(), strict=True):
+            forces[name] = math.hypot(forces.get(name, 0.0), error)
+        gears = columns.train.gears
+        for name in list(forces):
+            if name in columns.train.shafts:
+                forces[name] *= gears[columns.train.shafts[name].first].base_radius
+        units = columns.units
+        place = {
+            name: float(error / unit)
+            for name, error, unit in zip(
+                columns.coordinates, found.coordinate[row], units, strict=True
+            )
+        }
+        return cls(float(found.relative[row]), torque, forces, place)
+
+
+@lru_cache(maxsize=KEPT)
+def columns_of(train: Train) -> Columns:
+    """Return the columns of a train, built once."""
+    return Columns(train)
+
+
+def bound_of(train: Train, answer: Equilibrium, rigorous: bool = False) -> Bound:
+    """Bound the error of one claim.
+
+    Parameters
+    ----------
+    train : Train
+    answer : Equilibrium
+        With figures that are numbers.
+    rigorous : bool
+        See `bounds`.
+    """
+    claimed = Equilibria.empty(train, 1)
+    claimed.put(0, answer)
+    if not all(np.isfinite(array).all() for array in claimed.arrays):
+        return Bound.none(train)
+    here = situation_of(train, answer.index)
+    return Bound.of(bounds(columns_of(train), here, claimed, rigorous), 0)

@@ -1,0 +1,314 @@
+r"""The bound of many claims at once, from the convexity of the complementary energy.
+
+Along the way from a claim to the exact equilibrium every law is monotone, so that with compliances
+D that no element undercuts
+
+.. math:: \Delta F^T D\,\Delta F \le \lvert \Delta F^T \epsilon \rvert, \qquad
+    \Delta F = P r_f + N z,
+
+ε the misfits of the laws. With :math:`L L^T = N (N^T D N)^{-1} N^T` this is
+
+.. math:: \lvert \Delta F_e \rvert \le \lvert P r_f \rvert_e
+    + \lVert L_e \rVert\, \lVert L^T (\epsilon - D P r_f) \rVert .
+
+D, the smallest compliances among claims of which the same elements act, makes L the same for all of
+them: a claim costs two small products. What cannot be shown so is left to `boxes`. Source:
+formulation, section 16.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.certify.bound.bound import BALANCED, SINGULAR, Box, aside, doubts
+from loadshare.certify.bound.claim import EPS, Claim
+from loadshare.certify.bound.laws import LIGHT, Act, Codes, Elements, elements
+from loadshare.certify.bound.statics import Statics
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+SECANT = 0.9
+"""Part of the tangent compliance that the secant to the exact force keeps.
+
+The bound is far below a tenth of the force wherever it is of use; elsewhere it is refused."""
+NEAR = 1e-6
+"""Gap, over the widest one, within which a contact counts among those that may carry."""
+OPPOSED = 1.0 - 1e-6
+"""Cosine from which on two arcs are opposed."""
+ANGLE = 0.02
+"""Angle [rad] between two lines that still count as nearly the same."""
+REFERENCES = 16
+"""Claims whose lines are tried on all those whose elements act alike."""
+GAIN = 0.5
+"""Largest share of an error that may come back over friction that follows the torque."""
+
+
+def quick_boxes(claim: Claim, act: Codes, scale: Array) -> Box:
+    """Bound the errors of S claims; infinite where nothing is shown.
+
+    Parameters
+    ----------
+    claim : Claim
+    act : ndarray of int8, shape (S, elements)
+    scale : ndarray, shape (S,)
+        Load of the claims [N].
+    """
+    box = Box.unproved(claim, act)
+    if claim.columns.train.slip is not None:
+        return box
+    act, doubled = _with_near(claim, act)
+    found = elements(claim, act, scale, np.ones(act.shape, dtype=bool))
+    left, rounding = claim.balance(found.force)
+    for rows in alike(act):
+        for _ in range(REFERENCES):
+            group = _Group(claim, found, rows, doubled)
+            if not group.is_covered:
+                break
+            pick = slice(None) if len(rows) == len(act) else rows
+            box.force[pick], box.coordinate[pick] = group.errors(
+                left[pick], rounding[pick], scale[pick]
+            )
+            # Lines that point elsewhere are looked at with another claim's.
+            rows = rows[group.turned]
+            if not len(rows):
+                break
+    return box
+
+
+def _with_near(claim: Claim, act: Codes) -> tuple[Codes, Flags]:
+    """Ways of acting with contacts that all but touch closed, and which have a twin that acts.
+
+    Two opposed contacts of a ring, without clearance between them, are one contact that holds both
+    ways.
+    """
+    columns = claim.columns
+    flanks, contacts = columns.flanks.stop, len(columns.contacts)
+    length = claim.lengths[0].value
+    gaps = np.concatenate([-length[:, columns.contacts], claim.arcs[1]], axis=1)
+    widest = np.abs(gaps).max(axis=1, initial=0.0)
+    act = act.copy()
+    part = act[:, : gaps.shape[1]]
+    part[(part == Act.OPEN) & (gaps <= NEAR * widest[:, None])] = Act.STOP
+    doubled = np.zeros(act.shape, dtype=bool)
+    force = np.concatenate(
+        [claim.forces[:, columns.contacts], claim.forces[:, columns.arcs][:, ::2]], axis=1
+    )
+    ways = claim.arcs[0]
+    for start in (*range(flanks, contacts, 2), *range(contacts, gaps.shape[1], 2)):
+        both = (part[:, start] == Act.STOP) & (part[:, start + 1] == Act.STOP)
+        if start >= contacts:
+            one, other = ways[:, start - contacts], ways[:, start - contacts + 1]
+            sizes = np.sqrt((one**2).sum(axis=1) * (other**2).sum(axis=1))
+            both &= (one * other).sum(axis=1) < -OPPOSED * sizes
+        for k in (0, 1):
+            weaker = force[:, start + k] < force[:, start + 1 - k] + k * np.finfo(float).tiny
+            doubled[both & weaker, start + k] = True
+    act[doubled] = Act.OPEN
+    return act, doubled
+
+
+def alike(codes: Codes) -> list[NDArray[np.intp]]:
+    """Rows with the same codes."""
+    if (codes == codes[:1]).all():
+        return [np.arange(len(codes))]
+    _, group = np.unique(codes, axis=0, return_inverse=True)
+    group = group.reshape(-1)
+    order = np.argsort(group, kind="stable")
+    return np.split(order, np.cumsum(np.bincount(group))[:-1])
+
+
+class _Group:
+    """Claims whose elements act alike.
+
+    Elements that push along a line are one column here, along the line of one of the claims.
+    """
+
+    def __init__(
+        self, claim: Claim, found: Elements, rows: NDArray[np.intp], doubled: Flags
+    ) -> None:
+        self.claim, self.found, self.rows, self.doubled = claim, found, rows, doubled
+        columns = claim.columns
+        self.pick = slice(None) if len(rows) == len(found.act) else rows
+        acts = found.act[rows[0], len(columns.contacts) :]
+        first = columns.first_pair
+        self.lined = np.flatnonzero((acts == Act.STOP) | (acts == Act.STEP))
+        self.slips = np.flatnonzero(acts == Act.SLIP)
+        active = found.active[rows[0]].copy()
+        for k in (0, 1):
+            active[first + 2 * self.lined + k] = False
+        self.plain = np.flatnonzero(active)
+        matrix = columns.matrix.high
+        self.reference = found.line[rows[len(rows) // 2]][self.lined]
+        along = [
+            u @ matrix[first + 2 * j : first + 2 * j + 2]
+            for u, j in zip(self.reference, self.lined, strict=True)
+        ]
+        self.directions = np.concatenate(
+            [matrix[self.plain], np.reshape(along, (-1, matrix.shape[1]))]
+        )
+        self.statics = Statics.of(self.directions)
+        self.is_sliding = np.zeros(len(self.directions), dtype=bool)
+        for k in (0, 1):
+            self.is_sliding |= np.isin(
+                np.arange(len(self.directions)),
+                np.searchsorted(self.plain, first + 2 * self.slips + k),
+            )
+        self.is_covered = True
+        self._set_particular()
+        self._set_stiffness()
+
+    def _columns(self, plain: Array, lined: Array) -> Array:
+        """Figures of all columns of the claims and figures of the lines, side by side."""
+        return np.concatenate([plain[self.pick][:, self.plain], lined], axis=1)
+
+    def _set_particular(self) -> None:
+        """Find how a load is carried by what yields in proportion."""
+        self.particular = self.statics.particular
+        if self.is_sliding.any():
+            known = Statics.of(self.directions[~self.is_sliding])
+            self.is_covered = known.moves.shape == self.statics.moves.shape
+            self.particular = np.zeros(self.particular.shape)
+            self.particular[~self.is_sliding] = known.particular
+
+    def _set_stiffness(self) -> None:
+        """Find L from the smallest compliances."""
+        found, pick = self.found, self.pick
+        self.soft = self._columns(found.soft, found.along[pick][:, self.lined])
+        self.soft[:, self.is_sliding] = 0.0
+        least = SECANT * self.soft.min(axis=0)
+        if len(self.slips):
+            size, distance = (v[pick][:, self.slips] for v in (found.size, found.distance))
+            least[self.is_sliding] = np.repeat(SECANT * (distance / size).min(axis=0), 2)
+        n = self.statics.redundant
+        stiff = n.T @ (least[:, None] * n)
+        if not np.isfinite(stiff).all():
+            self.is_covered, stiff = False, np.eye(len(stiff))
+        values, vectors = np.linalg.eigh(stiff)
+        if values.size and values.min() <= SINGULAR * values.max():
+            self.is_covered, values = False, np.ones(len(values))
+        self.root = n @ (vectors / np.sqrt(values))
+        self.sizes = np.sqrt((self.root**2).sum(axis=1))
+        self.passes = np.abs(self.particular)
+        self.into_energy = self.passes.T @ (self.soft.max(axis=0) * self.sizes)
+
+    def errors(self, left: Array, rounding: Array, scale: Array) -> tuple[Array, Array]:
+        """Errors of all forces and coordinates of the claims."""
+        claim, found, pick, lined = self.claim, self.found, self.pick, self.lined
+        columns = claim.columns
+        first, matrix = columns.first_pair, np.abs(columns.matrix.high)
+        line, size, distance = (v[pick][:, lined] for v in (found.line, found.size, found.distance))
+        at = first + 2 * lined
+        off = (
+            found.misfit[pick][:, at] * line[:, :, 0]
+            + found.misfit[pick][:, at + 1] * line[:, :, 1]
+        )
+        misfit = self._columns(found.misfit, off)
+        # A contact without force misses its law only where it overlaps.
+        idle = np.isin(self.plain, columns.contacts) & (found.force[pick][:, self.plain] == 0.0)
+        misfit[:, : len(self.plain)] = np.where(
+            idle, np.maximum(misfit[:, : len(self.plain)], 0.0), misfit[:, : len(self.plain)]
+        )
+        idle = (size == 0.0) & (at < columns.arcs.stop)
+        misfit[:, len(self.plain) :] = np.where(idle, np.minimum(off, 0.0), off)
+        width = self._columns(found.width, found.width[pick][:, at])
+        rounding = rounding + found.rounding[pick] @ matrix
+        base, energy = self._under(left, misfit)
+        base, energy = self._with(base, energy, rounding, width)
+        errors = base + energy[:, None] * self.sizes
+        if found.follows[pick].any():
+            errors = errors + self._followed(errors)
+        angle = np.abs(line - self.reference).sum(axis=2)
+        self.turned = (angle > ANGLE).any(axis=1)
+        box = 2.0 * errors
+        places = (self.soft * box + np.abs(misfit) + width) @ self.passes
+        moved = places @ matrix.T
+        if len(lined):
+            way = moved[:, at] + moved[:, at + 1]
+            push = angle * box[:, len(self.plain) :] + 2.0 * np.abs(size) / distance * way
+            load = push @ (matrix[at] + matrix[at + 1])
+            gap = np.zeros_like(errors)
+            gap[:, len(self.plain) :] = angle * way + way**2 / distance
+            more, extra = self._with(np.zeros_like(errors), np.zeros(len(errors)), load, gap)
+            errors = errors + more + extra[:, None] * self.sizes
+            near = (way <= 0.05 * distance).all(axis=1)
+        else:
+            near = np.ones(len(errors), dtype=bool)
+        near &= (errors <= box).all(axis=1)
+        whole = aside(claim, found, pick)
+        whole[:, self.plain] += errors[:, : len(self.plain)]
+        for k in (0, 1):
+            # The line itself may turn.
+            whole[:, at + k] += errors[:, len(self.plain) :]
+            if len(lined):
+                whole[:, at + k] += np.abs(size) / distance * way
+        proved = self._is_proved(whole, places, moved, left, scale) & near
+        whole[~proved], places[~proved] = np.inf, np.inf
+        places[:, self.statics.loose] = np.inf
+        return whole, places
+
+    def _under(self, load: Array, misfit: Array | float) -> tuple[Array, Array]:
+        """Sizes of the forces that carry a load, and of the misfit that is left for self-stress."""
+        force = load @ self.particular.T
+        return np.abs(force), np.sqrt((((misfit - self.soft * force) @ self.root) ** 2).sum(axis=1))
+
+    def _with(self, base: Array, energy: Array, load: Array, gap: Array) -> tuple[Array, Array]:
+        """Add what loads and gaps of given sizes may do."""
+        return base + load @ self.passes.T, energy + gap @ self.sizes + load @ self.into_energy
+
+    def _followed(self, errors: Array) -> Array:
+        """Errors that come over friction which follows the torque."""
+        claim, found, pick = self.claim, self.found, self.pick
+        columns = claim.columns
+        rates, arms = found.follows[pick], np.abs(columns.moments)
+        at = self.plain[self.plain < columns.flanks.stop]
+        arcs = claim.arcs[1].shape[1]
+        total, most = np.zeros_like(errors), np.zeros(len(errors))
+        for pair in np.flatnonzero(rates.any(axis=0)).tolist():
+            first = columns.first_pair + 2 * pair
+            push = found.line[pick][:, pair] @ columns.matrix.high[first : first + 2]
+            force, bent = self._under(push, 0.0)
+            total += (force + bent[:, None] * self.sizes) * rates[:, pair, None]
+            k = (pair - arcs - len(columns.train.rounds)) % len(arms)
+            most = np.maximum(most, errors[:, : len(at)] @ arms[k, at])
+        back = (total[:, : len(at)] @ arms[:, at].T).max(axis=1)
+        enough = np.where(back < GAIN, most / (1.0 - np.minimum(back, GAIN)), np.inf)
+        return np.asarray(enough[:, None] * total)
+
+    def _is_proved(
+        self, errors: Array, places: Array, moved: Array, left: Array, scale: Array
+    ) -> Flags:
+        """Whether all that was assumed holds within the errors.
+
+        A closed contact may as well be open in the exact equilibrium: the laws are monotone there
+        too. Then the coordinates may differ by more than the forces tell.
+        """
+        claim, found, pick = self.claim, self.found, self.pick
+        columns = claim.columns
+        force = np.abs(found.force[pick])
+        if self.statics.moves.size:
+            stray = np.abs(left @ self.statics.moves).max(axis=1)
+            errors += (stray + EPS * scale + np.where(stray <= BALANCED * scale, 0.0, np.inf))[
+                :, None
+            ]
+        proved = np.isfinite(errors).all(axis=1) & np.isfinite(places).all(axis=1)
+        light = np.maximum(force, LIGHT * scale[:, None])[:, columns.flanks]
+        proved &= (errors[:, columns.flanks] <= 0.1 * light).all(axis=1)
+        # The curvature of a table is that of a corner within reach.
+        proved &= (found.curve[pick] >= 0.0).all(axis=1)
+        unsided = np.array([*columns.contacts, *range(columns.arcs.start, columns.arcs.stop)], int)
+        doubtful, _ = doubts(claim, found, self.rows, errors, moved)
+        sizes = [
+            found.force[pick][:, columns.contacts],
+            found.size[pick][:, : claim.arcs[1].shape[1]],
+        ]
+        pushed = np.concatenate(sizes, axis=1)
+        closed = found.act[pick][:, : pushed.shape[1]] != Act.OPEN
+        part = doubtful[:, : pushed.shape[1]]
+        part[closed] = pushed[closed] < 0.0
+        proved &= ~(doubtful & ~self.doubled[pick]).any(axis=1)
+        active = found.active[pick][:, unsided]
+        open_ended = active & (force[:, unsided] <= errors[:, unsided])
+        places[open_ended.any(axis=1)] = np.inf
+        return np.asarray(proved)

@@ -1,0 +1,53 @@
+"""Statics of a set of columns that act: what balances a load, and what balances itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+RANK = 1e-11
+"""Singular value of the directions, relative to the largest, that counts as zero.
+
+Directions are cosines and ratios of radii; what geometry makes dependent is so to some 1e-16."""
+LOOSE = 1e-7
+"""Part of a coordinate in a move that nothing resists from which on it is undetermined."""
+
+
+@dataclass(frozen=True, eq=False)
+class Statics:
+    """Statics of the columns that act.
+
+    Attributes
+    ----------
+    directions : ndarray, shape (k, n)
+        Their rows of A.
+    particular : ndarray, shape (k, n)
+        P, with Aᵀ P f = f for every load f that they can carry.
+    redundant : ndarray, shape (k, r)
+        N, orthonormal, with Aᵀ N = 0.
+    moves : ndarray, shape (n, l)
+        Moves that nothing resists, orthonormal.
+    """
+
+    directions: Array
+    particular: Array
+    redundant: Array
+    moves: Array
+
+    @classmethod
+    def of(cls, directions: Array) -> Statics:
+        """Return the statics of some rows of A."""
+        left, sizes, right = np.linalg.svd(directions, full_matrices=True)
+        rank = int((sizes > RANK * sizes.max(initial=0.0)).sum())
+        particular = left[:, :rank] / sizes[:rank] @ right[:rank]
+        return cls(directions, particular, left[:, rank:], right[rank:].T)
+
+    @cached_property
+    def loose(self) -> NDArray[np.bool_]:
+        """Coordinates that a move shifts, shape (n,)."""
+        return np.asarray(np.abs(self.moves).max(axis=1, initial=0.0) > LOOSE)

@@ -1,0 +1,137 @@
+"""Claims on the verge: elements that may act in either of two ways, up to the bound itself.
+
+A contact that neither carries nor gapes, a spline at the end of a piece: the exact equilibrium has
+them one way or the other, and so has every equilibrium on the way to it from the claim, whose
+residuals vary in proportion. On that way the error grows at the rate that belongs to how they act,
+so it is at most the largest of the errors over all the ways in which they can. Source: formulation,
+section 16.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.certify.bound.bound import Box, boxes
+from loadshare.certify.bound.claim import Claim
+from loadshare.certify.bound.laws import Act, Codes, elements
+from loadshare.certify.bound.quick import quick_boxes
+from loadshare.certify.bound.statics import Statics
+
+Array = NDArray[np.float64]
+
+MOST = 7
+"""Elements on the verge of which every combination is tried.
+
+With more, convexity alone bounds the error (see `quick`), which asks for no combination."""
+ROUNDS = 4
+"""Passes in which further elements may turn out to be on the verge."""
+IDLE = 1e-9
+"""Part in self-stresses below which a contact cannot change a force."""
+
+
+def on_the_verge(claim: Claim, act: Codes, scale: Array, box: Box) -> Box:
+    """Bound the error of one claim some of whose elements may act otherwise.
+
+    Parameters
+    ----------
+    claim : Claim
+        A single one.
+    act : ndarray of int8, shape (1, elements)
+        How the elements seem to act.
+    scale : ndarray, shape (1,)
+        Load of the claim [N].
+    box : Box
+        What was found for them.
+    """
+    ways = {
+        int(e): _ways(claim, int(e), int(act[0, e]), bool(box.above[0, e]))
+        for e in np.flatnonzero(box.doubtful[0])
+    }
+    for _ in range(ROUNDS):
+        idle = _idle(claim, act, list(ways), scale)
+        tried = {e: way for e, way in ways.items() if e not in idle}
+        if len(tried) > MOST:
+            break
+        acts = np.array(
+            [
+                _with(act[0], dict.fromkeys(idle, Act.OPEN) | dict(zip(tried, choice, strict=True)))
+                for choice in product(*tried.values())
+            ]
+        )
+        verge = np.zeros(acts.shape, dtype=bool)
+        verge[:, list(ways)] = True
+        rows = np.zeros(len(acts), dtype=np.intp)
+        many = boxes(claim.take(rows), acts, scale[rows], verge)
+        # A way of acting in which the load is not in balance is no equilibrium's.
+        held = ~many.unbalanced
+        if not held.any():
+            break
+        new = np.flatnonzero((many.doubtful & ~verge)[held].any(axis=0))
+        if not len(new):
+            found = _largest(many, held)
+            return found if np.isfinite(found.force).all() else quick_boxes(claim, act, scale)
+        for e in new.tolist():
+            row = int(np.flatnonzero(many.doubtful[:, e] & held)[0])
+            ways[e] = _ways(claim, e, int(act[0, e]), bool(many.above[row, e]))
+    return quick_boxes(claim, act, scale)
+
+
+def _with(act: Codes, changes: dict[int, int]) -> Codes:
+    changed = act.copy()
+    for e, way in changes.items():
+        changed[e] = way
+    return changed
+
+
+def _idle(claim: Claim, act: Codes, doubtful: list[int], scale: Array) -> set[int]:
+    """Doubtful contacts that cannot change a force, whether they touch or not."""
+    columns = claim.columns
+    contacts = [e for e in doubtful if e < len(columns.contacts)]
+    closed, verge = _closed(act, contacts)
+    acting = np.flatnonzero(elements(claim, closed, scale, verge).active[0])
+    redundant = Statics.of(columns.matrix.high[acting]).redundant
+    part = dict(zip(acting.tolist(), np.abs(redundant).max(axis=1, initial=0.0), strict=True))
+    return {e for e in contacts if part[columns.contacts[e]] < IDLE}
+
+
+def _closed(act: Codes, doubtful: Iterable[int]) -> tuple[Codes, NDArray[np.bool_]]:
+    """Ways of acting with all doubtful contacts closed, and which these are."""
+    verge = np.zeros(act.shape, dtype=bool)
+    verge[0, list(doubtful)] = True
+    return np.where(verge, np.int8(Act.STOP), act), verge
+
+
+def _ways(claim: Claim, e: int, act: int, above: bool) -> tuple[int, ...]:
+    """How an element may act."""
+    columns = claim.columns
+    contacts = len(columns.contacts)
+    arcs = (columns.arcs.stop - columns.arcs.start) // 2
+    if e < contacts + arcs:
+        return Act.OPEN, Act.STOP
+    first, stick, level, reach, _ = claim.graphs[0, e - contacts - arcs].tolist()
+    steps = level > 0.0 and (stick == 0.0 or first * stick < level * (1.0 - 1e-12))
+    slips = reach > stick
+    bottom = Act.OPEN if level == 0.0 else Act.PINNED if stick == 0.0 else Act.STICK
+    chain = [bottom]
+    if steps and bottom != Act.PINNED:
+        chain.append(Act.STEP)
+    if slips and level > 0.0:
+        chain.append(Act.SLIP)
+    chain.append(Act.STOP)
+    if act not in chain:
+        return (act,)
+    at = chain.index(Act(act))
+    other = at + 1 if above else at - 1
+    return (act, chain[other]) if 0 <= other < len(chain) else (act,)
+
+
+def _largest(many: Box, held: NDArray[np.bool_]) -> Box:
+    """Largest errors over all the ways."""
+    force = many.force[held].max(axis=0)[None]
+    coordinate = many.coordinate[held].max(axis=0)[None]
+    none = np.zeros((1, many.doubtful.shape[1]), dtype=bool)
+    return Box(force, coordinate, none, none, np.zeros(1, dtype=bool))

@@ -1,0 +1,166 @@
+"""The bound on torques: it holds, it is tight, and what is balanced but wrong does not pass."""
+
+from dataclasses import replace
+from fractions import Fraction
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import loadshare as ls
+from loadshare.certify import certify
+from loadshare.certify.bound import Columns, bound_of, bounds
+from loadshare.certify.bound.twofold import power_two_thirds, product, two_product, two_sum
+from loadshare.evidence.reference import NoReference, reference
+from loadshare.evidence.stress.families import FAMILIES
+from loadshare.job.machine import Machine, engine_named
+from loadshare.train import build_train
+from loadshare.train.equilibrium import Equilibrium
+
+numbers = st.floats(-1e50, 1e50, allow_subnormal=False).filter(lambda v: abs(v) > 1e-50 or v == 0.0)
+
+
+@given(numbers, numbers)
+def test_sums_and_products_lose_nothing(a: float, b: float) -> None:
+    total, part = two_sum(np.array(a), np.array(b)), two_product(np.array(a), np.array(b))
+    assert Fraction(float(total.high)) + Fraction(float(total.low)) == Fraction(a) + Fraction(b)
+    assert Fraction(float(part.high)) + Fraction(float(part.low)) == Fraction(a) * Fraction(b)
+
+
+def test_matrix_product_in_twice_the_precision() -> None:
+    rng = np.random.default_rng(3)
+    a = rng.standard_normal((4, 9)) * 10.0 ** rng.integers(-8, 8, (4, 9))
+    b = rng.standard_normal((9, 3))
+    b[2] = 0.0
+    found, sizes = product(a, b)
+    for i in range(4):
+        for j in range(3):
+            true = sum(
+                (
+                    Fraction(float(x)) * Fraction(float(y))
+                    for x, y in zip(a[i], b[:, j], strict=True)
+                ),
+                Fraction(0),
+            )
+            told = Fraction(float(found.high[i, j])) + Fraction(float(found.low[i, j]))
+            assert abs(told - true) <= Fraction(float(sizes[i, j])) / 2**95
+
+
+@given(st.floats(1e-30, 1e30))
+def test_power_two_thirds(force: float) -> None:
+    found = power_two_thirds(np.array([force]))
+    with mpmath.workdps(50):
+        true = mpmath.cbrt(mpmath.mpf(force)) ** 2
+        told = mpmath.mpf(float(found.high[0])) + mpmath.mpf(float(found.low[0]))
+        assert abs(told / true - 1) < mpmath.mpf(2) ** -95
+
+
+def problems() -> list[tuple[str, int]]:
+    """A few problems of every family of the stability map that have one answer."""
+    return [(name, k) for name in FAMILIES if name not in ("impossible", "no-load") for k in (0, 1)]
+
+
+@pytest.mark.parametrize(("family", "number"), problems())
+def test_bound_holds_against_fifty_digits(family: str, number: int) -> None:
+    problem = list(FAMILIES[family].problems(100))[number]
+    train = build_train(problem.case)
+    machine = Machine(train)
+    found = machine.answer(machine.situations([1]), 1e-9, engine_named("vectorised", 1))
+    answer = found.equilibria.one(0, 1)
+    if not found.passed[0]:
+        pytest.skip("left by the hot path")
+    try:
+        truth = reference(train, 1, answer)
+    except NoReference:
+        pytest.skip("no reference")
+    if truth.imbalance > 0.0:
+        pytest.skip("what balances the load hangs on the rounding of the train's figures")
+    for rigorous in (False, True):
+        bound = bound_of(train, answer, rigorous)
+        assert bound.relative <= 1e-9
+        largest = max(abs(t) for t in truth.torque.values())
+        with mpmath.workdps(50):
+            for name, mesh in train.meshes.items():
+                net = sum(
+                    (1 if d else -1) * mpmath.mpf(answer.flank_force[mesh.flank_name(d)])
+                    for d in mesh.flanks
+                )
+                error = abs(net * mpmath.mpf(mesh.radii[0]) - mpmath.mpf(truth.exact[name]))
+                assert error <= bound.torque[name] + 1e-40 * largest
+
+
+def stiff_split() -> tuple[object, Equilibrium]:
+    """A soft mesh in series with two branches a million times as stiff, and their equilibrium."""
+    base = ls.load_case("cases/branches/split_torque_2.toml")
+    data = base.to_dict()
+    for mesh in data["meshes"].values():
+        for key in ("stiffness", "law", "table"):
+            mesh.pop(key, None)
+        mesh["stiffness"] = "1e12 N*m/rad"
+    for shaft in data.get("shafts", {}).values():
+        shaft["stiffness"] = "1e12 N*m/rad"
+    first = next(iter(data["meshes"].values()))
+    first["stiffness"] = "1e6 N*m/rad"
+    train = build_train(ls.Case(data, name="stiff"))
+    machine = Machine(train)
+    found = machine.answer(machine.situations([1]), 1e-9, engine_named("vectorised", 1))
+    return train, found.equilibria.one(0, 1)
+
+
+@pytest.mark.parametrize("part", [1e-12, 1e-9, 1e-7, 1e-5, 1e-3])
+@pytest.mark.parametrize("number", range(4))
+def test_self_stress_in_balance_does_not_pass(part: float, number: int) -> None:
+    train, answer = stiff_split()
+    columns = Columns(train)
+    flanks = columns.flanks.stop
+    acting = [k for k, n in enumerate(columns.names) if answer.flank_force.get(n, 1.0) != 0.0]
+    acting = [k for k in acting if k < columns.bearings.start]
+    left, sizes, _ = np.linalg.svd(columns.matrix.high[acting])
+    rank = int((sizes > 1e-12 * sizes.max()).sum())
+    stress = left[:, rank:] @ np.random.default_rng(number).standard_normal(len(acting) - rank)
+    if not stress.size:
+        pytest.skip("nothing is redundant")
+    load = max(answer.flank_force.values())
+    change = dict(zip(acting, part * load * stress / np.abs(stress).max(), strict=True))
+    force = {
+        n: f + change.get(k, 0.0)
+        for k, (n, f) in enumerate(
+            zip(columns.names[:flanks], answer.flank_force.values(), strict=True)
+        )
+    }
+    torque = dict(answer.shaft_torque)
+    for at in range(columns.shafts.start, columns.shafts.stop):
+        name = columns.names[at]
+        arm = train.gears[train.shafts[name].first].base_radius
+        torque[name] += change.get(at, 0.0) * arm
+    wrong = replace(answer, flank_force=force, shaft_torque=torque)
+    error = max(
+        abs(force[m.flank_name(True)] - answer.flank_force[m.flank_name(True)]) * m.radii[0]
+        for m in train.meshes.values()
+    ) / max(abs(answer.flank_force[m.flank_name(True)]) * m.radii[0] for m in train.meshes.values())
+    certificate = certify(train, wrong)
+    assert certificate.bound.relative >= error * (1.0 - 2.0 * part - 1e-6)
+    assert certificate.passed <= (error <= 1e-9)
+
+
+def test_many_claims_and_single_ones_are_bounded_alike() -> None:
+    case = ls.load_case("cases/fgfbstts/all_elements.toml")
+    train = build_train(case)
+    machine = Machine(train)
+    indices = list(range(1, train.count + 1))[:5]
+    here = machine.situations(indices)
+    found = machine.answer(here, 1e-9, engine_named("vectorised", len(indices)))
+    many = bounds(Columns(train), here, found.equilibria)
+    assert (many.relative <= 1e-11).all()
+    for row, index in enumerate(indices):
+        single = bound_of(train, found.equilibria.one(row, index))
+        # Claims that are bounded together share the smallest compliance among them.
+        assert single.relative <= many.relative[row] * 1.01 + 1e-15
+
+
+def test_not_a_number_is_bounded_by_nothing() -> None:
+    train, answer = stiff_split()
+    wrong = replace(answer, flank_force=dict.fromkeys(answer.flank_force, float("nan")))
+    assert bound_of(train, wrong).relative == float("inf")
