@@ -56,12 +56,14 @@ class Victim:
 
     @property
     def largest(self) -> float:
-        """Largest torque of a flank [N·m]; that of two which squeeze each other may cancel."""
-        return max(
+        """Largest torque [N·m], of flanks and from outside; flanks may squeeze each other."""
+        flanks = (
             abs(mesh.lever(d)) * self.answer.flank_force[mesh.flank_name(d)]
             for mesh in self.train.meshes.values()
             for d in mesh.flanks
         )
+        outside = self.train.situation(self.answer.index).torque.values()
+        return max(*flanks, *map(abs, outside))
 
     def errors(self, found: Equilibrium) -> dict[str, float]:
         """Error of every torque of a claim [N·m]."""
