@@ -5,13 +5,14 @@ thousand; here is the first of another seed, and what keeps the attack honest: i
 balanced, every way is tried, and most answers that it makes are wrong.
 """
 
+import math
 from itertools import islice
 
 import numpy as np
 import pytest
 from benchmarks.attack.__main__ import text
 from benchmarks.attack.balance import Balance
-from benchmarks.attack.judge import ALLOWED, Attack, attacks
+from benchmarks.attack.judge import ALLOWED, ROUNDING, Attack, attacks
 from benchmarks.attack.victims import victims
 from benchmarks.attack.ways import WAYS, another_case, self_stress_followed
 
@@ -67,6 +68,16 @@ def test_every_way_is_tried_and_most_are_wrong(found):
     assert {a.way for a in found} == set(WAYS)
     assert sum(a.error > ALLOWED for a in found) > 100
     assert len({a.train for a in found}) == 20
+
+
+def test_no_wrong_torque_passes(found):
+    assert [a for a in found if a.slipped] == []
+
+
+def test_every_bound_holds_of_wrong_answers_too(found):
+    bounded = [a for a in found if a.margin < math.inf]
+    assert len(bounded) > 100
+    assert [a for a in bounded if a.margin < -ROUNDING] == []
 
 
 def test_attacks_depend_on_their_seed_alone(found):
