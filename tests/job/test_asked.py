@@ -7,9 +7,11 @@ import pytest
 from tests.support import shipped
 
 import loadshare as ls
+from loadshare.certify import certify
 from loadshare.certify.tolerance import LARGEST, checked_tolerance
 from loadshare.job import explain
 from loadshare.job.many import solve_blocks
+from loadshare.train import build_train
 
 NO_TOLERANCE = (-1.0, 0.0, 1e300, math.inf, math.nan, 1.001 * LARGEST, True, "1e-9", None)
 SAMPLES = {"rings.4.float [um]": [4.0]}
@@ -23,8 +25,9 @@ SAMPLES = {"rings.4.float [um]": [4.0]}
         lambda case, t: explain(case, tolerance=t),
         lambda case, t: ls.solve_many(case, SAMPLES, tolerance=t),
         lambda case, t: next(solve_blocks(case, SAMPLES, tolerance=t)),
+        lambda case, t: certify(build_train(case), explain(case).equilibrium, t),
     ],
-    ids=["solve", "explain", "solve_many", "solve_blocks"],
+    ids=["solve", "explain", "solve_many", "solve_blocks", "certify"],
 )
 def test_a_tolerance_that_certifies_nothing_is_refused(ask, tolerance):
     with pytest.raises(ValueError, match=r"allowed: a number above 0 and up to 0\.001"):

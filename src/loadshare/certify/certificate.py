@@ -16,6 +16,7 @@ from loadshare.certify import residuals
 from loadshare.certify.bound import Bound, bound_of
 from loadshare.certify.floats import FloatState, float_states
 from loadshare.certify.state import State
+from loadshare.certify.tolerance import checked_tolerance
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.train import Train
 
@@ -129,8 +130,8 @@ def certify_later(train: Train, answer: Equilibrium, tolerance: float, bound: Bo
     # The batch's scales may differ in the last digit, and a result that is loaded again would.
     state = State(train, answer)
     return Certificate(
-        residuals=_Later(partial(_residuals, train, answer, tolerance)),
-        floats=_Later(partial(_floats, train, answer)),
+        residuals=_Later(partial(_residuals, state)),
+        floats=_Later(partial(_floats, state)),
         tolerance=tolerance,
         load=state.force_scale,
         deflection=state.length_scale,
@@ -138,12 +139,7 @@ def certify_later(train: Train, answer: Equilibrium, tolerance: float, bound: Bo
     )
 
 
-def _residuals(train: Train, answer: Equilibrium, tolerance: float) -> Mapping[str, Residual]:
-    return certify(train, answer, tolerance).residuals
-
-
-def _floats(train: Train, answer: Equilibrium) -> Mapping[str, FloatState]:
-    state = State(train, answer)
+def _floats(state: State) -> Mapping[str, FloatState]:
     return {} if state.fault else float_states(state, BAND)
 
 
@@ -167,11 +163,33 @@ def certify(
     -------
     Certificate
         Passed or not; nothing is raised for a wrong answer.
-    """
-    state = State(train, answer)
-    load, deflection = (state.force_scale, state.length_scale) if not state.fault else (1.0, 1.0)
-    work = load * deflection
 
+    Raises
+    ------
+    ValueError
+        If the tolerance is no tolerance.
+    """
+    tolerance = checked_tolerance(tolerance)
+    state = State(train, answer)
+    load, deflection = _scales(state)
+    return Certificate(
+        residuals=_residuals(state),
+        floats=_floats(state),
+        tolerance=tolerance,
+        load=load,
+        deflection=deflection,
+        bound=Bound.none(train) if state.fault else bound_of(train, answer, rigorous),
+    )
+
+
+def _scales(state: State) -> tuple[float, float]:
+    """Load [N] and deflection [m]."""
+    return (1.0, 1.0) if state.fault else (state.force_scale, state.length_scale)
+
+
+def _residuals(state: State) -> Mapping[str, Residual]:
+    load, deflection = _scales(state)
+    work = load * deflection
     judged: dict[str, tuple[Callable[[], tuple[float, str]], str, float]] = {
         "force_balance": (lambda: residuals.force_balance(state), "N", load),
         "moment_balance": (lambda: residuals.moment_balance(state), "N", load),
@@ -195,11 +213,4 @@ def certify(
         ratio = value / scale
         return Residual(value, unit, math.inf if math.isnan(ratio) else ratio, where)
 
-    return Certificate(
-        residuals={name: figure(*how) for name, how in judged.items()},
-        floats=_floats(train, answer),
-        tolerance=tolerance,
-        load=load,
-        deflection=deflection,
-        bound=Bound.none(train) if state.fault else bound_of(train, answer, rigorous),
-    )
+    return {name: figure(*how) for name, how in judged.items()}
