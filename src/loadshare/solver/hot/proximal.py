@@ -42,8 +42,10 @@ NEWTON = 60
 """Newton steps of a pass."""
 SLOPE = 0.1
 """Part of the slope at its beginning to which a line search brings a step."""
-HALVINGS = 40
+HALVINGS = 12
 """Steps of a line search."""
+LOOKS = 1500
+"""Points at which a search looks in all: more than ever led to an answer, and half a second."""
 FLAT = 1e-11
 """Gradient, over the largest force, at which a pass has arrived."""
 STILL = 1e-15
@@ -97,6 +99,7 @@ class Proximal:
         self.power = np.flatnonzero(self.hertz > 0.0)
         self.x = np.zeros(elements.scene.size)
         self.force = np.zeros(len(self.vectors))
+        self.looks = 0
         self.pull, self.softer, self.graph = STIFFER[0], SOFTER, self._graphs()
 
     def passes(self) -> Iterator[Codes]:
@@ -109,6 +112,8 @@ class Proximal:
             if not self.graph.valid.all():
                 return
             found = self._minimise()
+            if self.looks > LOOKS:
+                return
             code = self._code(found)
             self.x, self.force = found.x, found.force
             yield code
@@ -139,13 +144,14 @@ class Proximal:
                 break
             step = self._step(here)
             here = self._along(here, step)
-            if np.abs(step).max() <= STILL * np.abs(here.x).max():
+            if np.abs(step).max() <= STILL * np.abs(here.x).max() or self.looks > LOOKS:
                 break
         return here
 
     def _at(self, x: Array) -> _Point:
         """Forces, tangents and gradient at coordinates."""
         scalar, pull = self.scalar, self.softer
+        self.looks += 1
         u = self.vectors @ x - self.gap
         u[:scalar] += pull * self.force[:scalar]
         pushed = u[:scalar] > 0.0
