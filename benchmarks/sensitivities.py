@@ -39,8 +39,10 @@ FIRST = 1e-3
 """First step over the input's value."""
 STEPS = {False: 8, True: 14}
 """Steps there are at most: to confirm a derivative, and to refute one."""
-LEAST = {"m": 1e-6, "rad": 1e-4, "": 1e-4}
+LEAST = {"m": 1e-6, "rad": 1e-4, "": 1e-4, "rad/(N*m)": 1e-11, "rad/(N*m)^(2/3)": 1e-10}
 """First step of inputs that are zero, in SI units; 1 for others."""
+MOVED, STILL = 20.0, 1e-6
+"""Round-off of displacements over that of torques, and the least that they are measured by [m]."""
 NOISE = {False: 2e-13, True: 2e-14}
 """Round-off of a torque over the largest: of a solve in doubles, and of the train's own data."""
 TEETH = 1e-4
@@ -100,9 +102,8 @@ def differenced(
     first = FIRST * abs(value.number) or LEAST.get(value.si_unit, 1.0) / value.factor
     # Torques and displacements have round-off of their own.
     count = len(train.meshes)
-    sizes = np.concatenate(
-        [np.full(len(p), np.abs(p).max(initial=0.0)) for p in (here[:count], here[count:])]
-    )
+    sizes = np.full(len(here), np.abs(here[:count]).max(initial=0.0))
+    sizes[count:] = MOVED * np.abs(here[count:]).max(initial=STILL)
     slopes: list[tuple[Array, Array]] = []
     limits: list[tuple[Array, Array]] = []
     for k in range(STEPS[fine]):
