@@ -72,6 +72,11 @@ def attacks(seed: int, count: int, each: int = EACH) -> Iterator[Attack]:
         yield from found
 
 
+def part(asked: tuple[int, int]) -> list[Attack]:
+    """Attack with one seed so many times, in a process of its own."""
+    return list(attacks(*asked))
+
+
 def one(victim: Victim, way: str, rng: np.random.Generator) -> Attack | None:
     """Tamper and judge; None where there is no room for this way."""
     claim = WAYS[way][0](victim, rng)

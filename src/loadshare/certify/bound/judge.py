@@ -14,6 +14,7 @@ from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.laws import Codes, first_acts
 from loadshare.certify.bound.quick import quick_boxes
 from loadshare.certify.bound.verge import on_the_verge
+from loadshare.certify.tolerance import LARGEST
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 
@@ -26,9 +27,6 @@ NOISE = 1e-12
 
 ENOUGH = 1e-11
 """Relative bound with which double precision is content."""
-USEFUL = 0.1
-"""Relative bound beyond which a bound is none: secants leave their tangents by more than `quick`
-allows for, and what a claim lets go of may have to act."""
 TOGETHER = 512
 """Claims that are looked at in twice the precision at a time."""
 
@@ -122,8 +120,9 @@ def _boxes(claim: Claim, rigorous: bool) -> Bounds:
         rows = left[at : at + TOGETHER]
         fine = replace(claim.take(rows), fine=True)
         box.force[rows], box.coordinate[rows] = _fine(fine, act[rows], scale[rows])
-    # Where the torques are not bounded, what seems to be is so only if what acts was taken rightly.
-    unproved = np.flatnonzero(~(relative() <= USEFUL))
+    # Where torques are not bounded closely enough for any certificate, what seems to be bounded is
+    # so only if what acts was taken rightly, and secants leave tangents by more than was allowed.
+    unproved = np.flatnonzero(~(relative() <= LARGEST))
     box.force[unproved], box.coordinate[unproved] = np.inf, np.inf
     return Bounds(columns, relative(), box.force, box.coordinate)
 
