@@ -39,6 +39,8 @@ OPPOSED = 1.0 - 1e-6
 """Cosine from which on two arcs are opposed."""
 ANGLE = 0.02
 """Angle [rad] between two lines that still count as nearly the same."""
+DIGITS = 20
+"""Ways of acting that make one number below 2⁶³."""
 REFERENCES = 16
 """Claims whose lines are tried on all those whose elements act alike."""
 GAIN = 0.5
@@ -106,6 +108,11 @@ def _with_near(claim: Claim, act: Codes) -> tuple[Codes, Flags]:
             weaker = force[:, start + k] < force[:, start + 1 - k] + k * np.finfo(float).tiny
             doubled[both & weaker, start + k] = True
     act[doubled] = Act.OPEN
+    if claim.radial_gears:
+        length = length[:, columns.radials].reshape(claim.count, -1, 2)
+        left = claim.graphs[:, :, 3] - np.sqrt((length**2).sum(axis=2))
+        radials = act[:, gaps.shape[1] :]
+        radials[(radials == Act.OPEN) & (left <= NEAR * widest[:, None])] = Act.STOP
     return act, doubled
 
 
@@ -113,8 +120,12 @@ def alike(codes: Codes) -> list[NDArray[np.intp]]:
     """Rows with the same codes."""
     if (codes == codes[:1]).all():
         return [np.arange(len(codes))]
-    _, group = np.unique(codes, axis=0, return_inverse=True)
-    group = group.reshape(-1)
+    group = np.zeros(len(codes), dtype=np.int64)
+    for at in range(0, codes.shape[1], DIGITS):
+        digits = codes[:, at : at + DIGITS].astype(np.int64)
+        number = digits @ len(Act) ** np.arange(digits.shape[1])
+        _, number = np.unique(number, return_inverse=True)
+        _, group = np.unique(group * (number.max() + 1) + number, return_inverse=True)
     order = np.argsort(group, kind="stable")
     return np.split(order, np.cumsum(np.bincount(group))[:-1])
 
@@ -210,8 +221,8 @@ class _Group:
         misfit[:, : len(self.plain)] = np.where(
             idle, np.maximum(misfit[:, : len(self.plain)], 0.0), misfit[:, : len(self.plain)]
         )
-        idle = (size == 0.0) & (at < columns.arcs.stop)
-        misfit[:, len(self.plain) :] = np.where(idle, np.minimum(off, 0.0), off)
+        over = np.where(at < columns.arcs.stop, np.minimum(off, 0.0), np.maximum(off, 0.0))
+        misfit[:, len(self.plain) :] = np.where(size == 0.0, over, off)
         width = self._columns(found.width, found.width[pick][:, at])
         rounding = rounding + found.rounding[pick] @ matrix
         base, energy = self._under(left, misfit)
@@ -307,8 +318,14 @@ class _Group:
         closed = found.act[pick][:, : pushed.shape[1]] != Act.OPEN
         part = doubtful[:, : pushed.shape[1]]
         part[closed] = pushed[closed] < 0.0
+        # So may a ring, or a spline without friction, that is touched.
+        loose = claim.graphs[pick][:, :, 2] == 0.0
+        radials = found.act[pick][:, pushed.shape[1] :]
+        doubtful[:, pushed.shape[1] :] &= ~(loose & (radials == Act.STOP))
         proved &= ~(doubtful & ~self.doubled[pick]).any(axis=1)
-        active = found.active[pick][:, unsided]
-        open_ended = active & (force[:, unsided] <= errors[:, unsided])
+        columns_on = np.append(unsided, np.arange(columns.radials.start, columns.radials.stop))
+        columns_on = columns_on if loose.any() else unsided
+        active = found.active[pick][:, columns_on]
+        open_ended = active & (force[:, columns_on] <= errors[:, columns_on])
         places[open_ended.any(axis=1)] = np.inf
         return np.asarray(proved)
