@@ -119,7 +119,10 @@ def _boxes(claim: Claim, rigorous: bool) -> Bounds:
     for at in range(0, len(left), TOGETHER):
         rows = left[at : at + TOGETHER]
         fine = replace(claim.take(rows), fine=True)
-        box.force[rows], box.coordinate[rows] = _fine(fine, act[rows], scale[rows])
+        force, coordinate = _fine(fine, act[rows], scale[rows])
+        better = torques(columns, force).max(axis=1, initial=0.0) < relative()[rows] * largest[rows]
+        box.force[rows[better]] = force[better]
+        box.coordinate[rows[better]] = coordinate[better]
     # Where torques are not bounded closely enough for any certificate, what seems to be bounded is
     # so only if what acts was taken rightly, and secants leave tangents by more than was allowed.
     unproved = np.flatnonzero(~(relative() <= LARGEST))
@@ -136,5 +139,10 @@ def _fine(claim: Claim, act: Codes, scale: Array) -> tuple[Array, Array]:
     for row in np.flatnonzero(box.doubtful.any(axis=1)).tolist():
         one = np.array([row])
         single = on_the_verge(claim.take(one), act[one], scale[one], box.part(row))
+        box.force[row], box.coordinate[row] = single.force[0], single.coordinate[0]
+    flanks = box.force[:, claim.columns.flanks]
+    for row in np.flatnonzero(np.isinf(flanks).any(axis=1)).tolist():
+        one = np.array([row])
+        single = quick_boxes(claim.take(one), act[one], scale[one])
         box.force[row], box.coordinate[row] = single.force[0], single.coordinate[0]
     return box.force, box.coordinate

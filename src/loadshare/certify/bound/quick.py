@@ -21,9 +21,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.certify.bound.bound import BALANCED, SINGULAR, Box, aside, doubts
+from loadshare.certify.bound.bound import BALANCED, SHARED, SINGULAR, Box, aside, doubts
 from loadshare.certify.bound.claim import EPS, Claim
-from loadshare.certify.bound.laws import LIGHT, Act, Codes, Elements, elements
+from loadshare.certify.bound.laws import LIGHT, SOFTEST, Act, Codes, Elements, elements
 from loadshare.certify.bound.statics import Statics
 
 Array = NDArray[np.float64]
@@ -58,10 +58,11 @@ def quick_boxes(claim: Claim, act: Codes, scale: Array) -> Box:
         Load of the claims [N].
     """
     box = Box.unproved(claim, act)
-    if claim.columns.train.slip is not None:
-        return box
     act, doubled = _with_near(claim, act)
     found = elements(claim, act, scale, np.ones(act.shape, dtype=bool))
+    if claim.columns.train.slip is not None and found.follows.any():
+        # With memory, what follows the torque is the room of a stop, a length and no force.
+        return box
     left, rounding = claim.balance(found.force)
     for rows in alike(act):
         for _ in range(REFERENCES):
@@ -156,8 +157,17 @@ class _Group:
             u @ matrix[first + 2 * j : first + 2 * j + 2]
             for u, j in zip(self.reference, self.lined, strict=True)
         ]
+        # Of a single claim, that the line of a ring turns is one more compliance; arcs turn away.
+        self.turning = np.zeros(len(self.lined), dtype=bool)
+        if len(rows) == 1:
+            self.turning = self.lined >= claim.arcs[1].shape[1]
+        across = [
+            np.array([-u[1], u[0]]) @ matrix[first + 2 * j : first + 2 * j + 2]
+            for u, j in zip(self.reference[self.turning], self.lined[self.turning], strict=True)
+        ]
+        self.line = slice(len(self.plain), len(self.plain) + len(self.lined))
         self.directions = np.concatenate(
-            [matrix[self.plain], np.reshape(along, (-1, matrix.shape[1]))]
+            [matrix[self.plain], np.reshape([*along, *across], (-1, matrix.shape[1]))]
         )
         self.statics = Statics.of(self.directions)
         self.is_sliding = np.zeros(len(self.directions), dtype=bool)
@@ -166,22 +176,29 @@ class _Group:
                 np.arange(len(self.directions)),
                 np.searchsorted(self.plain, first + 2 * self.slips + k),
             )
+        self.is_left = self.is_sliding.copy()
+        self.is_left[self.line.stop :] = True
         self.is_covered = True
         self._set_particular()
         self._set_stiffness()
 
     def _columns(self, plain: Array, lined: Array) -> Array:
         """Figures of all columns of the claims and figures of the lines, side by side."""
-        return np.concatenate([plain[self.pick][:, self.plain], lined], axis=1)
+        rest = np.zeros((len(lined), int(self.turning.sum())))
+        return np.concatenate([plain[self.pick][:, self.plain], lined, rest], axis=1)
 
     def _set_particular(self) -> None:
         """Find how a load is carried by what yields in proportion."""
         self.particular = self.statics.particular
-        if self.is_sliding.any():
-            known = Statics.of(self.directions[~self.is_sliding])
+        for left in (self.is_left, self.is_sliding):
+            # Turning lines carry a load only where nothing else does.
+            self.is_left = left
+            known = Statics.of(self.directions[~left])
             self.is_covered = known.moves.shape == self.statics.moves.shape
-            self.particular = np.zeros(self.particular.shape)
-            self.particular[~self.is_sliding] = known.particular
+            if self.is_covered:
+                self.particular = np.zeros(self.particular.shape)
+                self.particular[~left] = known.particular
+                break
 
     def _set_stiffness(self) -> None:
         """Find L from the smallest compliances."""
@@ -192,14 +209,23 @@ class _Group:
         if len(self.slips):
             size, distance = (v[pick][:, self.slips] for v in (found.size, found.distance))
             least[self.is_sliding] = np.repeat(SECANT * (distance / size).min(axis=0), 2)
+        turning = self.lined[self.turning]
+        size, distance = (v[pick][:, turning] for v in (found.size, found.distance))
+        most = SOFTEST * self.soft.max(initial=0.0)
+        lateral = np.where(size > 0.0, distance / np.where(size > 0.0, size, 1.0), np.inf)
+        lateral = np.minimum(lateral, most)
+        least[self.line.stop :] = SECANT * lateral.min(axis=0, initial=np.inf)
+        if self.is_left is self.is_sliding:
+            self.soft[:, self.line.stop :] = lateral
         n = self.statics.redundant
         stiff = n.T @ (least[:, None] * n)
         if not np.isfinite(stiff).all():
             self.is_covered, stiff = False, np.eye(len(stiff))
         values, vectors = np.linalg.eigh(stiff)
-        if values.size and values.min() <= SINGULAR * values.max():
-            self.is_covered, values = False, np.ones(len(values))
-        self.root = n @ (vectors / np.sqrt(values))
+        # A self-stress of rigid parts alone has no compliance, and moves nothing else.
+        kept = values > SINGULAR * values.max(initial=0.0)
+        self.rigid = n @ vectors[:, ~kept]
+        self.root = n @ (vectors[:, kept] / np.sqrt(values[kept]))
         self.sizes = np.sqrt((self.root**2).sum(axis=1))
         self.passes = np.abs(self.particular)
         self.into_energy = self.passes.T @ (self.soft.max(axis=0) * self.sizes)
@@ -222,39 +248,49 @@ class _Group:
             idle, np.maximum(misfit[:, : len(self.plain)], 0.0), misfit[:, : len(self.plain)]
         )
         over = np.where(at < columns.arcs.stop, np.minimum(off, 0.0), np.maximum(off, 0.0))
-        misfit[:, len(self.plain) :] = np.where(size == 0.0, over, off)
+        misfit[:, self.line] = np.where(size == 0.0, over, off)
         width = self._columns(found.width, found.width[pick][:, at])
         rounding = rounding + found.rounding[pick] @ matrix
         base, energy = self._under(left, misfit)
+        # By what rigid parts contradict one another, one of them stands open.
+        width = width + np.abs(misfit @ self.rigid) @ np.abs(self.rigid).T
         base, energy = self._with(base, energy, rounding, width)
         errors = base + energy[:, None] * self.sizes
         if found.follows[pick].any():
             errors = errors + self._followed(errors)
         angle = np.abs(line - self.reference).sum(axis=2)
         self.turned = (angle > ANGLE).any(axis=1)
-        box = 2.0 * errors
-        places = (self.soft * box + np.abs(misfit) + width) @ self.passes
-        moved = places @ matrix.T
-        if len(lined):
+        linear, box = errors, 2.0 * errors
+        near = np.ones(len(errors), dtype=bool)
+        # The box is that of the first pass, widened by what the first pass leaves out.
+        for _ in (1, 2):
+            places = (self.soft * box + np.abs(misfit) + width) @ self.passes
+            moved = places @ matrix.T
+            if not len(lined):
+                break
             way = moved[:, at] + moved[:, at + 1]
-            push = angle * box[:, len(self.plain) :] + 2.0 * np.abs(size) / distance * way
+            bow = np.where(self.turning, way / distance, 1.0) * np.abs(size) / distance
+            push = angle * box[:, self.line] + 2.0 * bow * way
             load = push @ (matrix[at] + matrix[at + 1])
             gap = np.zeros_like(errors)
-            gap[:, len(self.plain) :] = angle * way + way**2 / distance
+            gap[:, self.line] = angle * way + way**2 / distance
             more, extra = self._with(np.zeros_like(errors), np.zeros(len(errors)), load, gap)
-            errors = errors + more + extra[:, None] * self.sizes
-            near = (way <= 0.05 * distance).all(axis=1)
-        else:
-            near = np.ones(len(errors), dtype=bool)
-        near &= (errors <= box).all(axis=1)
+            errors = linear + more + extra[:, None] * self.sizes
+            near = (way <= 0.05 * distance).all(axis=1) & (errors <= box).all(axis=1)
+            box = np.where(near[:, None], box, 2.0 * errors)
         whole = aside(claim, found, pick)
         whole[:, self.plain] += errors[:, : len(self.plain)]
         for k in (0, 1):
             # The line itself may turn.
-            whole[:, at + k] += errors[:, len(self.plain) :]
+            whole[:, at + k] += errors[:, self.line]
+            whole[:, at[self.turning] + k] += errors[:, self.line.stop :]
             if len(lined):
                 whole[:, at + k] += np.abs(size) / distance * way
         proved = self._is_proved(whole, places, moved, left, scale) & near
+        shared = np.abs(self.rigid).max(axis=1, initial=0.0) > SHARED
+        whole[:, self.plain[shared[: len(self.plain)]]] = np.inf
+        for k in (0, 1):
+            whole[:, at[shared[self.line]] + k] = np.inf
         whole[~proved], places[~proved] = np.inf, np.inf
         places[:, self.statics.loose] = np.inf
         return whole, places
