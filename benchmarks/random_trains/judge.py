@@ -76,7 +76,7 @@ class Finding:
     rung: str = ""
     error: float | None = None
     misplaced: dict[str, float] = field(default_factory=dict)
-    bound: list[tuple[float, float]] = field(default_factory=list)
+    bound: list[list[float]] = field(default_factory=list)
     slack: float | None = None
     reference: str = ""
 
@@ -146,7 +146,7 @@ def _compare(case: Case, train: Train, found: Position | None, told: str, findin
     finding.slack = exact.slack
     finding.misplaced = misplaced(train, found, exact, machine, settled)
     claimed = torque_bounds(found.certificate)
-    finding.bound = [(claimed[n], error) for n, error in errors.items() if n in claimed]
+    finding.bound = [[claimed[n], error] for n, error in errors.items() if n in claimed]
 
 
 def _far(train: Train, machine: Machine | None, settled: Settled | None) -> bool:

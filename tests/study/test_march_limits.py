@@ -9,16 +9,8 @@ import pytest
 from tests.study.test_march import both, floating
 
 import loadshare as ls
-from loadshare.errors import Refused
 
 KW = 1.78e7
-
-pytestmark = pytest.mark.xfail(
-    reason="in balance, but the bound is not proved where friction and its stop share a force",
-    raises=Refused,
-    strict=True,
-)
-"""Each step is found and balances; refused for want of a proof, not of an answer."""
 
 
 def spline(friction: float, clearance: float) -> ls.Case:
