@@ -137,8 +137,12 @@ def hot_answers(
         index = indices[row]
         equilibrium = least.get(row) or found.equilibria.one(row, index)
         bounds = found.verdicts.bounds
-        moved = row in least or bounds.force is None
+        every = bounds.force is not None
+        moved = row in least or not every
         bound = bound_of(train, equilibrium) if moved else Bound.of(bounds, row)
+        if every and math.isinf(bound.relative):
+            # The forces, and so the bound on torques, are those of the answer before it was moved.
+            bound = Bound.of(bounds, row)
         certificate = certify_later(train, equilibrium, tolerance, bound)
         record = _hot_record(machine, found, row)
         rung = SEARCHED if found.searched[row] else HOT

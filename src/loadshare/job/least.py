@@ -52,8 +52,9 @@ def least_places(
     for k, row in enumerate(moved):
         placed.put(k, least[row])
     verdicts = machine.judge.judge(situations.take(np.array(moved)), placed, tolerance)
-    for row, passed in zip(moved, verdicts.passed.tolist(), strict=True):
-        if passed:
+    # Forces, and with them the bound on torques, are those that were certified before.
+    for row, residual in zip(moved, verdicts.worst.tolist(), strict=True):
+        if residual <= tolerance:
             found.equilibria.put(row, least[row])
         else:
             least[row] = replace(claimed[row], undetermined=least[row].undetermined)

@@ -117,6 +117,7 @@ def test_contradictions_are_told_with_both_values(case):
             "gears.a.teeth": 24,
             'meshes."a-b".pressure_angle': "19.9 deg",
             'meshes."a-b".helix_angle': "3 deg",
+            'meshes."a-b".backlash': "0.1 mm",
         }
     )
     found = problems_of(changed)

@@ -76,6 +76,8 @@ def bounds(
     rigorous : bool
         Find all residuals in twice the working precision; otherwise only where that is needed.
     """
+    if not len(answers.rotation):
+        return Bounds(columns, np.zeros(0), None, None)
     with np.errstate(all="ignore"):
         return _bounds(Claim(columns, situations, answers, fine=False), rigorous)
 
