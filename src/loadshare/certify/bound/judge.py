@@ -11,7 +11,7 @@ from loadshare.certify.bound.batch import Batch, is_plain
 from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
-from loadshare.certify.bound.laws import Codes, first_acts
+from loadshare.certify.bound.laws import Act, Codes, first_acts
 from loadshare.certify.bound.quick import quick_boxes
 from loadshare.certify.bound.verge import on_the_verge
 from loadshare.certify.tolerance import LARGEST
@@ -137,7 +137,7 @@ def _fine(claim: Claim, act: Codes, scale: Array) -> tuple[Array, Array]:
     box = boxes(claim, act, scale)
     contacts = np.abs(claim.forces[:, claim.columns.contacts])
     noise = (contacts > 0.0) & (contacts <= NOISE * scale[:, None])
-    box.doubtful[:, : noise.shape[1]] |= noise
+    box.doubtful[:, : noise.shape[1]] |= noise & (act[:, : noise.shape[1]] != Act.OPEN)
     for row in np.flatnonzero(box.doubtful.any(axis=1)).tolist():
         one = np.array([row])
         single = on_the_verge(claim.take(one), act[one], scale[one], box.part(row))

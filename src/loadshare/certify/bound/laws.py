@@ -30,6 +30,10 @@ LIGHT = 1e-9
 """Force, in loads of the claim, at which the tangent of a contact without force is taken.
 
 Below it a Hertz contact is softer still, which only lessens what it moves."""
+NOISE, APART = 1e-12, 1e-6
+"""Force over the largest one, and gap over the largest deflection, of a contact that is open.
+
+So little force over so clear a gap is a solver's rounding, and is put aside."""
 CORNER = 1e-12
 """Relative distance from a level within which a force is on it, up to rounding."""
 
@@ -105,7 +109,15 @@ def first_acts(claim: Claim) -> Codes:
     contacts = np.concatenate(
         [force[:, columns.flanks], force[:, columns.stops], force[:, columns.arcs][:, ::2]], axis=1
     )
-    scalar = np.where(contacts != 0.0, Act.STOP, Act.OPEN).astype(np.int8)
+    length = claim.lengths[0].value
+    gap = np.concatenate(
+        [-length[:, columns.flanks], -length[:, columns.stops], claim.arcs[1]], axis=1
+    )
+    largest = np.abs(force[:, columns.flanks]).max(axis=1, initial=0.0)[:, None]
+    deflection = length[:, columns.flanks].max(axis=1, initial=0.0)[:, None]
+    faint = (np.abs(contacts) <= NOISE * largest) & (gap > APART * deflection)
+    closed = (contacts != 0.0) & ~faint
+    scalar = np.where(closed, Act.STOP, Act.OPEN).astype(np.int8)
     radials = _radial_acts(claim) if claim.radial_gears else np.zeros((claim.count, 0), np.int8)
     return np.concatenate([scalar, radials], axis=1)
 
