@@ -27,18 +27,7 @@ def test_there_are_enough_problems():
     assert sum(f.count for f in FAMILIES.values()) >= 3000
 
 
-UNPROVED = pytest.mark.xfail(
-    reason="friction of 1e-9 of the load: in balance, but the bound is not proved", strict=True
-)
-
-
-@pytest.mark.parametrize(
-    "family",
-    [
-        pytest.param(f, id=f.name, marks=UNPROVED if f.name == "friction" else ())
-        for f in FAMILIES.values()
-    ],
-)
+@pytest.mark.parametrize("family", FAMILIES.values(), ids=lambda f: f.name)
 def test_a_slice_of_the_map(family):
     for number in SLICE:
         verdict = judge(family.problem(number), ours)

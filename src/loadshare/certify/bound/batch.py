@@ -136,7 +136,7 @@ class Batch:
             rows = slice(None) if len(alike) == self.count else alike
             errors = self._errors(found, acting, doubled, rows, scale)
             if errors is not None:
-                relative[rows] = errors / largest[rows]
+                relative[rows] = errors / largest[rows] + EPS
         return relative
 
     def _residuals(self) -> Residuals:

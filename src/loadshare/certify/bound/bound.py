@@ -33,14 +33,18 @@ from loadshare.certify.bound.laws import Act, Codes, Elements, elements
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-WIDER = ((2.0, 1e-4), (8.0, 1e-2), (16.0, 1.0))
-"""Boxes tried: times what rounding alone may do, and a part of the largest error."""
+WIDER, PASSES = 2.0, 8
+"""How far a box goes beyond what came out of the one before, and how many are tried."""
 REFERENCES = 16
 """Claims whose linear operators are tried on all that have the same columns acting."""
 SINGULAR = 1e-15
 """Compliance of a self-stress, over the largest, below which it is shared by rigid parts alone."""
 SHARED = 1e-7
 """Part of a force in a self-stress of rigid parts from which on it is undetermined."""
+FAINT = 1e-9
+"""Level of a spline that slips, in loads of the claim, below which its turning is no compliance.
+
+Its force is kept, and what turning may change of it counts as load that was left out."""
 BALANCED = 1e-12
 """Load along a move that nothing resists, over the claim's load, that is rounding."""
 
@@ -106,9 +110,12 @@ def boxes(claim: Claim, act: Codes, scale: Array, verge: Flags | None = None) ->
     )
     for number, sample in enumerate(first):
         rows = np.flatnonzero(group.reshape(-1) == number)
-        part = _Part(claim, found, rows, np.flatnonzero(found.active[sample]), left, rounding)
+        part = _Part(
+            claim, found, rows, np.flatnonzero(found.active[sample]), left, rounding, scale
+        )
         force, coordinate = part.solve(scale[rows])
         box.force[rows] = aside(claim, found, rows)
+        box.force[rows] += part.faint_errors(force, coordinate)
         box.force[np.ix_(rows, part.columns)] += force + part.shared + part.stray[:, None]
         box.coordinate[rows] = coordinate + np.where(part.statics.loose, np.inf, 0.0)
         box.doubtful[rows], box.above[rows] = part.doubts(found, force, coordinate)
@@ -134,6 +141,25 @@ def aside(claim: Claim, found: Elements, rows: NDArray[np.intp] | slice) -> Arra
         left = np.where(found.active[rows][:, arcs][:, ::2], 0.0, size)
         apart[:, arcs] = np.repeat(left, 2, axis=1)
     return np.asarray(apart)
+
+
+def _without_faint(
+    claim: Claim, found: Elements, rows: NDArray[np.intp], columns: NDArray[np.intp], scale: Array
+) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Columns without those of splines that slip at next to no level, and their pairs.
+
+    Where nothing else holds a coordinate, such a spline does, and remains.
+    """
+    first = claim.columns.first_pair
+    slips = (found.act[rows, len(claim.columns.contacts) :] == Act.SLIP).all(axis=0)
+    slips &= (np.abs(found.size[rows]) <= FAINT * scale[rows, None]).all(axis=0)
+    faint = np.flatnonzero(slips)
+    if not len(faint):
+        return columns, faint
+    without = np.setdiff1d(columns, [first + 2 * faint, first + 2 * faint + 1])
+    if claim.columns.statics(without).moves.shape != claim.columns.statics(columns).moves.shape:
+        return columns, faint[:0]
+    return without, faint
 
 
 class _Response:
@@ -194,8 +220,11 @@ class _Part:
         columns: NDArray[np.intp],
         left: Array,
         rounding: Array,
+        scale: Array,
     ) -> None:
-        self.claim, self.found, self.rows, self.columns = claim, found, rows, columns
+        self.claim, self.found, self.rows = claim, found, rows
+        self.columns, self.faint = _without_faint(claim, found, rows, columns, scale)
+        columns = self.columns
         self.statics = claim.columns.statics(columns)
         pick = np.ix_(rows, columns)
         self.soft, self.misfit, self.width = found.soft[pick], found.misfit[pick], found.width[pick]
@@ -208,7 +237,7 @@ class _Part:
         self.left = self.left - self.left @ moves @ moves.T
         first = claim.columns.first_pair
         at = np.searchsorted(columns, np.arange(first, found.active.shape[1], 2))
-        self.pairs = np.flatnonzero(found.active[rows[0], first::2])
+        self.pairs = np.setdiff1d(np.flatnonzero(found.active[rows[0], first::2]), self.faint)
         self.at = at[self.pairs]
         self.skew = found.skew[np.ix_(rows, self.pairs)]
         self.shared = np.zeros(len(columns))
@@ -246,18 +275,24 @@ class _Part:
         apart += EPS * size * _yielding(np.abs(soft), np.abs(skew), self.at, np.abs(force))
         unlike = np.abs(soft - response.soft), np.abs(skew - response.skew)
         found = np.full(force.shape, np.inf), np.full(moved.shape, np.inf)
-        start, shift = response.reach(over, apart)
-        left = np.ones(len(rows), dtype=bool)
-        for factor, floor in WIDER:
-            box = factor * start + floor * (start + np.abs(force)).max(1, initial=0.0)[:, None]
-            way = factor * shift + floor * (shift + np.abs(moved)).max(1, initial=0.0)[:, None]
-            push, gap = self._left_out(rows, box + np.abs(force), way + np.abs(moved))
-            gap += _yielding(*unlike, self.at, box)
-            forces, places = response.reach(over + push, apart + gap)
-            proved = (forces <= box).all(axis=1) & (places <= way).all(axis=1) & left
-            found[0][proved] = forces[proved] + np.abs(force[proved])
-            found[1][proved] = places[proved] + np.abs(moved[proved])
-            left &= ~proved
+        forces, places = response.reach(over, apart)
+        box, way = np.zeros_like(forces), np.zeros_like(places)
+        left = np.arange(len(rows))
+        for _ in range(PASSES):
+            box, way = np.maximum(box, WIDER * forces), np.maximum(way, WIDER * places)
+            push, gap = self._left_out(
+                rows[left], box + np.abs(force[left]), way + np.abs(moved[left])
+            )
+            gap += _yielding(unlike[0][left], unlike[1][left], self.at, box)
+            forces, places = response.reach(over[left] + push, apart[left] + gap)
+            proved = (forces <= box).all(axis=1) & (places <= way).all(axis=1)
+            done = left[proved]
+            found[0][done] = forces[proved] + np.abs(force[done])
+            found[1][done] = places[proved] + np.abs(moved[done])
+            more = ~proved & np.isfinite(forces).all(axis=1)
+            left, box, way, forces, places = (v[more] for v in (left, box, way, forces, places))
+            if not len(left):
+                break
         return found
 
     def _left_out(self, rows: NDArray[np.intp], reach: Array, ways: Array) -> tuple[Array, Array]:
@@ -288,15 +323,43 @@ class _Part:
                 + found.stiff_error[where] * moved,
                 0.0,
             )
-            follow = found.follows[where] * self._torque_errors(reach)
-            turn += follow
+            turn += found.follows[where] * self._torque_errors(reach, self.pairs)
             for k in (0, 1):
                 gap[:, self.at + k] += bow
                 extra[:, self.at + k] += turn
-        return extra @ np.abs(self.statics.directions), gap
+        load = extra @ np.abs(self.statics.directions)
+        if len(self.faint):
+            turned = np.repeat(self._turned(rows, reach, ways), 2, axis=1)
+            load += turned @ np.abs(self.claim.columns.matrix.high[self._faint_columns])
+        return load, gap
 
-    def _torque_errors(self, reach: Array) -> Array:
-        """Largest error of the torque over the spline of each pair [N·m]."""
+    @property
+    def _faint_columns(self) -> NDArray[np.intp]:
+        first = self.claim.columns.first_pair
+        return np.stack([first + 2 * self.faint, first + 2 * self.faint + 1], axis=1).reshape(-1)
+
+    def _turned(self, rows: NDArray[np.intp], reach: Array, ways: Array) -> Array:
+        """Largest change of the forces of splines that slip at next to no level, (rows, faint)."""
+        found = self.found
+        where = np.ix_(self.rows[rows], self.faint)
+        lengths = ways @ np.abs(self.claim.columns.matrix.high[self._faint_columns]).T
+        moved = np.hypot(lengths[:, ::2], lengths[:, 1::2])
+        size, distance = np.abs(found.size[where]), found.distance[where]
+        near = np.where(distance > 2.0 * moved, distance, np.nan)
+        change = 2.0 * size * moved / near
+        change += found.follows[where] * self._torque_errors(reach, self.faint)
+        return np.asarray(change)
+
+    def faint_errors(self, force: Array, coordinate: Array) -> Array:
+        """Errors of the forces of splines that slip at next to no level, among all columns."""
+        errors = np.zeros((len(self.rows), self.found.active.shape[1]))
+        if len(self.faint):
+            turned = self._turned(np.arange(len(self.rows)), force, coordinate)
+            errors[:, self._faint_columns] = np.repeat(turned, 2, axis=1)
+        return errors
+
+    def _torque_errors(self, reach: Array, pairs: NDArray[np.intp]) -> Array:
+        """Largest error of the torque over the spline of each of some pairs [N·m]."""
         claim = self.claim
         arcs = (claim.columns.arcs.stop - claim.columns.arcs.start) // 2
         rounds, splines = len(claim.columns.train.rounds), len(claim.columns.train.splines)
@@ -304,8 +367,8 @@ class _Part:
         some = self.columns < claim.columns.flanks.stop
         wide[:, self.columns[some]] = reach[:, some]
         torque = wide @ np.abs(claim.columns.moments).T
-        errors = np.zeros((len(reach), len(self.pairs)))
-        for j, pair in enumerate(self.pairs):
+        errors = np.zeros((len(reach), len(pairs)))
+        for j, pair in enumerate(pairs):
             q = pair - arcs
             if q >= rounds and splines:
                 errors[:, j] = torque[:, (q - rounds) % splines]
@@ -316,6 +379,7 @@ class _Part:
         columns = self.claim.columns
         errors = np.zeros((len(self.rows), len(columns.names)))
         errors[:, self.columns] = force
+        errors += self.faint_errors(force, coordinate)
         moved = coordinate @ np.abs(columns.matrix.high).T
         doubtful, above = doubts(self.claim, found, self.rows, errors, moved)
         # Errors without a bound tell nothing of the elements.
@@ -384,10 +448,11 @@ def _room(
     size, distance, error, moved = (v[:, part] for v in (size, distance, error, moved))
     follow = found.follows[rows][:, part] > 0.0
     level_error = np.where(follow, error, 0.0)
+    stick_error = np.where(follow & (stiffness > 0.0), error / stiffness, 0.0)
     end = np.where(np.isinf(stick), np.inf, np.where(stick > 0.0, stiffness * stick, 0.0))
     is_low = {
         Act.STEP: size - error > end,
-        Act.SLIP: distance - moved > stick,
+        Act.SLIP: distance - moved > stick + stick_error,
         Act.STOP: size - error > level + level_error,
     }
     is_high = {

@@ -28,12 +28,15 @@ class Claim:
     answers : Equilibria
     fine : bool
         Whether residuals are found in twice the working precision.
+    slack : ndarray, shape (m,), or None
+        What is open of the lengths of the columns [m].
     """
 
     columns: Columns
     situations: Situations
     answers: Equilibria
     fine: bool = True
+    slack: Array | None = None
 
     @property
     def count(self) -> int:
@@ -44,7 +47,8 @@ class Claim:
         """Return some of the claims."""
         answers = self.answers.laid(lambda array: array[rows])
         here = self.situations
-        return Claim(self.columns, here.take(rows) if here.count > 1 else here, answers, self.fine)
+        here = here.take(rows) if here.count > 1 else here
+        return Claim(self.columns, here, answers, self.fine, self.slack)
 
     def _each(self, array: Array) -> Array:
         """An array of the situations with one row for every claim."""

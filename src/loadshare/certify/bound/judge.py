@@ -12,6 +12,7 @@ from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.laws import Act, Codes, first_acts
+from loadshare.certify.bound.locked import locked, without
 from loadshare.certify.bound.quick import quick_boxes
 from loadshare.certify.bound.verge import on_the_verge
 from loadshare.certify.tolerance import LARGEST
@@ -46,21 +47,29 @@ class Bounds:
     columns : Columns
     relative : ndarray, shape (S,)
         Largest error of a torque, over the largest torque.
+    torque : ndarray, shape (S, flanks), or None
+        Of the torques of all flanks on their drivers [N·m]; None for large batches.
     force : ndarray, shape (S, m), or None
-        Of the forces of all columns [N]; None for large batches.
+        Of the forces of all columns [N]; likewise.
     coordinate : ndarray, shape (S, n), or None
         Of the coordinates [m]; likewise.
     """
 
     columns: Columns
     relative: Array
+    torque: Array | None
     force: Array | None
     coordinate: Array | None
 
 
-def torques(columns: Columns, force: Array) -> Array:
-    """Errors of the torques of all flanks on their drivers, (…, flanks) [N·m], from the forces'."""
-    return np.asarray(force[..., columns.flanks] * columns.arms * (1.0 + EPS))
+def _torques(columns: Columns, force: Array, claimed: Array) -> Array:
+    """Errors of the torques of all flanks on their drivers, (…, flanks) [N·m].
+
+    From the errors of all columns' forces and the claimed forces of the flanks: a torque is itself
+    rounded.
+    """
+    error = force[..., columns.flanks] * (1.0 + EPS) + EPS * np.abs(claimed)
+    return np.asarray(error * columns.arms)
 
 
 def bounds(
@@ -77,7 +86,7 @@ def bounds(
         Find all residuals in twice the working precision; otherwise only where that is needed.
     """
     if not len(answers.rotation):
-        return Bounds(columns, np.zeros(0), None, None)
+        return Bounds(columns, np.zeros(0), None, None, None)
     with np.errstate(all="ignore"):
         return _bounds(Claim(columns, situations, answers, fine=False), rigorous)
 
@@ -90,7 +99,7 @@ def _bounds(claim: Claim, rigorous: bool) -> Bounds:
         left = np.flatnonzero(~(relative <= ENOUGH))
         if len(left):
             relative[left] = _boxes(claim.take(left), rigorous).relative
-        return Bounds(columns, relative, None, None)
+        return Bounds(columns, relative, None, None, None)
     return _boxes(claim, rigorous)
 
 
@@ -114,22 +123,44 @@ def _boxes(claim: Claim, rigorous: bool) -> Bounds:
     if not rigorous and finite.all():
         box = quick_boxes(claim, act, scale)
 
-    def relative() -> Array:
-        return np.asarray(torques(columns, box.force).max(axis=1, initial=0.0) / largest)
-
-    left = np.flatnonzero(~(relative() <= ENOUGH) & finite)
+    relative = _torques(columns, box.force, flanks).max(axis=1, initial=0.0) / largest
+    left = np.flatnonzero(~(relative <= ENOUGH) & finite)
     for at in range(0, len(left), TOGETHER):
         rows = left[at : at + TOGETHER]
         fine = replace(claim.take(rows), fine=True)
         force, coordinate = _fine(fine, act[rows], scale[rows])
-        better = torques(columns, force).max(axis=1, initial=0.0) < relative()[rows] * largest[rows]
+        found = _torques(columns, force, flanks[rows]).max(axis=1, initial=0.0) / largest[rows]
+        better = found < relative[rows]
+        relative[rows[better]] = found[better]
         box.force[rows[better]] = force[better]
         box.coordinate[rows[better]] = coordinate[better]
+    for row in np.flatnonzero(~(relative <= LARGEST) & finite).tolist():
+        _with_locked(replace(claim.take(np.array([row])), fine=True), scale[row], box.part(row))
+        relative[row] = _torques(columns, box.force[row], flanks[row]).max() / largest[row]
     # Where torques are not bounded closely enough for any certificate, what seems to be bounded is
     # so only if what acts was taken rightly, and secants leave tangents by more than was allowed.
-    unproved = np.flatnonzero(~(relative() <= LARGEST))
-    box.force[unproved], box.coordinate[unproved] = np.inf, np.inf
-    return Bounds(columns, relative(), box.force, box.coordinate)
+    unproved = ~(relative <= LARGEST)
+    box.force[unproved], box.coordinate[unproved], relative[unproved] = np.inf, np.inf, np.inf
+    torque = _torques(columns, box.force, flanks)
+    return Bounds(columns, relative, torque, box.force, box.coordinate)
+
+
+def _with_locked(claim: Claim, scale: float, box: Box) -> None:
+    """Bound what is left of a claim when gears are held that cannot move; write it in its box."""
+    gears = locked(claim)
+    if not gears:
+        return
+    held, origin = without(claim, gears)
+    force, coordinate = _fine(held, first_acts(held), np.array([scale]))
+    box.force[:] = np.inf
+    box.force[0, origin] = force[0]
+    whole = claim.columns
+    box.coordinate[:] = np.inf
+    names = {name: k for k, name in enumerate(whole.coordinates)}
+    box.coordinate[0, [names[n] for n in held.columns.coordinates]] = coordinate[0]
+    for gear, play in gears.items():
+        at = whole.places[gear]
+        box.coordinate[0, at : at + 2] = play
 
 
 def _fine(claim: Claim, act: Codes, scale: Array) -> tuple[Array, Array]:

@@ -193,6 +193,8 @@ def elements(claim: Claim, act: Codes, scale: Array, verge: Flags) -> Elements:
     _springs(claim, active, soft, misfit, width)
     scalar = slice(0, columns.first_pair)
     width[:, scalar] += EPS * np.abs(misfit[:, scalar]) + TINY * sizes[:, scalar]
+    if claim.slack is not None:
+        width += claim.slack
     force[:, scalar] = np.where(active[:, scalar], force[:, scalar], 0.0)
     lines = [np.zeros((count, pairs)) for _ in range(4)]
     found = Elements(
@@ -342,9 +344,9 @@ def _pairs(claim: Claim, act: Codes, found: Elements) -> None:
     off = np.where(act == Act.SLIP, 0.0, off)
     spread = EPS * (reach + yields * np.abs(size))
     most = np.maximum(found.soft.max(axis=1, initial=0.0), np.finfo(float).tiny)
-    softest = SOFT * most[:, None]
     across = np.where(size > 0.0, distance / np.where(size > 0.0, size, 1.0), np.inf)
     lateral = sign * np.minimum(across, SOFTEST * most[:, None])
+    softest = np.maximum(SOFT * most[:, None], 100.0 * np.abs(lateral))
     along = np.where(act == Act.SLIP, softest, yields)
     springs = np.where(act == Act.STICK, 1.0, 0.0)
     stiffness = np.concatenate(

@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 
 from loadshare.certify.bound.columns import Columns
-from loadshare.certify.bound.judge import Bounds, bounds, torques
+from loadshare.certify.bound.judge import Bounds, bounds
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import situation_of
@@ -62,12 +62,12 @@ class Bound:
         ValueError
             If only the largest errors were found.
         """
-        if found.force is None or found.coordinate is None:
+        if found.torque is None or found.force is None or found.coordinate is None:
             raise ValueError("of so many claims only the largest error of each was found")
         columns, force = found.columns, found.force[row]
         torque: dict[str, float] = {}
-        for (mesh, _), error in zip(columns.all_flanks, torques(columns, force), strict=True):
-            torque[mesh.name] = torque.get(mesh.name, 0.0) + float(error)
+        for (mesh, _), error in zip(columns.all_flanks, found.torque[row].tolist(), strict=True):
+            torque[mesh.name] = torque.get(mesh.name, 0.0) + error
         forces: dict[str, float] = {}
         for name, error in zip(columns.names, force.tolist(), strict=True):
             forces[name] = math.hypot(forces.get(name, 0.0), error)

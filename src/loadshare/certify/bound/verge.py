@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.bound.bound import Box, boxes
-from loadshare.certify.bound.claim import Claim
+from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.laws import Act, Codes, elements
 from loadshare.certify.bound.quick import quick_boxes
 from loadshare.certify.bound.statics import Statics
@@ -47,9 +47,10 @@ def on_the_verge(claim: Claim, act: Codes, scale: Array, box: Box) -> Box:
     box : Box
         What was found for them.
     """
+    free = ~_held_by_twins(claim, box)
     ways = {
         int(e): _ways(claim, int(e), int(act[0, e]), bool(box.above[0, e]))
-        for e in np.flatnonzero(box.doubtful[0])
+        for e in np.flatnonzero(box.doubtful[0] & free)
     }
     for _ in range(ROUNDS):
         idle = _idle(claim, act, list(ways), scale)
@@ -70,7 +71,7 @@ def on_the_verge(claim: Claim, act: Codes, scale: Array, box: Box) -> Box:
         held = ~many.unbalanced
         if not held.any():
             break
-        new = np.flatnonzero((many.doubtful & ~verge)[held].any(axis=0))
+        new = np.flatnonzero((many.doubtful & ~verge & free)[held].any(axis=0))
         if not len(new):
             found = _largest(many, held)
             return found if np.isfinite(found.force).all() else quick_boxes(claim, act, scale)
@@ -78,6 +79,18 @@ def on_the_verge(claim: Claim, act: Codes, scale: Array, box: Box) -> Box:
             row = int(np.flatnonzero(many.doubtful[:, e] & held)[0])
             ways[e] = _ways(claim, e, int(act[0, e]), bool(many.above[row, e]))
     return quick_boxes(claim, act, scale)
+
+
+def _held_by_twins(claim: Claim, box: Box) -> NDArray[np.bool_]:
+    """Stops of a drum without clearance that stay without force as the one opposite is pressed."""
+    stops, first = claim.columns.stops, claim.columns.flanks.stop
+    held = np.zeros(box.doubtful.shape[1], dtype=bool)
+    limits = claim.situations.stop[0].reshape(-1)
+    pressed = claim.forces[0, stops] > box.force[0, stops]
+    for k, twin in enumerate(np.arange(len(limits)) ^ 1):
+        apart = limits[k] + limits[twin] >= -EPS * abs(limits[k])
+        held[first + k] = pressed[twin] and not pressed[k] and apart
+    return held
 
 
 def _with(act: Codes, changes: dict[int, int]) -> Codes:

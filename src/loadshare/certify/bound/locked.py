@@ -1,0 +1,158 @@
+"""Gears that rigid limits leave no way to move: what their limits share does not matter.
+
+A gear in a rigid ring without play stands where it stands, whatever its stops, its spline and its
+ring share of the force on it. Its place, known to within what the limits leave, is put in as data
+and its limits are left out; what is then bounded is all the rest. Source: formulation, section 16.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.certify.bound.claim import EPS, Claim
+from loadshare.certify.bound.columns import Columns
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.ring import DrumRing
+from loadshare.train.situations import Situations
+from loadshare.train.train import Train
+
+Array = NDArray[np.float64]
+
+SLIGHT = 1e-6
+"""Play, in deflections of the claim, of a gear that counts as locked."""
+BOWED = 1e-3
+"""Play, in centre distances of an arc, below which the arc is taken for its tangent and a bow."""
+
+
+def locked(claim: Claim) -> dict[str, float]:
+    """Gears that cannot move, and how far each may stand from where it is claimed [m].
+
+    Parameters
+    ----------
+    claim : Claim
+        A single one.
+    """
+    found: dict[str, float] = {}
+    columns = claim.columns
+    train = columns.train
+    if train.slip is not None:
+        return found
+    deflection = float(claim.lengths[0].value[0, columns.flanks].max(initial=0.0))
+    neighbours = {n for r in train.drums for n in r.neighbours}
+    for name, ring in train.rings.items():
+        if math.isfinite(ring.stiffness) or name in neighbours:
+            continue
+        play = _drum(claim, ring) if isinstance(ring, DrumRing) else _round(claim, name)
+        if play <= SLIGHT * deflection:
+            found[name] = play
+    return found
+
+
+def _round(claim: Claim, gear: str) -> float:
+    """How far a gear in a rigid round ring may stand from its claimed place."""
+    train, columns = claim.columns.train, claim.columns
+    q = [r.gear for r in train.rounds].index(gear)
+    at = columns.radials.start + 2 * q
+    radius = float(claim.graphs[0, q, 3])
+    off = math.hypot(*claim.lengths[0].value[0, at : at + 2].tolist())
+    return off if radius == 0.0 else math.inf
+
+
+def _drum(claim: Claim, ring: DrumRing) -> float:
+    """How far a gear in a rigid drum may stand from its claimed place."""
+    train, columns = claim.columns.train, claim.columns
+    if any(train.gears[n].moves for n in ring.neighbours):
+        return math.inf
+    frame = train.gears[ring.gear].frame
+    across = frame @ ring.across
+    drum = train.drums.index(ring)
+    stops = columns.stops.start + 2 * drum
+    ways, margins, sizes = (v[0, 2 * drum : 2 * drum + 2] for v in claim.arcs)
+    distance = np.sqrt((ways**2).sum(axis=1))
+    # a·δ ≥ −m for every move δ from the claim that all four limits allow.
+    normals = np.array([-across, across, *(ways / distance[:, None])])
+    room = np.maximum([*-claim.lengths[0].value[0, stops : stops + 2], *margins], 0.0)
+    room += EPS * np.array([*np.abs(room[:2]), *sizes])
+    play = _reach(normals, room)
+    # Arcs bow away from their tangents by less than this, as long as the play is small.
+    bow = np.array([0.0, 0.0, *((2.0 * play) ** 2 / distance)])
+    further = _reach(normals, room + bow)
+    return further if further <= min(2.0 * play, BOWED * float(distance.min())) else math.inf
+
+
+def _reach(normals: Array, room: Array) -> float:
+    """Largest move that half-planes a·δ ≥ −m allow, by the weak duality of every pair of them."""
+    longest = 0.0
+    for direction in (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0):
+        longest = max(longest, min(_supports(normals, room, np.array(direction)), default=math.inf))
+    return math.sqrt(2.0) * longest
+
+
+def _supports(normals: Array, room: Array, direction: Array) -> Iterator[float]:
+    """Bounds on how far moves may go along a direction."""
+    for i, j in combinations(range(len(normals)), 2):
+        pair = normals[[i, j]].T
+        if abs(np.linalg.det(pair)) > BOWED:
+            shares = np.linalg.solve(pair, -direction)
+            if (shares >= -EPS).all():
+                yield float(np.maximum(shares, EPS) @ room[[i, j]])
+
+
+def without(claim: Claim, gears: dict[str, float]) -> tuple[Claim, NDArray[np.intp]]:
+    """The claim for the train in which some gears are held where they are claimed.
+
+    Parameters
+    ----------
+    claim : Claim
+        A single one.
+    gears : dict of gear to float
+        How far each may stand from there [m].
+
+    Returns
+    -------
+    claim : Claim
+        With what their places leave open as `slack`.
+    columns : ndarray of int
+        Number of each of its columns among those of the whole train.
+    """
+    train, whole = claim.columns.train, claim.columns
+    held = replace(
+        train,
+        gears={n: replace(g, support=None) if n in gears else g for n, g in train.gears.items()},
+        splines={n: s for n, s in train.splines.items() if n not in gears},
+        rings={n: r for n, r in train.rings.items() if n not in gears},
+    )
+    columns = Columns(held)
+    here = _held(claim.situations, held, gears)
+    for gear in gears:
+        here.offset[:, whole.order[gear]] += claim.answers.displacement[0, whole.order[gear]]
+    answer = Equilibria.empty(held, 1)
+    answer.put(0, claim.answers.one(0, int(here.index[0])))
+    left = iter(enumerate(whole.names))
+    origin = np.array([next(k for k, n in left if n == name) for name in columns.names], dtype=int)
+    slack = np.zeros(len(columns.names))
+    for gear, play in gears.items():
+        at = whole.places[gear]
+        moved = np.abs(whole.matrix.high[origin, at : at + 2]).sum(axis=1)
+        slack += moved * (play + EPS * np.abs(here.offset[0, whole.order[gear]]).sum())
+    return Claim(columns, here, answer, slack=slack), origin
+
+
+def _held(here: Situations, held: Train, gears: Iterable[str]) -> Situations:
+    """The situation without what holds some gears."""
+    train = here.train
+    drums, rounds = ([r.gear not in gears for r in kind] for kind in (train.drums, train.rounds))
+    splines = [gear not in gears for gear in train.splines]
+    kept = {
+        **dict.fromkeys(("arc_shift", "arc_clearance", "stop", "wall"), drums),
+        **dict.fromkeys(("round_radius", "round_stiffness"), rounds),
+        "spline": splines,
+    }
+    arrays = {name: getattr(here, name)[:, keep] for name, keep in kept.items()}
+    return replace(here, train=held, offset=here.offset.copy(), **arrays)
