@@ -290,7 +290,8 @@ class _Part:
             found[0][done] = forces[proved] + np.abs(force[done])
             found[1][done] = places[proved] + np.abs(moved[done])
             more = ~proved & np.isfinite(forces).all(axis=1)
-            left, box, way, forces, places = (v[more] for v in (left, box, way, forces, places))
+            left = left[more]
+            box, way, forces, places = (v[more] for v in (box, way, forces, places))
             if not len(left):
                 break
         return found
