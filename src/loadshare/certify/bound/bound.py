@@ -28,7 +28,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.bound.claim import EPS, Claim
-from loadshare.certify.bound.laws import Act, Codes, Elements, elements
+from loadshare.certify.bound.laws import SOFT, SOFTEST, Act, Codes, Elements, elements
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -41,10 +41,6 @@ SINGULAR = 1e-15
 """Compliance of a self-stress, over the largest, below which it is shared by rigid parts alone."""
 SHARED = 1e-7
 """Part of a force in a self-stress of rigid parts from which on it is undetermined."""
-FAINT = 1e-9
-"""Level of a spline that slips, in loads of the claim, below which its turning is no compliance.
-
-Its force is kept, and what turning may change of it counts as load that was left out."""
 BALANCED = 1e-12
 """Load along a move that nothing resists, over the claim's load, that is rounding."""
 
@@ -77,6 +73,11 @@ class Box:
         """Return the box of one claim."""
         return Box(*(getattr(self, f.name)[row : row + 1] for f in fields(self)))
 
+    def put(self, rows: NDArray[np.intp], other: Box) -> None:
+        """Write the boxes of some claims."""
+        for f in fields(self):
+            getattr(self, f.name)[rows] = getattr(other, f.name)
+
     @classmethod
     def unproved(cls, claim: Claim, act: Codes) -> Box:
         """Return boxes without end."""
@@ -101,7 +102,17 @@ def boxes(claim: Claim, act: Codes, scale: Array, verge: Flags | None = None) ->
         Load of the claims [N].
     """
     verge = np.zeros(act.shape, dtype=bool) if verge is None else verge
-    found = elements(claim, act, scale, verge)
+    box = _boxes(claim, act, scale, verge, SOFT)
+    rows = np.flatnonzero(np.isinf(box.force).any(axis=1))
+    if claim.columns.pairs and len(rows):
+        # What holds a coordinate may be no more than the turning of a light force.
+        box.put(rows, _boxes(claim.take(rows), act[rows], scale[rows], verge[rows], SOFTEST))
+    return box
+
+
+def _boxes(claim: Claim, act: Codes, scale: Array, verge: Flags, softest: float) -> Box:
+    """Bound errors with turns of light forces as soft as `softest` times the softest element."""
+    found = elements(claim, act, scale, verge, softest)
     left, rounding = claim.balance(found.force)
     rounding = rounding + found.rounding @ np.abs(claim.columns.matrix.high)
     box = Box.unproved(claim, act)
@@ -110,12 +121,9 @@ def boxes(claim: Claim, act: Codes, scale: Array, verge: Flags | None = None) ->
     )
     for number, sample in enumerate(first):
         rows = np.flatnonzero(group.reshape(-1) == number)
-        part = _Part(
-            claim, found, rows, np.flatnonzero(found.active[sample]), left, rounding, scale
-        )
+        part = _Part(claim, found, rows, np.flatnonzero(found.active[sample]), left, rounding)
         force, coordinate = part.solve(scale[rows])
         box.force[rows] = aside(claim, found, rows)
-        box.force[rows] += part.faint_errors(force, coordinate)
         box.force[np.ix_(rows, part.columns)] += force + part.shared + part.stray[:, None]
         box.coordinate[rows] = coordinate + np.where(part.statics.loose, np.inf, 0.0)
         box.doubtful[rows], box.above[rows] = part.doubts(found, force, coordinate)
@@ -141,25 +149,6 @@ def aside(claim: Claim, found: Elements, rows: NDArray[np.intp] | slice) -> Arra
         left = np.where(found.active[rows][:, arcs][:, ::2], 0.0, size)
         apart[:, arcs] = np.repeat(left, 2, axis=1)
     return np.asarray(apart)
-
-
-def _without_faint(
-    claim: Claim, found: Elements, rows: NDArray[np.intp], columns: NDArray[np.intp], scale: Array
-) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Columns without those of splines that slip at next to no level, and their pairs.
-
-    Where nothing else holds a coordinate, such a spline does, and remains.
-    """
-    first = claim.columns.first_pair
-    slips = (found.act[rows, len(claim.columns.contacts) :] == Act.SLIP).all(axis=0)
-    slips &= (np.abs(found.size[rows]) <= FAINT * scale[rows, None]).all(axis=0)
-    faint = np.flatnonzero(slips)
-    if not len(faint):
-        return columns, faint
-    without = np.setdiff1d(columns, [first + 2 * faint, first + 2 * faint + 1])
-    if claim.columns.statics(without).moves.shape != claim.columns.statics(columns).moves.shape:
-        return columns, faint[:0]
-    return without, faint
 
 
 class _Response:
@@ -220,11 +209,8 @@ class _Part:
         columns: NDArray[np.intp],
         left: Array,
         rounding: Array,
-        scale: Array,
     ) -> None:
-        self.claim, self.found, self.rows = claim, found, rows
-        self.columns, self.faint = _without_faint(claim, found, rows, columns, scale)
-        columns = self.columns
+        self.claim, self.found, self.rows, self.columns = claim, found, rows, columns
         self.statics = claim.columns.statics(columns)
         pick = np.ix_(rows, columns)
         self.soft, self.misfit, self.width = found.soft[pick], found.misfit[pick], found.width[pick]
@@ -237,7 +223,7 @@ class _Part:
         self.left = self.left - self.left @ moves @ moves.T
         first = claim.columns.first_pair
         at = np.searchsorted(columns, np.arange(first, found.active.shape[1], 2))
-        self.pairs = np.setdiff1d(np.flatnonzero(found.active[rows[0], first::2]), self.faint)
+        self.pairs = np.flatnonzero(found.active[rows[0], first::2])
         self.at = at[self.pairs]
         self.skew = found.skew[np.ix_(rows, self.pairs)]
         self.shared = np.zeros(len(columns))
@@ -324,43 +310,14 @@ class _Part:
                 + found.stiff_error[where] * moved,
                 0.0,
             )
-            turn += found.follows[where] * self._torque_errors(reach, self.pairs)
+            turn += found.follows[where] * self._torque_errors(reach)
             for k in (0, 1):
                 gap[:, self.at + k] += bow
                 extra[:, self.at + k] += turn
-        load = extra @ np.abs(self.statics.directions)
-        if len(self.faint):
-            turned = np.repeat(self._turned(rows, reach, ways), 2, axis=1)
-            load += turned @ np.abs(self.claim.columns.matrix.high[self._faint_columns])
-        return load, gap
+        return extra @ np.abs(self.statics.directions), gap
 
-    @property
-    def _faint_columns(self) -> NDArray[np.intp]:
-        first = self.claim.columns.first_pair
-        return np.stack([first + 2 * self.faint, first + 2 * self.faint + 1], axis=1).reshape(-1)
-
-    def _turned(self, rows: NDArray[np.intp], reach: Array, ways: Array) -> Array:
-        """Largest change of the forces of splines that slip at next to no level, (rows, faint)."""
-        found = self.found
-        where = np.ix_(self.rows[rows], self.faint)
-        lengths = ways @ np.abs(self.claim.columns.matrix.high[self._faint_columns]).T
-        moved = np.hypot(lengths[:, ::2], lengths[:, 1::2])
-        size, distance = np.abs(found.size[where]), found.distance[where]
-        near = np.where(distance > 2.0 * moved, distance, np.nan)
-        change = 2.0 * size * moved / near
-        change += found.follows[where] * self._torque_errors(reach, self.faint)
-        return np.asarray(change)
-
-    def faint_errors(self, force: Array, coordinate: Array) -> Array:
-        """Errors of the forces of splines that slip at next to no level, among all columns."""
-        errors = np.zeros((len(self.rows), self.found.active.shape[1]))
-        if len(self.faint):
-            turned = self._turned(np.arange(len(self.rows)), force, coordinate)
-            errors[:, self._faint_columns] = np.repeat(turned, 2, axis=1)
-        return errors
-
-    def _torque_errors(self, reach: Array, pairs: NDArray[np.intp]) -> Array:
-        """Largest error of the torque over the spline of each of some pairs [N·m]."""
+    def _torque_errors(self, reach: Array) -> Array:
+        """Largest error of the torque over the spline of each pair [N·m]."""
         claim = self.claim
         arcs = (claim.columns.arcs.stop - claim.columns.arcs.start) // 2
         rounds, splines = len(claim.columns.train.rounds), len(claim.columns.train.splines)
@@ -368,8 +325,8 @@ class _Part:
         some = self.columns < claim.columns.flanks.stop
         wide[:, self.columns[some]] = reach[:, some]
         torque = wide @ np.abs(claim.columns.moments).T
-        errors = np.zeros((len(reach), len(pairs)))
-        for j, pair in enumerate(pairs):
+        errors = np.zeros((len(reach), len(self.pairs)))
+        for j, pair in enumerate(self.pairs):
             q = pair - arcs
             if q >= rounds and splines:
                 errors[:, j] = torque[:, (q - rounds) % splines]
@@ -380,7 +337,6 @@ class _Part:
         columns = self.claim.columns
         errors = np.zeros((len(self.rows), len(columns.names)))
         errors[:, self.columns] = force
-        errors += self.faint_errors(force, coordinate)
         moved = coordinate @ np.abs(columns.matrix.high).T
         doubtful, above = doubts(self.claim, found, self.rows, errors, moved)
         # Errors without a bound tell nothing of the elements.

@@ -25,7 +25,7 @@ Codes = NDArray[np.int8]
 Flags = NDArray[np.bool_]
 
 SOFT, SOFTEST = 1e5, 1e11
-"""Compliance that stands for "does not resist", and the largest one, in those of the claim."""
+"""Compliance that stands for "does not resist", and the largest of a turn, in the claim's own."""
 LIGHT = 1e-9
 """Force, in loads of the claim, at which the tangent of a contact without force is taken.
 
@@ -160,7 +160,9 @@ def _radial_acts(claim: Claim) -> Codes:
     ).astype(np.int8)
 
 
-def elements(claim: Claim, act: Codes, scale: Array, verge: Flags) -> Elements:
+def elements(
+    claim: Claim, act: Codes, scale: Array, verge: Flags, softest: float = SOFTEST
+) -> Elements:
     """Describe the elements at S claims.
 
     Parameters
@@ -172,6 +174,9 @@ def elements(claim: Claim, act: Codes, scale: Array, verge: Flags) -> Elements:
         Load of the claims [N].
     verge : ndarray of bool, shape (S, elements)
         Elements of which it is open how they act: contacts among them carry next to nothing.
+    softest : float
+        Largest compliance of a turn, in those of the claim; what a softer one has less in
+        stiffness goes to `stiff_error`.
     """
     columns, count = claim.columns, claim.count
     m, pairs = len(columns.names), columns.pairs
@@ -213,7 +218,7 @@ def elements(claim: Claim, act: Codes, scale: Array, verge: Flags) -> Elements:
     )
     if pairs:
         with np.errstate(divide="ignore", invalid="ignore"):
-            _pairs(claim, act[:, flanks + stops :], found)
+            _pairs(claim, act[:, flanks + stops :], found, softest)
     return found
 
 
@@ -307,7 +312,7 @@ def _springs(claim: Claim, active: Flags, soft: Array, misfit: Array, width: Arr
         width[:, at] += EPS * np.abs(yielded)
 
 
-def _pairs(claim: Claim, act: Codes, found: Elements) -> None:
+def _pairs(claim: Claim, act: Codes, found: Elements, softest: float) -> None:
     """Arcs and radial elements."""
     columns, here = claim.columns, claim.situations
     first, count = columns.first_pair, claim.count
@@ -345,9 +350,9 @@ def _pairs(claim: Claim, act: Codes, found: Elements) -> None:
     spread = EPS * (reach + yields * np.abs(size))
     most = np.maximum(found.soft.max(axis=1, initial=0.0), np.finfo(float).tiny)
     across = np.where(size > 0.0, distance / np.where(size > 0.0, size, 1.0), np.inf)
-    lateral = sign * np.minimum(across, SOFTEST * most[:, None])
-    softest = np.maximum(SOFT * most[:, None], 100.0 * np.abs(lateral))
-    along = np.where(act == Act.SLIP, softest, yields)
+    lateral = sign * np.minimum(across, softest * most[:, None])
+    free = np.maximum(SOFT * most[:, None], 100.0 * np.abs(lateral))
+    along = np.where(act == Act.SLIP, free, yields)
     springs = np.where(act == Act.STICK, 1.0, 0.0)
     stiffness = np.concatenate(
         [np.ones((count, arcs)), np.where(np.isinf(stick) | (stick > 0.0), stick_stiffness, last)],
