@@ -11,7 +11,7 @@ from loadshare.certify.bound.batch import Batch, is_plain
 from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
-from loadshare.certify.bound.laws import Act, Codes, first_acts
+from loadshare.certify.bound.laws import Act, Codes, assumed, first_acts
 from loadshare.certify.bound.locked import locked, without
 from loadshare.certify.bound.quick import quick_boxes
 from loadshare.certify.bound.verge import on_the_verge
@@ -134,6 +134,9 @@ def _boxes(claim: Claim, rigorous: bool) -> Bounds:
         relative[rows[better]] = found[better]
         box.force[rows[better]] = force[better]
         box.coordinate[rows[better]] = coordinate[better]
+    if claim.radial_gears:
+        beyond = box.force[:, columns.flanks].max(axis=1, initial=0.0) > assumed(claim, act, scale)
+        relative[beyond] = np.inf
     for row in np.flatnonzero(~(relative <= LARGEST) & finite).tolist():
         _with_locked(replace(claim.take(np.array([row])), fine=True), scale[row], box.part(row))
         relative[row] = _torques(columns, box.force[row], flanks[row]).max() / largest[row]

@@ -33,7 +33,8 @@ Below it a Hertz contact is softer still, which only lessens what it moves."""
 NOISE, APART = 1e-12, 1e-6
 """Force over the largest one, and gap over the largest deflection, of a contact that is open.
 
-So little force over so clear a gap is a solver's rounding, and is put aside."""
+So little force over so clear a gap is a solver's rounding, and is put aside; so is the friction of
+a spline that takes no more torque than rounding."""
 CORNER = 1e-12
 """Relative distance from a level within which a force is on it, up to rounding."""
 
@@ -118,11 +119,13 @@ def first_acts(claim: Claim) -> Codes:
     faint = (np.abs(contacts) <= NOISE * largest) & (gap > APART * deflection)
     closed = (contacts != 0.0) & ~faint
     scalar = np.where(closed, Act.STOP, Act.OPEN).astype(np.int8)
-    radials = _radial_acts(claim) if claim.radial_gears else np.zeros((claim.count, 0), np.int8)
+    radials = np.zeros((claim.count, 0), np.int8)
+    if claim.radial_gears:
+        radials = _radial_acts(claim, NOISE * largest)
     return np.concatenate([scalar, radials], axis=1)
 
 
-def _radial_acts(claim: Claim) -> Codes:
+def _radial_acts(claim: Claim, noise: Array) -> Codes:
     columns = claim.columns
     pair = claim.forces[:, columns.radials].reshape(claim.count, -1, 2)
     where = claim.lengths[0].value[:, columns.radials].reshape(claim.count, -1, 2)
@@ -136,6 +139,7 @@ def _radial_acts(claim: Claim) -> Codes:
     return np.select(
         [
             np.isinf(stick),
+            (level > 0.0) & (level <= noise) & (distance < reach),
             (level == 0.0) & (stick == 0.0) & (reach == 0.0),
             (level == 0.0) & (size == 0.0),
             steps & below & (stick == 0.0),
@@ -147,6 +151,7 @@ def _radial_acts(claim: Claim) -> Codes:
         ],
         [
             Act.STICK,
+            Act.OPEN,
             held,
             Act.OPEN,
             Act.PINNED,
@@ -218,7 +223,7 @@ def elements(
     )
     if pairs:
         with np.errstate(divide="ignore", invalid="ignore"):
-            _pairs(claim, act[:, flanks + stops :], found, softest)
+            _pairs(claim, act[:, flanks + stops :], found, scale, softest)
     return found
 
 
@@ -312,7 +317,7 @@ def _springs(claim: Claim, active: Flags, soft: Array, misfit: Array, width: Arr
         width[:, at] += EPS * np.abs(yielded)
 
 
-def _pairs(claim: Claim, act: Codes, found: Elements, softest: float) -> None:
+def _pairs(claim: Claim, act: Codes, found: Elements, scale: Array, softest: float) -> None:
     """Arcs and radial elements."""
     columns, here = claim.columns, claim.situations
     first, count = columns.first_pair, claim.count
@@ -374,6 +379,7 @@ def _pairs(claim: Claim, act: Codes, found: Elements, softest: float) -> None:
     force = np.where(on[:, :, None], force, 0.0)
     found.force[:, first:] = force.reshape(count, -1)
     found.rounding[:, first:] = np.repeat(np.where(lined & on, 2.0 * EPS * np.abs(size), 0.0), 2, 1)
+    found.rounding[:, columns.radials] += np.repeat(_put_aside(claim, acts, scale), 2, axis=1)
     found.active[:, first:] = np.repeat(on, 2, axis=1)
     found.line[:], found.distance[:], found.size[:] = line, distance, size
     found.along[:] = yields
@@ -381,6 +387,28 @@ def _pairs(claim: Claim, act: Codes, found: Elements, softest: float) -> None:
     wrong = np.abs(true - 1.0 / lateral) * (1.0 + EPS) + np.where(act == Act.SLIP, 1.0 / along, 0.0)
     found.stiff_error[:] = np.where(lined, np.maximum(wrong, np.finfo(float).tiny), 0.0)
     _follow(claim, acts, stopped, yields[:, part], found.follows[:, part])
+
+
+def _put_aside(claim: Claim, acts: Codes, scale: Array) -> Array:
+    """Friction of splines that are taken as open, at most, shape (S, radials) [N]."""
+    level = claim.graphs[:, :, 2]
+    open_ = (acts == Act.OPEN) & (level > 0.0)
+    if not open_.any():
+        return np.zeros(acts.shape)
+    train, arms = claim.columns.train, np.abs(claim.columns.moments).sum(axis=1)
+    more = np.zeros(acts.shape)
+    for q in range(len(train.rounds), acts.shape[1]):
+        k = (q - len(train.rounds)) % len(train.splines)
+        fixed, rate = claim.situations.spline[:, k, 3], claim.situations.spline[:, k, 4]
+        more[:, q] = np.where(np.isnan(fixed), np.abs(rate), 0.0) * arms[k] * NOISE * scale
+    return np.where(open_, level + more, 0.0)
+
+
+def assumed(claim: Claim, act: Codes, scale: Array) -> Array:
+    """Error of flank forces, (S,) [N], up to which friction that was put aside is covered."""
+    radials = act[:, act.shape[1] - len(claim.radial_gears) :]
+    aside = (radials == Act.OPEN) & (claim.graphs[:, :, 2] > 0.0)
+    return np.where(aside.any(axis=1), NOISE * scale, np.inf)
 
 
 def _follow(claim: Claim, acts: Codes, stopped: Flags, yields: Array, follows: Array) -> None:

@@ -123,7 +123,7 @@ def _ways(claim: Claim, e: int, act: int, above: bool) -> tuple[int, ...]:
     columns = claim.columns
     contacts = len(columns.contacts)
     arcs = (columns.arcs.stop - columns.arcs.start) // 2
-    if e < contacts + arcs:
+    if e < contacts + arcs or act == Act.OPEN:
         return Act.OPEN, Act.STOP
     first, stick, level, reach, _ = claim.graphs[0, e - contacts - arcs].tolist()
     steps = level > 0.0 and (stick == 0.0 or first * stick < level * (1.0 - 1e-12))
