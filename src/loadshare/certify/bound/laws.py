@@ -139,7 +139,7 @@ def _radial_acts(claim: Claim, noise: Array) -> Codes:
     return np.select(
         [
             np.isinf(stick),
-            (level > 0.0) & (level <= noise) & (distance < reach),
+            (level <= noise) & (size <= noise) & (distance < reach),
             (level == 0.0) & (stick == 0.0) & (reach == 0.0),
             (level == 0.0) & (size == 0.0),
             steps & below & (stick == 0.0),
