@@ -8,6 +8,9 @@ import numpy as np
 
 from loadshare.certify.state import State
 
+ROUNDED = 16.0 * float(np.finfo(float).eps)
+"""Rounding of energies, relative to the sum of their sizes."""
+
 
 def force_balance(state: State) -> tuple[float, str]:
     """Largest unbalanced force [N] on a gear that can be displaced, and the gear."""
@@ -113,7 +116,10 @@ def cone_membership(state: State, band: float) -> tuple[float, str]:
 
 
 def energy_gap(state: State) -> tuple[float, str]:
-    """Potential less complementary energy [J]: zero at an equilibrium."""
+    """Potential less complementary energy [J], beyond rounding: zero at an equilibrium.
+
+    Bearings and rings may hold far more energy against one another than the load brings in.
+    """
     primal, dual = [], []
     for gear, torque in state.situation.torque.items():
         primal.append(-torque * state.answer.rotation[gear])
@@ -139,7 +145,9 @@ def energy_gap(state: State) -> tuple[float, str]:
         size = min(float(np.linalg.norm(pull.reaction)), pull.law.strength)
         primal.append(pull.law.energy(float(np.linalg.norm(pull.offset))))
         dual += [-pull.law.complementary(size), float(pull.reaction @ pull.centre)]
-    return abs(math.fsum(primal) - math.fsum(dual)), "the whole train"
+    rounding = ROUNDED * math.fsum(map(abs, (*primal, *dual)))
+    gap = abs(math.fsum(primal) - math.fsum(dual))
+    return max(gap - rounding, 0.0), "the whole train"
 
 
 def _worst(values: dict[str, float]) -> tuple[float, str]:

@@ -41,8 +41,8 @@ SINGULAR = 1e-15
 """Compliance of a self-stress, over the largest, below which it is shared by rigid parts alone."""
 SHARED = 1e-7
 """Part of a force in a self-stress of rigid parts from which on it is undetermined."""
-BALANCED = 1e-12
-"""Load along a move that nothing resists, over the claim's load, that is rounding."""
+BALANCED, ROUNDED = 1e-12, 16.0 * EPS
+"""Load along a move that nothing resists that is rounding: part of the load, and of any force."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,8 +127,22 @@ def _boxes(claim: Claim, act: Codes, scale: Array, verge: Flags, softest: float)
         box.force[np.ix_(rows, part.columns)] += force + part.shared + part.stray[:, None]
         box.coordinate[rows] = coordinate + np.where(part.statics.loose, np.inf, 0.0)
         box.doubtful[rows], box.above[rows] = part.doubts(found, force, coordinate)
-        box.unbalanced[rows] = part.stray > BALANCED * scale[rows]
+        box.unbalanced[rows] = part.stray > rounding_of(found.force[rows], scale[rows])
     return box
+
+
+def rounding_of(force: Array, scale: Array) -> Array:
+    """Load along a move that nothing resists that counts as rounding, (S,) [N].
+
+    Parameters
+    ----------
+    force : ndarray, shape (S, m)
+        Of the columns [N].
+    scale : ndarray, shape (S,)
+        Load of the claims [N].
+    """
+    largest = np.abs(force).max(axis=1, initial=0.0)
+    return np.asarray(np.maximum(BALANCED * scale, ROUNDED * largest))
 
 
 def _yielding(soft: Array, skew: Array, at: NDArray[np.intp], force: Array) -> Array:
@@ -236,7 +250,8 @@ class _Part:
         """
         force = np.full(self.soft.shape, np.inf)
         coordinate = np.full((len(self.rows), len(self.statics.directions.T)), np.inf)
-        left = np.flatnonzero(self.stray <= BALANCED * scale)
+        allowed = rounding_of(self.found.force[self.rows], scale)
+        left = np.flatnonzero(self.stray <= allowed)
         for _ in range(REFERENCES):
             if not len(left):
                 break

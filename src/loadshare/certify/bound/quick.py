@@ -21,7 +21,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.certify.bound.bound import BALANCED, SHARED, SINGULAR, Box, aside, doubts
+from loadshare.certify.bound.bound import SHARED, SINGULAR, Box, aside, doubts, rounding_of
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.laws import LIGHT, SOFTEST, Act, Codes, Elements, elements
 from loadshare.certify.bound.statics import Statics
@@ -336,9 +336,11 @@ class _Group:
         force = np.abs(found.force[pick])
         if self.statics.moves.size:
             stray = np.abs(left @ self.statics.moves).max(axis=1)
-            errors += (stray + EPS * scale + np.where(stray <= BALANCED * scale, 0.0, np.inf))[
-                :, None
-            ]
+            errors += (
+                stray
+                + EPS * scale
+                + np.where(stray <= rounding_of(found.force[pick], scale), 0.0, np.inf)
+            )[:, None]
         proved = np.isfinite(errors).all(axis=1) & np.isfinite(places).all(axis=1)
         light = np.maximum(force, LIGHT * scale[:, None])[:, columns.flanks]
         proved &= (errors[:, columns.flanks] <= 0.1 * light).all(axis=1)
