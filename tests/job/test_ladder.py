@@ -23,6 +23,8 @@ from loadshare.scene.plan import Role
 from loadshare.solver import Options
 from loadshare.solver.contradiction import contradiction
 from loadshare.solver.hot import places, vectorised
+from loadshare.solver.hot.exchange import Found, first_sets
+from loadshare.solver.hot.state import at_rest
 from loadshare.train import Train, build_train
 
 CASES = {
@@ -96,14 +98,23 @@ def test_an_answer_that_was_searched_for_says_so(monkeypatch):
 
 
 def test_a_wrong_set_is_not_handed_out(monkeypatch):
-    """An engine that is content with any set: what the certificate refuses climbs on."""
+    """An engine that is content with any set, and no search for a better one.
+
+    What the certificate refuses climbs on.
+    """
     settle = vectorised.settle
+
+    def lost(elements, data):
+        nothing = np.zeros(1, bool)
+        sets = first_sets(elements, data)
+        return at_rest(elements, data), Found(nothing, sets, np.zeros(1, int), nothing)
 
     def content(elements, data, basis, code, rows, state, one_only):
         settle(elements, data, basis, code, rows, state, one_only)
         return np.full(len(rows), places.DONE, np.int8), np.repeat(code[None, :], len(rows), 0)
 
     monkeypatch.setattr(vectorised, "settle", content)
+    monkeypatch.setattr("loadshare.job.machine.search", lost)
     own = Machine(build_train(shipped("fgfbstts/limit_ring")))
     answers = own.answer(own.situations([1]), TOLERANCE, content)
     assert not answers.passed.any(), "open stops are penetrated"

@@ -24,8 +24,9 @@ from loadshare.scene.scene import Array
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.exchange import Codes, Found, exchange, first_sets
+from loadshare.solver.hot.softened import Laws
 from loadshare.solver.hot.state import State, at_rest
-from loadshare.solver.hot.vectorised import arc_at, beyond, piece, root_of
+from loadshare.solver.hot.vectorised import arc_at, beyond
 
 STIFFER = (1e-2, 1e-3, 1e-4, 1e-5, *[1e-6] * 3, *[1e-7] * 3, *[1e-8] * 6)
 """Stiffness that every pass adds, in units of the elements: what one moves is load/ε at most."""
@@ -33,19 +34,23 @@ SOFTER = 1e-11
 """Compliance that every pass adds: each brings forces nearer by ε over the compliance they meet.
 
 Small from the first pass on, so that rigid arcs hold a gear on its side of a narrow wedge."""
+SHARED = 1e3
+"""How much softer a radial element is made than a contact at least, so that what both could hold is
+held by the contact: friction is bounded, a contact is not."""
 RESOLVED = 1e3
 """Round-offs of the lengths at hand by which the compliance presses a contact in at least."""
-SHARED = 1e3
-"""How much softer a radial element is made than a contact, so that what both could hold is held by
-the contact: friction is bounded, a contact is not."""
 NEWTON = 60
 """Newton steps of a pass."""
 SLOPE = 0.1
 """Part of the slope at its beginning to which a line search brings a step."""
-HALVINGS = 12
-"""Steps of a line search."""
-LOOKS = 1500
+SECANTS = 6
+"""Steps of a line search between two kinks."""
+HALVES = 0.5 ** np.arange(48, -1, -1)
+"""Shares of the way between two kinks that are looked at together: a slope may rise by orders."""
+LOOKS = 1000
 """Points at which a search looks in all: more than ever led to an answer, and half a second."""
+PATIENCE = 12
+"""Newton steps in a row that do not halve the gradient, after which round-off stands in the way."""
 FLAT = 1e-11
 """Gradient, over the largest force, at which a pass has arrived."""
 STILL = 1e-15
@@ -63,18 +68,15 @@ class _Point:
     Attributes
     ----------
     x : ndarray, shape (n,)
+    pressed : ndarray, shape (m,)
+        How far every element is pressed, or pulled out.
     force : ndarray, shape (m,)
-    compliance : ndarray, shape (scalar elements,)
-        Tangent; infinite where nothing pushes.
-    stiffness : ndarray, shape (radial elements, 2, 2)
-        Tangent.
     gradient : ndarray, shape (n,)
     """
 
     x: Array
+    pressed: Array
     force: Array
-    compliance: Array
-    stiffness: Array
     gradient: Array
 
 
@@ -94,22 +96,22 @@ class Proximal:
         self.load = data.load[0]
         self.gap = np.array(data.gap[0])
         self.vectors = np.array(elements.vectors)
-        self.bending = data.bending[0][: self.scalar]
-        self.hertz = data.hertz[0][: self.scalar]
-        self.power = np.flatnonzero(self.hertz > 0.0)
         self.x = np.zeros(elements.scene.size)
         self.force = np.zeros(len(self.vectors))
         self.looks = 0
-        self.pull, self.softer, self.graph = STIFFER[0], SOFTER, self._graphs()
+        self.pull, self.laws = STIFFER[0], Laws(elements, data, self.force, SOFTER, STIFFER[0])
 
     def passes(self) -> Iterator[Codes]:
         """Make one pass after another; each gives the set (switches,) where it ends."""
         for self.pull in STIFFER:
             extent = max(float(np.abs(v).max(initial=1.0)) for v in (self.gap, self.x))
-            self.softer = max(SOFTER, RESOLVED * np.finfo(float).eps * extent)
+            softer = max(SOFTER, RESOLVED * np.finfo(float).eps * extent)
             self._face_arcs()
-            self.graph = self._graphs()
-            if not self.graph.valid.all():
+            # A radius that gives way as much as the rest is held: steeper, and a float that has far
+            # to roll would do so in tiny steps, each pressed out of the round and back again.
+            rounded = max(SHARED * softer, self.pull)
+            self.laws = Laws(self.elements, self.data, self.force, softer, rounded)
+            if not self.laws.graph.valid.all():
                 return
             found = self._minimise()
             if self.looks > LOOKS:
@@ -131,138 +133,104 @@ class Proximal:
             self.vectors[first + a] = -normal[0] @ self.data.relative[a]
             self.gap[first + a] = margin[0] + self.vectors[first + a] @ self.x
 
-    def _graphs(self) -> at.Graph:
-        """Radial laws at the torques of the last pass, with one element after another."""
-        return at.graph(self.data.radial[0], self.data.carried @ self.force)
-
     def _minimise(self) -> _Point:
         """Newton's method on the energy of a pass."""
         here = self._at(self.x)
+        least, since = np.inf, 0
         for _ in range(NEWTON):
             largest = max(1.0, float(np.abs(here.force).max(initial=0.0)))
-            if np.abs(here.gradient).max(initial=0.0) <= FLAT * largest:
+            flat = float(np.abs(here.gradient).max(initial=0.0))
+            least, since = (flat, 0) if flat < 0.5 * least else (least, since + 1)
+            if flat <= FLAT * largest or since > PATIENCE or self.looks > LOOKS:
                 break
             step = self._step(here)
             here = self._along(here, step)
-            if np.abs(step).max() <= STILL * np.abs(here.x).max() or self.looks > LOOKS:
+            if np.abs(step).max() <= STILL * np.abs(here.x).max():
                 break
         return here
 
     def _at(self, x: Array) -> _Point:
-        """Forces, tangents and gradient at coordinates."""
-        scalar, pull = self.scalar, self.softer
+        """Forces and gradient at coordinates."""
         self.looks += 1
-        u = self.vectors @ x - self.gap
-        u[:scalar] += pull * self.force[:scalar]
-        pushed = u[:scalar] > 0.0
-        pushed[: self.springs] = True
-        compliance = self.bending + pull
-        force = np.zeros(len(u))
-        force[:scalar] = u[:scalar] / compliance
-        if len(self.power):
-            b, c = compliance[self.power], self.hertz[self.power]
-            root = root_of(b, c, np.where(pushed[self.power], u[self.power], 1.0))
-            force[self.power] = root**3
-            compliance[self.power] += 2.0 / 3.0 * c / root
-        for k in np.flatnonzero(self.data.tabulated >= 0).tolist():
-            force[k], compliance[k] = self._by_table(k, float(u[k]))
-        force[:scalar][~pushed] = 0.0
-        compliance[~pushed] = np.inf
-        reaction, stiffness = self._radials(u[scalar:].reshape(-1, 2))
-        force[scalar:] = reaction.ravel()
+        pressed = self.vectors @ x - self.gap + self.laws.lean
+        force = self.laws.forces(pressed)
         gradient = self.vectors.T @ force - self.load + self.pull * (x - self.x)
-        return _Point(x, force, compliance, stiffness, gradient)
-
-    def _by_table(self, k: int, u: float) -> tuple[float, float]:
-        """Force and tangent compliance of a tabulated law."""
-        table = self.data.tables[:, self.data.tabulated[k]]
-        forces, compressions = table[:, 0], table[:, 1] + self.softer * table[:, 0]
-        start, value, slope = piece(compressions, forces, compressions, np.array([u]))
-        return float(value[0] + slope[0] * (u - start[0])), float(1.0 / slope[0])
-
-    def _radials(self, offset: Array) -> tuple[Array, Array]:
-        """Forces (j, 2) and tangent stiffnesses (j, 2, 2) of radial elements."""
-        pull = self.softer * SHARED
-        u = offset + pull * self.force[self.scalar :].reshape(-1, 2)
-        radius = np.sqrt((u * u).sum(axis=1))
-        size, slope = self._on_graphs(radius, pull)
-        along = u / np.where(radius > 0.0, radius, 1.0)[:, None]
-        across = np.where(radius > 0.0, size / np.where(radius > 0.0, radius, 1.0), slope)
-        dyad = along[:, :, None] * along[:, None, :]
-        stiffness = slope[:, None, None] * dyad + across[:, None, None] * (np.eye(2) - dyad)
-        return size[:, None] * along, stiffness
-
-    def _corners(self, pull: float) -> tuple[Array, Array, Array]:
-        """Radii at which the first rise, the jump and the level piece of the graphs end."""
-        law = self.graph
-        with np.errstate(invalid="ignore"):
-            rise = np.where(law.first > 0.0, law.stick * (1.0 + pull * law.first), 0.0)
-        jump = np.maximum(law.stick + pull * law.bound, rise)
-        return rise, jump, np.maximum(law.reach + pull * law.bound, jump)
-
-    def _on_graphs(self, radius: Array, pull: float) -> tuple[Array, Array]:
-        """Force and slope of the graphs, made softer by the pull, at radii."""
-        law = self.graph
-        rise, jump, level = self._corners(pull)
-        with np.errstate(invalid="ignore"):
-            first = law.first / (1.0 + pull * law.first)
-            last = np.where(np.isinf(law.last), 1.0 / pull, law.last / (1.0 + pull * law.last))
-            pieces = [radius <= rise, radius <= jump, radius <= level]
-            size = np.select(
-                pieces,
-                [first * radius, (radius - law.stick) / pull, law.bound],
-                law.bound + last * (radius - level),
-            )
-        return size, np.select(pieces, [first, np.full_like(first, 1.0 / pull), 0.0 * first], last)
+        return _Point(x, pressed, force, gradient)
 
     def _step(self, here: _Point) -> Array:
         """Newton step, of coordinates and the forces that act: regular, whatever acts."""
-        acts = np.flatnonzero(np.isfinite(here.compliance))
+        compliance, stiffness = self.laws.tangents(here.pressed, here.force)
+        acts = np.flatnonzero(np.isfinite(compliance))
         size, count = len(here.x), len(acts)
         matrix = np.zeros((size + count, size + count))
-        matrix[range(size), range(size)] = self.pull
-        for j, stiffness in enumerate(here.stiffness):
-            two = self.vectors[self.scalar + 2 * j : self.scalar + 2 * j + 2]
-            matrix[:size, :size] += two.T @ stiffness @ two
+        diagonal = matrix.reshape(-1)[:: size + count + 1]
+        diagonal[:size] = self.pull
+        diagonal[size:] = -compliance[acts]
+        two = self.vectors[self.scalar :].reshape(-1, 2, size)
+        turned = (stiffness @ two).reshape(-1, size)
+        matrix[:size, :size] += self.vectors[self.scalar :].T @ turned
         matrix[:size, size:] = self.vectors[acts].T
         matrix[size:, :size] = self.vectors[acts]
-        matrix[range(size, size + count), range(size, size + count)] = -here.compliance[acts]
-        return np.asarray(
-            np.linalg.solve(matrix, np.concatenate([-here.gradient, np.zeros(count)]))[:size]
-        )
+        right = np.zeros(size + count)
+        right[:size] = -here.gradient
+        return np.asarray(np.linalg.solve(matrix, right)[:size])
 
     def _along(self, here: _Point, step: Array) -> _Point:
-        """Go along a step until the slope of the energy has all but gone."""
-        low, high = 0.0, 1.0
-        at_low = float(here.gradient @ step)
-        enough = SLOPE * abs(at_low)
+        """Go along a step until the slope of the energy has all but gone.
+
+        The slope rises, and between two kinks it does so smoothly: the kinks on the way are looked
+        at together, and the place is sought between two of them.
+        """
+        start = float(here.gradient @ step)
+        enough = SLOPE * abs(start)
         there = self._at(here.x + step)
-        slope = at_high = float(there.gradient @ step)
-        for _ in range(HALVINGS):
-            if slope <= enough and (high == 1.0 or slope >= -enough):
+        slope = float(there.gradient @ step)
+        if slope <= enough:
+            return there
+        speed = self.vectors @ step
+        given = float(self.pull * (here.x - self.x) @ step - self.load @ step)
+        stiff = float(self.pull * step @ step)
+
+        def slopes(shares: Array) -> Array:
+            force = self.laws.forces(here.pressed + shares[:, None] * speed)
+            return np.asarray(force @ speed + given + stiff * shares)
+
+        low, high, at_low, at_high = 0.0, 1.0, start, slope
+        for shares in self.laws.kinks(here.pressed, speed), HALVES:
+            if abs(at_high) <= enough:
+                break
+            between = np.asarray(low + (high - low) * shares if shares is HALVES else shares)
+            self.looks += 1
+            found = slopes(between)
+            k = int(np.searchsorted(found > 0.0, True))
+            if k < len(between):
+                high, at_high = float(between[k]), float(found[k])
+            if k > 0:
+                low, at_low = float(between[k - 1]), float(found[k - 1])
+        share, slope = high, at_high
+        for _ in range(SECANTS):
+            if abs(slope) <= enough or high - low <= STILL * high:
                 break
             share = low - at_low * (high - low) / (at_high - at_low)
-            share = min(max(share, low + 0.05 * (high - low)), high - 0.05 * (high - low))
-            there = self._at(here.x + share * step)
-            slope = float(there.gradient @ step)
+            self.looks += 1
+            slope = float(slopes(np.array([share]))[0])
+            # The end that stays counts for half, so that it moves as well the next time.
             if slope > 0.0:
-                high, at_high = share, slope
+                high, at_high, at_low = share, slope, 0.5 * at_low
             else:
-                low, at_low = share, slope
-        return there
+                low, at_low, at_high = share, slope, 0.5 * at_high
+        return self._at(here.x + share * step)
 
     def _code(self, found: _Point) -> Codes:
         """The set on which a pass ended."""
-        elements, law, pull = self.elements, self.graph, self.softer * SHARED
+        elements, laws = self.elements, self.laws
+        law = laws.graph
         code = np.zeros(elements.switches, dtype=np.int8)
         code[: elements.rows] = found.force[self.springs : self.scalar] > 0.0
-        offset = (self.vectors @ found.x - self.gap)[self.scalar :].reshape(-1, 2)
-        offset = offset + pull * self.force[self.scalar :].reshape(-1, 2)
-        radius = np.sqrt((offset * offset).sum(axis=1))
-        rise, jump, level = self._corners(pull)
+        radius = laws.radii(found.pressed)
         idle = (law.bound == 0.0) & (law.stick == 0.0)
         code[elements.rows :] = np.select(
-            [radius <= rise, radius <= jump, radius <= level],
+            [radius <= laws.rise, radius <= laws.jump, radius <= laws.level],
             [
                 np.where(idle, at.OPEN, np.where(law.stick > 0.0, at.STICK, at.PINNED)),
                 np.where(idle, at.OPEN, np.where(law.stick > 0.0, at.CORNER, at.PINNED)),

@@ -1,0 +1,152 @@
+"""The laws of one sample, each softened a little: single-valued, with a tangent at every place."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loadshare.scene.data import Data
+from loadshare.scene.elements import Elements
+from loadshare.scene.scene import Array
+from loadshare.solver.hot import places as at
+from loadshare.solver.hot.vectorised import root_of
+
+
+class Laws:
+    """Forces of all elements by how far these are pressed.
+
+    Parameters
+    ----------
+    elements : Elements
+    data : Data
+        Of one sample.
+    force : ndarray, shape (m,)
+        Of the pass before: what softens pulls towards it, and friction follows its torques.
+    softer, pull : float
+        Compliance that is added to every contact, and to every radial element.
+
+    Attributes
+    ----------
+    lean : ndarray, shape (m,)
+        How far the forces of the pass before press what softens.
+    graph : Graph
+        Of the radial elements, not softened.
+    rise, jump, level : ndarray, shape (radials,)
+        Radii at which the first rise, the jump and the level piece of the softened graphs end.
+    """
+
+    def __init__(
+        self, elements: Elements, data: Data, force: Array, softer: float, pull: float
+    ) -> None:
+        self.springs, self.scalar = elements.springs, elements.springs + elements.rows
+        self.compliance = data.bending[0, : self.scalar] + softer
+        self.power = np.flatnonzero(data.hertz[0, : self.scalar] > 0.0)
+        self.hertz = data.hertz[0, self.power]
+        self.table = np.flatnonzero(data.tabulated[: self.scalar] >= 0)
+        points = data.tables[0, data.tabulated[self.table]]
+        self.forces_of, self.ends = points[:, 0], points[:, 1] + softer * points[:, 0]
+        self.slopes_of = np.diff(self.forces_of, axis=1) / np.diff(self.ends, axis=1)
+        self.last_piece = (~np.isnan(self.ends)).sum(axis=1) - 2
+        self.lean = np.repeat([softer, pull], [self.scalar, len(force) - self.scalar]) * force
+        self.graph = law = at.graph(data.radial[0], data.carried @ force)
+        with np.errstate(invalid="ignore"):
+            self.rise = np.where(law.first > 0.0, law.stick * (1.0 + pull * law.first), 0.0)
+            self.first = law.first / (1.0 + pull * law.first)
+            soft = law.last / (1.0 + pull * law.last)
+        self.last = np.where(np.isinf(law.last), 1.0 / pull, soft)
+        self.jump = np.maximum(law.stick + pull * law.bound, self.rise)
+        self.level = np.maximum(law.reach + pull * law.bound, self.jump)
+        self.steep = 1.0 / pull
+
+    def forces(self, pressed: Array) -> Array:
+        """Forces (…, m) where elements are pressed this far (…, m)."""
+        force = np.empty_like(pressed)
+        flat = pressed[..., : self.scalar]
+        force[..., : self.scalar] = flat / self.compliance
+        if len(self.power):
+            b, u = self.compliance[self.power], flat[..., self.power]
+            force[..., self.power] = root_of(b, self.hertz, np.where(u > 0.0, u, 1.0)) ** 3
+        if len(self.table):
+            k, rows = self._pieces(flat), np.arange(len(self.table))
+            beyond = flat[..., self.table] - self.ends[rows, k]
+            force[..., self.table] = self.forces_of[rows, k] + self.slopes_of[rows, k] * beyond
+        contacts = slice(self.springs, self.scalar)
+        force[..., contacts][~(pressed[..., contacts] > 0.0)] = 0.0
+        radius = self.radii(pressed)
+        over = self._sizes(radius) / np.where(radius > 0.0, radius, 1.0)
+        force[..., self.scalar :] = np.repeat(over, 2, axis=-1) * pressed[..., self.scalar :]
+        return force
+
+    def tangents(self, pressed: Array, force: Array) -> tuple[Array, Array]:
+        """Compliances of scalar elements, infinite where nothing pushes, and radial stiffnesses.
+
+        Parameters
+        ----------
+        pressed, force : ndarray, shape (m,)
+
+        Returns
+        -------
+        ndarray, shape (scalar elements,)
+        ndarray, shape (radial elements, 2, 2)
+        """
+        compliance = np.array(self.compliance)
+        if len(self.power):
+            root = np.cbrt(np.where(pressed[self.power] > 0.0, force[self.power], 1.0))
+            compliance[self.power] += 2.0 / 3.0 * self.hertz / root
+        if len(self.table):
+            k = self._pieces(pressed[: self.scalar])
+            compliance[self.table] = 1.0 / self.slopes_of[np.arange(len(self.table)), k]
+        contacts = slice(self.springs, self.scalar)
+        compliance[contacts][~(pressed[contacts] > 0.0)] = np.inf
+        radius = self.radii(pressed)
+        slope = self._chosen(radius, (self.first, self.steep, 0.0, self.last))
+        there = np.where(radius > 0.0, radius, 1.0)
+        across = np.where(radius > 0.0, self._sizes(radius) / there, slope)
+        along = pressed[self.scalar :].reshape(-1, 2) / there[:, None]
+        dyad = along[:, :, None] * along[:, None, :]
+        return compliance, (
+            slope[:, None, None] * dyad + across[:, None, None] * (np.eye(2) - dyad)
+        )
+
+    def kinks(self, pressed: Array, speed: Array) -> Array:
+        """Shares of a way, within (0, 1) and in order, at which some law has a kink."""
+        contacts = slice(self.springs, self.scalar)
+        with np.errstate(all="ignore"):
+            found = [-pressed[contacts] / speed[contacts]]
+            if len(self.table):
+                ways = (self.ends - pressed[self.table, None]) / speed[self.table, None]
+                found.append(ways.ravel())
+            offset = pressed[self.scalar :].reshape(-1, 2)
+            velocity = speed[self.scalar :].reshape(-1, 2)
+            square = (velocity * velocity).sum(axis=1)
+            nearest = -(offset * velocity).sum(axis=1) / square
+            far = np.stack([self.rise, self.jump, self.level]) ** 2
+            least = offset + nearest[:, None] * velocity
+            half = np.sqrt((far - (least * least).sum(axis=1)) / square)
+            found += [(nearest - half).ravel(), (nearest + half).ravel(), nearest]
+        ways = np.concatenate(found)
+        return np.unique(ways[(ways > 0.0) & (ways < 1.0)])
+
+    def radii(self, pressed: Array) -> Array:
+        """Radius (…, radials) of every radial element."""
+        square = pressed[..., self.scalar :] ** 2
+        return np.asarray(np.sqrt(square[..., ::2] + square[..., 1::2]))
+
+    def _sizes(self, radius: Array) -> Array:
+        """Sizes of radial forces."""
+        law = self.graph
+        with np.errstate(invalid="ignore"):
+            jumping = (radius - law.stick) * self.steep
+            beyond = law.bound + self.last * (radius - self.level)
+            return self._chosen(radius, (self.first * radius, jumping, law.bound, beyond))
+
+    def _chosen(self, radius: Array, values: tuple[Array | float, ...]) -> Array:
+        """What belongs to the piece on which each radial element stands."""
+        rising, jumping, level, beyond = values
+        found = np.where(radius <= self.level, level, beyond)
+        found = np.where(radius <= self.jump, jumping, found)
+        return np.where(radius <= self.rise, rising, found)
+
+    def _pieces(self, flat: Array) -> np.ndarray:
+        """Piece (…, tables) of every tabulated law."""
+        passed = (self.ends <= flat[..., self.table, None]).sum(axis=-1)
+        return np.asarray(np.clip(passed - 1, 0, self.last_piece))
