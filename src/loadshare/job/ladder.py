@@ -22,11 +22,13 @@ from loadshare.errors import Refused
 from loadshare.job.least import least_places
 from loadshare.job.machine import Answers, Machine, engine_named
 from loadshare.scene import assemble
+from loadshare.scene.elements import elements_of
 from loadshare.scene.plan import Plan, Role
 from loadshare.scene.scene import Scene
-from loadshare.solver import Options, Record, solve_scene
+from loadshare.solver import Iteration, Options, Record, solve_scene
+from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.contradiction import OVERLAP, contradiction
-from loadshare.solver.position import coordinates_of
+from loadshare.solver.position import Known, coordinates_of
 from loadshare.solver.runaway import runaway
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.train import Train
@@ -204,15 +206,23 @@ def climb(train: Train, index: int, options: Options, tolerance: float) -> Answe
         carries its figures.
     """
     scene = assemble(train, index)
+    if is_unbalanced(elements_of(scene), scene.load):
+        _refuse_if_none(scene, PLAINLY)
     first: Refused | None = None
+    known: Known = {}
+    seen: list[tuple[Iteration, ...]] = []
     for rung, rung_options in rungs(options):
         try:
-            equilibrium, record = solve_scene(scene, rung_options)
+            equilibrium, record = solve_scene(scene, rung_options, known)
         except Refused as refusal:
             if first is None:
                 first = refusal
                 _refuse_if_none(scene, PLAINLY)
             continue
+        if any(record.iterations is others for others in seen):
+            # The same answer once more.
+            continue
+        seen.append(record.iterations)
         certificate = certify(train, equilibrium, tolerance)
         if certificate.passed:
             return Answer(train, equilibrium, certificate, record, rung)

@@ -16,6 +16,7 @@ from loadshare.certify.validity import Measuring, measuring
 from loadshare.scene import assemble
 from loadshare.scene.data import Data, data_of
 from loadshare.scene.elements import Elements, elements_of
+from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.answer import equilibria
 from loadshare.solver.hot.determined import determined
@@ -256,7 +257,10 @@ class Machine:
     def _search(self, data: Data, state: State, found: Found, rows: NDArray[np.bool_]) -> Found:
         """Search an equilibrium of single samples by the proximal method."""
         for row in np.flatnonzero(rows).tolist():
-            one, more = search(self.elements, data.one(row))
+            alone = data.one(row)
+            if is_unbalanced(self.elements, alone.load[0]):
+                continue
+            one, more = search(self.elements, alone)
             if more.solved[0]:
                 state.put(row, one)
                 found = found.replaced(row, more)

@@ -30,6 +30,8 @@ from loadshare.train.radial import RadialLaw
 
 STALLED = 1e-9
 """A loop whose misfit no longer falls has arrived at round-off below this, and is stuck above."""
+STUCK = 30
+"""Passes that do not halve the misfit, after which a loop goes around without end."""
 SHRINK = 0.1
 """An open flank's next tangent is taken at this fraction of its last force."""
 
@@ -82,7 +84,7 @@ def settle(scene: Scene, plan: Plan, backend: Backend, options: Options, method:
     state = _start(scene)
     warm: Inner | None = None
     history: list[Iteration] = []
-    for _ in range(options.max_iterations):
+    while len(history) < options.max_iterations and not _stuck(history):
         laws = {r.name: r.law(state.torques[r.gear]) for r in scene.radials}
         compliances = _compliances(scene, state.forces, method)
         at = Linearisation(state.x, compliances, laws, wide=not history)
@@ -114,7 +116,7 @@ def settle(scene: Scene, plan: Plan, backend: Backend, options: Options, method:
         x = state.x + step * (x - state.x)
         state = _State(x, _next_forces(scene, plan, state.forces, forces, x, method), torques)
     raise Unsolved(
-        f"the {method} loop did not settle in {options.max_iterations} passes "
+        f"the {method} loop did not settle in {len(history)} passes "
         f"(last misfit {history[-1].misfit:.2e})"
     )
 
@@ -234,3 +236,11 @@ def _next_forces(
 def _stalled(history: list[Iteration]) -> bool:
     """Whether the misfit has stopped falling."""
     return len(history) > 3 and history[-1].misfit >= 0.5 * min(h.misfit for h in history[-4:-1])
+
+
+def _stuck(history: list[Iteration]) -> bool:
+    """Whether the misfit has not been halved for long."""
+    if len(history) <= STUCK:
+        return False
+    least = min(h.misfit for h in history[:-STUCK])
+    return min(h.misfit for h in history[-STUCK:]) > 0.5 * least

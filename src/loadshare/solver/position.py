@@ -25,13 +25,21 @@ VERIFIED = 1e-11
 """Violation of a removed inequality that counts as round-off, in deflections and loads."""
 
 
-def solve_scene(scene: Scene, options: Options) -> tuple[Equilibrium, Record]:
+Known = dict[tuple[object, ...], Settled | Unsolved]
+"""What plans came to, by what settles them."""
+
+
+def solve_scene(
+    scene: Scene, options: Options, known: Known | None = None
+) -> tuple[Equilibrium, Record]:
     """Find the equilibrium of a scene.
 
     Parameters
     ----------
     scene : Scene
     options : Options
+    known : dict, optional
+        What plans of this scene came to with this back-end, renewed: none is settled twice.
 
     Returns
     -------
@@ -46,11 +54,12 @@ def solve_scene(scene: Scene, options: Options) -> tuple[Equilibrium, Record]:
     """
     solver = backend(options.solver)
     plan = Plan.lean(scene) if options.reduce else Plan.full(scene)
+    known = {} if known is None else known
     rounds = 0
     while True:
         rounds += 1
         try:
-            settled, method = _settle(scene, plan, solver, options)
+            settled, method = _settle(scene, plan, solver, options, known)
         except Unsolved as failure:
             wider = _wider(scene, plan)
             if wider is None:
@@ -82,17 +91,35 @@ def solve_scene(scene: Scene, options: Options) -> tuple[Equilibrium, Record]:
     return equilibrium_of(scene, settled), record
 
 
-def _settle(scene: Scene, plan: Plan, solver: Backend, options: Options) -> tuple[Settled, str]:
+def _settle(
+    scene: Scene, plan: Plan, solver: Backend, options: Options, known: Known
+) -> tuple[Settled, str]:
     """Run the outer loop, with the other form if the chosen one does not settle."""
     other = {"newton": "picard", "picard": "newton"}.get(options.method)
     try:
-        return settle(scene, plan, solver, options, options.method), options.method
+        return _once(scene, plan, solver, options, options.method, known), options.method
     except ValueError as error:
         raise Refused(f"position {scene.situation.index}: {error}") from error
     except Unsolved:
         if other is None or all(r.law.is_linear for r in scene.rows):
             raise
-    return settle(scene, plan, solver, options, other), other
+    return _once(scene, plan, solver, options, other, known), other
+
+
+def _once(
+    scene: Scene, plan: Plan, solver: Backend, options: Options, method: str, known: Known
+) -> Settled:
+    """Run the outer loop on a plan, unless that was done before."""
+    key = (*plan.rows.values(), *plan.radials.values(), plan.condensed, method)
+    if key not in known:
+        try:
+            known[key] = settle(scene, plan, solver, options, method)
+        except Unsolved as failure:
+            known[key] = failure
+    found = known[key]
+    if isinstance(found, Unsolved):
+        raise found
+    return found
 
 
 def _wider(scene: Scene, plan: Plan) -> Plan | None:

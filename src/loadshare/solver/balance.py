@@ -1,0 +1,52 @@
+"""Whether any forces at all can balance a load, told at once.
+
+Exchange and search find out as well, but take their time: nothing they try is an answer.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loadshare.scene.elements import Elements
+from loadshare.scene.scene import Array
+
+WORK = 1e-3
+"""Work of the load along a move, over load and move, from which on the load drives it."""
+YIELDS = 1e-10
+"""Part of a move that elements may still seem to resist: forces that balance the load in spite of
+it would be ten million times as large."""
+
+
+def is_unbalanced(elements: Elements, load: Array) -> bool:
+    r"""Tell whether the load drives a move that nothing resists.
+
+    The forces nearest to balance, :math:`\min_\mu \lVert f - A^T\mu\rVert` with contacts that push
+    only, leave a residual r. Where it is not zero it is such a move (Farkas):
+    :math:`A r = 0` for springs and radial elements, :math:`a_e\cdot r \le 0` for contacts, and
+    :math:`f\cdot r = \lVert r\rVert^2`. An arc may push any way here.
+
+    Parameters
+    ----------
+    elements : Elements
+    load : ndarray, shape (n,)
+    """
+    from scipy.optimize import nnls
+
+    size = float(np.linalg.norm(load))
+    if not size:
+        return False
+    flat = elements.springs + len(elements.scene.rows)
+    pushing = elements.vectors[elements.springs : flat]
+    arcs = [a.relative for a in elements.scene.arcs]
+    radials = elements.vectors[elements.springs + elements.rows :]
+    held = np.vstack([elements.vectors[: elements.springs], radials, *arcs])
+    try:
+        forces, _ = nnls(np.vstack([held, -held, pushing]).T, load / size)
+    except RuntimeError:
+        return False
+    left = load / size - np.concatenate([held, -held, pushing]).T @ forces
+    length = float(np.linalg.norm(left))
+    if left @ load <= WORK * size * length:
+        return False
+    gives = float(np.abs(held @ left).max(initial=0.0)) <= YIELDS * length
+    return gives and bool((pushing @ left <= YIELDS * length).all())

@@ -1,0 +1,52 @@
+"""What no forces can balance is told before anything is searched for.
+
+Source: formulation, section 6: a load along a move that nothing resists has no equilibrium.
+"""
+
+import numpy as np
+import pytest
+from benchmarks.random_trains.draw import draw
+from tests.support import round_ring, shipped
+
+import loadshare as ls
+from loadshare.errors import Refused
+from loadshare.job import machine
+from loadshare.scene import assemble
+from loadshare.scene.elements import elements_of
+from loadshare.solver.balance import is_unbalanced
+from loadshare.solver.runaway import runaway
+from loadshare.train import build_train
+
+
+@pytest.mark.parametrize("name", ["base", "limit_ring", "all_elements", "spline_clearance"])
+def test_what_is_held_is_balanced(name):
+    scene = assemble(build_train(shipped(f"fgfbstts/{name}")), 1)
+    elements = elements_of(scene)
+    assert not is_unbalanced(elements, scene.load)
+    assert not is_unbalanced(elements, np.zeros(scene.size))
+
+
+def test_what_a_ring_alone_holds_is_not_told_to_be_free():
+    scene = assemble(build_train(round_ring()), 1)
+    assert not is_unbalanced(elements_of(scene), scene.load)
+
+
+@pytest.mark.parametrize("number", range(24))
+def test_what_is_told_to_be_free_moves_without_end(number):
+    """The linear programme names what moves, and none of these is solved."""
+    case = draw(11, number)
+    scene = assemble(build_train(case), 1)
+    if is_unbalanced(elements_of(scene), scene.load):
+        assert runaway(scene)
+        with pytest.raises(Refused, match="nothing balances the load"):
+            ls.solve(case, positions=[1])
+
+
+def test_nothing_is_searched_for_without_balance(monkeypatch):
+    """A stepped star whose sun drifts away from its planets."""
+    case = draw(11, 1)
+    scene = assemble(build_train(case), 1)
+    assert is_unbalanced(elements_of(scene), scene.load)
+    monkeypatch.setattr(machine, "search", lambda *_: pytest.fail("a search was made"))
+    with pytest.raises(Refused, match="nothing balances the load on gear sun rotation"):
+        ls.solve(case)
