@@ -132,19 +132,19 @@ def hot_answers(
     found = machine.answer(situations, tolerance, engine_named(engine, len(indices)))
     answers = {}
     loose = np.flatnonzero(found.passed & ~found.determined).tolist()
-    least = least_places(
+    least, proved = least_places(
         machine, situations, found, loose, lambda row: assemble(train, indices[row]), tolerance
     )
     for row in np.flatnonzero(found.passed).tolist():
         index = indices[row]
         equilibrium = least.get(row) or found.equilibria.one(row, index)
-        bounds = found.verdicts.bounds
+        before = found.verdicts.bounds
+        bounds, at = proved.get(row, (before, row))
         every = bounds.force is not None
-        moved = row in least or not every
-        bound = bound_of(train, equilibrium) if moved else Bound.of(bounds, row)
-        if every and math.isinf(bound.relative):
+        bound = Bound.of(bounds, at) if every else bound_of(train, equilibrium)
+        if before.force is not None and math.isinf(bound.relative):
             # The forces, and so the bound on torques, are those of the answer before it was moved.
-            bound = Bound.of(bounds, row)
+            bound = Bound.of(before, row)
         certificate = certify_later(train, equilibrium, tolerance, bound)
         record = _hot_record(machine, found, row)
         rung = SEARCHED if found.searched[row] else HOT

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from loadshare.certify.bound import Bounds
 from loadshare.job.machine import Answers, Machine
 from loadshare.scene.scene import Scene
 from loadshare.solver.position import of_least_norm
@@ -21,7 +22,7 @@ def least_places(
     rows: Sequence[int],
     scene_of: Callable[[int], Scene],
     tolerance: float,
-) -> dict[int, Equilibrium]:
+) -> tuple[dict[int, Equilibrium], dict[int, tuple[Bounds, int]]]:
     """Move some answers to their least places, in place, and return them with what is open.
 
     An answer whose least place is not certified, because round-off of a move far away shows in a
@@ -39,6 +40,13 @@ def least_places(
         Scene of a number.
     tolerance : float
         Largest scaled residual of a certified answer.
+
+    Returns
+    -------
+    dict of int to Equilibrium
+        All of these answers, by number.
+    dict of int to (Bounds, int)
+        Where the bounds of those that moved stand.
     """
     scenes = {row: scene_of(row) for row in rows}
     claimed = {
@@ -47,15 +55,17 @@ def least_places(
     least = {row: of_least_norm(scenes[row], claimed[row]) for row in rows}
     moved = [row for row in rows if least[row].displacement is not claimed[row].displacement]
     if not moved:
-        return least
+        return least, {}
     placed = found.equilibria.laid(lambda array: array[moved])
     for k, row in enumerate(moved):
         placed.put(k, least[row])
     verdicts = machine.judge.judge(situations.take(np.array(moved)), placed, tolerance)
     # Forces, and with them the bound on torques, are those that were certified before.
-    for row, residual in zip(moved, verdicts.worst.tolist(), strict=True):
+    proved: dict[int, tuple[Bounds, int]] = {}
+    for k, (row, residual) in enumerate(zip(moved, verdicts.worst.tolist(), strict=True)):
         if residual <= tolerance:
             found.equilibria.put(row, least[row])
+            proved[row] = verdicts.bounds, k
         else:
             least[row] = replace(claimed[row], undetermined=least[row].undetermined)
-    return least
+    return least, proved

@@ -274,4 +274,5 @@ def _position(answer: Answer) -> Position:
             iterations=len(record.iterations),
             rounds=record.rounds,
         ),
+        answer.validity,
     )

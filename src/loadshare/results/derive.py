@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from loadshare.case import Case
 from loadshare.certify import Certificate
 from loadshare.certify.uniqueness import uniqueness
-from loadshare.certify.validity import validity
+from loadshare.certify.validity import Validity, validity
 from loadshare.results.claim import Claim
 from loadshare.results.result import Effort, Position, Result, Stamp
 from loadshare.results.share import largest, pair_shares, stage_shares
@@ -22,6 +22,7 @@ def position_of(
     certificate: Certificate,
     undetermined: Mapping[str, Range],
     effort: Effort,
+    measured: Validity | None = None,
 ) -> Position:
     """Return what a claim says of a position.
 
@@ -35,7 +36,10 @@ def position_of(
         Of the claim.
     undetermined : mapping of coordinate to (float, float)
     effort : Effort
+    measured : Validity, optional
+        Of the claim, if it was measured before.
     """
+    equilibrium = claim.equilibrium(index, undetermined)
     drive, coast = {}, {}
     for name, mesh in train.meshes.items():
         parts = [mesh.lever(d) * claim.flank_force[mesh.flank_name(d)] for d in mesh.flanks]
@@ -52,8 +56,8 @@ def position_of(
         displacement={n: (float(d[0]), float(d[1])) for n, d in moved.items()},
         floats=certificate.floats,
         certificate=certificate,
-        validity=validity(train, claim.equilibrium(index, undetermined), certificate.deflection),
-        uniqueness=uniqueness(claim.train(train), claim.equilibrium(index, undetermined)),
+        validity=measured or validity(train, equilibrium, certificate.deflection),
+        uniqueness=uniqueness(claim.train(train), equilibrium),
         undetermined=undetermined,
         effort=effort,
         claim=claim,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loadshare.train.gear import Gear, Vector
+from loadshare.train.gear import Gear, Vector, cross
 from loadshare.train.law import Law
 
 
@@ -69,11 +69,11 @@ def parallel_contact(
         raise MeshGeometryError("the two centres coincide in the transverse plane")
     outward = between / distance
     to_pitch = -outward if driven_internal else outward
-    tangential = driver_sense * np.cross(driver_axis, to_pitch)
+    tangential = driver_sense * cross(driver_axis, to_pitch)
     # The pitch point lies beyond the pinion's centre in an internal pair, between the centres
     # otherwise.
     arm = to_pitch if (driven_internal or driver_internal) else -to_pitch
-    sense = 1 if driven_axis @ np.cross(arm, tangential) > 0.0 else -1
+    sense = 1 if driven_axis @ cross(arm, tangential) > 0.0 else -1
     return Contact(-to_pitch if driver_internal else to_pitch, tangential, sense)
 
 
@@ -105,11 +105,11 @@ def face_contact(
     arm = math.copysign(1.0, along) * pinion_axis
     to_face = -math.copysign(1.0, height) * face_axis
     if pinion_drives:
-        tangential = driver_sense * np.cross(pinion_axis, to_face)
-        sense = 1 if face_axis @ np.cross(arm, tangential) > 0.0 else -1
+        tangential = driver_sense * cross(pinion_axis, to_face)
+        sense = 1 if face_axis @ cross(arm, tangential) > 0.0 else -1
         return Contact(to_face, tangential, sense)
-    tangential = driver_sense * np.cross(face_axis, arm)
-    sense = 1 if pinion_axis @ np.cross(to_face, tangential) > 0.0 else -1
+    tangential = driver_sense * cross(face_axis, arm)
+    sense = 1 if pinion_axis @ cross(to_face, tangential) > 0.0 else -1
     return Contact(-to_face, tangential, sense)
 
 

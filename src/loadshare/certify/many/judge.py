@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.bound import Bounds, Columns, bounds
+from loadshare.certify.bound.one import columns_of
 from loadshare.certify.certificate import TOLERANCE
 from loadshare.certify.many.bench import Bench
 from loadshare.certify.many.residuals import scaled_residuals
@@ -103,7 +104,7 @@ class Judge:
     @cached_property
     def columns(self) -> Columns:
         """The mechanics as columns, for bounds."""
-        return Columns(self.train)
+        return columns_of(self.train)
 
     @cached_property
     def _mechanics(self) -> Mechanics:

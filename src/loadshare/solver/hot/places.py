@@ -114,5 +114,7 @@ def graph(numbers: Array, torque: Array) -> Graph:
     valid = (first * asked <= bound * (1.0 + WRITTEN)) & (np.isnan(given) | (reach >= stick))
     throughout = (reach < stick) & np.isnan(given)
     stick = np.where(throughout, np.inf, stick)
-    shape = torque.shape
-    return Graph(*(np.broadcast_to(v, shape) for v in (first, stick, bound, reach, last, valid)))
+    found = (first, stick, bound, reach, last, valid)
+    if any(v.shape != torque.shape for v in found):
+        return Graph(*(np.broadcast_to(v, torque.shape) for v in found))
+    return Graph(*found)

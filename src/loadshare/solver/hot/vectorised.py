@@ -118,6 +118,10 @@ class _Passes:
         How many passes in a row a flank was not compressed.
     outside : ndarray of int, shape (k, radial elements)
         How many passes in a row an element was beyond its level piece.
+    fixed : dict of int to Graph
+        Laws of radial elements that do not follow the torque.
+    linear : dict of int to _Block
+        Tangents of radial elements that stay the same.
     """
 
     def __init__(
@@ -166,6 +170,8 @@ class _Passes:
         self.hurried_to = np.repeat(code[None, :], count, axis=0)
         self.loose = np.zeros((count, len(self.power)), dtype=int)
         self.outside = np.zeros((count, elements.switches - elements.rows), dtype=int)
+        self.fixed: dict[int, at.Graph] = {}
+        self.linear: dict[int, _Block] = {}
 
     def run(self, patient: Flags) -> None:
         """Pass until every sample is settled, refused, or asks for another set.
@@ -337,12 +343,18 @@ class _Passes:
         """Tangents of the radial elements where they are now."""
         blocks = []
         for j, place, k in self.radial:
+            if j in self.linear:
+                blocks.append(self.linear[j])
+                continue
             law = self._graph(j)
             self.refused |= ~law.valid
             columns = slice(k, k + 2)
             x, force = self.lean
             size = np.maximum(self.push, 1e-300)
-            blocks.append(block(columns, place, law, self._offset(j, x), force[:, columns], size))
+            found = block(columns, place, law, self._offset(j, x), force[:, columns], size)
+            if place in (at.STICK, at.PINNED) and j in self.fixed:
+                self.linear[j] = found
+            blocks.append(found)
         return blocks
 
     def _slipped_out(self) -> Flags:
@@ -358,8 +370,16 @@ class _Passes:
         return np.asarray((self.outside >= at.OUTSIDE).any(axis=1))
 
     def _graph(self, j: int) -> at.Graph:
+        """Law of a radial element; found once where no torque moves its friction bound."""
+        known = self.fixed.get(j)
+        if known is not None:
+            return known
+        numbers = pick(self.data.radial, self.rows)[:, j]
         carried = self.force @ self.data.carried[j, self.basis.columns]
-        return at.graph(pick(self.data.radial, self.rows)[:, j], carried)
+        found = at.graph(numbers, carried)
+        if not np.isnan(numbers[:, 3]).any():
+            self.fixed[j] = found
+        return found
 
     def _offset(self, j: int, x: Array | None = None) -> Array:
         column = self.elements.radial_column(j)
@@ -581,11 +601,10 @@ def root_of(b: Array, c: Array, compression: Array) -> Array:
 def piece(axis: Array, values: Array, points: Array, where: Array) -> tuple[Array, Array, Array]:
     """Start on the axis, start value and slope of the piece of a table that holds `where`."""
     last = (~np.isnan(axis)).sum(axis=1) - 2
-    k = np.clip((points <= where[:, None]).sum(axis=1) - 1, 0, last)[:, None]
-    axis, values = (np.broadcast_to(v, (len(k), v.shape[1])) for v in (axis, values))
-    x0, x1 = np.take_along_axis(axis, k, 1)[:, 0], np.take_along_axis(axis, k + 1, 1)[:, 0]
-    y0, y1 = np.take_along_axis(values, k, 1)[:, 0], np.take_along_axis(values, k + 1, 1)[:, 0]
-    return x0, y0, (y1 - y0) / (x1 - x0)
+    k = np.minimum(np.maximum((points <= where[:, None]).sum(axis=1) - 1, 0), last)
+    on_axis, among = (np.arange(len(k)) if len(v) > 1 else 0 for v in (axis, values))
+    x0, y0 = axis[on_axis, k], values[among, k]
+    return x0, y0, (values[among, k + 1] - y0) / (axis[on_axis, k + 1] - x0)
 
 
 def arc_at(data: Data, a: int, rows: Rows, x: Array) -> tuple[Array, Array]:
