@@ -32,6 +32,7 @@ COMPILED = (
     "loadshare.solver.hot.compiled",
     "loadshare.solver.hot.products",
     "loadshare.certify.compiled",
+    "loadshare.certify.bound.compiled",
 )
 """What a quick answer calls, all of which must be there."""
 FEW = 2000

@@ -1,371 +1,476 @@
-r"""The bound of large batches: residuals of every claim, one small matrix for all.
+r"""The bound of large batches: residuals of every claim, one small matrix for all that act alike.
 
-It is the bound of `quick`, with all that is the same for claims of which the same contacts act put
-into four numbers. With r the largest residual of balance, q the norm of :math:`L^T \epsilon`, w the
-rounding of lengths,
+It is the bound of `quick`, with all that is the same for claims of which the same elements act put
+into a few numbers. With r the largest residual of balance, q the norm of :math:`L^T \epsilon` and w
+the rounding of lengths,
 
 .. math:: \lvert \Delta F_e \rvert \le \kappa_e\, r + \lVert L_e \rVert (q + \lambda\, r + \mu\, w).
 
-Arrays run along the claims. Claims with radial elements that act, or with tables, are not for it.
-Source: formulation, section 16.
+A radial element is two columns here, and as stiff each way as its graph is anywhere: laws are
+monotone, so that it need not be known on which piece the exact equilibrium has it. Residuals are
+found by compiled code. Trains with tables, or whose slip is remembered, are not for it. Source:
+formulation, section 16.
 """
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass
+from collections import namedtuple
+from typing import NamedTuple
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.certify.bound.bound import BALANCED, SINGULAR
+from loadshare.certify.bound.bound import BALANCED, ROUNDED, SINGULAR
 from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.columns import Columns
-from loadshare.certify.bound.laws import LIGHT
-from loadshare.certify.bound.quick import NEAR, OPPOSED, SECANT
-from loadshare.certify.bound.statics import Statics
-from loadshare.train.equilibria import Equilibria
+from loadshare.certify.bound.laws import APART, CORNER, LIGHT, NOISE
+from loadshare.certify.bound.quick import GAIN, NEAR, OPPOSED, SECANT
+from loadshare.certify.bound.statics import RANK, Statics
+from loadshare.train.equilibria import CLAIMED, Equilibria
+from loadshare.train.radial import ROUNDING
 from loadshare.train.ring import transverse
-from loadshare.train.situations import Situations
+from loadshare.train.situations import VARYING, Situations
+from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+Numbers = NDArray[np.intp]
 
-WIDE = 10.0
+WIDER = (2.0, 10.0)
 """Times the error without it, over which the turn of lines is bounded."""
-MOST = 62
-"""Contacts of which the closed ones make a number."""
+
+Here = namedtuple("Here", VARYING)  # type: ignore[misc]
+"""The arrays of `Situations`."""
+Claims = namedtuple("Claims", CLAIMED)  # type: ignore[misc]
+"""The arrays of `Equilibria`."""
 
 
-def is_plain(columns: Columns, answers: Equilibria) -> bool:
-    """Whether claims are for this bound."""
-    train = columns.train
-    tabled = any(hasattr(law, "forces") for m in train.meshes.values() for law in m.laws)
-    contacts = len(columns.contacts) + 2 * len(train.drums)
-    return not (tabled or train.splines or contacts > MOST or bool(answers.radial_reaction.any()))
+class Layout(NamedTuple):
+    """A train as compiled code reads it; constants stand here so that it never keeps an old one.
 
-
-@dataclass(frozen=True, eq=False)
-class Residuals:
-    """What claims leave over, arrays along the claims.
-
-    Attributes
-    ----------
-    force : ndarray, shape (contacts, S)
-        Of flanks, stops and arcs [N].
-    gap : ndarray, shape (contacts, S)
-        Their gaps; negative where they overlap [m].
-    springs : ndarray, shape (springs, S)
-        Forces of shafts and bearings [N].
-    slack : ndarray, shape (springs, S)
-        Their misfits [m].
-    load, width : ndarray, shape (n, S or 1), (S,)
-        f [N], rounding of lengths [m].
-    turn : ndarray, shape (arcs, 2, S)
-        Unit vector of every arc's line less its nominal one.
+    e flanks, c contacts (flanks, stops, arcs), d drums, q radial elements, k splines, m columns.
     """
 
+    mesh: Numbers  # (e,)
+    is_drive: Flags  # (e,)
+    arm: Array  # (e,)
+    twin: Numbers  # (c,): opposed contact of the same ring, or −1
+    drum: Numbers  # (c − e,): drum of a ring's contact
+    drum_gear: Numbers  # (d,)
+    nominal: Array  # (2 d, 2): way from the neighbour
+    apart: Array  # (2 d,): length of it
+    spring: Numbers  # (springs, 3): column, shaft or gear, axis (2 for a shaft)
+    spring_arm: Array
+    pull_gear: Numbers  # (q,)
+    centre: Array  # (q, 2)
+    moment: Array  # (k, e): torque over a spline per force
+    rounds: int
+    turn: Numbers  # (turns, 2): coordinate, gear
+    turn_radius: Array
+    place: Numbers  # (places, 2): first coordinate, gear
+    load: Numbers  # (loads, 2): coordinate, gear
+    load_radius: Array
+    frame: Array  # (gears, 2, 3)
+    radius: Array  # (gears,)
+    first_stop: int
+    first_arc: int
+    first_pull: int
+    start: Numbers  # (m + 1,): entries of A, row by row
+    at: Numbers
+    value: Array
+    rest_start: Numbers  # (m + 1,): what lengths take from clockings and offsets
+    rest_at: Numbers
+    rest_value: Array
+    eps: float = EPS
+    noise: float = NOISE
+    apart_by: float = APART
+    light: float = LIGHT
+    near: float = NEAR
+    corner: float = CORNER
+    rounding: float = ROUNDING
+    balanced: float = BALANCED
+    rounded: float = ROUNDED
+    gain: float = GAIN
+    wider: tuple[float, float] = WIDER
+
+
+class Groups(NamedTuple):
+    """What is the same for claims of which the same elements act; G sets of elements.
+
+    Rows of L (rows): contacts, springs, both columns of every radial element; 0 of what is idle.
+    """
+
+    known: Flags  # (G,): whether rigid parts do not share by themselves
+    root: Array  # (G, …, rows): L, transposed
+    is_loose: Flags  # (G,): whether something moves that nothing resists
+    moves: Array  # (G, …, n)
+    spread: Array  # (G,): sum of the lengths of the rows of L
+    spread_of_arcs: Array  # (G,): of arcs alone
+    into: Array  # (G,): energy per load, and per push across the lines of arcs
+    into_by_push: Array
+    bows: Array  # (G,): one over the shortest distance of arcs that act [1/m]
+    widest: Array  # (G,): largest way per coordinate
+    by: Array  # (G, 5, 4): largest figures by load, push, energy and gap
+    carries: Flags  # (G,): whether radial elements take part in carrying a load
+    pull_by: Array  # (G, q, 4): their forces by load, push and energy, and ways per length
+    part: Array  # (G, q, 2, n): P of the radial elements
+    moment_by: Array  # (G, k, 3): torque over splines by load, push and energy
+    gain: Array  # (G, k, k): of that torque per push along a spline's offset
+    pushed: Array  # (G, q, k): force of a radial element per such push
+
+
+class Found(NamedTuple):
+    """Figures of S claims."""
+
+    number: Numbers  # (S,): of what acts; −1 if there is too much of it
+    acts: Flags  # (S, c + q)
+    misfit: Array  # (S, rows) [m]
+    left: Array  # (S, n): of the balance [N]
+    soft: Array  # (S, q): compliance where a radial element stands [m/N]
+    spare: Array  # (S, q): by how much its force may change there [N]
+    slip: Array  # (S, q, 2): unit vector along a slip, 0 of anything else
+    rate: Array  # (S, q): change of its force with the torque [1/m]
+    scale: Array  # (S,): load [N], as the following
+    largest: Array  # torque [N·m]
+    push: Array  # largest force [N]
+    residual: Array  # largest one of balance [N]
+    width: Array  # rounding of lengths [m]
+    light: Array  # smallest force of a flank [N]
+    room: Array  # smallest gap of what does not act [m]
+    aside: Array  # largest torque of what is put aside [N·m]
+    turned: Array  # largest turn of an arc's line
+    bow: Array  # largest force of an arc over its distance [N/m]
+
+
+class Sets(NamedTuple):
+    """Sets of elements that act: their first claim, smallest and largest compliances [m/N]."""
+
+    first: Numbers
+    key: NDArray[np.uint64]
+    least: Array  # (…, c + springs + q)
+    most: Array
+
+
+class Sheet(NamedTuple):
+    """What is found of the claim at hand, overwritten by the next."""
+
+    x: Array
+    length: Array
+    varying: Array
     force: Array
+    left: Array
+    sizes: Array
     gap: Array
-    springs: Array
-    slack: Array
-    load: Array
-    width: Array
+    line: Array
     turn: Array
+    stiffest: Array
 
 
-class Batch:
-    """Bounds of many claims of a train.
+def is_covered(columns: Columns) -> bool:
+    """Whether claims of a train are for this bound."""
+    train = columns.train
+    return train.slip is None and not any(
+        hasattr(law, "forces") for m in train.meshes.values() for law in m.laws
+    )
+
+
+def relative_bounds(columns: Columns, situations: Situations, answers: Equilibria) -> Array:
+    """Largest error of a torque over the largest torque, shape (S,); infinite if not shown."""
+    from loadshare.certify.bound import compiled
+
+    held = _springs(columns, situations)
+    plan = _plans.get(columns)
+    if plan is None or not np.array_equal(plan.layout.spring, held[0]):
+        plan = _plans[columns] = Plan(columns, *held)
+    here = Here(*(_plain(getattr(situations, name)) for name in VARYING))
+    claim = Claims(*(_plain(array) for array in answers.arrays))
+    found, sets = plan.found(len(answers.rotation)), plan.sets()
+    count = compiled.find_all(plan.layout, here, claim, plan.sheet(), found, sets)
+    acts = found.acts[sets.first[:count]]
+    errors = np.empty_like(found.largest)
+    compiled.bound_all(plan.layout, found, plan.groups(acts, sets.least, sets.most), errors)
+    return np.asarray(errors / found.largest + EPS)
+
+
+def _plain(array: Array) -> Array:
+    """Return an array of the one kind that code is compiled for."""
+    return np.require(array, np.float64, ["C", "W"])
+
+
+class Operators(NamedTuple):
+    """Statics of what acts, P and L, without rows of what is idle."""
+
+    statics: Statics
+    particular: Array
+    root: Array
+
+
+class Plan:
+    """What all batches of a train share.
 
     Parameters
     ----------
     columns : Columns
-    situations : Situations
-    answers : Equilibria
+    spring, spring_arm : ndarray
+        As in `Layout`.
     """
 
-    def __init__(self, columns: Columns, situations: Situations, answers: Equilibria) -> None:
-        self.columns, self.here, self.answers = columns, situations, answers
-        self.count = len(answers.rotation)
-        train = columns.train
-        self.held = [
-            2 * k + axis
-            for k, gear in enumerate(columns.places)
-            for axis in (0, 1)
-            if situations.support[:, columns.order[gear], axis].any()
-        ]
-        self.spring_columns = [
-            *range(columns.shafts.start, columns.shafts.stop),
-            *(columns.bearings.start + k for k in self.held),
-        ]
-        ends = [(train.gears[r.gear], train.gears[n]) for r in train.drums for n in r.neighbours]
-        ways = [transverse(g.centre - n.centre, g.axis) @ g.frame.T for g, n in ends]
-        self.nominal = np.array(ways).reshape(-1, 2)
-        self.apart = np.sqrt((self.nominal**2).sum(axis=1))
+    def __init__(self, columns: Columns, spring: Numbers, spring_arm: Array) -> None:
+        self.layout = of = _layout(columns, spring, spring_arm)
+        self.varying = len(columns.constants[0])
         matrix, first = columns.matrix.high, columns.arcs.start
         arcs = [
             -(way / size) @ matrix[first + 2 * k : first + 2 * k + 2]
-            for k, (way, size) in enumerate(zip(self.nominal, self.apart, strict=True))
+            for k, (way, size) in enumerate(zip(of.nominal, of.apart, strict=True))
         ]
-        self.contact_rows = np.concatenate(
-            [matrix[list(columns.contacts)], np.reshape(arcs, (-1, matrix.shape[1]))]
+        width = matrix.shape[1]
+        self.contacts = np.concatenate(
+            [matrix[list(columns.contacts)], np.reshape(arcs, (-1, width))]
         )
-        self.spring_rows = matrix[self.spring_columns]
+        pairs = matrix[columns.arcs].reshape(-1, 2, width)
+        self.across = np.abs(pairs).sum(axis=1)
+        self.springs = matrix[of.spring[:, 0]]
+        self.pulls = matrix[columns.radials].reshape(-1, 2, width)
+        self._statics: dict[bytes, tuple[Statics, Array]] = {}
 
-    def relative(self) -> Array:
-        """Largest error of a torque over the largest torque, shape (S,); infinite if not shown."""
-        found = self._residuals()
-        arms = self.columns.arms
-        flanks = len(arms)
-        force = found.force
-        torque = np.abs(self.here.torque).T
-        radius = np.array([[g.base_radius] for g in self.columns.train.gears.values()])
-        scale = np.maximum(np.abs(force[:flanks]).max(axis=0), (torque / radius).max(axis=0))
-        largest = np.maximum(
-            (np.abs(force[:flanks]) * arms[:, None]).max(axis=0), torque.max(axis=0)
-        )
-        scale, largest = (np.where(v > 0.0, v, 1.0) for v in (scale, largest))
-        closed = (force != 0.0) | (found.gap <= NEAR * np.abs(found.gap).max(axis=0))
-        doubled = self._doubled(closed, force)
-        closed &= ~doubled
-        numbers = (1 << np.arange(len(closed))) @ closed.astype(np.int64)
-        relative = np.full(self.count, np.inf)
-        for number in np.unique(numbers):
-            alike = np.flatnonzero(numbers == number)
-            acting = closed[:, alike[0]]
-            rows = slice(None) if len(alike) == self.count else alike
-            errors = self._errors(found, acting, doubled, rows, scale)
-            if errors is not None:
-                relative[rows] = errors / largest[rows] + EPS
-        return relative
+    @property
+    def _rows(self) -> int:
+        """Rows of L."""
+        return len(self.contacts) + len(self.springs) + 2 * len(self.pulls)
 
-    def _residuals(self) -> Residuals:
-        columns, here, answers, train = self.columns, self.here, self.answers, self.columns.train
-        x = np.zeros((len(columns.coordinates), self.count))
-        for gear, turn in columns.turns.items():
-            if turn.coordinate is not None and not turn.shafts:
-                x[turn.coordinate] = turn.radius * answers.rotation[:, columns.order[gear]]
-        for gear, at in columns.places.items():
-            frame = train.gears[gear].frame
-            x[at : at + 2] = frame @ answers.displacement[:, columns.order[gear]].T
-        rest, widest = self._rest()
-        stops = columns.stops.stop - columns.stops.start
-        flanks = columns.flanks.stop
-        gaps = [-(self.contact_rows[: flanks + stops] @ x) - rest[: flanks + stops]]
-        turned, margins = self._arcs(x)
-        force = np.concatenate([answers.flank_force.T, answers.ring_force.T])
-        springs = [
-            answers.shaft_torque[:, k]
-            / train.gears[list(train.shafts.values())[k].first].base_radius
-            for k in columns.elastic_shafts
-        ]
-        gears = list(columns.places)
-        springs += [
-            answers.support_force[:, columns.order[gears[k // 2]], k % 2] for k in self.held
-        ]
-        forces = np.array(springs).reshape(-1, self.count)
-        yielded = self._spring_compliance() * forces
-        slack = self.spring_rows @ x + rest[flanks + stops :] - yielded
-        load = np.zeros((len(x), len(here.torque)))
-        for gear, turn in columns.turns.items():
-            if turn.coordinate is not None:
-                load[turn.coordinate] += here.torque[:, columns.order[gear]] / turn.radius
-        width = EPS * (
-            np.abs(x).max(axis=0, initial=0.0) + widest + np.abs(yielded).max(axis=0, initial=0.0)
-        )
-        gap = np.concatenate([*gaps, margins])
-        return Residuals(force, gap, forces, slack, load, width, turned)
+    def sheet(self) -> Sheet:
+        """Return an empty sheet."""
+        m, n, contacts = len(self.layout.start) - 1, self.contacts.shape[1], len(self.contacts)
+        arcs = len(self.layout.apart)
+        sizes = (n, m, self.varying, m, n, n, contacts, (arcs, 2), arcs, len(self.pulls))
+        return Sheet(*(np.zeros(size) for size in sizes))
 
-    def _rest(self) -> tuple[Array, Array]:
-        """Lengths at X = 0 of flanks, stops and springs (…, S or 1) [m], and their size."""
-        columns, here, train = self.columns, self.here, self.columns.train
-        shafts, gears = len(train.shafts), len(columns.order)
-        names = [*columns.contacts, *self.spring_columns]
-        on, gaps = columns.constants
-        varying = np.concatenate(
-            [
-                np.broadcast_to(v, (max(len(here.clocking), len(here.offset)), v.shape[1]))
-                for v in (here.clocking, here.offset.reshape(len(here.offset), -1))
-            ],
-            axis=1,
-        )
-        assert varying.shape[1] == shafts + 3 * gears
-        rest = on[:, names].T @ varying.T
-        limits = np.zeros((len(names), max(len(here.gap), len(here.backlash), len(here.stop))))
-        for e, (mesh, drive) in enumerate(gaps):
-            limits[e] = (here.gap if drive else here.backlash)[:, mesh]
-        stops = here.stop.reshape(len(here.stop), -1)
-        limits[len(gaps) : len(gaps) + stops.shape[1]] = stops.T
-        widest = np.abs(here.offset).max(axis=(1, 2), initial=0.0) + np.abs(limits).max(
-            axis=0, initial=0.0
-        )
-        return rest - limits, widest
-
-    def _spring_compliance(self) -> Array:
-        """Compliance of shafts and bearings, shape (springs, S or 1) [m/N]."""
-        columns, here, train = self.columns, self.here, self.columns.train
-        arms = [s.first for s in train.shafts.values()]
-        found = [
-            train.gears[arms[k]].base_radius ** 2 / here.torsion[:, k]
-            for k in columns.elastic_shafts
-        ]
-        gears = list(columns.places)
-        found += [1.0 / here.support[:, columns.order[gears[k // 2]], k % 2] for k in self.held]
-        count = max((len(f) for f in found), default=1)
-        return np.array([np.broadcast_to(f, (count,)) for f in found]).reshape(-1, count)
-
-    def _arcs(self, x: Array) -> tuple[Array, Array]:
-        """Turns of the arcs' lines (arcs, 2, S) and margins (arcs, S) [m]."""
-        columns, here, train = self.columns, self.here, self.columns.train
-        turn, margins = [], []
-        for k, (way, apart) in enumerate(zip(self.nominal, self.apart, strict=True)):
-            drum, side = divmod(k, 2)
-            frame = train.gears[train.drums[drum].gear].frame
-            first = columns.arcs.start + 2 * k
-            moved = columns.matrix.high[first : first + 2] @ x
-            moved = moved + frame @ here.arc_shift[:, drum, side].T
-            along, square = way @ moved, (moved**2).sum(axis=0)
-            length = np.sqrt(apart * apart + 2.0 * along + square)
-            longer = (2.0 * along + square) / (length + apart)
-            margins.append(longer + here.arc_clearance[:, drum, side])
-            turn.append((moved - longer * (way / apart)[:, None]) / length)
-        if not turn:
-            return np.zeros((0, 2, self.count)), np.zeros((0, self.count))
-        return np.array(turn), np.array(margins)
-
-    def _doubled(self, closed: Flags, force: Array) -> Flags:
-        """Contacts without clearance to an opposed one that carries at least as much."""
-        doubled = np.zeros_like(closed)
-        flanks, contacts = len(self.columns.arms), len(self.columns.contacts)
-        for start in (*range(flanks, contacts, 2), *range(contacts, len(closed), 2)):
-            if start >= contacts:
-                k = start - contacts
-                cosine = self.nominal[k] @ self.nominal[k + 1] / (self.apart[k] * self.apart[k + 1])
-                if cosine > -OPPOSED:
-                    continue
-            both = closed[start] & closed[start + 1]
-            second = force[start] >= force[start + 1]
-            doubled[start + 1] = both & second
-            doubled[start] = both & ~second
-        return doubled
-
-    def _errors(
-        self,
-        found: Residuals,
-        acting: Flags,
-        doubled: Flags,
-        rows: NDArray[np.intp] | slice,
-        scale: Array,
-    ) -> Array | None:
-        """Largest error of a torque [N·m] of claims of which the same contacts act."""
-        here, columns = self.here, self.columns
-        flanks, contacts = len(columns.arms), len(columns.contacts)
-        on = np.flatnonzero(acting)
-        force, gap = found.force[on][:, rows], found.gap[on][:, rows]
-        springs, slack = found.springs[:, rows], found.slack[:, rows]
-        scale = scale[rows]
-        part = on < flanks
-        mesh = columns.meshes[on[part]]
-
-        def some(array: Array) -> Array:
-            return array if len(array) == 1 or isinstance(rows, slice) else array[rows]
-
-        b, c = some(here.bending)[:, mesh].T, some(here.hertz)[:, mesh].T
-        wall = np.repeat(some(here.wall), 2, axis=1).T
-        walls = np.concatenate([wall, wall])[on[~part] - flanks]
-        yields = np.zeros_like(force)
-        yields[part] = b * force[part]
-        least, most = np.zeros(len(on)), np.zeros(len(on))
-        least[part], most[part] = b.min(axis=1, initial=np.inf), b.max(axis=1, initial=0.0)
-        if c.any():
-            root = np.cbrt(np.maximum(force[part], 0.0))
-            yields[part] += c * (root * root)
-            low = np.maximum(force[part], LIGHT * scale).min(axis=1)
-            high = np.maximum(force[part].max(axis=1), LIGHT * scale.max())
-            least[part] += 2.0 / 3.0 * c.min(axis=1) / np.cbrt(high)
-            most[part] += 2.0 / 3.0 * c.max(axis=1) / np.cbrt(low)
-        if not part.all():
-            yields[~part] = walls * force[~part]
-            least[~part], most[~part] = walls.min(axis=1), walls.max(axis=1)
-        misfit = -gap - yields
-        misfit = np.where(force == 0.0, np.maximum(misfit, 0.0), misfit)
-        compliance = self._spring_compliance()
-        least = SECANT * np.concatenate([least, compliance.min(axis=1)])
-        most = np.concatenate([most, compliance.max(axis=1)])
-        directions = np.concatenate([self.contact_rows[on], self.spring_rows])
-        known = self._operators(directions, least)
-        if known is None:
-            return None
-        statics, root_matrix, sizes = known
-        passes = np.abs(statics.particular)
-        forces = np.concatenate([force, springs])
-        left = found.load[:, rows] if found.load.shape[1] > 1 else found.load
-        left = left - directions.T @ forces
-        arcs = on[on >= contacts] - contacts
-        for k in arcs:
-            first = columns.arcs.start + 2 * k
-            tilt = found.turn[k][:, rows] * found.force[contacts + k][rows]
-            left += columns.matrix.high[first : first + 2].T @ tilt
-        slope = passes.sum(axis=1)
-        residual = np.abs(left).max(axis=0) + EPS * np.abs(forces).max(axis=0) * len(forces)
-        bent = np.sqrt(((root_matrix.T @ np.concatenate([misfit, slack])) ** 2).sum(axis=0))
-        width = found.width[rows] + EPS * np.abs(yields).max(axis=0, initial=0.0)
-        into, spread = float(slope @ (most * sizes)), float(sizes.sum())
-        deepest = np.abs(misfit).max(axis=0, initial=0.0) + np.abs(slack).max(axis=0, initial=0.0)
-        ways = np.abs(self.contact_rows) @ passes.T
-        by_load, by_energy, by_gap = (
-            float((ways @ v).max(initial=0.0))
-            for v in (most * slope, most * sizes, np.ones(len(most)))
+    def found(self, count: int) -> Found:
+        """Return room for the figures of so many claims."""
+        pulls, n = len(self.pulls), self.contacts.shape[1]
+        return Found(
+            np.empty(count, dtype=np.intp),
+            np.empty((count, len(self.contacts) + pulls), dtype=np.bool_),
+            *(np.empty((count, width)) for width in (self._rows, n, pulls, pulls)),
+            np.empty((count, pulls, 2)),
+            np.empty((count, pulls)),
+            *(np.empty(count) for _ in range(10)),
         )
 
-        def worst(residual: Array, width: Array, weights: Array) -> Array:
-            """Largest weighted error of a force."""
-            energy = bent + into * residual + spread * width
-            of_load, of_energy = (float((v * weights).max(initial=0.0)) for v in (slope, sizes))
-            return np.asarray(of_load * residual + of_energy * energy)
+    def sets(self) -> Sets:
+        """Return room for sets of elements."""
+        size = (MOST, len(self.contacts) + len(self.springs) + len(self.pulls))
+        first, key = np.empty(MOST, dtype=np.intp), np.empty(MOST, dtype=np.uint64)
+        return Sets(first, key, np.full(size, np.inf), np.zeros(size))
 
-        def way(residual: Array, width: Array) -> Array:
-            """Largest displacement of a contact [m]."""
-            energy = bent + into * residual + spread * width
-            shifted = by_load * residual + by_energy * energy + by_gap * (deepest + width)
-            return np.asarray(shifted)
+    def _known(self, acts: Flags) -> tuple[Statics, Array]:
+        """Statics of what acts, and P, by radial elements only if nothing else carries a load."""
+        found = self._statics.get(acts.tobytes())
+        if found is None:
+            contacts = len(self.contacts)
+            some = self.pulls[acts[contacts:]].reshape(-1, self.springs.shape[1])
+            firm = np.concatenate([self.contacts[acts[:contacts]], self.springs])
+            statics, known = Statics.of(np.concatenate([firm, some])), Statics.of(firm)
+            held = some @ known.moves
+            held[np.abs(held) < RANK] = 0.0
+            part = np.linalg.pinv(held.T, rcond=RANK) @ known.moves.T
+            by_firm = known.particular @ (np.eye(len(part.T)) - some.T @ part)
+            particular = np.concatenate([by_firm, part])
+            if len(self._statics) >= SETS:
+                self._statics.clear()
+            found = self._statics[acts.tobytes()] = statics, particular
+        return found
 
-        one = np.ones(len(directions))
-        largest, moved = worst(residual, width, one), way(residual, width)
-        proved = np.isfinite(largest)
-        if len(arcs):
-            # Errors act along lines that are nominal here; what that leaves out is bounded over a
-            # box some times as wide, which must hold the result.
-            turn = np.abs(found.turn[arcs][:, :, rows]).max(axis=(0, 1))
-            bow = (np.abs(force[on >= contacts]) / self.apart[arcs][:, None]).max(axis=0)
-            residual = residual + 2.0 * WIDE * (turn * largest + bow * moved)
-            width = width + WIDE * turn * moved + (WIDE * moved) ** 2 / self.apart.min()
-            again, further = worst(residual, width, one), way(residual, width)
-            proved &= (again <= WIDE * largest) & (further <= WIDE * moved)
-            largest, moved = again, further
-        open_ = ~acting[:, None] & ~doubled[:, rows]
-        proved &= np.where(open_, found.gap[:, rows], np.inf).min(axis=0, initial=np.inf) > moved
-        proved &= force.min(axis=0, initial=0.0) >= 0.0
-        light = np.maximum(force[part].min(axis=0, initial=np.inf), LIGHT * scale)
-        proved &= largest <= 0.1 * light
-        if statics.moves.size:
-            stray = np.abs(statics.moves.T @ left).max(axis=0)
-            proved &= stray <= BALANCED * scale
-            residual = residual + stray + EPS * scale
-        weights = np.zeros(len(directions))
-        weights[: len(on)][part] = columns.arms[on[part]]
-        errors = worst(residual, width, weights)
-        return np.where(proved, errors, math.inf)
+    def groups(self, acts: Flags, least: Array, most: Array) -> Groups:
+        """Return what is the same for the claims of some sets.
 
-    def _operators(self, directions: Array, least: Array) -> tuple[Statics, Array, Array] | None:
-        """Statics, L and the lengths of its rows; None if rigid parts share by themselves."""
-        statics = Statics.of(directions)
-        n = statics.redundant
-        stiff = n.T @ (least[:, None] * n)
+        Parameters
+        ----------
+        acts : ndarray of bool, shape (G, c + q)
+        least, most : ndarray, shape (G or more, c + springs + q)
+            Smallest and largest compliance of contacts, springs and radial elements [m/N].
+        """
+        count, n, of = len(acts), self.contacts.shape[1], self.layout
+        pulls, splines = len(self.pulls), len(of.moment)
+        known = [self._operators(acts[g], least[g]) for g in range(count)]
+        self_stresses = max((k.root.shape[1] for k in known if k), default=0)
+        moves = max((k.statics.moves.shape[1] for k in known if k), default=0)
+        found = Groups(
+            np.array([k is not None for k in known], dtype=np.bool_),
+            np.zeros((count, self_stresses, self._rows)),
+            np.zeros(count, dtype=np.bool_),
+            np.zeros((count, moves, n)),
+            *(np.zeros(count) for _ in range(6)),
+            np.zeros((count, 5, 4)),
+            np.zeros(count, dtype=np.bool_),
+            np.zeros((count, pulls, 4)),
+            np.zeros((count, pulls, 2, n)),
+            np.zeros((count, splines, 3)),
+            np.zeros((count, splines, splines)),
+            np.zeros((count, pulls, splines)),
+        )
+        for g, operators in enumerate(known):
+            if operators is not None:
+                self._put(found, g, acts[g], operators, most[g])
+        return found
+
+    def _on(self, acts: Flags) -> Flags:
+        """Rows of L of what acts."""
+        contacts = len(self.contacts)
+        springs = np.ones(len(self.springs), dtype=bool)
+        return np.concatenate([acts[:contacts], springs, np.repeat(acts[contacts:], 2)])
+
+    def _operators(self, acts: Flags, least: Array) -> Operators | None:
+        """Return statics and L; None if rigid parts share by themselves."""
+        statics, particular = self._known(acts)
+        soft, n = self._both(least)[self._on(acts)], statics.redundant
+        stiff = n.T @ (SECANT * soft[:, None] * n)
         if not np.isfinite(stiff).all():
             return None
         values, vectors = np.linalg.eigh(stiff)
         if values.size and values.min() <= SINGULAR * values.max():
             return None
-        root = n @ (vectors / np.sqrt(values))
-        return statics, root, np.sqrt((root**2).sum(axis=1))
+        return Operators(statics, particular, n @ (vectors / np.sqrt(values)))
+
+    def _both(self, figures: Array) -> Array:
+        """Figures of the elements, those of radial ones twice."""
+        first = len(figures) - len(self.pulls)
+        return np.append(figures[:first], np.repeat(figures[first:], 2))
+
+    def _put(self, found: Groups, g: int, acts: Flags, known: Operators, most: Array) -> None:
+        """Write what is known of a set in its place."""
+        of, on, contacts = self.layout, self._on(acts), len(self.contacts)
+        flanks, pulls, arcs = len(of.arm), self._rows - 2 * len(self.pulls), len(of.apart)
+        root = np.zeros((self._rows, known.root.shape[1]))
+        particular = np.zeros((self._rows, self.contacts.shape[1]))
+        root[on], particular[on] = known.root, known.particular
+        passes, sizes = np.abs(particular), np.sqrt((root**2).sum(axis=1))
+        # What radial elements yield is told by every claim itself.
+        soft = np.where(on, self._both(most) / SECANT, 0.0)
+        soft[pulls:] = 0.0
+        some = acts[contacts - arcs : contacts]
+        across = self.across[some].sum(axis=0)
+        figures = np.array([passes.sum(axis=1), passes @ across, sizes])
+        open_ = np.abs(self.pulls[~acts[contacts:]]).sum(axis=1)
+        rows = np.concatenate([np.abs(self.contacts), open_, self.across[some]])
+        ways = rows @ passes.T
+        by_way = np.append(ways @ (soft * figures).T, ways.sum(axis=1)[:, None], axis=1)
+        arcs_on = contacts - arcs + np.flatnonzero(some)
+        arms = of.arm * (1.0 + EPS)
+        by = found.by[g]
+        by[0, :3], by[2, :3] = figures.max(axis=1), (figures[:, :flanks] * arms).max(axis=1)
+        by[3, :3] = figures[:, arcs_on].max(axis=1, initial=0.0)
+        by[1], by[4] = (
+            v.max(axis=0, initial=0.0) for v in (by_way, by_way[len(by_way) - len(arcs_on) :])
+        )
+        found.spread[g], found.spread_of_arcs[g] = sizes.sum(), sizes[arcs_on].sum()
+        found.into[g], found.into_by_push[g], _ = figures @ (soft * sizes)
+        found.bows[g] = (1.0 / of.apart[some]).max(initial=0.0)
+        found.widest[g] = rows.max(initial=0.0)
+        found.pull_by[g, :, :3] = figures[:, pulls:].reshape(3, -1, 2).sum(axis=2).T
+        found.pull_by[g, :, 3] = ways[:, pulls:].max(axis=0, initial=0.0).reshape(-1, 2).sum(axis=1)
+        found.part[g] = particular[pulls:].reshape(-1, 2, len(rows.T))
+        found.carries[g] = found.pull_by[g, :, 0].any()
+        moments, pushed = np.abs(of.moment), passes @ np.abs(self.pulls[of.rounds :]).sum(axis=1).T
+        gain = pushed + sizes[:, None] * ((soft * sizes) @ pushed)
+        found.moment_by[g] = moments @ figures[:, :flanks].T
+        found.gain[g] = moments @ gain[:flanks]
+        found.pushed[g] = pushed[pulls:].reshape(-1, 2, len(moments)).sum(axis=1)
+        moves = known.statics.moves.T
+        found.root[g, : root.shape[1]], found.moves[g, : len(moves)] = root.T, moves
+        found.is_loose[g] = len(moves) > 0
+
+
+MOST = 1000
+"""Sets of elements that are told apart in a batch."""
+SETS = 2000
+"""Sets of elements of which the statics are kept, so that memory is bounded."""
+_plans: WeakKeyDictionary[Columns, Plan] = WeakKeyDictionary()
+
+
+def _entries(matrix: Array) -> tuple[Numbers, Numbers, Array]:
+    """Entries of a matrix that are not zero, row by row."""
+    rows, at = np.nonzero(matrix)
+    start = np.searchsorted(rows, np.arange(len(matrix) + 1))
+    return start.astype(np.intp), at.astype(np.intp), matrix[rows, at]
+
+
+def _springs(columns: Columns, situations: Situations) -> tuple[Numbers, Array]:
+    """Elastic shafts and bearings, and the arms of shafts."""
+    train = columns.train
+    found, arms = [], []
+    shafts = list(train.shafts.values())
+    for at, k in enumerate(columns.elastic_shafts, columns.shafts.start):
+        found.append((at, k, 2))
+        arms.append(train.gears[shafts[k].first].base_radius)
+    for number, gear in enumerate(columns.places):
+        for axis in (0, 1):
+            if situations.support[:, columns.order[gear], axis].any():
+                found.append(
+                    (columns.bearings.start + 2 * number + axis, columns.order[gear], axis)
+                )
+                arms.append(1.0)
+    return np.array(found, dtype=np.intp).reshape(-1, 3), np.array(arms)
+
+
+def _twins(columns: Columns, nominal: Array, apart: Array) -> Numbers:
+    """Opposed contacts of rings."""
+    flanks, contacts = columns.flanks.stop, len(columns.contacts)
+    twin = np.full(contacts + len(apart), -1, dtype=np.intp)
+    for start in range(flanks, len(twin), 2):
+        k = start - contacts
+        if k >= 0 and nominal[k] @ nominal[k + 1] > -OPPOSED * apart[k] * apart[k + 1]:
+            continue
+        twin[start], twin[start + 1] = start + 1, start
+    return twin
+
+
+def _pairs(pairs: list[tuple[int, int]]) -> Numbers:
+    return np.array(pairs, dtype=np.intp).reshape(-1, 2)
+
+
+def _pull_centres(train: Train) -> Array:
+    centres = [train.gears[r.gear].frame @ r.offset for r in train.rounds]
+    return np.array([*centres, *np.zeros((len(train.splines), 2))]).reshape(-1, 2)
+
+
+def _layout(columns: Columns, spring: Numbers, spring_arm: Array) -> Layout:
+    train, order = columns.train, columns.order
+    ends = [(train.gears[r.gear], train.gears[n]) for r in train.drums for n in r.neighbours]
+    ways = [transverse(g.centre - n.centre, g.axis) @ g.frame.T for g, n in ends]
+    nominal = np.array(ways).reshape(-1, 2)
+    apart = np.sqrt((nominal**2).sum(axis=1))
+    drums = np.arange(len(train.drums))
+    held = {g: t for g, t in columns.turns.items() if t.coordinate is not None}
+    turns = [(t.coordinate or 0, order[g], t.radius) for g, t in held.items() if not t.shafts]
+    loads = [(t.coordinate or 0, order[g], t.radius) for g, t in held.items()]
+    pulled = [order[r.gear] for r in train.rounds] + [order[g] for g in train.splines]
+    return Layout(
+        columns.meshes,
+        np.array([d for _, d in columns.all_flanks], dtype=np.bool_),
+        columns.arms,
+        _twins(columns, nominal, apart),
+        np.concatenate([np.repeat(drums, 2)] * 2),
+        np.array([order[r.gear] for r in train.drums], dtype=np.intp),
+        nominal,
+        apart,
+        spring,
+        spring_arm,
+        np.array(pulled, dtype=np.intp),
+        _pull_centres(train),
+        columns.moments,
+        len(train.rounds),
+        _pairs([t[:2] for t in turns]),
+        np.array([t[2] for t in turns]),
+        _pairs([(at, order[g]) for g, at in columns.places.items()]),
+        _pairs([t[:2] for t in loads]),
+        np.array([t[2] for t in loads]),
+        np.array([g.frame for g in train.gears.values()]).reshape(-1, 2, 3),
+        np.array([g.base_radius for g in train.gears.values()]),
+        columns.stops.start,
+        columns.arcs.start,
+        columns.radials.start,
+        *_entries(columns.matrix.high),
+        *_entries(columns.constants[0].T),
+    )

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.certify.bound.batch import Batch, is_plain
+from loadshare.certify.bound.batch import is_covered, relative_bounds
 from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
@@ -20,6 +20,7 @@ from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 
 NOISE = 1e-12
@@ -73,7 +74,12 @@ def _torques(columns: Columns, force: Array, claimed: Array) -> Array:
 
 
 def bounds(
-    columns: Columns, situations: Situations, answers: Equilibria, rigorous: bool = False
+    columns: Columns,
+    situations: Situations,
+    answers: Equilibria,
+    rigorous: bool = False,
+    compiled: bool = False,
+    wanted: Flags | None = None,
 ) -> Bounds:
     """Bound the errors of S claimed equilibria, from the claims and the train alone.
 
@@ -84,21 +90,27 @@ def bounds(
     answers : Equilibria
     rigorous : bool
         Find all residuals in twice the working precision; otherwise only where that is needed.
+    compiled : bool
+        Use Numba for large batches.
+    wanted : ndarray of bool, shape (S,), optional
+        Claims of a large batch that are worth every effort; all by default.
     """
     if not len(answers.rotation):
         return Bounds(columns, np.zeros(0), None, None, None)
     with np.errstate(all="ignore"):
-        return _bounds(Claim(columns, situations, answers, fine=False), rigorous)
+        return _bounds(Claim(columns, situations, answers, fine=False), rigorous, compiled, wanted)
 
 
-def _bounds(claim: Claim, rigorous: bool) -> Bounds:
+def _bounds(claim: Claim, rigorous: bool, compiled: bool, wanted: Flags | None) -> Bounds:
     columns, answers = claim.columns, claim.answers
     relative: Array | None = None
-    if not rigorous and claim.count >= MANY and is_plain(columns, answers):
-        relative = Batch(columns, claim.situations, answers).relative()
-        left = np.flatnonzero(~(relative <= ENOUGH))
+    if compiled and not rigorous and claim.count >= MANY and is_covered(columns):
+        relative = relative_bounds(columns, claim.situations, answers)
+        poor = ~(relative <= ENOUGH)
+        left = np.flatnonzero(poor if wanted is None else poor & wanted)
         if len(left):
-            relative[left] = _boxes(claim.take(left), rigorous).relative
+            more = _boxes(claim.take(left), rigorous).relative
+            relative[left] = np.fmin(relative[left], more)
         return Bounds(columns, relative, None, None, None)
     return _boxes(claim, rigorous)
 

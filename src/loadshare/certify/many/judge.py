@@ -129,10 +129,13 @@ class Judge:
             With Numba, one answer after another, instead of NumPy: the same figures up to
             round-off, several times as fast once it is compiled.
         """
-        limits = bounds(self.columns, situations, answers)
         if compiled:
             residuals, load, deflection = judged(self._mechanics, situations, answers)
+            # What is out of balance is refused in any case.
+            wanted = residuals.max(axis=1) <= tolerance
+            limits = bounds(self.columns, situations, answers, compiled=True, wanted=wanted)
             return Verdicts(residuals, tolerance, load, deflection, limits)
+        limits = bounds(self.columns, situations, answers)
         count = len(answers.rotation)
         if count <= TOGETHER:
             return self._together(situations, answers, tolerance, limits)

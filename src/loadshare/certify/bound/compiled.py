@@ -1,0 +1,587 @@
+"""The bound of one claim after another, compiled with Numba: what `batch` asks for.
+
+`of` is the train as columns, `here` the situations, `claim` the claims. First every claim is put
+into figures, `found`, and numbered by what acts in it; then, with what `batch` makes of each such
+`group`, they become bounds. The compiled code is kept on disk; all of it stands in this one file,
+because Numba looks at no other to tell whether what is kept is still valid. Nothing of it is shared
+with the certificate, nor with a solver.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from loadshare import compilation
+
+# As in the compiled certificate: nothing is allocated, and what takes tuples is inlined.
+_how: dict[str, Any] = {
+    "nogil": True,
+    "error_model": "numpy",
+    "fastmath": {"reassoc", "contract", "nsz"},
+    "_nrt": False,
+}
+TURN = 1e-6
+"""Angle by which a slip may turn."""
+SLACK = 1e-6
+"""Part of the level within which a force is on it where the place says that something slips."""
+FORCE, WAY, TORQUE, ARC, ARC_WAY = range(5)
+"""Largest error of a force, way of an element, error of a torque; force and way of arcs."""
+compiled = compilation.jit(**_how)
+inlined = compilation.within(forceinline=True, **_how)
+
+
+@compiled
+def find_all(of, here, claim, sheet, found, sets):  # type: ignore[no-untyped-def]
+    """Put all claims into figures; returns how many sets of elements act in them."""
+    count, last = 0, 0
+    for s in range(len(claim.rotation)):
+        top = _loads(of, here, claim, s, found)
+        terms, deflection = _lengths(of, here, claim, s, sheet)
+        widest = _gaps(of, here, s, sheet)
+        _acts(of, claim, s, sheet, found, top, deflection, widest)
+        longest, fine = _pulls(of, here, claim, s, sheet, found, top, widest)
+        count, last = _numbered(s, found.acts, sets, count, last)
+        found.number[s] = last
+        yielded = _contacts(of, here, claim, s, sheet, found, sets)
+        further = _springs(of, here, claim, s, sheet, found, sets)
+        for q in range(len(of.pull_gear)):
+            at = len(of.twin) + len(of.spring) + q
+            _spread(sets, found.number[s], at, sheet.stiffest[q])
+        residual = _balance(of, here, s, sheet, found)
+        found.residual[s] = residual if fine else np.inf
+        found.width[s] = of.eps * (terms + longest + max(yielded, further))
+    return count
+
+
+@compiled
+def bound_all(of, found, group, errors):  # type: ignore[no-untyped-def]
+    """Largest error of a torque [N·m] of every claim; infinite where it is not shown."""
+    for s in range(len(errors)):
+        errors[s], g = np.inf, found.number[s]
+        if g < 0 or not group.known[g]:
+            continue
+        stray, proved = 0.0, True
+        for k in range(group.moves.shape[1]):
+            along = 0.0
+            for c in range(group.moves.shape[2]):
+                along += group.moves[g, k, c] * found.left[s, c]
+            stray = max(stray, abs(along))
+        residual, scale = found.residual[s], found.scale[s]
+        if group.is_loose[g]:
+            proved = stray <= max(of.balanced * scale, of.rounded * found.push[s])
+            residual += stray + of.eps * scale
+        largest, moved, torque = _answered(of, found, group, g, s, residual)
+        proved &= found.room[s] > moved + found.width[s]
+        proved &= largest <= 0.1 * max(found.light[s], of.light * scale)
+        if proved and torque < np.inf and found.aside[s] < np.inf:
+            errors[s] = max(torque, found.aside[s])
+
+
+@inlined
+def _row(array, s):  # type: ignore[no-untyped-def]
+    """Row of a claim, or the only one."""
+    return s if len(array) > 1 else 0
+
+
+@inlined
+def _contact_force(of, claim, s, c):  # type: ignore[no-untyped-def]
+    """Claimed force of a flank, stop or arc [N]."""
+    flanks = len(of.arm)
+    return claim.flank_force[s, c] if c < flanks else claim.ring_force[s, c - flanks]
+
+
+@inlined
+def _loads(of, here, claim, s, found):  # type: ignore[no-untyped-def]
+    """Load and largest torque of a claim; returns the largest force of a flank [N]."""
+    r, load, torque, top = _row(here.torque, s), 0.0, 0.0, 0.0
+    for g in range(len(of.radius)):
+        due = abs(here.torque[r, g])
+        load, torque = max(load, due / of.radius[g]), max(torque, due)
+    for e in range(len(of.arm)):
+        force = abs(claim.flank_force[s, e])
+        top, torque = max(top, force), max(torque, force * of.arm[e])
+    load = max(load, top)
+    found.scale[s] = load if load > 0.0 else 1.0
+    found.largest[s] = torque if torque > 0.0 else 1.0
+    return top
+
+
+@inlined
+def _level(of, here, claim, s, q):  # type: ignore[no-untyped-def]
+    """Force at which a spline slips [N]."""
+    k = q - of.rounds
+    r = _row(here.spline, s)
+    bound = here.spline[r, k, 3]
+    if not np.isnan(bound):
+        return bound
+    torque = 0.0
+    for e in range(len(of.arm)):
+        torque += of.moment[k, e] * claim.flank_force[s, e]
+    return here.spline[r, k, 4] * abs(torque)
+
+
+@inlined
+def _law(of, here, claim, s, q):  # type: ignore[no-untyped-def]
+    """Graph of a radial element; not a number where it has no meaning.
+
+    First stiffness, S1, level, S2, last stiffness, and the force at the end of the first piece.
+    """
+    if q < of.rounds:
+        reach = here.round_radius[_row(here.round_radius, s), q]
+        return 0.0, 0.0, 0.0, reach, here.round_stiffness[_row(here.round_stiffness, s), q], 0.0
+    r, k = _row(here.spline, s), q - of.rounds
+    level = _level(of, here, claim, s, q)
+    stiffness, given, reach = here.spline[r, k, 0], here.spline[r, k, 1], here.spline[r, k, 2]
+    stick, end = level / stiffness, level
+    if np.isnan(given):
+        if reach < stick:
+            stick = end = np.inf
+    elif stiffness * given > level * (1.0 + of.rounding) or reach < min(given, stick):
+        stick = np.nan
+    elif given < stick:
+        stick, end = given, stiffness * given
+    return stiffness, stick, level, reach, stiffness, end
+
+
+@inlined
+def _stiffest(law):  # type: ignore[no-untyped-def]
+    """Compliance of a graph that no two of its points undercut [m/N].
+
+    A graph whose last piece is as stiff as its first, without a step of the force, is nowhere
+    stiffer than that; a ring is as stiff as its wall.
+    """
+    _, _, level, _, last, end = law
+    return 1.0 / last if end >= level else 0.0
+
+
+@inlined
+def _lengths(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
+    """Coordinates and lengths A X − g [m].
+
+    Returns the sum of the largest sizes of their terms, and the largest approach of flanks.
+    """
+    x, length, varying = sheet.x, sheet.length, sheet.varying
+    widest, offsets, limits, deflection = 0.0, 0.0, 0.0, 0.0
+    for k in range(len(of.turn)):
+        x[of.turn[k, 0]] = of.turn_radius[k] * claim.rotation[s, of.turn[k, 1]]
+    for k in range(len(of.place)):
+        at, g = of.place[k, 0], of.place[k, 1]
+        for a in range(2):
+            moved = 0.0
+            for i in range(3):
+                moved += of.frame[g, a, i] * claim.displacement[s, g, i]
+            x[at + a] = moved
+    for c in range(len(x)):
+        widest = max(widest, abs(x[c]))
+    r, shafts = _row(here.offset, s), here.clocking.shape[1]
+    for k in range(shafts):
+        varying[k] = here.clocking[_row(here.clocking, s), k]
+    for g in range(here.offset.shape[1]):
+        for i in range(3):
+            varying[shafts + 3 * g + i] = here.offset[r, g, i]
+            offsets = max(offsets, abs(here.offset[r, g, i]))
+    for j in range(len(length)):
+        total = 0.0
+        for i in range(of.start[j], of.start[j + 1]):
+            total += of.value[i] * x[of.at[i]]
+        for i in range(of.rest_start[j], of.rest_start[j + 1]):
+            total += of.rest_value[i] * varying[of.rest_at[i]]
+        length[j] = total
+    rg, rj, rs = _row(here.gap, s), _row(here.backlash, s), _row(here.stop, s)
+    for e in range(len(of.arm)):
+        m = of.mesh[e]
+        gap = here.gap[rg, m] if of.is_drive[e] else here.backlash[rj, m]
+        length[e] -= gap
+        limits, deflection = max(limits, abs(gap)), max(deflection, length[e])
+    for d in range(len(of.drum_gear)):
+        for side in range(2):
+            limit = here.stop[rs, d, side]
+            length[of.first_stop + 2 * d + side] -= limit
+            limits = max(limits, abs(limit))
+    return widest + offsets + limits, deflection
+
+
+@inlined
+def _gaps(of, here, s, sheet):  # type: ignore[no-untyped-def]
+    """Gaps of flanks, stops and arcs, and unit vectors of the latter; returns the widest gap."""
+    flanks, drums = len(of.arm), len(of.drum_gear)
+    for e in range(flanks):
+        sheet.gap[e] = -sheet.length[e]
+    for k in range(2 * drums):
+        sheet.gap[flanks + k] = -sheet.length[of.first_stop + k]
+    ra, rc = _row(here.arc_shift, s), _row(here.arc_clearance, s)
+    for k in range(2 * drums):
+        d, side = k // 2, k % 2
+        apart, along, square = of.apart[k], 0.0, 0.0
+        for a in range(2):
+            moved = sheet.length[of.first_arc + 2 * k + a]
+            for i in range(3):
+                moved += of.frame[of.drum_gear[d], a, i] * here.arc_shift[ra, d, side, i]
+            sheet.line[k, a] = moved
+            along += of.nominal[k, a] * moved
+            square += moved * moved
+        length = np.sqrt(apart * apart + 2.0 * along + square)
+        longer = (2.0 * along + square) / (length + apart)
+        sheet.turn[k] = 0.0
+        for a in range(2):
+            turned = (sheet.line[k, a] - longer * of.nominal[k, a] / apart) / length
+            sheet.turn[k] = max(sheet.turn[k], abs(turned))
+            sheet.line[k, a] = of.nominal[k, a] / apart + turned
+        sheet.gap[flanks + 2 * drums + k] = longer + here.arc_clearance[rc, d, side]
+    widest = 0.0
+    for c in range(len(sheet.gap)):
+        widest = max(widest, abs(sheet.gap[c]))
+    return widest
+
+
+@inlined
+def _acts(of, claim, s, sheet, found, top, deflection, widest):  # type: ignore[no-untyped-def]
+    """Tell which contacts act, as `quick` does, and by how much the others are apart."""
+    flanks, acts, gap = len(of.arm), found.acts, sheet.gap
+    for c in range(len(of.twin)):
+        force = abs(_contact_force(of, claim, s, c))
+        faint = force <= of.noise * top and gap[c] > of.apart_by * deflection
+        acts[s, c] = not (force == 0.0 or faint) or gap[c] <= of.near * widest
+    for c in range(flanks, len(of.twin)):
+        other = of.twin[c]
+        if other > c and acts[s, c] and acts[s, other]:
+            # Two opposed contacts of a ring are one that holds both ways.
+            second = _contact_force(of, claim, s, c) >= _contact_force(of, claim, s, other)
+            idle = other if second else c
+            acts[s, idle], gap[idle] = False, np.inf
+    room, aside, known = np.inf, 0.0, True
+    for c in range(len(of.twin)):
+        known &= gap[c] == gap[c]
+        if not acts[s, c]:
+            room = min(room, gap[c])
+            if c < flanks:
+                aside = max(aside, abs(claim.flank_force[s, c]) * of.arm[c])
+    found.room[s], found.aside[s] = room if known else -np.inf, aside
+
+
+@inlined
+def _numbered(s, acts, sets, count, last):  # type: ignore[no-untyped-def]
+    """Number what acts; returns how many sets there are, and the number, −1 if there are more."""
+    key = np.uint64(0)
+    for c in range(acts.shape[1]):
+        key = key * np.uint64(6364136223846793005) + np.uint64(1 + acts[s, c])
+    if last >= 0 and count > 0 and sets.key[last] == key and _same(acts, s, sets.first[last]):
+        return count, last
+    for k in range(count):
+        if sets.key[k] == key and _same(acts, s, sets.first[k]):
+            return count, k
+    if count == len(sets.first):
+        return count, -1
+    sets.first[count], sets.key[count] = s, key
+    return count + 1, count
+
+
+@inlined
+def _same(acts, one, other):  # type: ignore[no-untyped-def]
+    same = True
+    for c in range(acts.shape[1]):
+        same &= acts[one, c] == acts[other, c]
+    return same
+
+
+@inlined
+def _spread(sets, number, at, soft):  # type: ignore[no-untyped-def]
+    """Let the compliances of a set hold one more [m/N]."""
+    if number >= 0:
+        sets.least[number, at] = min(sets.least[number, at], soft)
+        sets.most[number, at] = max(sets.most[number, at], soft)
+
+
+@inlined
+def _contacts(of, here, claim, s, sheet, found, sets):  # type: ignore[no-untyped-def]
+    """Forces and misfits of contacts; returns their largest compression [m]."""
+    flanks, contacts, number = len(of.arm), len(of.twin), found.number[s]
+    arcs = contacts - len(of.apart)
+    rb, rc, rw = _row(here.bending, s), _row(here.hertz, s), _row(here.wall, s)
+    yielded, weakest, lightest = 0.0, np.inf, np.inf
+    turned, bow, light = 0.0, 0.0, of.light * found.scale[s]
+    for c in range(contacts):
+        acts = found.acts[s, c]
+        force = _contact_force(of, claim, s, c) if acts else 0.0
+        misfit = 0.0
+        if c < flanks:
+            sheet.force[c] = force
+        elif c < arcs:
+            sheet.force[of.first_stop + c - flanks] = force
+        else:
+            k = c - arcs
+            for a in range(2):
+                sheet.force[of.first_arc + 2 * k + a] = -force * sheet.line[k, a]
+        if acts:
+            if c < flanks:
+                m = of.mesh[c]
+                soft, lightest = here.bending[rb, m], min(lightest, force)
+                compression = soft * force
+                if here.hertz[rc, m] > 0.0:
+                    root = np.cbrt(max(force, 0.0))
+                    compression += here.hertz[rc, m] * root * root
+                    root = root if force >= light else np.cbrt(light)
+                    soft += 2.0 / 3.0 * here.hertz[rc, m] / root
+            else:
+                soft = here.wall[rw, of.drum[c - flanks]]
+                compression = soft * force
+                if c >= arcs:
+                    turned = max(turned, sheet.turn[c - arcs])
+                    bow = max(bow, abs(force) / of.apart[c - arcs])
+            _spread(sets, number, c, soft)
+            weakest, yielded = min(weakest, force), max(yielded, abs(compression))
+            misfit = -sheet.gap[c] - compression
+            if force == 0.0:
+                misfit = max(misfit, 0.0)
+        found.misfit[s, c] = misfit
+    found.turned[s], found.bow[s], found.light[s] = turned, bow, lightest
+    # A contact that pulls is none.
+    return yielded if weakest >= 0.0 else np.inf
+
+
+@inlined
+def _springs(of, here, claim, s, sheet, found, sets):  # type: ignore[no-untyped-def]
+    """Forces and misfits of elastic shafts and bearings; returns their largest deflection [m]."""
+    yielded, first = 0.0, len(of.twin)
+    for k in range(len(of.spring)):
+        j, number, axis = of.spring[k, 0], of.spring[k, 1], of.spring[k, 2]
+        if axis == 2:
+            soft = of.spring_arm[k] ** 2 / here.torsion[_row(here.torsion, s), number]
+            force = claim.shaft_torque[s, number] / of.spring_arm[k]
+        else:
+            soft = 1.0 / here.support[_row(here.support, s), number, axis]
+            force = claim.support_force[s, number, axis]
+        _spread(sets, found.number[s], first + k, soft)
+        sheet.force[j] = force
+        found.misfit[s, first + k] = sheet.length[j] - soft * force
+        yielded = max(yielded, abs(soft * force))
+    return yielded
+
+
+@inlined
+def _pulls(of, here, claim, s, sheet, found, top, widest):  # type: ignore[no-untyped-def]
+    """Forces and misfits of radial elements: the point of their graph next to what is claimed.
+
+    Returns the largest of their lengths [m], and whether their laws have a meaning.
+    """
+    contacts, at = len(of.twin), len(of.twin) + len(of.spring)
+    longest, fine = 0.0, True
+    for q in range(len(of.pull_gear)):
+        g, j, rate = of.pull_gear[q], of.first_pull + 2 * q, 0.0
+        law = _law(of, here, claim, s, q)
+        stick, level, reach = law[1], law[2], law[3]
+        x, y = sheet.length[j] - of.centre[q, 0], sheet.length[j + 1] - of.centre[q, 1]
+        fx, fy = 0.0, 0.0
+        for i in range(3):
+            fx -= of.frame[g, 0, i] * claim.radial_reaction[s, q, i]
+            fy -= of.frame[g, 1, i] * claim.radial_reaction[s, q, i]
+        distance, force = np.sqrt(x * x + y * y), np.sqrt(fx * fx + fy * fy)
+        fine &= force < np.inf and distance < np.inf
+        fine &= stick >= 0.0 and level >= 0.0 and reach >= 0.0
+        noise = of.noise * top
+        acts = level > 0.0 or force > noise or reach - distance <= of.near * widest
+        found.acts[s, contacts + q] = acts
+        soft, spare, misfit_x, misfit_y, slips = 0.0, np.inf, 0.0, 0.0, 0.0
+        if acts:
+            near, along, soft, spare = _nearest(law, force, distance, of.corner)
+            if near <= 0.0 or distance == 0.0:
+                # On the first piece, or pinned: a spring about the centre.
+                misfit_x, misfit_y = x - fx * soft, y - fy * soft
+                longest = max(longest, distance + force * soft)
+            else:
+                misfit_x, misfit_y = x - near / distance * x, y - near / distance * y
+                fx, fy = along * x / distance, along * y / distance
+                longest = max(longest, distance + near)
+                slips = 1.0 / distance if along == level else 0.0
+            if q >= of.rounds:
+                rate = _rate(of, here, s, q)
+                fine &= rate == 0.0 or found.aside[s] == 0.0
+        else:
+            fx, fy = 0.0, 0.0
+            found.room[s] = min(found.room[s], reach - distance)
+        longest = max(longest, abs(of.centre[q, 0]) + abs(of.centre[q, 1]) + distance)
+        sheet.force[j], sheet.force[j + 1] = fx, fy
+        sheet.stiffest[q] = _stiffest(law)
+        found.misfit[s, at + 2 * q], found.misfit[s, at + 2 * q + 1] = misfit_x, misfit_y
+        found.soft[s, q], found.spare[s, q], found.rate[s, q] = soft, spare, rate
+        found.slip[s, q, 0], found.slip[s, q, 1] = slips * x, slips * y
+    return longest, fine
+
+
+@inlined
+def _rate(of, here, s, q):  # type: ignore[no-untyped-def]
+    """Change of a spline's level with the torque over it [1/m]."""
+    r, k = _row(here.spline, s), q - of.rounds
+    return abs(here.spline[r, k, 4]) if np.isnan(here.spline[r, k, 3]) else 0.0
+
+
+@inlined
+def _nearest(law, force, distance, corner):  # type: ignore[no-untyped-def]
+    """Point of a graph at a force that is nearest to a distance: distance [m], force [N].
+
+    A distance below 0 stands for the first piece. Further the compliance [m/N] there (of a slip
+    across it, wherever it ends), and by how much the force may change.
+    """
+    first, stick, level, reach, last, end = law
+    if np.isinf(stick):
+        return -1.0, force, 1.0 / first, np.inf
+    slips = stick * (1.0 + SLACK) < distance < reach * (1.0 - SLACK)
+    if abs(force - level) <= (SLACK if slips else corner) * level:
+        return min(max(distance, stick), reach), level, reach / level, TURN * level
+    if force > level:
+        far = reach + (force - level) / last
+        return far, force, max(1.0 / last, far / force), min(force - level, 0.05 * force)
+    if force <= end and stick > 0.0:
+        return -1.0, force, 1.0 / first, end - force
+    spare = min(level - force, force - end if stick > 0.0 else np.inf)
+    return stick, force, stick / force if stick > 0.0 else 0.0, spare
+
+
+@inlined
+def _balance(of, here, s, sheet, found):  # type: ignore[no-untyped-def]
+    """Load that is left over [N]; returns the largest, with its rounding."""
+    left, sizes, force = sheet.left, sheet.sizes, sheet.force
+    left[:], sizes[:], largest = 0.0, 0.0, 0.0
+    r = _row(here.torque, s)
+    for k in range(len(of.load)):
+        due, c = here.torque[r, of.load[k, 1]] / of.load_radius[k], of.load[k, 0]
+        left[c] += due
+        sizes[c] += abs(due)
+    for j in range(len(force)):
+        if force[j] != 0.0:
+            largest = max(largest, abs(force[j]))
+            for i in range(of.start[j], of.start[j + 1]):
+                term, c = of.value[i] * force[j], of.at[i]
+                left[c] -= term
+                sizes[c] += abs(term)
+    found.push[s], residual, total = largest, 0.0, 0.0
+    for c in range(len(left)):
+        found.left[s, c] = left[c]
+        most = abs(left[c]) + of.eps * sizes[c]
+        residual, total = max(residual, most), total + most
+    # The largest may have passed over what is not a number.
+    return residual if total < np.inf else np.inf
+
+
+@inlined
+def _answered(of, found, group, g, s, residual):  # type: ignore[no-untyped-def]
+    """Largest error of a force [N], way of an element [m] and error of a torque [N·m]."""
+    bent, deepest, into, back, blind = 0.0, 0.0, group.into[g], 0.0, 0.0
+    for i in range(group.root.shape[1]):
+        along = 0.0
+        for k in range(group.root.shape[2]):
+            along += group.root[g, i, k] * found.misfit[s, k]
+        bent += along * along
+    bent = np.sqrt(bent)
+    for k in range(found.misfit.shape[1]):
+        deepest = max(deepest, abs(found.misfit[s, k]))
+    if group.carries[g]:
+        more, back, blind = _carried(of, found, group, g, s)
+        into += more
+        # What a slip should carry along its line comes back as load.
+        residual = residual / (1.0 - back) if back < of.gain else np.inf
+    gap, push, tilt = deepest + found.width[s], 0.0, 0.0
+    due = bent, into, found.width[s]
+    load, energy = _followed(of, found, group, g, s, residual, push, tilt, due)
+    proved = True
+    if group.bows[g] > 0.0:
+        # Errors act along lines that are nominal here; what that leaves out is bounded over a box
+        # some times as wide, which must hold the result.
+        proved = False
+        pushed = _by(group, g, ARC, load, push, energy, gap)
+        moved = _by(group, g, ARC_WAY, load, push, energy, gap) + blind
+        for wide in of.wider:
+            if not proved:
+                box, room = wide * pushed, wide * moved
+                push = 2.0 * (found.turned[s] * box + found.bow[s] * room) / (1.0 - back)
+                tilt = found.turned[s] * room + room * room * group.bows[g]
+                load, energy = _followed(of, found, group, g, s, residual, push, tilt, due)
+                proved = _by(group, g, ARC, load, push, energy, gap + tilt) <= box
+                way = _by(group, g, ARC_WAY, load, push, energy, gap + tilt) + blind
+                way += _pulled_way(found, group, g, s, load, push, energy)
+                proved &= way <= room
+    if group.carries[g]:
+        for q in range(found.soft.shape[1]):
+            proved &= _pulled(group, g, q, load, push, energy) <= found.spare[s, q]
+    largest = _by(group, g, FORCE, load, push, energy, gap)
+    moved = _by(group, g, WAY, load, push, energy, gap + tilt) + blind
+    moved += _pulled_way(found, group, g, s, load, push, energy)
+    torque = _by(group, g, TORQUE, load, push, energy, gap)
+    return largest, moved, torque if proved else np.inf
+
+
+@inlined
+def _by(group, g, what, load, push, energy, gap):  # type: ignore[no-untyped-def]
+    """One of the largest figures by load [N], push on arcs [N], energy [√J] and gap [m]."""
+    by = group.by[g, what]
+    return by[0] * load + by[1] * push + by[2] * energy + by[3] * gap
+
+
+@inlined
+def _pulled(group, g, q, load, push, energy):  # type: ignore[no-untyped-def]
+    """Error of the force of a radial element that takes part in carrying [N]; of others 0."""
+    by = group.pull_by[g, q]
+    return by[0] * load + by[1] * push + by[2] * energy if by[0] > 0.0 else 0.0
+
+
+@inlined
+def _pulled_way(found, group, g, s, load, push, energy):  # type: ignore[no-untyped-def]
+    """Way of an element by what radial elements yield that take part in carrying [m]."""
+    moved = 0.0
+    if group.carries[g]:
+        for q in range(found.soft.shape[1]):
+            off = _pulled(group, g, q, load, push, energy)
+            moved += 2.0 * group.pull_by[g, q, 3] * found.soft[s, q] * off
+    return moved
+
+
+@inlined
+def _carried(of, found, group, g, s):  # type: ignore[no-untyped-def]
+    """What carrying a load by radial elements adds.
+
+    Energy per load; the load that comes back of each, because a slip carries none along its line;
+    and the way [m] that is not told by the force of a slip.
+    """
+    more, back, blind = 0.0, 0.0, 0.0
+    for q in range(found.soft.shape[1]):
+        by, soft, along = group.pull_by[g, q], found.soft[s, q], 0.0
+        if by[0] > 0.0:
+            more += 2.0 * soft * by[0] * by[2]
+            x, y = found.slip[s, q, 0], found.slip[s, q, 1]
+            if x != 0.0 or y != 0.0:
+                for c in range(group.part.shape[3]):
+                    along += abs(x * group.part[g, q, 0, c] + y * group.part[g, q, 1, c])
+                level = found.spare[s, q] / TURN
+                back += along + TURN * by[0]
+                blind += 2.0 * soft * level * along
+    return more, back, blind * group.widest[g]
+
+
+@inlined
+def _followed(of, found, group, g, s, residual, push, tilt, due):  # type: ignore[no-untyped-def]
+    """Load left over and energy, with what friction that follows the torque adds to them."""
+    bent, into, width = due
+    energy = bent + into * residual + group.into_by_push[g] * push
+    energy += group.spread[g] * width + group.spread_of_arcs[g] * tilt
+    most, back, rates = 0.0, 0.0, 0.0
+    for k in range(len(of.moment)):
+        rates += found.rate[s, of.rounds + k]
+    if rates == 0.0:
+        return residual, energy
+    for k in range(len(of.moment)):
+        by, gain = group.moment_by[g, k], 0.0
+        most = max(most, by[0] * residual + by[1] * push + by[2] * energy)
+        for i in range(len(of.moment)):
+            each = group.gain[g, k, i]
+            if group.carries[g]:
+                for q in range(found.soft.shape[1]):
+                    soft = 2.0 * found.soft[s, q] * group.pull_by[g, q, 2]
+                    each += by[2] * soft * group.pushed[g, q, i]
+            gain += each * found.rate[s, of.rounds + i]
+        back = max(back, gain)
+    more = rates * most / (1.0 - back) if back < of.gain else np.inf
+    if group.carries[g]:
+        more *= 2.0
+    return residual + more, energy + into * more
