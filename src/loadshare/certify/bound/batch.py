@@ -102,8 +102,9 @@ class Groups(NamedTuple):
     """
 
     known: Flags  # (G,): whether rigid parts do not share by themselves
-    root: Array  # (G, …, rows): L, transposed
     is_loose: Flags  # (G,): whether something moves that nothing resists
+    carries: Flags  # (G,): whether radial elements take part in carrying a load
+    root: Array  # (G, …, rows): L, transposed
     moves: Array  # (G, …, n)
     spread: Array  # (G,): sum of the lengths of the rows of L
     spread_of_arcs: Array  # (G,): of arcs alone
@@ -112,7 +113,6 @@ class Groups(NamedTuple):
     bows: Array  # (G,): one over the shortest distance of arcs that act [1/m]
     widest: Array  # (G,): largest way per coordinate
     by: Array  # (G, 5, 4): largest figures by load, push, energy and gap
-    carries: Flags  # (G,): whether radial elements take part in carrying a load
     pull_by: Array  # (G, q, 4): their forces by load, push and energy, and ways per length
     part: Array  # (G, q, 2, n): P of the radial elements
     moment_by: Array  # (G, k, 3): torque over splines by load, push and energy
@@ -131,6 +131,7 @@ class Found(NamedTuple):
     spare: Array  # (S, q): by how much its force may change there [N]
     slip: Array  # (S, q, 2): unit vector along a slip, 0 of anything else
     rate: Array  # (S, q): change of its force with the torque [1/m]
+    held: Array  # (S, q): change of the torque at which that begins to matter [N·m]
     scale: Array  # (S,): load [N], as the following
     largest: Array  # torque [N·m]
     push: Array  # largest force [N]
@@ -249,14 +250,15 @@ class Plan:
     def found(self, count: int) -> Found:
         """Return room for the figures of so many claims."""
         pulls, n = len(self.pulls), self.contacts.shape[1]
-        return Found(
-            np.empty(count, dtype=np.intp),
-            np.empty((count, len(self.contacts) + pulls), dtype=np.bool_),
-            *(np.empty((count, width)) for width in (self._rows, n, pulls, pulls)),
-            np.empty((count, pulls, 2)),
-            np.empty((count, pulls)),
-            *(np.empty(count) for _ in range(10)),
-        )
+        rows, number = (self._rows, n, pulls, pulls), np.empty(count, dtype=np.intp)
+        acts = np.empty((count, len(self.contacts) + pulls), dtype=np.bool_)
+        sizes = [
+            *((count, k) for k in rows),
+            (count, pulls, 2),
+            *[(count, pulls)] * 2,
+            *[(count,)] * 10,
+        ]
+        return Found._make([number, acts, *map(np.empty, sizes)])
 
     def sets(self) -> Sets:
         """Return room for sets of elements."""
@@ -296,20 +298,22 @@ class Plan:
         known = [self._operators(acts[g], least[g]) for g in range(count)]
         self_stresses = max((k.root.shape[1] for k in known if k), default=0)
         moves = max((k.statics.moves.shape[1] for k in known if k), default=0)
-        found = Groups(
+        flags = [
             np.array([k is not None for k in known], dtype=np.bool_),
-            np.zeros((count, self_stresses, self._rows)),
-            np.zeros(count, dtype=np.bool_),
-            np.zeros((count, moves, n)),
-            *(np.zeros(count) for _ in range(6)),
-            np.zeros((count, 5, 4)),
-            np.zeros(count, dtype=np.bool_),
-            np.zeros((count, pulls, 4)),
-            np.zeros((count, pulls, 2, n)),
-            np.zeros((count, splines, 3)),
-            np.zeros((count, splines, splines)),
-            np.zeros((count, pulls, splines)),
+            *np.zeros((2, count), bool),
+        ]
+        sizes = (
+            (self_stresses, self._rows),
+            (moves, n),
+            *[()] * 6,
+            (5, 4),
+            (pulls, 4),
+            (pulls, 2, n),
+            (splines, 3),
+            (splines, splines),
+            (pulls, splines),
         )
+        found = Groups._make([*flags, *(np.zeros((count, *size)) for size in sizes)])
         for g, operators in enumerate(known):
             if operators is not None:
                 self._put(found, g, acts[g], operators, most[g])
@@ -325,9 +329,9 @@ class Plan:
         """Return statics and L; None if rigid parts share by themselves."""
         statics, particular = self._known(acts)
         soft, n = self._both(least)[self._on(acts)], statics.redundant
-        stiff = n.T @ (SECANT * soft[:, None] * n)
-        if not np.isfinite(stiff).all():
+        if not np.isfinite(soft).all():
             return None
+        stiff = n.T @ (SECANT * soft[:, None] * n)
         values, vectors = np.linalg.eigh(stiff)
         if values.size and values.min() <= SINGULAR * values.max():
             return None
@@ -376,7 +380,7 @@ class Plan:
         gain = pushed + sizes[:, None] * ((soft * sizes) @ pushed)
         found.moment_by[g] = moments @ figures[:, :flanks].T
         found.gain[g] = moments @ gain[:flanks]
-        found.pushed[g] = pushed[pulls:].reshape(-1, 2, len(moments)).sum(axis=1)
+        found.pushed[g] = pushed[pulls:].reshape(len(self.pulls), 2, len(moments)).sum(axis=1)
         moves = known.statics.moves.T
         found.root[g, : root.shape[1]], found.moves[g, : len(moves)] = root.T, moves
         found.is_loose[g] = len(moves) > 0

@@ -383,7 +383,7 @@ def _pulls(of, here, claim, s, sheet, found, top, widest):  # type: ignore[no-un
         noise = of.noise * top
         acts = level > 0.0 or force > noise or reach - distance <= of.near * widest
         found.acts[s, contacts + q] = acts
-        soft, spare, misfit_x, misfit_y, slips = 0.0, np.inf, 0.0, 0.0, 0.0
+        soft, spare, misfit_x, misfit_y, slips, near = 0.0, np.inf, 0.0, 0.0, 0.0, 0.0
         if acts:
             near, along, soft, spare = _nearest(law, force, distance, of.corner)
             if near <= 0.0 or distance == 0.0:
@@ -405,9 +405,22 @@ def _pulls(of, here, claim, s, sheet, found, top, widest):  # type: ignore[no-un
         sheet.force[j], sheet.force[j + 1] = fx, fy
         sheet.stiffest[q] = _stiffest(law)
         found.misfit[s, at + 2 * q], found.misfit[s, at + 2 * q + 1] = misfit_x, misfit_y
+        found.held[s, q] = np.inf
+        if rate > 0.0 and near <= 0.0 and _sticks(law, force):
+            # So it does until the torque is half of what it is.
+            found.held[s, q], rate = 0.5 * level / rate, 0.0
         found.soft[s, q], found.spare[s, q], found.rate[s, q] = soft, spare, rate
         found.slip[s, q, 0], found.slip[s, q, 1] = slips * x, slips * y
     return longest, fine
+
+
+@inlined
+def _sticks(law, force):  # type: ignore[no-untyped-def]
+    """Whether a spline would stick at half the level as well."""
+    first, stick, level, reach, _, end = law
+    if np.isinf(stick):
+        return 0.5 * level >= first * reach
+    return end >= level and force <= 0.5 * level
 
 
 @inlined
@@ -505,6 +518,10 @@ def _answered(of, found, group, g, s, residual):  # type: ignore[no-untyped-def]
     if group.carries[g]:
         for q in range(found.soft.shape[1]):
             proved &= _pulled(group, g, q, load, push, energy) <= found.spare[s, q]
+    for k in range(len(of.moment)):
+        by = group.moment_by[g, k]
+        off = by[0] * load + by[1] * push + by[2] * energy
+        proved &= off <= found.held[s, of.rounds + k]
     largest = _by(group, g, FORCE, load, push, energy, gap)
     moved = _by(group, g, WAY, load, push, energy, gap + tilt) + blind
     moved += _pulled_way(found, group, g, s, load, push, energy)
