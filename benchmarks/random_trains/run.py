@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
-import multiprocessing
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+from benchmarks import kept
 from benchmarks.random_trains.draw import draw
 from benchmarks.random_trains.judge import judged
 
@@ -16,75 +15,26 @@ FAILURES = ("wrong", "refused", "open", "crashed")
 """Outcomes that are to be looked into."""
 
 
-def one(seed: int, number: int) -> dict[str, Any]:
-    """Judge one train; plain data."""
-    return {"seed": seed, "number": number, **judged(draw(seed, number))}
-
-
-def known(path: Path, seed: int) -> dict[int, dict[str, Any]]:
-    """What is on file, by number; a last line that was cut off is left out."""
-    found: dict[int, dict[str, Any]] = {}
-    if path.exists():
-        for line in path.read_text(encoding="utf-8").splitlines():
-            try:
-                row = json.loads(line)
-            except json.JSONDecodeError:
-                continue
-            if row["seed"] == seed:
-                found[row["number"]] = row
-    return found
-
-
 def run(
     numbers: range,
     seed: int,
     path: Path,
-    processes: int,
-    tell: Callable[[int, int], None],
+    processes: int = 1,
+    tell: Callable[[int, int], None] | None = None,
 ) -> list[dict[str, Any]]:
-    """Judge trains and keep every verdict as a line of a file.
-
-    Parameters
-    ----------
-    numbers : range
-    seed : int
-    path : Path
-        File of verdicts; those it holds already are not found again.
-    processes : int
-    tell : callable
-        Called with how many are done, of how many.
-
-    Returns
-    -------
-    list of dict
-        All verdicts, by number.
-    """
-    done = known(path, seed)
-    left = [k for k in numbers if k not in done]
-    path.parent.mkdir(parents=True, exist_ok=True)
-    cut_off = path.exists() and not path.read_text(encoding="utf-8").endswith("\n")
-    with path.open("a", encoding="utf-8") as file:
-        file.write("\n" if cut_off else "")
-        for count, row in enumerate(_each(seed, left, processes), start=1):
-            done[row["number"]] = row
-            file.write(json.dumps(row) + "\n")
-            file.flush()
-            tell(count, len(left))
-    return [done[k] for k in numbers]
-
-
-def _each(seed: int, numbers: list[int], processes: int) -> Iterator[dict[str, Any]]:
+    """Judge trains of a seed, and return all verdicts on it that are on file (`kept.run`)."""
     judge = partial(one, seed)
-    if processes == 1:
-        _warm()
-        yield from map(judge, numbers)
-        return
-    with multiprocessing.get_context("spawn").Pool(processes, _warm) as pool:
-        yield from pool.imap_unordered(judge, numbers)
+    return kept.run(
+        numbers, {"seed": seed}, path, judge, processes=processes, warm=_warm, tell=tell
+    )
+
+
+def one(seed: int, number: int) -> dict[str, Any]:
+    """Judge one train; plain data."""
+    return judged(draw(seed, number))
 
 
 def _warm() -> None:
-    """Solve once, so that no train pays for what a process imports at first."""
     judged(draw(0, 0))
 
 

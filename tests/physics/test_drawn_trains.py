@@ -7,9 +7,10 @@ runs thousands, this test the first of another seed.
 import dataclasses
 
 import pytest
+from benchmarks.kept import known
 from benchmarks.random_trains.draw import LAYOUTS, draw
 from benchmarks.random_trains.judge import AGREES, judged
-from benchmarks.random_trains.run import failures, known, run
+from benchmarks.random_trains.run import failures, run
 from benchmarks.random_trains.table import text
 
 import loadshare as ls
@@ -89,9 +90,9 @@ def test_a_run_goes_on_where_it_was_stopped(tmp_path):
     first = run(range(2), SEED, path, 1, lambda done, total: counts.append(total))
     with path.open("a") as file:
         file.write('{"seed": 7, "numb')  # cut off in the middle of a line
-    assert sorted(known(path, SEED)) == [0, 1]
+    assert sorted(known(path, {"seed": SEED})) == [0, 1]
     again = run(range(3), SEED, path, 1, lambda done, total: counts.append(total))
     assert counts == [2, 2, 1]
     assert again[:2] == first
-    assert sorted(known(path, SEED)) == [0, 1, 2]
+    assert sorted(known(path, {"seed": SEED})) == [0, 1, 2]
     assert "3 trains" in text(again)

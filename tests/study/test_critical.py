@@ -4,7 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchmarks.critical_paths import between, compared, judged, random_path, scanned
+from benchmarks.critical_paths.compare import between, compared
+from benchmarks.critical_paths.draw import random_path
+from benchmarks.critical_paths.judge import judged
+from benchmarks.critical_paths.scan import scanned
 from tests.support import coasting, lost_contact, round_ring, shipped
 
 import loadshare as ls

@@ -1,0 +1,1 @@
+"""Critical values of random paths against dense scans."""

@@ -1,0 +1,81 @@
+"""Events of a path against a scan, and against those of a path with another end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.study.critical import Critical
+from loadshare.study.event import Event
+
+Array = NDArray[np.float64]
+NEAR = 2e-9
+"""Distance of a sample from an event, relative, at which its state is not asked for."""
+
+
+def compared(found: Critical, values: Array, seen: dict[str, Array]) -> tuple[list[str], list[str]]:
+    """Return what events miss of a scan, and what they tell that it does not show.
+
+    Samples in intervals that are named as not proved are left out; beyond each of them states are
+    taken from the scan again.
+    """
+    missed, invented = [], []
+    edges = [found.start, *(v for u in found.unproved for v in (u.start, u.stop)), found.stop]
+    for name, told in seen.items():
+        events = [e for e in found.events if e.element == name]
+        for low, high in zip(edges[::2], edges[1::2], strict=True):
+            inner = [e for e in events if low <= e.value <= high and e.confirmed]
+            rows = np.flatnonzero((values >= low) & (values <= high) & (told != ""))
+            wrong = _disagreement(inner, values[rows], told[rows])
+            if wrong is None:
+                continue
+            changes = int((told[rows][1:] != told[rows][:-1]).sum())
+            where = f"{name} at {values[rows][wrong]:.12g}: {changes} changes, {len(inner)} events"
+            (missed if changes >= len(inner) else invented).append(where)
+    return missed, invented
+
+
+def _disagreement(events: Sequence[Event], values: Array, told: Array) -> int | None:
+    """First sample whose state is not the one that events tell; None if all agree."""
+    if not len(values):
+        return None
+    expected = np.full(len(values), told[0] if not events else events[0].before, dtype=told.dtype)
+    asked = np.ones(len(values), dtype=bool)
+    for event in events:
+        expected = np.where(values > event.value, event.after, expected)
+        asked &= np.abs(values - event.value) > NEAR * max(abs(event.value), values[-1] - values[0])
+    wrong = np.flatnonzero(asked & (expected != told))
+    return int(wrong[0]) if len(wrong) else None
+
+
+def between(found: Critical) -> Array:
+    """Values between neighbouring events, where a scan's steps may be too wide."""
+    ends = sorted({found.start, found.stop, *(e.value for e in found.events)})
+    return np.array([0.5 * (a + b) for a, b in pairwise(ends)])
+
+
+def apart(found: Critical, other: Critical) -> list[str]:
+    """Events that two ranges do not have in common although both hold them."""
+    size = 1e-9 * max(abs(found.stop), abs(found.start))
+    top = other.stop - size
+    sets = []
+    for one in (found, other):
+        named = [(u.start, u.stop) for u in (*found.unproved, *other.unproved)]
+        sets.append(
+            [
+                e
+                for e in one.events
+                if e.value <= top and not any(a - size <= e.value <= b + size for a, b in named)
+            ]
+        )
+    here, there = sets
+    if len(here) != len(there):
+        return [f"{len(here)} events up to {other.stop:.12g}, {len(there)} in the shorter range"]
+    return [
+        f"{a.element} at {a.value:.15g} or {b.value:.15g}"
+        for a, b in zip(here, there, strict=True)
+        if abs(a.value - b.value) > size or (a.element, a.after) != (b.element, b.after)
+    ]

@@ -1,0 +1,107 @@
+"""One path judged: its events, a scan, and a path of another end."""
+
+from __future__ import annotations
+
+import time
+import traceback
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+from benchmarks.critical_paths.compare import apart, between, compared
+from benchmarks.critical_paths.draw import Path, random_path, text
+from benchmarks.critical_paths.scan import scanned
+from numpy.typing import NDArray
+
+import loadshare as ls
+from loadshare.errors import Refused
+from loadshare.study.follow.line import Line
+
+EVERY = 3
+"""Each how many-th path is followed to another end as well."""
+
+
+@dataclass(slots=True)
+class Outcome:
+    """What became of a path.
+
+    Attributes
+    ----------
+    keys, unit, start, stop
+        The path's own.
+    seconds : float
+        Processor time of finding its events.
+    events, unproved, unconfirmed : int
+        How many there are.
+    width : float
+        Of what is not proved, over the range.
+    asked : int
+        Samples of the scan with a certified answer.
+    missed, invented : list of str
+        Where the scan shows other changes.
+    moved : list of str
+        Events that a path of another end has elsewhere.
+    refused, raised : str
+        Why there are no events.
+    """
+
+    keys: tuple[str, ...]
+    unit: str
+    start: float
+    stop: float
+    seconds: float = 0.0
+    events: int = 0
+    unproved: int = 0
+    width: float = 0.0
+    unconfirmed: int = 0
+    asked: int = 0
+    missed: list[str] = field(default_factory=list)
+    invented: list[str] = field(default_factory=list)
+    moved: list[str] = field(default_factory=list)
+    refused: str = ""
+    raised: str = ""
+
+
+def judged(path: Path, points: int, engine: str) -> Outcome:
+    """Find a path's events, and compare them with a scan and with a path of another end."""
+    outcome = Outcome(path.keys, path.unit, path.start, path.stop)
+    ends = [text(v, path.unit) for v in (path.start, path.stop, path.other)]
+    try:
+        begun = time.process_time()
+        found = ls.critical(path.case, path.keys, ends[0], ends[1], positions=[1])
+        outcome.seconds = time.process_time() - begun
+        again = found
+        if path.number % EVERY == 0:
+            again = ls.critical(path.case, path.keys, ends[0], ends[2], positions=[1])
+        line = Line(path.case, found.parameter, path.start, path.stop)
+        count = min(points, 1000) if path.machines else points
+        values = np.union1d(np.linspace(path.start, path.stop, count), between(found))
+        seen = scanned(path, line, values, engine)
+        outcome.asked = _answered(seen, len(values))
+    except Refused as refusal:
+        outcome.refused = str(refusal).splitlines()[0]
+        return outcome
+    except Exception:  # noqa: BLE001 -- whatever escapes is what is counted
+        outcome.raised = traceback.format_exc(limit=-4)
+        return outcome
+    outcome.events = len(found.events)
+    outcome.unproved = len(found.unproved)
+    outcome.width = sum(u.stop - u.start for u in found.unproved) / (path.stop - path.start)
+    outcome.unconfirmed = sum(not e.confirmed for e in found.events)
+    outcome.missed, outcome.invented = compared(found, values, seen)
+    outcome.moved = apart(found, again)
+    return outcome
+
+
+def _answered(seen: Mapping[str, NDArray[np.str_]], count: int) -> int:
+    """Samples of which any state is told."""
+    told = np.zeros(count, dtype=bool)
+    for states in seen.values():
+        told |= states != ""
+    return int(told.sum())
+
+
+def one(points: int, engine: str, number: int) -> dict[str, Any]:
+    """Judge one path; plain data."""
+    return asdict(judged(random_path(number), points, engine))

@@ -1,0 +1,189 @@
+"""States of all elements in a scan, told from forces and displacements alone."""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from benchmarks.critical_paths.draw import Path
+from numpy.typing import NDArray
+
+from loadshare.certify.bound import Bounds
+from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify.many import Judge, Verdicts
+from loadshare.certify.mechanics import judged
+from loadshare.job.machine import Machine, engine_named
+from loadshare.job.many import solve_blocks
+from loadshare.scene.data import Data
+from loadshare.solver.hot import places as at
+from loadshare.solver.hot.exchange import Found, exchange
+from loadshare.solver.hot.state import State
+from loadshare.study.follow.line import Line
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.samples import samples_of
+from loadshare.train.situations import Situations
+from loadshare.train.train import Train
+
+Array = NDArray[np.float64]
+BAND = 1e-8
+"""Force over load, or radius over deflection, within which a state is not told by a scan."""
+BLOCK = 8192
+"""Samples solved together."""
+ASKED = 20
+"""Samples of a block at most that climb the ladder where the hot path has no answer."""
+FEW, ROUNDS = 8, 6
+"""Samples searched at a time for others to begin at, and how many times."""
+
+
+def states(line: Line, values: Array, answers: Equilibria, certified: Array) -> dict[str, Array]:
+    """Tell the state of every element at every value, from forces and displacements alone.
+
+    Returns
+    -------
+    dict of str to ndarray of str, shape (S,)
+        Empty where a state is within round-off of another, or there is no certified answer.
+    """
+    names, push, length = answers.names, line.elements.force, line.elements.length
+    found: dict[str, Array] = {}
+    forces = {
+        **dict(zip(names.flanks, answers.flank_force.T, strict=True)),
+        **dict(zip(names.contacts, answers.ring_force.T, strict=True)),
+    }
+    for name, force in forces.items():
+        told = np.where(force > BAND * push, "closed", np.where(force > 0.0, "", "open"))
+        found[name] = np.where(certified, told, "")
+    numbers = line.numbers(1, values)
+    torque = np.zeros((len(values), len(names.radials)))
+    train = line.first
+    for k, (_, gear) in enumerate(names.radials):
+        for flank, force in zip(names.flanks, answers.flank_force.T, strict=True):
+            torque[:, k] += train.transmitted(gear, {flank: 1.0}) * force
+    scene = line.scene
+    for k, (name, gear) in enumerate(names.radials):
+        j = next(i for i, r in enumerate(scene.radials) if r.name == name)
+        given = np.broadcast_to(numbers.radial[:, j], (len(values), 6))
+        law = at.graph(given, torque[:, k] / push)
+        frame = train.gears[gear].frame
+        moved = answers.displacement[:, names.gears.index(gear)] @ frame.T - scene.radials[j].centre
+        radius = np.linalg.norm(moved, axis=1) / length
+        force = np.linalg.norm(answers.radial_reaction[:, k], axis=1) / push
+        if name.startswith("ring"):
+            told = np.where(force > BAND, "on boundary", "inside")
+        else:
+            told = _spline_state(law, radius, force)
+        found[name] = np.where(certified, told, "")
+    return found
+
+
+def _spline_state(law: at.Graph, radius: Array, force: Array) -> Array:
+    """State of a spline by radius and force over the units; empty within round-off of a corner."""
+    jump = law.bound > law.first * law.stick * (1.0 + 1e-9)
+    told = np.where(radius < law.reach, "slip", "stop")
+    told = np.where(radius < law.stick, "stick", told)
+    near = np.abs(radius - law.stick) <= BAND
+    low = law.first * np.where(np.isfinite(law.stick), law.stick, 0.0)
+    inside = (force > low + BAND) & (force < law.bound - BAND)
+    told = np.where(near, np.where(jump & inside, "about to slip", ""), told)
+    return np.where((np.abs(radius - law.reach) <= BAND) & ~near, "", told)
+
+
+class Balance(Judge):
+    """A judge of balance alone: states do not hang on bounds, which take ten times as long."""
+
+    def judge(
+        self,
+        situations: Situations,
+        answers: Equilibria,
+        tolerance: float = TOLERANCE,
+        compiled: bool = False,
+    ) -> Verdicts:
+        """Judge S claimed equilibria, whatever their bounds."""
+        unasked = Bounds(self.columns, np.zeros(len(answers.rotation)), None, None)
+        if not compiled:
+            return self._together(situations, answers, tolerance, unasked)
+        residuals, load, deflection = judged(self._mechanics, situations, answers)
+        return Verdicts(residuals, tolerance, load, deflection, unasked)
+
+
+class Scan(Machine):
+    """A machine that asks for balance alone, and takes samples for neighbours of one another."""
+
+    def __init__(self, train: Train, engine: str) -> None:
+        super().__init__(train)
+        self.engine = engine
+
+    @cached_property
+    def judge(self) -> Judge:
+        """Its certificate."""
+        return Balance(self.train)
+
+    def _search(self, data: Data, state: State, found: Found, rows: NDArray[np.bool_]) -> Found:
+        """Search a few at a time, and begin with the others where their neighbours stand."""
+        left = np.flatnonzero(rows)
+        for _ in range(ROUNDS):
+            found = super()._search(data, state, found, _only(_thinned(left, FEW), rows))
+            left = left[~found.solved[left]]
+            known = np.flatnonzero(found.solved)
+            if not len(left) or not len(known):
+                break
+            near = known[np.clip(np.searchsorted(known, left), 0, len(known) - 1)]
+            for array in (state.x, state.force, state.root, state.floor, state.stays):
+                array[left] = array[near]
+            code = found.code.copy()
+            code[left] = code[near]
+            engine, only = engine_named(self.engine, data.count), _only(left, rows)
+            more = exchange(self.elements, data, state, engine, code, only=only)
+            found = found.completed(more)
+            left = left[~found.solved[left]]
+        return found
+
+
+def _only(rows: NDArray[np.intp], of: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    some = np.zeros_like(of)
+    some[rows] = True
+    return some
+
+
+def _thinned(rows: NDArray[np.intp], most: int) -> NDArray[np.intp]:
+    """Every how many-th row there may be."""
+    return rows[:: max(1, -(-len(rows) // most))]
+
+
+def scanned(path: Path, line: Line, values: Array, engine: str) -> dict[str, Array]:
+    """Scan a path; states are empty where no certified answer is known."""
+    groups = samples_of(path.case, _table(path, values))
+    if len(groups) > 1:
+        return _climbed(path, line, values, engine)
+    samples = groups[0][1]
+    machine = Scan(samples.train, engine)
+    parts: list[dict[str, Array]] = []
+    for at_ in range(0, len(values), BLOCK):
+        block = slice(at_, at_ + BLOCK)
+        here = values[block]
+        situations = samples.take(block).situations(1)
+        solver = engine_named(engine, len(values))
+        found = machine.answer(situations, TOLERANCE, solver, starts=(1,))
+        told = states(line, here, found.equilibria, found.passed)
+        left = _thinned(np.flatnonzero(~found.passed), ASKED)
+        if len(left):
+            for name, more in _climbed(path, line, here[left], engine).items():
+                told[name][left] = more
+        parts.append(told)
+    return {name: np.concatenate([p[name] for p in parts]) for name in parts[0]}
+
+
+def _climbed(path: Path, line: Line, values: Array, engine: str) -> dict[str, Array]:
+    """States by the ladder from the hot path to the slowest way."""
+    told: dict[str, Array] = {}
+    table = _table(path, values)
+    for block in solve_blocks(path.case, table, positions=[1], engine=engine, workers=1):
+        rows = block.rows
+        here = states(line, values[rows], block.equilibria[0], block.certified[:, 0])
+        for name, found in here.items():
+            told.setdefault(name, np.full(len(values), "", dtype="<U16"))[rows] = found
+    return told
+
+
+def _table(path: Path, values: Array) -> dict[str, Array]:
+    unit = f" [{path.unit}]" if path.unit else ""
+    return {f"{key}{unit}": values for key in path.keys}

@@ -1,0 +1,106 @@
+"""Verdicts on many numbered problems, kept as lines of a file: a run that was stopped goes on."""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+Row = dict[str, Any]
+
+
+def known(path: Path, of: Mapping[str, Any]) -> dict[int, Row]:
+    """What is on file of one kind, by number; a last line that was cut off is left out.
+
+    Parameters
+    ----------
+    path : Path
+    of : mapping
+        What all rows of the kind have in common, such as their seed.
+    """
+    found: dict[int, Row] = {}
+    if path.exists():
+        for line in path.read_text(encoding="utf-8").splitlines():
+            try:
+                row = json.loads(line)
+            except json.JSONDecodeError:
+                continue
+            if all(row[name] == value for name, value in of.items()):
+                found[row["number"]] = row
+    return found
+
+
+def run(
+    numbers: range,
+    of: Mapping[str, Any],
+    path: Path,
+    judge: Callable[[int], Row],
+    *,
+    processes: int = 1,
+    warm: Callable[[], None] = lambda: None,
+    tell: Callable[[int, int], None] | None = None,
+) -> list[Row]:
+    """Judge problems and keep every verdict as a line of a file.
+
+    Parameters
+    ----------
+    numbers : range
+    of : mapping
+        What tells these verdicts from others in the file.
+    path : Path
+        File of verdicts; those it holds already are not found again.
+    judge : callable
+        From the number of a problem to plain data.
+    processes : int
+    warm : callable
+        Called once in every process, so that no problem pays for what it imports at first.
+    tell : callable, optional
+        Called with how many are done, of how many; written to standard error by default.
+
+    Returns
+    -------
+    list of dict
+        All verdicts of the kind that are on file, by number.
+    """
+    done = known(path, of)
+    left = [k for k in numbers if k not in done]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    cut_off = path.exists() and not path.read_text(encoding="utf-8").endswith("\n")
+    with path.open("a", encoding="utf-8") as file:
+        file.write("\n" if cut_off else "")
+        for count, (number, found) in enumerate(_each(judge, left, processes, warm), start=1):
+            done[number] = row = {**of, "number": number, **found}
+            file.write(json.dumps(row) + "\n")
+            file.flush()
+            (tell or progress)(count, len(left))
+    return [done[k] for k in sorted(done)]
+
+
+def progress(done: int, total: int) -> None:
+    """Write how far it has come to standard error."""
+    print(f"\r{done} of {total}", end="" if done < total else "\n", file=sys.stderr, flush=True)  # noqa: T201
+
+
+class _Judge:
+    """A judge that tells the number as well."""
+
+    def __init__(self, judge: Callable[[int], Row]) -> None:
+        self.judge = judge
+
+    def __call__(self, number: int) -> tuple[int, Row]:
+        return number, self.judge(number)
+
+
+def _each(
+    judge: Callable[[int], Row], numbers: list[int], processes: int, warm: Callable[[], None]
+) -> Iterator[tuple[int, Row]]:
+    if processes == 1:
+        if numbers:
+            warm()
+        yield from map(_Judge(judge), numbers)
+        return
+    with multiprocessing.get_context("spawn").Pool(processes, warm) as pool:
+        yield from pool.imap_unordered(_Judge(judge), numbers)
