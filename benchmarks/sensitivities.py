@@ -1,9 +1,10 @@
 """Sensitivities against one-sided differences of certified solves.
 
-    python benchmarks/sensitivities.py --count 2000
+    python -m benchmarks.sensitivities --count 400
 
 Cases are shipped ones, stress problems and drawn trains, also put exactly on their critical values;
-inputs are drawn from all numbers that a case has. Every derivative is compared to each side with
+of every case six inputs are drawn from all numbers that it has. The run may be stopped at any time;
+the same command goes on where it was. Every derivative is compared to each side with
 differences over steps that shrink by four, extrapolated; where doubles are too noisy to decide, the
 equilibria are those of the 50-digit reference. What is compared knows nothing of active sets, and
 of the sensitivities only their stated errors.
@@ -13,18 +14,21 @@ from __future__ import annotations
 
 import argparse
 import math
-import sys
-import time
+import traceback
 from collections import Counter
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, replace
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from benchmarks import kept
 from benchmarks.random_trains.draw import draw
 
 import loadshare as ls
+from loadshare.evidence.machine_facts import facts
 from loadshare.evidence.reference import NoReference, reference
 from loadshare.evidence.stress.families import FAMILIES
 from loadshare.study.answers import certified
@@ -47,10 +51,15 @@ NOISE = {False: 2e-13, True: 2e-14}
 """Round-off of a torque over the largest: of a solve in doubles, and of the train's own data."""
 TEETH = 1e-4
 """Relative error of a difference beyond which it does not say enough."""
-TALLY = 50
-"""Inputs after which the outcomes so far are told."""
 KEYS = 6
 """Inputs of a case that are drawn."""
+FINE = ("agrees", "undefined")
+"""Outcomes that need no look."""
+FIGURES = {
+    "stated": "stated error over the derivative",
+    "known": "error of the difference over it",
+    "excess": "distance over both errors",
+}
 
 Array = np.ndarray
 
@@ -62,20 +71,23 @@ class Verdict:
     Attributes
     ----------
     outcome : str
-        "agrees", "vague" (agrees, within an error that says nothing), "outside" (of its stated
-        error), "missed" (none, yet differences converge),
+        "exception", "agrees", "vague" (agrees, within an error that says nothing), "outside" (of
+        its stated error), "missed" (none, yet differences converge),
         "undefined" (none, and said so), "unnamed" (none, and not said why), "undecided"
         (differences do not converge).
     excess : float
         Distance over the sum of both errors.
     stated, known : float
         Errors of the derivative and of the difference, over the largest derivative.
+    told : str
+        An exception.
     """
 
     outcome: str
     excess: float = math.nan
     stated: float = math.nan
     known: float = math.nan
+    told: str = ""
 
 
 def differenced(
@@ -219,25 +231,27 @@ def _compared(rates: object, known: tuple[Array, Array], count: int) -> Verdict:
     )
 
 
-def problems(seed: int) -> Iterator[tuple[str, ls.Case, int]]:
-    """Yield cases and positions without end: shipped, stressed, drawn, and on critical values."""
-    rng = np.random.default_rng(seed)
-    drawn = 0
-    while True:
-        path = SHIPPED[int(rng.integers(len(SHIPPED)))]
-        shipped = ls.load_case(path)
-        yield f"shipped {path.stem}", shipped, int(rng.integers(build_train(shipped).count)) + 1
+def problem(seed: int, number: int) -> tuple[str, ls.Case, int] | None:
+    """Problem of a number, with a position; the same one every time.
+
+    Five kinds take turns: shipped, stressed, drawn twice, and a shipped one on a critical value.
+    None where that one has none.
+    """
+    rng = np.random.default_rng([seed, number])
+    kind = number % 5
+    if kind == 1:
         name = STRESS[int(rng.integers(len(STRESS)))]
-        family = FAMILIES[name]
-        number = int(rng.integers(family.count))
-        yield f"stress {name} {number}", family.problem(number).case, 1
-        for _ in range(2):
-            drawn += 1
-            case = draw(seed, drawn)
-            yield f"drawn {drawn}", case, int(rng.integers(build_train(case).count)) + 1
-        kink = critical(shipped, rng)
-        if kink is not None:
-            yield (f"critical {path.stem} {kink[0]}", *kink[1:])
+        stressed = int(rng.integers(FAMILIES[name].count))
+        return f"stress {name} {stressed}", FAMILIES[name].problem(stressed).case, 1
+    if kind in (2, 3):
+        case = draw(seed, number)
+        return case.name, case, int(rng.integers(build_train(case).count)) + 1
+    path = SHIPPED[int(rng.integers(len(SHIPPED)))]
+    case = ls.load_case(path)
+    if kind == 0:
+        return f"shipped {path.stem}", case, int(rng.integers(build_train(case).count)) + 1
+    kink = critical(case, rng)
+    return None if kink is None else (f"critical {path.stem} {kink[0]}", *kink[1:])
 
 
 def critical(case: ls.Case, rng: np.random.Generator) -> tuple[str, ls.Case, int] | None:
@@ -263,42 +277,57 @@ def _varies(key: str) -> bool:
     return key.split(".")[0] in ("errors", "rings", "splines") or "backlash" in key
 
 
-def say(text: str) -> None:
-    """Print a line."""
-    sys.stdout.write(text + "\n")
-    sys.stdout.flush()
+def one(seed: int, number: int) -> dict[str, Any]:
+    """Compare the derivatives of one problem by some of its inputs, to both sides; plain data."""
+    told = problem(seed, number)
+    if told is None:
+        return {"name": "", "position": 0, "verdicts": []}
+    name, case, position = told
+    rng = np.random.default_rng([seed, number, 1])
+    usable = inputs_of(case, None)
+    verdicts: list[dict[str, Any]] = []
+    for item in [usable[int(k)] for k in rng.permutation(len(usable))[:KEYS]]:
+        try:
+            found = ls.sensitivity(case, [item.key], positions=[position])
+        except ls.Refused:
+            break
+        except ls.CaseError:
+            continue
+        except Exception:  # noqa: BLE001 -- whatever escapes is counted
+            told_of = Verdict("exception", told=traceback.format_exc(limit=-4))
+            verdicts.append({"key": item.key, "side": "", **asdict(told_of)})
+            continue
+        for side in SIDES:
+            verdict = judged(case, found, item, position, side)
+            verdicts.append({"key": item.key, "side": side, **asdict(verdict)})
+    return {"name": name, "position": position, "verdicts": verdicts}
 
 
-def run(count: int, seed: int, told: Callable[[str], None] = say) -> list[Verdict]:
-    """Compare that many derivatives; both sides of an input are one."""
-    rng = np.random.default_rng([seed, 1])
-    verdicts: list[Verdict] = []
-    inputs = 0
-    for name, case, position in problems(seed):
-        usable = inputs_of(case, None)
-        chosen = [usable[int(k)] for k in rng.permutation(len(usable))[:KEYS]]
-        for item in chosen:
-            try:
-                found = ls.sensitivity(case, [item.key], positions=[position])
-            except ls.Refused:
-                break
-            except ls.CaseError:
-                continue
-            except Exception as fault:  # noqa: BLE001 -- counted, and told
-                told(f"{name}, position {position}, {item.key}: {fault!r}")
-                verdicts += [Verdict("exception")]
-                continue
-            inputs += 1
-            for side in SIDES:
-                verdict = judged(case, found, item, position, side)
-                verdicts.append(verdict)
-                if verdict.outcome not in ("agrees", "undefined"):
-                    told(f"{name}, position {position}, {item.key} {side}: {verdict}")
-        if inputs // TALLY > (inputs - len(chosen)) // TALLY:
-            told(f"{inputs} inputs: {dict(Counter(v.outcome for v in verdicts))}")
-        if inputs >= count:
-            return verdicts
-    return verdicts
+def text(rows: Sequence[dict[str, Any]]) -> str:
+    """Return what is to be looked into, and a Markdown table of all."""
+    lines = []
+    every = [v for row in rows for v in row["verdicts"]]
+    for row in rows:
+        at = f"{row['number']}: {row['name']}, position {row['position']}"
+        lines += [
+            f"{at}, {v['key']} {v['side']}: {v['outcome']}, {v['excess']:.3g} {v['told']}"
+            for v in row["verdicts"]
+            if v["outcome"] not in FINE
+        ]
+    inputs = {(row["number"], v["key"]) for row in rows for v in row["verdicts"]}
+    kinks = [v for row in rows if row["name"].startswith("critical") for v in row["verdicts"]]
+    table = [("inputs", str(len(inputs))), ("one-sided derivatives", str(len(every)))]
+    table += [("of these at kinks", str(len(kinks)))]
+    table += [(o, str(n)) for o, n in Counter(v["outcome"] for v in every).most_common()]
+    agreed = [v for v in every if v["outcome"] == "agrees"]
+    for name, meaning in FIGURES.items():
+        figures = np.array([v[name] for v in agreed])
+        figures = figures[np.isfinite(figures)]
+        if len(figures):
+            median, high = np.quantile(figures, [0.5, 0.99])
+            table.append((meaning, f"median {median:.1e}, 99 % below {high:.1e}"))
+    table += list(facts().items())
+    return "\n".join([*lines, "| | |", "|---|---|", *(f"| {n} | {v} |" for n, v in table)])
 
 
 def main() -> None:
@@ -306,21 +335,22 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
-    parser.add_argument("--count", type=int, default=2000, help="inputs to differentiate by")
+    parser.add_argument("--count", type=int, default=400, help="problems, each of some inputs")
+    parser.add_argument("--first", type=int, default=0, help="number of the first one")
     parser.add_argument("--seed", type=int, default=1)
-    given = parser.parse_args()
-    begun = time.perf_counter()
-    verdicts = run(given.count, given.seed)
-    say(f"{len(verdicts)} one-sided derivatives in {time.perf_counter() - begun:.0f} s")
-    for outcome, number in Counter(v.outcome for v in verdicts).most_common():
-        say(f"{outcome:10} {number}")
-    agreed = [v for v in verdicts if v.outcome == "agrees"]
-    for name in ("stated", "known", "excess"):
-        figures = np.array([getattr(v, name) for v in agreed])
-        figures = figures[np.isfinite(figures)]
-        if len(figures):
-            median, high = np.quantile(figures, [0.5, 0.99])
-            say(f"{name:10} median {median:.1e}, 99 % below {high:.1e}")
+    parser.add_argument("--processes", type=int, default=1)
+    parser.add_argument(
+        "--out", type=Path, default=Path("build/sensitivities"), help="folder of what is found"
+    )
+    asked = parser.parse_args()
+    rows = kept.run(
+        range(asked.first, asked.first + asked.count),
+        {"seed": asked.seed},
+        asked.out / "verdicts.jsonl",
+        partial(one, asked.seed),
+        processes=asked.processes,
+    )
+    print(text(rows))  # noqa: T201
 
 
 if __name__ == "__main__":

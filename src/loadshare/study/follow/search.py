@@ -13,13 +13,13 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import linprog
 
 from loadshare.errors import Refused
 from loadshare.scene.data import data_of
 from loadshare.scene.scene import Array
 from loadshare.solver.hot import places as at
-from loadshare.study.follow.equations import Equations, Flags, Held, free_moves, scaling
+from loadshare.study.follow.centre import centred
+from loadshare.study.follow.equations import Equations, Flags, Held
 from loadshare.study.follow.line import Codes, Line, Numbers, Solved
 from loadshare.study.follow.proof import NODES, VERGE, Stretches
 from loadshare.train.situations import situation_of
@@ -46,12 +46,6 @@ GRADE = 0.5
 """Ratio of stretches that shrink towards an event."""
 RESOLVED = 1e-9
 """Distance from an event that counts as the event itself, over its value."""
-FACETS = 24
-"""Sides of the polygon that stands for a round ring in which a body floats."""
-BINDS = 1e-6
-"""Room [deflections] left by the linear programme at which a limit binds."""
-ROOM = 1.0
-"""Room [deflections] around a floating body that is as good as any more."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -200,7 +194,7 @@ class Search:
                 z = equations.start(np.array([x for _, x in members]), some)
                 z, good = equations.solve(z, some)
                 carries = self._carrying(equations, z, some)
-                z = self._centred(equations, z, some)
+                z = centred(equations, z, some)
                 for i, k in enumerate(rows.tolist()):
                     x, own = z[i, : equations.n], tuple(carries[i].tolist())
                     if not good[i]:
@@ -253,19 +247,6 @@ class Search:
                 self.line.elements, held, self._anywhere, self.tabulated
             )
         return self._equations[held]
-
-    def _centred(self, equations: Equations, z: Array, numbers: Numbers) -> Array:
-        """Move bodies that nothing holds, at points z (S, size), away from what they may touch."""
-        jacobian = np.nan_to_num(equations.jacobian(z, numbers))
-        if not equations.leaves_free(jacobian):
-            return z
-        factor = scaling(jacobian)
-        right, null = free_moves(jacobian * factor[:, :, None] * factor[:, None, :])
-        z = z.copy()
-        for k in np.flatnonzero(null.any(axis=1)).tolist():
-            moves = (right[k][null[k]] * factor[k])[:, : equations.n]
-            z[k] = _into_the_middle(equations, z[k], numbers.take(slice(k, k + 1)), moves)
-        return z
 
     # --- Proofs ---------------------------------------------------------------------------------
 
@@ -369,13 +350,13 @@ class Search:
         """Solve a set at values (S,), from unknowns near by; what nothing holds is centred."""
         numbers = self.line.numbers(self.position, values)
         z, good = equations.solve(near, numbers)
-        return self._centred(equations, z, numbers), good
+        return centred(equations, z, numbers), good
 
     def _gauges(self, equations: Equations, values: Array, near: Array) -> tuple[Array, Flags]:
         """Gauges (S, gauges) of a set at values, and whether it has a solution there."""
         numbers = self.line.numbers(self.position, values)
         z, good = equations.solve(near, numbers)
-        z = self._centred(equations, z, numbers)
+        z = centred(equations, z, numbers)
         rows = np.repeat(np.arange(len(values)), NODES)
         here = Stretches(equations, np.stack([z, z], axis=1), numbers.take(rows))
         with np.errstate(all="ignore"):
@@ -448,62 +429,6 @@ class Search:
             for (a, one), (b, other) in pairwise(ends):
                 found.append((one, other, a, b))
         return found
-
-
-def _into_the_middle(equations: Equations, z: Array, numbers: Numbers, moves: Array) -> Array:
-    """Move a point (size,) along moves (k, n) that nothing resists, to where room is largest."""
-    moves = moves / np.maximum(np.abs(moves).max(axis=1, initial=0.0), 1e-300)[:, None]
-    count = len(moves)
-    # Limits that curve are straight around the point: the second time they are nearly exact.
-    for _ in range(2):
-        room, closing = _rooms(equations, z[None], numbers)
-        speed = closing @ moves.T
-        near = np.abs(speed).max(axis=1, initial=0.0) > 1e-9
-        if not near.any():
-            break
-        rows = np.hstack([speed[near], np.ones((int(near.sum()), 1))])
-        answer = linprog(
-            np.append(np.zeros(count), -1.0),
-            A_ub=rows,
-            b_ub=room[near],
-            bounds=[*[(None, None)] * count, (None, ROOM)],
-            method="highs-ds",
-        )
-        if answer.x is None:
-            break
-        # The programme is solved to its tolerance; what binds is met to round-off.
-        left = room[near] - rows @ answer.x
-        binds = left <= BINDS
-        found = answer.x + np.linalg.lstsq(rows[binds], left[binds], rcond=None)[0]
-        z = z.copy()
-        z[: equations.n] += found[:count] @ moves
-        if not len(equations.arc_acts) and not (equations.places == at.OPEN).any():
-            break
-    return z
-
-
-def _rooms(equations: Equations, z: Array, numbers: Numbers) -> tuple[Array, Array]:
-    """Room before every open limit, and how fast the coordinates close it, (k,), (k, n)."""
-    state = equations.state(z, numbers)
-    room: list[float] = []
-    closing: list[Array] = []
-    springs = equations.elements.springs
-    for k in range(springs, equations.scalars):
-        if not equations.acts[k] and np.isfinite(state.approach[0, k]):
-            room.append(-float(state.approach[0, k]))
-            closing.append(numbers.vectors[0, k])
-    for a, polar in state.arcs.items():
-        if a not in equations.arc_at:
-            room.append(float(state.margin[0, a]))
-            closing.append(-polar.along[0] @ polar.matrix[0])
-    turns = 2.0 * np.pi * np.arange(FACETS) / FACETS
-    for j, polar in state.radials.items():
-        reach = float(state.laws[j].reach[0])
-        if equations.places[j] == at.OPEN and np.isfinite(reach):
-            ways = np.stack([np.cos(turns), np.sin(turns)], axis=1)
-            room += (reach - ways @ polar.offset[0]).tolist()
-            closing += list(ways @ polar.matrix[0])
-    return np.array(room), np.array(closing).reshape(-1, equations.n)
 
 
 def merged(gaps: Iterable[Gap]) -> list[Gap]:
