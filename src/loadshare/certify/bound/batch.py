@@ -36,6 +36,7 @@ from loadshare.train.train import Train
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Numbers = NDArray[np.intp]
+Places = NDArray[np.uintp]
 
 WIDER = (2.0, 10.0)
 """Times the error without it, over which the turn of lines is bounded."""
@@ -76,11 +77,11 @@ class Layout(NamedTuple):
     first_stop: int
     first_arc: int
     first_pull: int
-    start: Numbers  # (m + 1,): entries of A, row by row
-    at: Numbers
+    start: Places  # (m + 1,): entries of A, row by row
+    at: Places
     value: Array
-    rest_start: Numbers  # (m + 1,): what lengths take from clockings and offsets
-    rest_at: Numbers
+    rest_start: Places  # (m + 1,): what lengths take from clockings and offsets
+    rest_at: Places
     rest_value: Array
     eps: float = EPS
     noise: float = NOISE
@@ -393,11 +394,11 @@ SETS = 2000
 _plans: WeakKeyDictionary[Columns, Plan] = WeakKeyDictionary()
 
 
-def _entries(matrix: Array) -> tuple[Numbers, Numbers, Array]:
+def _entries(matrix: Array) -> tuple[Places, Places, Array]:
     """Entries of a matrix that are not zero, row by row."""
     rows, at = np.nonzero(matrix)
     start = np.searchsorted(rows, np.arange(len(matrix) + 1))
-    return start.astype(np.intp), at.astype(np.intp), matrix[rows, at]
+    return start.astype(np.uintp), at.astype(np.uintp), matrix[rows, at]
 
 
 def _springs(columns: Columns, situations: Situations) -> tuple[Numbers, Array]:
