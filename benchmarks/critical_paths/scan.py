@@ -98,7 +98,7 @@ class Balance(Judge):
         compiled: bool = False,
     ) -> Verdicts:
         """Judge S claimed equilibria, whatever their bounds."""
-        unasked = Bounds(self.columns, np.zeros(len(answers.rotation)), None, None)
+        unasked = Bounds(self.columns, np.zeros(len(answers.rotation)), None, None, None)
         if not compiled:
             return self._together(situations, answers, tolerance, unasked)
         residuals, load, deflection = judged(self._mechanics, situations, answers)

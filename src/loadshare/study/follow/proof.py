@@ -275,12 +275,10 @@ class Stretches:
 
     def _wider(self, matrix: Array, base: Array, fresh: Array) -> Array:
         """Deviations to try next: a little more than what the last slopes ask for."""
-        one = np.eye(self.width)
         usable = np.asarray(np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(base).all(axis=1))
-        solved = np.linalg.solve(
-            one - np.where(usable[:, None, None], matrix, 0.0),
-            np.where(usable[:, None], base, 1.0)[:, :, None],
-        )[:, :, 0]
+        solved = _series(
+            np.where(usable[:, None, None], matrix, 0.0), np.where(usable[:, None], base, 1.0)
+        )
         good = usable & (solved >= 0.0).all(axis=1)
         wider = np.where(good[:, None], solved, fresh)
         return np.asarray(np.minimum(1.1 * np.nan_to_num(wider, nan=1e12) + 1e-300, 1e12))
@@ -289,8 +287,7 @@ class Stretches:
         """Solve d = base + M d for d, where M contracts."""
         found = np.full(base.shape, np.inf)
         rows = np.flatnonzero(these)
-        one = np.eye(self.width)
-        solved = np.linalg.solve(one - matrix[rows], base[rows][:, :, None])[:, :, 0]
+        solved = _series(matrix[rows], base[rows])
         # A nonnegative solution proves that it bounds the series; round-off is given a part more.
         good = (solved >= 0.0).all(axis=1)
         found[rows[good]] = (1.0 + 1e-9) * solved[good]
@@ -932,3 +929,13 @@ def _shifted(value: Range, by: Range) -> Range:
 
 
 _less = _shifted
+
+
+def _series(matrix: Array, base: Array) -> Array:
+    """Solve d = base + M d for (B, k, k) and (B, k); NaN where there is no one solution."""
+    try:
+        return np.asarray(np.linalg.solve(np.eye(base.shape[1]) - matrix, base[:, :, None])[..., 0])
+    except np.linalg.LinAlgError:
+        if len(base) == 1:
+            return np.full(base.shape, np.nan)
+        return np.concatenate([_series(matrix[[k]], base[[k]]) for k in range(len(base))])
