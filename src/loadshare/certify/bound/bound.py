@@ -393,10 +393,24 @@ def doubts(
         error, way = (
             np.sqrt((v[:, first:].reshape(len(v), -1, 2) ** 2).sum(axis=2)) for v in (errors, moved)
         )
-        low, high = _room(claim, found, pick, act[:, len(scalar) :], error, way)
+        level = _level_errors(claim, errors)
+        low, high = _room(claim, found, pick, act[:, len(scalar) :], error, way, level)
         doubtful[:, len(scalar) :] = ~(low & high)
         above[:, len(scalar) :] = ~high
     return doubtful, above
+
+
+def _level_errors(claim: Claim, errors: Array) -> Array:
+    """Errors of the levels of splines that follow the torque, shape (rows, radials) [N]."""
+    columns, train = claim.columns, claim.columns.train
+    found = np.zeros((len(errors), len(claim.radial_gears)))
+    torque = errors[:, columns.flanks] @ np.abs(columns.moments).T
+    for q in range(len(train.rounds), found.shape[1]):
+        k = (q - len(train.rounds)) % len(train.splines)
+        rate = np.abs(claim.situations.spline[:, k, 4])
+        follows = np.isnan(claim.situations.spline[:, k, 3])
+        found[:, q] = np.where(follows, np.where(follows, rate, 0.0) * torque[:, k], 0.0)
+    return found
 
 
 def _room(
@@ -406,6 +420,7 @@ def _room(
     act: Codes,
     error: Array,
     moved: Array,
+    level_error: Array,
 ) -> tuple[Flags, Flags]:
     """Whether each arc and radial element stays above and below the ends of its piece."""
     arcs = claim.arcs[1].shape[1]
@@ -418,9 +433,8 @@ def _room(
     stiffness, stick, level, reach, _ = np.moveaxis(claim.graphs[rows], 2, 0)
     part, acts = slice(arcs, None), act[:, arcs:]
     size, distance, error, moved = (v[:, part] for v in (size, distance, error, moved))
-    follow = found.follows[rows][:, part] > 0.0
-    level_error = np.where(follow, error, 0.0)
-    stick_error = np.where(follow & (stiffness > 0.0), error / stiffness, 0.0)
+    ends = np.isfinite(stick) & (stiffness > 0.0)
+    stick_error = np.where(ends, level_error / np.where(ends, stiffness, 1.0), 0.0)
     end = np.where(np.isinf(stick), np.inf, np.where(stick > 0.0, stiffness * stick, 0.0))
     is_low = {
         Act.STEP: size - error > end,
@@ -429,9 +443,9 @@ def _room(
     }
     is_high = {
         Act.OPEN: distance + moved < reach,
-        Act.STICK: np.isinf(stick) | (reach == 0.0) | (size + error < end),
-        Act.PINNED: (level == 0.0) | (size + error < level),
-        Act.STEP: size + error < level,
+        Act.STICK: np.isinf(stick) | (reach == 0.0) | (size + error < end - level_error),
+        Act.PINNED: (level == 0.0) | (size + error < level - level_error),
+        Act.STEP: size + error < level - level_error,
         Act.SLIP: distance + moved < reach,
     }
     for kind, held in is_low.items():

@@ -30,6 +30,8 @@ class Claim:
         Whether residuals are found in twice the working precision.
     slack : ndarray, shape (m,), or None
         What is open of the lengths of the columns [m].
+    limits : ndarray, shape (S, radials, 2), or None
+        Levels [N] and reaches [m] of the radial elements in place of those of their laws.
     """
 
     columns: Columns
@@ -37,6 +39,7 @@ class Claim:
     answers: Equilibria
     fine: bool = True
     slack: Array | None = None
+    limits: Array | None = None
 
     @property
     def count(self) -> int:
@@ -48,7 +51,8 @@ class Claim:
         answers = self.answers.laid(lambda array: array[rows])
         here = self.situations
         here = here.take(rows) if here.count > 1 else here
-        return Claim(self.columns, here, answers, self.fine, self.slack)
+        limits = None if self.limits is None else self.limits[rows]
+        return Claim(self.columns, here, answers, self.fine, self.slack, limits)
 
     def _each(self, array: Array) -> Array:
         """An array of the situations with one row for every claim."""
@@ -261,6 +265,8 @@ class Claim:
                 values = np.stack(part, axis=1)
                 values[faulty] = np.nan
                 found[:, first + k + j * len(train.splines)] = values
+        if self.limits is not None:
+            found[:, :, 2:4] = np.where(np.isnan(found[:, :, 2:4]), np.nan, self.limits)
         return found
 
 

@@ -11,6 +11,7 @@ from loadshare.certify.bound.batch import is_covered, relative_bounds
 from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
+from loadshare.certify.bound.held import with_held_slips
 from loadshare.certify.bound.laws import Act, Codes, assumed, first_acts
 from loadshare.certify.bound.locked import locked, without
 from loadshare.certify.bound.quick import quick_boxes
@@ -25,6 +26,10 @@ Flags = NDArray[np.bool_]
 
 NOISE = 1e-12
 """Force, in loads of the claim, below which a contact may as well be open."""
+
+
+LIGHT = 1e-10
+"""Friction, in loads of the claim, that may be put aside where nothing else bounds a torque."""
 
 
 ENOUGH = 1e-11
@@ -125,6 +130,7 @@ def _boxes(claim: Claim, rigorous: bool) -> Bounds:
     largest = (flanks * columns.arms).max(axis=1, initial=0.0)
     largest = np.maximum(largest, np.abs(torque).max(axis=1, initial=0.0))
     scale, largest = (np.where(v > 0.0, v, 1.0) for v in (scale, largest))
+    claim, shared = with_held_slips(claim, scale)
     act = first_acts(claim)
     box = Box.unproved(claim, act)
     finite = np.logical_and.reduce(
@@ -146,36 +152,59 @@ def _boxes(claim: Claim, rigorous: bool) -> Bounds:
         relative[rows[better]] = found[better]
         box.force[rows[better]] = force[better]
         box.coordinate[rows[better]] = coordinate[better]
-    if claim.radial_gears:
-        beyond = box.force[:, columns.flanks].max(axis=1, initial=0.0) > assumed(claim, act, scale)
-        relative[beyond] = np.inf
+    relative[_beyond(claim, act, scale, box.force)] = np.inf
     for row in np.flatnonzero(~(relative <= LARGEST) & finite).tolist():
-        _with_locked(replace(claim.take(np.array([row])), fine=True), scale[row], box.part(row))
-        relative[row] = _torques(columns, box.force[row], flanks[row]).max() / largest[row]
+        one = replace(claim.take(np.array([row])), fine=True)
+        for way in (_with_locked, _with_light_friction) if columns.pairs else ():
+            if not relative[row] <= LARGEST:
+                box.force[row], box.coordinate[row] = way(one, scale[row : row + 1])
+                relative[row] = _torques(columns, box.force[row], flanks[row]).max() / largest[row]
     # Where torques are not bounded closely enough for any certificate, what seems to be bounded is
     # so only if what acts was taken rightly, and secants leave tangents by more than was allowed.
     unproved = ~(relative <= LARGEST)
     box.force[unproved], box.coordinate[unproved], relative[unproved] = np.inf, np.inf, np.inf
+    box.force[:, shared] = np.inf
     torque = _torques(columns, box.force, flanks)
     return Bounds(columns, relative, torque, box.force, box.coordinate)
 
 
-def _with_locked(claim: Claim, scale: float, box: Box) -> None:
-    """Bound what is left of a claim when gears are held that cannot move; write it in its box."""
-    gears = locked(claim)
-    if not gears:
-        return
-    held, origin = without(claim, gears)
-    force, coordinate = _fine(held, first_acts(held), np.array([scale]))
-    box.force[:] = np.inf
-    box.force[0, origin] = force[0]
+def _beyond(claim: Claim, act: Codes, scale: Array, force: Array) -> NDArray[np.bool_]:
+    """Claims with errors for which the friction that was put aside does not account."""
+    if not claim.radial_gears:
+        return np.zeros(claim.count, dtype=bool)
+    largest = force[:, claim.columns.flanks].max(axis=1, initial=0.0)
+    return np.asarray(largest > assumed(claim, act, scale))
+
+
+def _with_locked(claim: Claim, scale: Array) -> tuple[Array, Array]:
+    """Bound what is left of a single claim when gears are held that cannot move."""
     whole = claim.columns
-    box.coordinate[:] = np.inf
-    names = {name: k for k, name in enumerate(whole.coordinates)}
-    box.coordinate[0, [names[n] for n in held.columns.coordinates]] = coordinate[0]
-    for gear, play in gears.items():
-        at = whole.places[gear]
-        box.coordinate[0, at : at + 2] = play
+    found = Box.unproved(claim, first_acts(claim))
+    gears = locked(claim)
+    if gears:
+        held, origin = without(claim, gears)
+        names = [whole.coordinates.index(n) for n in held.columns.coordinates]
+        found.force[:, origin], found.coordinate[:, names] = _fine(held, first_acts(held), scale)
+        for gear, play in gears.items():
+            at = whole.places[gear]
+            found.coordinate[0, at : at + 2] = play
+    return found.force[0], found.coordinate[0]
+
+
+def _with_light_friction(claim: Claim, scale: Array) -> tuple[Array, Array]:
+    """Bound a single claim with friction put aside that is light beside what is certified.
+
+    With memory, so is the friction of splines that are pressed to the end of their clearance: there
+    a slip can only turn, which the stop hardly lets it.
+    """
+    act = first_acts(claim, LIGHT)
+    if claim.columns.train.slip is not None:
+        splines = len(claim.columns.train.splines)
+        pressed = act[:, -splines:] == Act.STOP
+        act[:, -2 * splines : -splines][pressed] = Act.OPEN
+    force, coordinate = _fine(claim, act, scale)
+    force[_beyond(claim, act, scale, force)] = np.inf
+    return force[0], coordinate[0]
 
 
 def _fine(claim: Claim, act: Codes, scale: Array) -> tuple[Array, Array]:

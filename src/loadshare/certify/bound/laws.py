@@ -24,8 +24,8 @@ Array = NDArray[np.float64]
 Codes = NDArray[np.int8]
 Flags = NDArray[np.bool_]
 
-SOFT, SOFTEST = 1e5, 1e11
-"""Compliance that stands for "does not resist", and the largest of a turn, in the claim's own."""
+SOFT, SOFTEST, YIELDING = 1e5, 1e11, 1e3
+"""Largest compliance of a turn, first and at last, and of what slips, in those of the claim."""
 LIGHT = 1e-9
 """Force, in loads of the claim, at which the tangent of a contact without force is taken.
 
@@ -103,8 +103,15 @@ class Elements:
     follows: Array
 
 
-def first_acts(claim: Claim) -> Codes:
-    """How the elements act by the claim's own forces, shape (S, elements)."""
+def first_acts(claim: Claim, noise: float = NOISE) -> Codes:
+    """How the elements act by the claim's own forces, shape (S, elements).
+
+    Parameters
+    ----------
+    claim : Claim
+    noise : float
+        Friction, over the largest force, that is put aside.
+    """
     columns = claim.columns
     force = claim.forces
     contacts = np.concatenate(
@@ -121,7 +128,7 @@ def first_acts(claim: Claim) -> Codes:
     scalar = np.where(closed, Act.STOP, Act.OPEN).astype(np.int8)
     radials = np.zeros((claim.count, 0), np.int8)
     if claim.radial_gears:
-        radials = _radial_acts(claim, NOISE * largest)
+        radials = _radial_acts(claim, noise * largest)
     return np.concatenate([scalar, radials], axis=1)
 
 
@@ -203,8 +210,6 @@ def elements(
     _springs(claim, active, soft, misfit, width)
     scalar = slice(0, columns.first_pair)
     width[:, scalar] += EPS * np.abs(misfit[:, scalar]) + TINY * sizes[:, scalar]
-    if claim.slack is not None:
-        width += claim.slack
     force[:, scalar] = np.where(active[:, scalar], force[:, scalar], 0.0)
     lines = [np.zeros((count, pairs)) for _ in range(4)]
     found = Elements(
@@ -224,6 +229,8 @@ def elements(
     if pairs:
         with np.errstate(divide="ignore", invalid="ignore"):
             _pairs(claim, act[:, flanks + stops :], found, scale, softest)
+    if claim.slack is not None:
+        found.width[:] += claim.slack
     return found
 
 
@@ -356,7 +363,7 @@ def _pairs(claim: Claim, act: Codes, found: Elements, scale: Array, softest: flo
     most = np.maximum(found.soft.max(axis=1, initial=0.0), np.finfo(float).tiny)
     across = np.where(size > 0.0, distance / np.where(size > 0.0, size, 1.0), np.inf)
     lateral = sign * np.minimum(across, softest * most[:, None])
-    free = np.maximum(SOFT * most[:, None], 100.0 * np.abs(lateral))
+    free = np.maximum(YIELDING * most[:, None], 100.0 * np.abs(lateral))
     along = np.where(act == Act.SLIP, free, yields)
     springs = np.where(act == Act.STICK, 1.0, 0.0)
     stiffness = np.concatenate(
@@ -406,9 +413,14 @@ def _put_aside(claim: Claim, acts: Codes, scale: Array) -> Array:
 
 def assumed(claim: Claim, act: Codes, scale: Array) -> Array:
     """Error of flank forces, (S,) [N], up to which friction that was put aside is covered."""
+    train = claim.columns.train
+    if not train.splines:
+        return np.full(claim.count, np.inf)
     radials = act[:, act.shape[1] - len(claim.radial_gears) :]
+    follows = np.isnan(claim.situations.spline[:, None, :, 3])
     aside = (radials == Act.OPEN) & (claim.graphs[:, :, 2] > 0.0)
-    return np.where(aside.any(axis=1), NOISE * scale, np.inf)
+    aside = aside[:, len(train.rounds) :].reshape(claim.count, -1, len(train.splines)) & follows
+    return np.where(aside.any(axis=(1, 2)), NOISE * scale, np.inf)
 
 
 def _follow(claim: Claim, acts: Codes, stopped: Flags, yields: Array, follows: Array) -> None:

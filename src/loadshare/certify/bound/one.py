@@ -37,16 +37,12 @@ class Bound:
         torque of every elastic shaft [N·m].
     place : mapping of coordinate to float
         Of every rotation [rad] and displacement [m].
-    is_sought : bool
-        Whether the answer must be proved: not where friction remembers its slip and the bound
-        does not cover how friction and its stop share a force.
     """
 
     relative: float
     torque: Mapping[str, float]
     force: Mapping[str, float]
     place: Mapping[str, float]
-    is_sought: bool = True
 
     @classmethod
     def none(cls, train: Train) -> Bound:
@@ -83,8 +79,7 @@ class Bound:
             )
         }
         relative = float(found.relative[row])
-        is_sought = columns.train.slip is None or math.isfinite(relative)
-        return cls(relative, torque, forces, place, is_sought)
+        return cls(relative, torque, forces, place)
 
 
 @lru_cache(maxsize=KEPT)
