@@ -16,7 +16,7 @@ from loadshare.certify.certificate import TOLERANCE
 from loadshare.certify.state import State, turned
 from loadshare.errors import Refused
 from loadshare.job import ladder
-from loadshare.job.ladder import HOT, SEARCHED, climb, climb_all, hot_answers, rungs
+from loadshare.job.ladder import HOT, SEARCHED, STEPS, climb, climb_all, hot_answers, rungs
 from loadshare.job.machine import Machine
 from loadshare.scene import assemble
 from loadshare.scene.plan import Role
@@ -372,3 +372,11 @@ def test_climbing_alone_gives_the_answer_of_the_hot_path():
     hot = hot_answers(Machine(train), [1], TOLERANCE)[1]
     climbed = climb(train, 1, Options(), TOLERANCE)
     assert max(disagreement(train, hot.equilibrium, climbed.equilibrium)) < 1e-9
+
+
+def test_the_rungs_after_the_hot_path_give_up_after_so_many_steps():
+    """Lost contact takes curved solves; with too few steps it is refused, and says so."""
+    train = build_train(lost_contact())
+    with pytest.raises(Refused, match="in the steps allowed"):
+        climb(train, 1, Options(), TOLERANCE, steps=1)
+    assert climb(train, 1, Options(), TOLERANCE, steps=STEPS).certificate.passed

@@ -28,6 +28,7 @@ from loadshare.scene.scene import Scene
 from loadshare.solver import Iteration, Options, Record, solve_scene
 from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.contradiction import OVERLAP, contradiction
+from loadshare.solver.findings import Work
 from loadshare.solver.position import Known, coordinates_of
 from loadshare.solver.runaway import runaway
 from loadshare.train.equilibrium import Equilibrium
@@ -36,6 +37,9 @@ from loadshare.train.train import Train
 HOT, SEARCHED = "hot path", "proximal search"
 PLAINLY = 1e-6
 """Overlap of rigid limits, over the lengths at hand, after which nothing else need be tried."""
+STEPS = 3000
+"""Newton steps in which the rungs after the hot path answer or give up: a second, and twice what
+ever led to an answer that neither exchange nor search had found."""
 AUTO = "auto"
 """Instead of a back-end's name: the hot path, and Clarabel for what it leaves."""
 
@@ -108,14 +112,15 @@ def climb_all(
         In the order of the positions; a refusal where no rung gives a certified answer.
     """
     quick: dict[int, Answer] = {}
+    steps = math.inf
     if engine is not None and machine.train.slip is None:
-        quick = hot_answers(machine, indices, tolerance, engine)
+        quick, steps = hot_answers(machine, indices, tolerance, engine), STEPS
     for index in indices:
         if index in quick:
             yield quick[index]
             continue
         try:
-            yield climb(machine.train, index, options, tolerance)
+            yield climb(machine.train, index, options, tolerance, steps)
         except Refused as refusal:
             yield refusal
 
@@ -196,8 +201,21 @@ def left_out(answer: Answer) -> tuple[tuple[str, str], ...]:
     return scene.removed + tuple(idle)
 
 
-def climb(train: Train, index: int, options: Options, tolerance: float) -> Answer:
+def climb(
+    train: Train, index: int, options: Options, tolerance: float, steps: float = math.inf
+) -> Answer:
     """Answer position `index`, climbing until the certificate passes.
+
+    Parameters
+    ----------
+    train : Train
+    index : int
+        1-based.
+    options : Options
+        Of the first rung.
+    tolerance : float
+    steps : float
+        Newton steps of exact solves in all; as many as it takes by default.
 
     Raises
     ------
@@ -209,7 +227,7 @@ def climb(train: Train, index: int, options: Options, tolerance: float) -> Answe
     if is_unbalanced(elements_of(scene), scene.load):
         _refuse_if_none(scene, PLAINLY)
     first: Refused | None = None
-    known: Known = {}
+    known = Known(work=Work(steps))
     seen: list[tuple[Iteration, ...]] = []
     for rung, rung_options in rungs(options):
         try:

@@ -23,7 +23,7 @@ from loadshare.certify.certificate import TOLERANCE
 from loadshare.certify.many.nonconvex import arc_curvature, is_convex
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.errors import CaseError, Refused
-from loadshare.job.ladder import HOT, SEARCHED, climb
+from loadshare.job.ladder import HOT, SEARCHED, STEPS, climb
 from loadshare.job.least import least_places
 from loadshare.job.machine import Machine, engine_named
 from loadshare.job.positions import Progress, wanted_positions
@@ -304,7 +304,7 @@ def _block(
         index = positions[p]
         try:
             train = build_train(samples.one(row))
-            answer = climb(train, index, Options(), tolerance)
+            answer = climb(train, index, Options(), tolerance, STEPS)
         except (CaseError, Refused) as refusal:
             message[int(rows[row]), index] = str(refusal)
             residual[row, p], bound[row, p], rung[row, p] = np.nan, np.nan, ""

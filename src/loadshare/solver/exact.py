@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from loadshare.scene.programme import Array, Cone, Point, Programme
+from loadshare.solver.findings import Work
 from loadshare.solver.kkt import solve_symmetric
 
 SIGN = 1e-11
@@ -92,7 +93,11 @@ def _nearest(cone: Cone, radius: float, force: float) -> Place:
 
 
 def solve_exact(
-    programme: Programme, guess: ActiveSet, start: Point | None = None, rounds: int = 0
+    programme: Programme,
+    guess: ActiveSet,
+    start: Point | None = None,
+    rounds: int = 0,
+    work: Work | None = None,
 ) -> tuple[Point, ActiveSet] | None:
     """Solve on an active set and exchange until every sign is right.
 
@@ -107,6 +112,8 @@ def solve_exact(
         Where Newton's method begins; it matters only for curved places (radial graphs, Hertz laws).
     rounds : int
         Exchanges allowed; 0 allows as many as the programme's size justifies.
+    work : Work, optional
+        Newton steps allowed; as many as it takes by default.
 
     Returns
     -------
@@ -117,7 +124,7 @@ def solve_exact(
     limit = rounds or 20 + 6 * (len(programme.gaps) + len(programme.cones))
     active, seen, one_only = guess, {guess}, False
     for _ in range(limit):
-        solved = _solve_fixed(programme, active, start)
+        solved = _solve_fixed(programme, active, start, work)
         if solved is None:
             return None
         point, settled = solved
@@ -142,7 +149,7 @@ def at_rest(programme: Programme) -> Point:
 
 
 def _solve_fixed(
-    programme: Programme, active: ActiveSet, start: Point
+    programme: Programme, active: ActiveSet, start: Point, work: Work | None
 ) -> tuple[Point, bool] | None:
     """Newton's method on the smooth equations of an active set; a point, and whether it settled.
 
@@ -153,6 +160,8 @@ def _solve_fixed(
     curved = bool(programme.cones) or bool(programme.hertz.any())
     previous = np.inf
     for _ in range(NEWTON_STEPS if curved else 1):
+        if work is not None:
+            work.step()
         solved = _newton_system(programme, active, Point(x, forces, cone_forces))
         if solved is None:
             return None

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from loadshare.scene.programme import Point, Programme
 from loadshare.solver.backend import Backend, BackendFailure
 from loadshare.solver.exact import ActiveSet, first_guess, identify, solve_exact
-from loadshare.solver.findings import Unsolved
+from loadshare.solver.findings import Unsolved, Work
 from loadshare.solver.proximal import solve_proximal
 
 
@@ -21,7 +21,11 @@ class Inner:
 
 
 def solve_programme(
-    programme: Programme, backend: Backend, warm: Inner | None, polish: bool
+    programme: Programme,
+    backend: Backend,
+    warm: Inner | None,
+    polish: bool,
+    work: Work | None = None,
 ) -> Inner:
     """Solve a programme.
 
@@ -33,6 +37,8 @@ def solve_programme(
         Answer of a neighbouring programme (the pass before); its active set is tried first.
     polish : bool
         Solve exactly on the identified active set.
+    work : Work, optional
+        See `solve_exact`.
 
     Raises
     ------
@@ -41,12 +47,12 @@ def solve_programme(
     """
     kind = programme.kind
     if polish and kind == "linear":
-        exact = solve_exact(programme, first_guess(programme))
+        exact = solve_exact(programme, first_guess(programme), work=work)
         if exact is None:
             raise Unsolved("the linear system contradicts itself")
         return Inner(*exact, "linear solve")
     if polish and warm is not None and warm.active is not None and warm.active.fits(programme):
-        exact = solve_exact(programme, warm.active, warm.point, rounds=3)
+        exact = solve_exact(programme, warm.active, warm.point, rounds=3, work=work)
         if exact is not None:
             return Inner(*exact, "active set kept")
     if kind not in backend.kinds:
@@ -56,15 +62,15 @@ def solve_programme(
     except BackendFailure as failure:
         if not polish:
             raise Unsolved(str(failure)) from failure
-        return _without_guess(programme, None, "")
+        return _without_guess(programme, None, "", work)
     if not polish:
         return Inner(rough, None, backend.name)
-    exact = solve_exact(programme, identify(programme, rough), rough)
+    exact = solve_exact(programme, identify(programme, rough), rough, work=work)
     if exact is None:
-        return _without_guess(programme, rough, f"{backend.name} + ")
+        return _without_guess(programme, rough, f"{backend.name} + ", work)
     return Inner(*exact, f"{backend.name} + exact")
 
 
-def _without_guess(programme: Programme, start: Point | None, via: str) -> Inner:
+def _without_guess(programme: Programme, start: Point | None, via: str, work: Work | None) -> Inner:
     """Solve where no active set could be read from a back-end's answer, or there is none."""
-    return Inner(*solve_proximal(programme, start), f"{via}proximal + exact")
+    return Inner(*solve_proximal(programme, start, work), f"{via}proximal + exact")

@@ -22,7 +22,7 @@ from loadshare.scene.programme import Array, Point
 from loadshare.scene.scene import Scene
 from loadshare.solver.backend import Backend
 from loadshare.solver.energy import potential
-from loadshare.solver.findings import Unsolved
+from loadshare.solver.findings import Unsolved, Work
 from loadshare.solver.inner import Inner, solve_programme
 from loadshare.solver.record import Iteration, Options
 from loadshare.train.law import PowerLaw
@@ -71,8 +71,25 @@ class _State:
     torques: dict[str, float]
 
 
-def settle(scene: Scene, plan: Plan, backend: Backend, options: Options, method: str) -> Settled:
+def settle(
+    scene: Scene,
+    plan: Plan,
+    backend: Backend,
+    options: Options,
+    method: str,
+    work: Work | None = None,
+) -> Settled:
     """Run the outer loop on a plan.
+
+    Parameters
+    ----------
+    scene : Scene
+    plan : Plan
+    backend : Backend
+    options : Options
+    method : str
+    work : Work, optional
+        Newton steps allowed; as many as it takes by default.
 
     Raises
     ------
@@ -89,7 +106,7 @@ def settle(scene: Scene, plan: Plan, backend: Backend, options: Options, method:
         compliances = _compliances(scene, state.forces, method)
         at = Linearisation(state.x, compliances, laws, wide=not history)
         written, units = programme(scene, plan, at, exact_hertz=method == "power")
-        warm = solve_programme(written, backend, warm, options.polish)
+        warm = solve_programme(written, backend, warm, options.polish, work)
         x = units.condensation.expand(warm.point.x * units.length)
         forces = _forces(written.names, warm.point, units)
         torques = {r.gear: scene.train.transmitted(r.gear, forces) for r in scene.radials}

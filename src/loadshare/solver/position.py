@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from loadshare.scene.programme import Array
 from loadshare.scene.scene import Scene
 from loadshare.solver.backend import Backend, backend
 from loadshare.solver.exact import ROUNDING
-from loadshare.solver.findings import Unsolved
+from loadshare.solver.findings import Unsolved, Work
 from loadshare.solver.outer import Settled, settle
 from loadshare.solver.record import Options, Record
 from loadshare.solver.undetermined import free_set, places
@@ -25,8 +25,12 @@ VERIFIED = 1e-11
 """Violation of a removed inequality that counts as round-off, in deflections and loads."""
 
 
-Known = dict[tuple[object, ...], Settled | Unsolved]
-"""What plans came to, by what settles them."""
+@dataclass(slots=True)
+class Known:
+    """What plans of a scene came to with a back-end, and what work is left for others."""
+
+    settled: dict[tuple[object, ...], Settled | Unsolved] = field(default_factory=dict)
+    work: Work = field(default_factory=Work)
 
 
 def solve_scene(
@@ -38,7 +42,7 @@ def solve_scene(
     ----------
     scene : Scene
     options : Options
-    known : dict, optional
+    known : Known, optional
         What plans of this scene came to with this back-end, renewed: none is settled twice.
 
     Returns
@@ -54,7 +58,7 @@ def solve_scene(
     """
     solver = backend(options.solver)
     plan = Plan.lean(scene) if options.reduce else Plan.full(scene)
-    known = {} if known is None else known
+    known = known or Known()
     rounds = 0
     while True:
         rounds += 1
@@ -111,12 +115,12 @@ def _once(
 ) -> Settled:
     """Run the outer loop on a plan, unless that was done before."""
     key = (*plan.rows.values(), *plan.radials.values(), plan.condensed, method)
-    if key not in known:
+    if key not in known.settled:
         try:
-            known[key] = settle(scene, plan, solver, options, method)
+            known.settled[key] = settle(scene, plan, solver, options, method, known.work)
         except Unsolved as failure:
-            known[key] = failure
-    found = known[key]
+            known.settled[key] = failure
+    found = known.settled[key]
     if isinstance(found, Unsolved):
         raise found
     return found

@@ -20,7 +20,7 @@ import numpy as np
 
 from loadshare.scene.programme import Array, Point, Programme
 from loadshare.solver.exact import ActiveSet, at_rest, first_guess, solve_exact
-from loadshare.solver.findings import Unsolved
+from loadshare.solver.findings import Unsolved, Work
 
 PULLS = (*[1e-5] * 8, *(10.0**-k for k in range(6, 12)), *[1e-11] * 6)
 """ε of every pass, in the programme's units (where a flank's compliance is about 1).
@@ -31,7 +31,9 @@ ARRIVED = 1e-13
 """Residual of a pass, relative to the largest force or displacement, that is round-off."""
 
 
-def solve_proximal(programme: Programme, start: Point | None = None) -> tuple[Point, ActiveSet]:
+def solve_proximal(
+    programme: Programme, start: Point | None = None, work: Work | None = None
+) -> tuple[Point, ActiveSet]:
     """Solve a programme without a guess of its active set.
 
     Parameters
@@ -39,6 +41,8 @@ def solve_proximal(programme: Programme, start: Point | None = None) -> tuple[Po
     programme : Programme
     start : Point, optional
         Where the passes begin; at rest by default.
+    work : Work, optional
+        See `solve_exact`.
 
     Raises
     ------
@@ -50,7 +54,7 @@ def solve_proximal(programme: Programme, start: Point | None = None) -> tuple[Po
     active = first_guess(programme)
     drift, run, stretch = at, np.inf, 0.0
     for pull in PULLS:
-        found = solve_exact(_pulled(programme, at, pull), active, at)
+        found = solve_exact(_pulled(programme, at, pull), active, at, work=work)
         if found is None and stretch:
             # The last stride went too far: take it back.
             at, stretch, run = replace(at, x=at.x - stretch * drift.x), 0.0, np.inf
@@ -59,7 +63,7 @@ def solve_proximal(programme: Programme, start: Point | None = None) -> tuple[Po
             raise Unsolved("no consistent active set was found")
         point, now = found
         if now == active:
-            exact = solve_exact(programme, now, point, rounds=1)
+            exact = solve_exact(programme, now, point, rounds=1, work=work)
             if exact is not None:
                 return exact
             if _arrived(point, at, pull):
