@@ -109,7 +109,9 @@ class Proximal:
             self._face_arcs()
             # A radius that gives way as much as the rest is held: steeper, and a float that has far
             # to roll would do so in tiny steps, each pressed out of the round and back again.
-            rounded = max(SHARED * softer, self.pull)
+            # Slip that is remembered may have less room than that would tell apart.
+            yielding = 0.0 if self.elements.scene.train.slip is not None else self.pull
+            rounded = max(SHARED * softer, yielding)
             self.laws = Laws(self.elements, self.data, self.force, softer, rounded)
             if not self.laws.graph.valid.all():
                 return
