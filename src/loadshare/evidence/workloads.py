@@ -185,6 +185,8 @@ def _with_errors(case: Case, **more: Any) -> Case:
         "operating.power": None,
         "operating.speed": None,
         "operating.torque": "2175.2 N*m",
+        # A sample is one position; the direction of its eccentricities is drawn.
+        "operating.rotation": "neglected",
         "errors": {
             g: {
                 "installation": {"amount": "20 um", "direction": "0 deg"},
