@@ -393,22 +393,23 @@ def doubts(
         error, way = (
             np.sqrt((v[:, first:].reshape(len(v), -1, 2) ** 2).sum(axis=2)) for v in (errors, moved)
         )
-        level = _level_errors(claim, errors)
+        level = _level_errors(claim, errors, pick)
         low, high = _room(claim, found, pick, act[:, len(scalar) :], error, way, level)
         doubtful[:, len(scalar) :] = ~(low & high)
         above[:, len(scalar) :] = ~high
     return doubtful, above
 
 
-def _level_errors(claim: Claim, errors: Array) -> Array:
+def _level_errors(claim: Claim, errors: Array, rows: NDArray[np.intp] | slice) -> Array:
     """Errors of the levels of splines that follow the torque, shape (rows, radials) [N]."""
     columns, train = claim.columns, claim.columns.train
     found = np.zeros((len(errors), len(claim.radial_gears)))
     torque = errors[:, columns.flanks] @ np.abs(columns.moments).T
     for q in range(len(train.rounds), found.shape[1]):
         k = (q - len(train.rounds)) % len(train.splines)
-        rate = np.abs(claim.situations.spline[:, k, 4])
-        follows = np.isnan(claim.situations.spline[:, k, 3])
+        spline = claim.situations.spline[:, k]
+        spline = spline[rows] if len(spline) > 1 else spline
+        rate, follows = np.abs(spline[:, 4]), np.isnan(spline[:, 3])
         found[:, q] = np.where(follows, np.where(follows, rate, 0.0) * torque[:, k], 0.0)
     return found
 
