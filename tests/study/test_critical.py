@@ -1,13 +1,14 @@
 """Critical values: against closed forms, independent solves, and scans of certified active sets."""
 
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
 from benchmarks.critical_paths.compare import between, compared
 from benchmarks.critical_paths.draw import random_path
-from benchmarks.critical_paths.judge import judged
+from benchmarks.critical_paths.judge import Outcome, judged
 from benchmarks.critical_paths.scan import scanned
+from benchmarks.critical_paths.table import text
 from tests.support import coasting, lost_contact, round_ring, shipped
 
 import loadshare as ls
@@ -257,6 +258,16 @@ def test_random_paths_agree_with_a_scan(number):
     outcome = judged(random_path(number), 400, "vectorised")
     told = (outcome.missed, outcome.invented, outcome.moved, outcome.refused, outcome.raised)
     assert told == ([], [], [], "", "")
+
+
+def test_a_table_tells_what_a_run_came_to():
+    fine = {"number": 6, **asdict(Outcome(("operating.torque",), "N*m", 1.0, 2.0, events=2))}
+    wrong = {**fine, "number": 7, "missed": ["sun-planet at 1.5: 1 changes, 0 events"]}
+    told = text([fine, wrong])
+    assert told.startswith("7: operating.torque 1 to 2 N*m: 0 unproved")
+    assert "| events | 4 |" in told
+    assert "| missed | 1 |" in told
+    assert "| invented | 0 |" in told
 
 
 @pytest.mark.slow

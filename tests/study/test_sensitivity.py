@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from benchmarks.random_trains.draw import draw
-from benchmarks.sensitivities import FINE, Verdict, judged, one
+from benchmarks.sensitivities import FINE, Verdict, judged, one, text
 from tests.support import SHIPPED, shipped
 
 import loadshare as ls
@@ -114,20 +114,23 @@ def test_differences_on_every_shipped_case(name):
     assert not disagreeing(verdicts(case, found))
 
 
-def outcomes(seed: int, numbers: range) -> list[str]:
-    """Of the derivatives of numbered problems."""
-    return [v["outcome"] for k in numbers for v in one(seed, k)["verdicts"]]
+def outcomes(rows: list[dict]) -> list[str]:
+    return [v["outcome"] for row in rows for v in row["verdicts"]]
 
 
 def test_drawn_and_critical_cases():
-    told = outcomes(7, range(2, 5))
+    rows = [{"number": k, **one(7, k)} for k in range(2, 5)]
+    told = outcomes(rows)
     assert set(told) <= set(FINE)
     assert told.count("agrees") >= 6
+    assert f"| one-sided derivatives | {len(told)} |" in text(rows)
+    rows[0]["verdicts"][0]["outcome"] = "outside"
+    assert text(rows).startswith("2: ")
 
 
 @pytest.mark.slow
 def test_many_drawn_and_critical_cases():
-    assert set(outcomes(8, range(25))) <= set(FINE)
+    assert set(outcomes([one(8, k) for k in range(25)])) <= set(FINE)
 
 
 def test_displacements_and_shares_follow():
