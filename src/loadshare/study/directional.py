@@ -94,16 +94,26 @@ class Tangent:
         self.unbalanced = _orthonormal(scale[:, None] * left[:, rank:], size)
         spans = _orthonormal(scale[:, None] * right[rank:].T, size)
         self.loose = spans[: branch.scene.size]
-        # How far z, and with it the Jacobian, is known: round-off carried through the solve.
-        known = np.abs(self.inverse) @ branch.rounding(z)
-        signs = np.where(np.arange(size) % 2, -1.0, 1.0)
-        self.spread = np.zeros_like(self.matrix)
-        for turn in (np.ones(size), signs):
+        self._branch, self._z = branch, z
+
+    @cached_property
+    def _beside(self) -> Array:
+        """How the Jacobian changes with the round-off of each equation, (k, size, size).
+
+        Unknowns are known up to round-off carried through the solve: what two of them share, as
+        those on either side of a stiff contact do, moves them together.
+        """
+        found = []
+        for step in (self.inverse * self._branch.rounding(self._z)).T:
             try:
-                beside = branch.jacobian(z + turn * known)
+                found.append(self._branch.jacobian(self._z + step) - self.matrix)
             except BranchLost:
                 continue
-            self.spread = np.maximum(self.spread, np.abs(beside - self.matrix))
+        return np.array(found).reshape(-1, *self.matrix.shape)
+
+    def turned(self, rate: Array) -> Array:
+        """Bound on how far the equations' rates are known, as unknowns move at a rate (size,)."""
+        return np.asarray(np.abs(self._beside @ rate).sum(axis=0))
 
     def solve(self, right: Array) -> Array:
         """Solve, refined once."""
@@ -248,7 +258,7 @@ class Neighbourhood:
             return None
         rate = -tangent.solve(explicit)
         terms = np.abs(tangent.matrix) @ np.abs(rate) + np.abs(explicit)
-        error = error + len(error) * _EPS * terms + tangent.spread @ np.abs(rate)
+        error = error + len(error) * _EPS * terms + tangent.turned(rate)
         error = error + float(left.max(initial=0.0))
         verge = self._verge(point)
         if verge is None or not self._holds(point, sign, rate, change.step, varied, verge):
