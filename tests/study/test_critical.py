@@ -19,6 +19,7 @@ from loadshare.study.branch import Units, read_set
 from loadshare.study.branch.system import identified
 from loadshare.study.follow.line import Line
 from loadshare.study.follow.search import Search
+from loadshare.study.follow.zero import first_zero
 from loadshare.study.parameter import read_parameter
 from loadshare.train import build_train
 
@@ -225,6 +226,31 @@ def test_a_branch_that_ends_on_the_way_is_left_in_time(end):
     values = [58.230978147796, 71.802277200032, 223.804985881803]
     assert [e.value for e in found.events] == pytest.approx(values, rel=1e-12)
     assert found.unproved == ()
+
+
+@pytest.mark.parametrize("end", [800.0, 763.7, 500.0])
+def test_an_event_is_exact_where_gauges_go_on_steeper_beyond_it(end):
+    """A contact opens and lets an idler float: room beyond it shrinks 400 times as fast."""
+    key = "errors.5.eccentricity.amount"
+    found = ls.critical(shipped("fgfbstts/load"), key, "0 um", f"{end} um", positions=[1])
+    event = next(e for e in found.events if e.element == "4-6")
+    assert event.value == pytest.approx(190.9036884315901, rel=1e-13)
+
+
+@pytest.mark.parametrize(("before", "beyond"), [(2e-3, 0.8), (0.8, 2e-3), (1.0, 1.0)])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_zero_is_found_whatever_the_gauges_do_beyond_it(before, beyond, sign):
+    zero, asked = sign * 1.9090368843159013, []
+
+    def of(values: np.ndarray) -> np.ndarray:
+        asked.append(values)
+        left = sign * (zero - values)
+        least = np.where(left > 0.0, before, beyond) * left
+        return np.stack([least, 1.0 + 0.0 * values], axis=1)
+
+    values = sign * np.array([1.8, 1.9, 2.0])
+    assert first_zero(of, values, of(values), 2) == pytest.approx(zero, rel=1e-15)
+    assert len(asked) <= 5
 
 
 def searched(case: ls.Case, key: str, low: float, high: float, unit: str) -> Search:

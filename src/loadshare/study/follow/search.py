@@ -22,6 +22,7 @@ from loadshare.study.follow.centre import centred
 from loadshare.study.follow.equations import Equations, Flags, Held
 from loadshare.study.follow.line import Codes, Line, Numbers, Solved
 from loadshare.study.follow.proof import NODES, VERGE, Stretches
+from loadshare.study.follow.zero import first_zero
 from loadshare.train.situations import situation_of
 
 FIRST = 8
@@ -40,8 +41,6 @@ UNREAD = "the active set of its equilibrium could not be told"
 """Why a certified answer is no point."""
 SECTIONS = 9
 """Values between two ends at which the gauges of one are looked at."""
-REFINED = 8
-"""Refinements of a zero; three are taken as a rule."""
 GRADE = 0.5
 """Ratio of stretches that shrink towards an event."""
 RESOLVED = 1e-9
@@ -99,8 +98,6 @@ class Gap:
     stop: float
     why: str
 
-
-_AROUND = np.array([-1e-2, -1e-4, -1e-7, -1e-10, 1e-10, 1e-7, 1e-4, 1e-2])
 
 Stretch = tuple[Point | str, Point | str, float, float]
 
@@ -378,28 +375,19 @@ class Search:
         if not len(beyond):
             return None
         due = np.flatnonzero(negative[beyond[0]])
-        low, high = values[beyond[0] - 1], values[beyond[0]]
-        least = gauges[:, due].min(axis=1)
-        f_low, f_high = float(least[beyond[0] - 1]), float(least[beyond[0]])
-        if f_low <= VERGE:
-            return float(low)
-        for _ in range(REFINED):
-            guess = low + (high - low) * f_low / (f_low - f_high)
-            inner = guess + (high - low) * _AROUND
-            inside = (inner - low) * (high - inner) > 0.0
-            inner = np.unique(np.append(inner[inside], guess))
-            inner = inner if high > low else inner[::-1]
+        least = gauges[:, due]
+        if least[beyond[0] - 1].min() <= VERGE:
+            return float(values[beyond[0] - 1])
+
+        def asked(inner: Array) -> Array | None:
+            inner = inner if far.value > near.value else inner[::-1]
             found = self._sections(equations, inner, near.z)
             if found is None or len(found[0]) < len(inner):
                 return None
-            least = found[1][:, due].min(axis=1)
-            values = np.concatenate([[low], inner, [high]])
-            least = np.concatenate([[f_low], least, [f_high]])
-            k = int(np.flatnonzero(least[1:] <= 0.0)[0]) + 1
-            low, high, f_low, f_high = values[k - 1], values[k], least[k - 1], least[k]
-            if f_high == 0.0 or abs(high - low) <= 4e-16 * abs(high):
-                break
-        return float(high)
+            here = found[1][:, due]
+            return here if far.value > near.value else here[::-1]
+
+        return first_zero(asked, values, least, int(beyond[0]))
 
     def _sections(
         self, equations: Equations, values: Array, near: Array

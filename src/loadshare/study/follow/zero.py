@@ -1,0 +1,84 @@
+"""The value at which the first of several gauges vanishes.
+
+Beyond it a set no longer holds, and its gauges may go on with other slopes: a chord across the zero
+then converges slowly, always from one side. So a bracket is closed from the chord, from what the
+gauges do before it, and from what they do beyond, whichever is nearer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from loadshare.scene.scene import Array
+
+ROUNDS = 16
+"""Refinements of a bracket; three are taken as a rule, and each halves it at least."""
+EXACT = 1e-12
+"""Width of a bracket, over the largest value, that is good enough where rounding stops it."""
+ADJACENT = 4e-16
+"""Width of a bracket, over its value, with nothing in between."""
+_AROUND = np.array([-1e-2, -1e-4, -1e-7, -1e-10, 0.0, 1e-10, 1e-7, 1e-4, 1e-2])
+
+
+def first_zero(
+    of: Callable[[Array], Array | None], values: Array, gauges: Array, beyond: int
+) -> float | None:
+    """Return the first value at which a gauge is not positive any more.
+
+    Parameters
+    ----------
+    of : callable
+        Gauges (k, n) at values (k,); None where there are none.
+    values : ndarray, shape (m,)
+        Rising or falling.
+    gauges : ndarray, shape (m, n)
+        At these; all are positive before `beyond`.
+    beyond : int
+        The first at which one is negative.
+
+    Returns
+    -------
+    float or None
+        None where the gauges end on the way, or do not settle.
+    """
+    largest = float(np.abs(values).max())
+    for _ in range(ROUNDS):
+        low, high = values[beyond - 1], values[beyond]
+        if gauges[beyond].min() == 0.0 or abs(high - low) <= ADJACENT * abs(high):
+            return float(high)
+        inner = _inner(values, gauges, beyond)
+        if not len(inner):
+            return float(high)
+        found = of(inner)
+        if found is None:
+            return None
+        near = slice(max(beyond - 2, 0), beyond + 2)
+        values, gauges = np.append(values[near], inner), np.vstack([gauges[near], found])
+        order = np.argsort(values if high > low else -values, kind="stable")
+        values, gauges = values[order], gauges[order]
+        beyond = int(np.flatnonzero(gauges.min(axis=1) <= 0.0)[0])
+    return float(high) if abs(high - low) <= EXACT * largest else None
+
+
+def _inner(values: Array, gauges: Array, beyond: int) -> Array:
+    """Values inside a bracket at which to look next."""
+    low, high = values[beyond - 1], values[beyond]
+    guesses = np.array(list(_guesses(values, gauges, beyond)))
+    inner = np.append(guesses[:, None] + (high - low) * _AROUND, 0.5 * (low + high))
+    return np.unique(inner[(inner - low) * (high - inner) > 0.0])
+
+
+def _guesses(values: Array, gauges: Array, beyond: int) -> Iterator[float]:
+    """Yield where the first gauge vanishes by chords before, across and beyond the zero."""
+    low, high = values[beyond - 1], values[beyond]
+    for k in (beyond - 1, beyond, beyond + 1):
+        if not 1 <= k < len(values):
+            continue
+        with np.errstate(divide="ignore", invalid="ignore"):
+            parts = gauges[k - 1] / (gauges[k - 1] - gauges[k])
+        zeros = (values[k - 1] + parts * (values[k] - values[k - 1]) - low) / (high - low)
+        inside = zeros[(zeros > 0.0) & (zeros < 1.0)]
+        if len(inside):
+            yield low + float(inside.min()) * (high - low)
