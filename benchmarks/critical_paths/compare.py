@@ -14,6 +14,8 @@ from loadshare.study.event import Event
 Array = NDArray[np.float64]
 NEAR = 2e-9
 """Distance of a sample from an event, relative, at which its state is not asked for."""
+SAME = 1e-11
+"""Distance, over the largest value, at which two paths have the same event."""
 
 
 def compared(found: Critical, values: Array, seen: dict[str, Array]) -> tuple[list[str], list[str]]:
@@ -59,7 +61,8 @@ def between(found: Critical) -> Array:
 
 def apart(found: Critical, other: Critical) -> list[str]:
     """Events that two ranges do not have in common although both hold them."""
-    size = 1e-9 * max(abs(found.stop), abs(found.start))
+    largest = max(abs(found.stop), abs(found.start))
+    size = 1e-9 * largest
     top = other.stop - size
     sets = []
     for one in (found, other):
@@ -77,5 +80,5 @@ def apart(found: Critical, other: Critical) -> list[str]:
     return [
         f"{a.element} at {a.value:.15g} or {b.value:.15g}"
         for a, b in zip(here, there, strict=True)
-        if abs(a.value - b.value) > size or (a.element, a.after) != (b.element, b.after)
+        if abs(a.value - b.value) > SAME * largest or (a.element, a.after) != (b.element, b.after)
     ]
