@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 from benchmarks.random_trains.draw import draw
-from benchmarks.sensitivities import FINE, Verdict, judged, one, text
+from benchmarks.sensitivities import FINE, Verdict, judged, one, problem, text
 from tests.support import SHIPPED, shipped
 
 import loadshare as ls
@@ -116,6 +116,22 @@ def test_differences_on_every_shipped_case(name):
 
 def outcomes(rows: list[dict]) -> list[str]:
     return [v["outcome"] for row in rows for v in row["verdicts"]]
+
+
+@pytest.mark.parametrize(
+    ("number", "key"),
+    [
+        # A mesh 7,000 times as stiff as the others, whose sides move as one.
+        (53, "gears.c21.base_radius"),
+        (117, "splines.w2.bending_stiffness"),
+        # At its bound: there is one side, and the usual step is too long for it.
+        (128, 'meshes."i1a-q1".backlash'),
+    ],
+)
+def test_stated_errors_do_not_drown_derivatives(number, key):
+    _, case, position = problem(1, number)
+    found = sensitivity(case, key, positions=[position])
+    assert judged(case, found, found.inputs[0], position, "rising").outcome == "agrees"
 
 
 def test_drawn_and_critical_cases():

@@ -119,11 +119,14 @@ def differentiate(of: Callable[[float], Array], value: Value, rounding: Array) -
             found = _differentiated(of, value, rounding, share * usual)
         except (CaseError, ValueError, BranchLost):
             continue
-        if all(isinstance(s, Slope) for s in (found.falling, found.rising)) and (
-            _relative(found) < _relative(best)
-        ):
+        if _sides(found) == _sides(best) and _relative(found) < _relative(best):
             best = found
     return best
+
+
+def _sides(found: Derivative) -> tuple[bool, bool]:
+    """Whether there is a derivative to each side."""
+    return isinstance(found.falling, Slope), isinstance(found.rising, Slope)
 
 
 def _relative(found: Derivative) -> float:
