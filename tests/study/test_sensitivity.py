@@ -134,6 +134,14 @@ def test_stated_errors_do_not_drown_derivatives(number, key):
     assert judged(case, found, found.inputs[0], position, "rising").outcome == "agrees"
 
 
+def test_a_gear_that_comes_to_float_has_no_displacement_to_that_side():
+    """On the event pinion 5 lies on stop and arc; with more eccentricity it floats between arcs."""
+    key = "errors.8.eccentricity.amount"
+    put = shipped("fgfbstts/tolerance").replace({key: "0.8570800282942369 um"})
+    found = sensitivity(put, key, positions=[1])
+    assert np.isnan(found.rates[1, key, "rising"].displacement["5"]).all()
+
+
 def test_drawn_and_critical_cases():
     rows = [{"number": k, **one(7, k)} for k in range(2, 5)]
     told = outcomes(rows)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from loadshare.errors import CaseError, Problem
+from loadshare.errors import CaseError, Problem, Refused
 from loadshare.scene import assemble
 from loadshare.scene.scene import Array
 from loadshare.study.answers import certified
@@ -117,7 +117,10 @@ class Corner:
         if motion is not None:
             self._caught |= dict.fromkeys(motion.elements)
             shared = not motion.one_sided and not kinked
-            return self._rates(self._moved(motion)), shared
+            floating: tuple[str, ...] = ()
+            if motion.one_sided and step is not None:
+                floating = self._floating(varied, sign * step)
+            return self._rates(self._moved(motion, floating)), shared
         try:
             torque, displacement = differenced(self._answer, varied, sign, step)
         except NoDifference as why:
@@ -126,7 +129,7 @@ class Corner:
         self._remark(key, side, f"differenced when it is {_word(side)}: no active set was proved")
         order = list(self.train.meshes)
         error = np.array([torque[m][1] for m in order])
-        loose = self._loose
+        loose = self._loose()
         told = Motions(
             np.array([torque[m][0] for m in order]),
             error,
@@ -136,8 +139,8 @@ class Corner:
         )
         return self._rates(told), False
 
-    def _moved(self, motion: Motion) -> Motions:
-        """Torques and displacements of a motion."""
+    def _moved(self, motion: Motion, floating: Iterable[str]) -> Motions:
+        """Torques and displacements of a motion, beside which some coordinates float."""
         branch, size = motion.branch, motion.branch.size
         gradients = torque_gradients(branch, motion.z)
         direct, direct_error = motion.change.value[size:], motion.change.error[size:]
@@ -145,7 +148,7 @@ class Corner:
         def bound(weights: Array) -> Array:
             return np.asarray(motion.bound(weights @ gradients) + np.abs(weights) @ direct_error)
 
-        loose, length = self._loose, branch.units.length
+        loose, length = self._loose(floating), branch.units.length
         moved = {g: np.zeros(2) for g in self.train.gears}
         error = {g: np.zeros(2) for g in self.train.gears}
         for gear, where in branch.scene.displacement.items():
@@ -200,10 +203,9 @@ class Corner:
                 row[order.index(m)] += 1.0
             yield group, weights / mean
 
-    @property
-    def _loose(self) -> dict[str, Array]:
-        """Which components of each gear's displacement the equilibrium leaves undetermined."""
-        free = set(self._answer.undetermined)
+    def _loose(self, beside: Iterable[str] = ()) -> dict[str, Array]:
+        """Which components of each gear's displacement are left undetermined, here or beside."""
+        free = {*self._answer.undetermined, *beside}
         loose = {g: np.array([f"gear {g} {c}" in free for c in "xy"]) for g in self.train.gears}
         place = self.neighbourhood.own
         if place is not None:
@@ -211,6 +213,14 @@ class Corner:
             for gear, where in place.branch.scene.displacement.items():
                 loose[gear] = loose[gear] | moves[where]
         return loose
+
+    @staticmethod
+    def _floating(varied: Variation, amount: float) -> tuple[str, ...]:
+        """Coordinates that float a little way to a side, though they may be held at the value."""
+        try:
+            return tuple(varied.answer(amount).undetermined)
+        except (CaseError, ValueError, Refused):
+            return ()
 
     def _nothing(self) -> Rates:
         """Not a number, wherever something might move."""
