@@ -37,9 +37,9 @@ from loadshare.train.train import Train
 HOT, SEARCHED = "hot path", "proximal search"
 PLAINLY = 1e-6
 """Overlap of rigid limits, over the lengths at hand, after which nothing else need be tried."""
-STEPS = 3000
-"""Newton steps in which the rungs after the hot path answer or give up: a second, and twice what
-ever led to an answer that neither exchange nor search had found."""
+STEPS = 20_000
+"""Newton steps in which the rungs after the hot path answer or give up: some ten seconds, and twice
+what ever led to an answer that neither exchange nor search had found."""
 AUTO = "auto"
 """Instead of a back-end's name: the hot path, and Clarabel for what it leaves."""
 
