@@ -231,6 +231,15 @@ def test_what_cannot_be_written_any_more_is_told_once(tmp_path, monkeypatch, cap
 # --- Compiling is told ---
 
 
+@pytest.fixture
+def nothing_compiles():
+    """Whoever tells of what was compiled before is done."""
+    teller = compilation._watch._teller
+    if teller is not None:
+        teller.join(60.0)
+
+
+@pytest.mark.usefixtures("nothing_compiles")
 def test_compiling_is_told_while_it_lasts(monkeypatch, caplog):
     monkeypatch.setattr(compilation, "PATIENCE", 0.05)
     monkeypatch.setattr(compilation, "AGAIN", 0.1)
@@ -250,6 +259,7 @@ def test_compiling_is_told_while_it_lasts(monkeypatch, caplog):
     assert messages[-1].startswith("Compiling: done after")
 
 
+@pytest.mark.usefixtures("nothing_compiles")
 def test_what_takes_no_time_is_not_told(monkeypatch, caplog):
     monkeypatch.setattr(compilation, "PATIENCE", 0.2)
     watch = compilation._Watch()
