@@ -19,7 +19,6 @@ from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.laws import Act, Codes, elements
 from loadshare.certify.bound.quick import quick_boxes
-from loadshare.certify.bound.statics import Statics
 
 Array = NDArray[np.float64]
 
@@ -63,6 +62,8 @@ def on_the_verge(claim: Claim, act: Codes, scale: Array, box: Box) -> Box:
                 for choice in product(*tried.values())
             ]
         )
+        # What closes alone, and so can change no force, is as good as open.
+        acts = np.unique([_without_idle(claim, a, list(tried), scale) for a in acts], axis=0)
         verge = np.zeros(acts.shape, dtype=bool)
         verge[:, list(ways)] = True
         rows = np.zeros(len(acts), dtype=np.intp)
@@ -74,7 +75,8 @@ def on_the_verge(claim: Claim, act: Codes, scale: Array, box: Box) -> Box:
         new = np.flatnonzero((many.doubtful & ~verge & free)[held].any(axis=0))
         if not len(new):
             found = _largest(many, held)
-            return found if np.isfinite(found.force).all() else quick_boxes(claim, act, scale)
+            flanks = found.force[:, claim.columns.flanks]
+            return found if np.isfinite(flanks).all() else quick_boxes(claim, act, scale)
         for e in new.tolist():
             row = int(np.flatnonzero(many.doubtful[:, e] & held)[0])
             ways[e] = _ways(claim, e, int(act[0, e]), bool(many.above[row, e]))
@@ -102,13 +104,46 @@ def _with(act: Codes, changes: dict[int, int]) -> Codes:
 
 def _idle(claim: Claim, act: Codes, doubtful: list[int], scale: Array) -> set[int]:
     """Doubtful contacts that cannot change a force, whether they touch or not."""
-    columns = claim.columns
-    contacts = [e for e in doubtful if e < len(columns.contacts)]
+    contacts = [e for e in doubtful if e < len(claim.columns.contacts)]
     closed, verge = _closed(act, contacts)
-    acting = np.flatnonzero(elements(claim, closed, scale, verge).active[0])
-    redundant = Statics.of(columns.matrix.high[acting]).redundant
-    part = dict(zip(acting.tolist(), np.abs(redundant).max(axis=1, initial=0.0), strict=True))
-    return {e for e in contacts if part[columns.contacts[e]] < IDLE}
+    return _alone(claim, closed, contacts, verge, scale)
+
+
+def _without_idle(claim: Claim, act: Codes, doubtful: list[int], scale: Array) -> Codes:
+    """One way of acting, with those doubtful elements open that cannot change a force in it."""
+    limits = [e for e in doubtful if act[e] == Act.STOP and _is_limit(claim, e)]
+    verge = np.zeros((1, len(act)), dtype=bool)
+    verge[0, doubtful] = True
+    return _with(act, dict.fromkeys(_alone(claim, act[None], limits, verge, scale), Act.OPEN))
+
+
+def _is_limit(claim: Claim, e: int) -> bool:
+    """Whether an element is open or pressed, and nothing else: a contact, a ring."""
+    columns = claim.columns
+    radial = e - len(columns.contacts) - (columns.arcs.stop - columns.arcs.start) // 2
+    return radial < 0 or bool(claim.graphs[0, radial, 2] == 0.0)
+
+
+def _alone(
+    claim: Claim, act: Codes, some: list[int], verge: NDArray[np.bool_], scale: Array
+) -> set[int]:
+    """Elements, of some that are closed, without part in any self-stress."""
+    columns = claim.columns
+    if not some:
+        return set()
+    acting = np.flatnonzero(elements(claim, act, scale, verge).active[0])
+    redundant = columns.statics(acting).redundant
+    part = np.zeros(len(columns.names))
+    part[acting] = np.abs(redundant).max(axis=1, initial=0.0)
+    count = len(columns.contacts)
+
+    def share(e: int) -> float:
+        if e < count:
+            return float(part[columns.contacts[e]])
+        first = columns.first_pair + 2 * (e - count)
+        return float(part[first : first + 2].max())
+
+    return {e for e in some if share(e) < IDLE}
 
 
 def _closed(act: Codes, doubtful: Iterable[int]) -> tuple[Codes, NDArray[np.bool_]]:
