@@ -134,6 +134,18 @@ def test_stated_errors_do_not_drown_derivatives(number, key):
     assert judged(case, found, found.inputs[0], position, "rising").outcome == "agrees"
 
 
+def test_a_difference_goes_on_to_steps_before_an_event_that_is_near():
+    """Less than 1e-5 deg below the value pinion 5 meets another arc, and other slopes hold."""
+    case = shipped("fgfbstts/tolerance").replace(
+        {"errors.9.eccentricity.amount": "20.651960977181545 um"}
+    )
+    key = 'meshes."5-9".pressure_angle'
+    rates = sensitivity(case, key, positions=[1]).rates[1, key, "falling"]
+    digits = 11157.707  # differences of equilibria in 50 digits, known to 8
+    assert abs(rates.torque["8-10"] - digits) <= rates.error.torque["8-10"] + 8.0
+    assert rates.error.torque["8-10"] < 0.01 * digits
+
+
 def test_a_gear_that_comes_to_float_has_no_displacement_to_that_side():
     """On the event pinion 5 lies on stop and arc; with more eccentricity it floats between arcs."""
     key = "errors.8.eccentricity.amount"

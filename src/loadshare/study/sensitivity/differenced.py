@@ -6,7 +6,7 @@ The difference over a step, a quarter of it, and so on converges as the step or 
 
 from __future__ import annotations
 
-from itertools import pairwise
+from itertools import combinations, pairwise
 
 import numpy as np
 
@@ -18,8 +18,11 @@ from loadshare.train.equilibrium import Equilibrium
 
 FIRST = 1e-4
 """First step, relative to the input's value or to the step that differencing takes."""
-STEPS = 6
-"""Steps that are tried, each a quarter of the one before."""
+STEPS, MOST = 6, 16
+"""Steps that are tried, each a quarter of the one before: as a rule, and where an event stands so
+near that slopes grow as steps shrink."""
+SETTLED = 5
+"""Steps over which slopes must not have grown to count as settled."""
 SOLVED = 1e-12
 """What a certified solve leaves open of the largest force and displacement."""
 SAFE = 3.0
@@ -57,7 +60,9 @@ def differenced(
     first = 4.0 * step if step is not None else FIRST * (abs(varied.value.si) or 1e-3)
     slopes: list[tuple[Array, Array]] = []
     why = ""
-    for k in range(STEPS):
+    for k in range(MOST):
+        if k >= STEPS and not _unsettled(slopes[-SETTLED:]):
+            break
         amount = first * 0.25**k
         try:
             there = _laid(varied.scene(sign * amount).train, varied.answer(sign * amount))
@@ -79,21 +84,33 @@ def differenced(
     return torque, moves
 
 
+def _unsettled(slopes: list[tuple[Array, Array]]) -> bool:
+    """Whether slopes differed the more the nearer they were, beyond their noise, until lately."""
+    for far, middle, near in zip(slopes[:-2], slopes[1:-1], slopes[2:], strict=True):
+        apart = np.abs(near[0] - middle[0])
+        noise = near[1] + middle[1]
+        if ((apart > np.abs(middle[0] - far[0])) & (apart > noise)).any():
+            return True
+    return False
+
+
 def _limit(slopes: list[tuple[Array, Array]]) -> tuple[Array, Array]:
-    """Extrapolate every pair of neighbours; take, figure by figure, the least error."""
+    """Extrapolate every pair of neighbours; take, figure by figure, the least error.
+
+    A limit that a nearer one contradicts is none: an event stands between them.
+    """
     limits = [
         ((4.0 * near - far) / 3.0, (4.0 * noise + coarse) / 3.0)
         for (far, coarse), (near, noise) in pairwise(slopes)
     ]
-    best, error = np.zeros(0), np.zeros(0)
-    for (before, _), (value, noise) in pairwise(limits):
-        bound = SAFE * np.abs(value - before) + noise
-        if not len(best):
-            best, error = value, bound
-            continue
-        better = bound < error
-        best, error = np.where(better, value, best), np.where(better, bound, error)
-    return best, error
+    values = np.array([value for value, _ in limits[1:]])
+    errors = np.array([SAFE * np.abs(b[0] - a[0]) + b[1] for a, b in pairwise(limits)])
+    for far, near in combinations(range(len(values)), 2):
+        apart = np.abs(values[far] - values[near])
+        errors[far] = np.where(apart > errors[far] + errors[near], np.inf, errors[far])
+    chosen = errors.argmin(axis=0)
+    each = np.arange(values.shape[1])
+    return values[chosen, each], errors[chosen, each]
 
 
 def _laid(train: Train, found: Equilibrium) -> Array:
