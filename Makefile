@@ -60,13 +60,13 @@ cases: $(VENV)/.run ## write the generated cases again
 	$(BIN)/python -m loadshare.case.families cases
 
 bench: $(VENV)/.bench ## measure speed against accuracy (docs/evidence)
-	$(BIN)/loadshare chart
+	$(BIN)/python -m benchmarks.chart
 
 stress: $(VENV)/.bench ## try every method on every family (docs/evidence)
-	$(BIN)/loadshare stress
+	$(BIN)/python -m benchmarks.stress
 
 reproduce: $(VENV)/.run ## compute the seed paper's figures (docs/reproduction.md)
-	$(BIN)/loadshare reproduce
+	$(BIN)/python -m benchmarks.reproduction
 
 clean: ## remove what was built
 	rm -rf $(VENV) site dist build .pytest_cache .mypy_cache .ruff_cache

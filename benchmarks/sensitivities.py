@@ -24,14 +24,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from benchmarks import kept
-from benchmarks.random_trains.draw import draw
 
 import loadshare as ls
+from benchmarks import kept
+from benchmarks.machine_facts import facts
+from benchmarks.random_trains.draw import draw
+from benchmarks.reference import NoReference, reference
+from benchmarks.stress.families import FAMILIES
 from loadshare.certify.certificate import TOLERANCE
-from loadshare.evidence.machine_facts import facts
-from loadshare.evidence.reference import NoReference, reference
-from loadshare.evidence.stress.families import FAMILIES
 from loadshare.job.machine import Machine
 from loadshare.solver.hot import vectorised
 from loadshare.study.answers import certified

@@ -19,10 +19,10 @@ from pathlib import Path
 import numpy as np
 
 import loadshare as ls
-from loadshare.evidence.machine_facts import facts
-from loadshare.evidence.peers import PEERS
-from loadshare.evidence.peers.form import form_of
-from loadshare.evidence.peers.loop import Failure
+from benchmarks.machine_facts import facts
+from benchmarks.peers import PEERS
+from benchmarks.peers.form import form_of
+from benchmarks.peers.loop import Failure
 from loadshare.results.share import largest, stage_shares
 from loadshare.scene import assemble
 from loadshare.study.tolerance.result import Tolerance

@@ -11,10 +11,9 @@ import sys
 from datetime import UTC, datetime
 from pathlib import Path
 
+import loadshare
 from benchmarks.attack.judge import ALLOWED, ROUNDING, Attack, part
 from benchmarks.attack.ways import WAYS
-
-import loadshare
 
 
 def text(found: list[Attack]) -> str:

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from itertools import islice, repeat
 
 import numpy as np
+
 from benchmarks.attack.victims import Victim, victims
 from benchmarks.attack.ways import WAYS
 from benchmarks.random_trains.judge import torque_bounds
-
 from loadshare.certify import certify
 
 EACH = 40

@@ -9,12 +9,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import loadshare as ls
 from benchmarks.random_trains.draw import draw
 from benchmarks.random_trains.limit import TooLong, limited
-
-import loadshare as ls
+from benchmarks.reference import NoReference, reference
 from loadshare.case import Case, families
-from loadshare.evidence.reference import NoReference, reference
 from loadshare.results.claim import claim_of
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium

@@ -9,10 +9,10 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from benchmarks.attack.balance import Array, Balance
-from benchmarks.attack.victims import Victim
 
 import loadshare as ls
+from benchmarks.attack.balance import Array, Balance
+from benchmarks.attack.victims import Victim
 from loadshare.case.keys import Path, dotted
 from loadshare.results.claim import claim_of
 from loadshare.train import build_train

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 import loadshare as ls
+from benchmarks.stress.dressing import any_structure, held, spread
+from benchmarks.stress.workbench import BENDING, DEFLECTION, Workbench, written
 from loadshare.errors import CaseError
-from loadshare.evidence.stress.dressing import any_structure, held, spread
-from loadshare.evidence.stress.workbench import BENDING, DEFLECTION, Workbench, written
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,12 +9,12 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
-from benchmarks.critical_paths.compare import apart, between, compared
-from benchmarks.critical_paths.draw import Path, random_path, text
-from benchmarks.critical_paths.scan import scanned
 from numpy.typing import NDArray
 
 import loadshare as ls
+from benchmarks.critical_paths.compare import apart, between, compared
+from benchmarks.critical_paths.draw import Path, random_path, text
+from benchmarks.critical_paths.scan import scanned
 from loadshare.errors import Refused
 from loadshare.study.follow.line import Line
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from benchmarks.critical_paths.draw import Path
 from numpy.typing import NDArray
 
+from benchmarks.critical_paths.draw import Path
 from loadshare.certify.bound import Bounds
 from loadshare.certify.certificate import TOLERANCE
 from loadshare.certify.many import Judge, Verdicts

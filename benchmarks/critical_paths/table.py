@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from loadshare.evidence.machine_facts import facts
+from benchmarks.machine_facts import facts
 
 Row = dict[str, Any]
 FAULTS = ("missed", "invented", "moved")

@@ -13,7 +13,6 @@ from typing import Any
 
 from benchmarks.random_trains.dice import Dice, metres, radians
 from benchmarks.random_trains.layouts import LAYOUTS, Layout
-
 from loadshare.case import Case
 from loadshare.errors import CaseError
 

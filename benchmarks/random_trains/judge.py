@@ -10,18 +10,17 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+import loadshare as ls
 from benchmarks.random_trains.limit import TooLong, limited
 from benchmarks.random_trains.play import play
-
-import loadshare as ls
+from benchmarks.reference import NoReference, Reference
+from benchmarks.reference.machine import Machine
+from benchmarks.reference.settle import Settled
+from benchmarks.reference.solve import report, settled_in_digits
+from benchmarks.stress.truth import truth_of
 from loadshare.case import Case
 from loadshare.certify import Certificate
 from loadshare.errors import CaseError, Refused
-from loadshare.evidence.reference import NoReference, Reference
-from loadshare.evidence.reference.machine import Machine
-from loadshare.evidence.reference.settle import Settled
-from loadshare.evidence.reference.solve import report, settled_in_digits
-from loadshare.evidence.stress.truth import truth_of
 from loadshare.results.result import Position
 from loadshare.train import Train, build_train
 

@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.evidence.reference.elements import Graph
-from loadshare.evidence.reference.elimination import solve_sparse
-from loadshare.evidence.reference.equations import Equations, Guess, offset
-from loadshare.evidence.reference.machine import Machine
+from benchmarks.reference.elements import Graph
+from benchmarks.reference.elimination import solve_sparse
+from benchmarks.reference.equations import Equations, Guess, offset
+from benchmarks.reference.machine import Machine
 
 FACETS = 32
 """Sides of the polygon inside a disc, in which a gear may move freely."""

@@ -10,12 +10,12 @@ from itertools import islice
 
 import numpy as np
 import pytest
+
 from benchmarks.attack.__main__ import text
 from benchmarks.attack.balance import Balance
 from benchmarks.attack.judge import ALLOWED, ROUNDING, Attack, attacks
 from benchmarks.attack.victims import victims
 from benchmarks.attack.ways import WAYS, another_case, self_stress_followed
-
 from loadshare.certify import certify
 
 SEED = 7

@@ -10,11 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import loadshare as ls
+from benchmarks.reference import NoReference, reference
+from benchmarks.stress.families import FAMILIES
 from loadshare.certify import certify
 from loadshare.certify.bound import Columns, bound_of, bounds
 from loadshare.certify.bound.twofold import power_two_thirds, product, two_product, two_sum
-from loadshare.evidence.reference import NoReference, reference
-from loadshare.evidence.stress.families import FAMILIES
 from loadshare.job.machine import Machine, engine_named
 from loadshare.train import build_train
 from loadshare.train.equilibrium import Equilibrium

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import loadshare as ls
+from benchmarks.reference import reference
 from loadshare.certify import certify
-from loadshare.evidence.reference import reference
 from loadshare.train import build_train
 
 HERE = Path(__file__).parent

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import loadshare as ls
+from benchmarks.reference import NoReference, reference
 from loadshare.certify import certify
-from loadshare.evidence.reference import NoReference, reference
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium
 

@@ -7,13 +7,13 @@ runs thousands, this test the first of another seed.
 import dataclasses
 
 import pytest
+
+import loadshare as ls
 from benchmarks.kept import known
 from benchmarks.random_trains.draw import LAYOUTS, draw
 from benchmarks.random_trains.judge import AGREES, judged
 from benchmarks.random_trains.run import failures, run
 from benchmarks.random_trains.table import text
-
-import loadshare as ls
 
 SEED = 7
 

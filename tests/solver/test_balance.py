@@ -5,10 +5,10 @@ Source: formulation, section 6: a load along a move that nothing resists has no 
 
 import numpy as np
 import pytest
-from benchmarks.random_trains.draw import draw
 from tests.support import round_ring, shipped
 
 import loadshare as ls
+from benchmarks.random_trains.draw import draw
 from loadshare.errors import Refused
 from loadshare.job import machine
 from loadshare.scene import assemble

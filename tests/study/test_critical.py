@@ -4,14 +4,14 @@ from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
+from tests.support import coasting, lost_contact, round_ring, shipped
+
+import loadshare as ls
 from benchmarks.critical_paths.compare import between, compared
 from benchmarks.critical_paths.draw import random_path
 from benchmarks.critical_paths.judge import Outcome, judged
 from benchmarks.critical_paths.scan import scanned
 from benchmarks.critical_paths.table import text
-from tests.support import coasting, lost_contact, round_ring, shipped
-
-import loadshare as ls
 from loadshare.case import families
 from loadshare.scene import assemble
 from loadshare.study.answers import certified

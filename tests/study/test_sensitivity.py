@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from benchmarks.random_trains.draw import draw
-from benchmarks.sensitivities import FINE, Verdict, judged, one, problem, text
 from tests.support import SHIPPED, shipped
 
 import loadshare as ls
+from benchmarks.random_trains.draw import draw
+from benchmarks.sensitivities import FINE, Verdict, judged, one, problem, text
 from loadshare.cli.study.sensitivity import good
 from loadshare.errors import CaseError
 from loadshare.study.differences import differentiate

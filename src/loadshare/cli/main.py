@@ -19,9 +19,6 @@ from loadshare.cli.batch.command import batch
 from loadshare.cli.check import check
 from loadshare.cli.command import Command
 from loadshare.cli.draw import draw
-from loadshare.cli.evidence.chart import chart
-from loadshare.cli.evidence.reproduce import reproduce
-from loadshare.cli.evidence.stress import stress
 from loadshare.cli.ltca import ltca
 from loadshare.cli.new import new
 from loadshare.cli.page import report
@@ -46,8 +43,7 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 STUDIES = (sweep, critical, sensitivity, tolerance, march, compare, fit, study)
-EVIDENCE = (chart, stress, reproduce)
-for command in (run, batch, report, draw, check, schema, new, ltca, *STUDIES, *EVIDENCE):
+for command in (run, batch, report, draw, check, schema, new, ltca, *STUDIES):
     app.command(cls=Command)(command)
 
 

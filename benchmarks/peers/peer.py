@@ -1,0 +1,69 @@
+"""What a peer is: set up once for a workload, then one answer a sample."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Protocol
+
+from benchmarks.peers.form import Form
+from benchmarks.peers.loop import Claim
+
+
+class Peer(Protocol):
+    """A way to solve the common problem."""
+
+    def prepare(self, form: Form) -> None:
+        """Do once what can be done once for all samples like this one."""
+
+    def solve(self, form: Form) -> Claim:
+        """Answer a sample.
+
+        Raises
+        ------
+        Failure
+            If the peer says that it has no answer.
+        """
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A peer in the list.
+
+    Attributes
+    ----------
+    name : str
+    package : str
+        What it needs, as imported.
+    room : str
+        Module with a function ``make(tolerance)``.
+    tolerances : tuple of float
+        Those that are charted, loosest first; the last is its best practice.
+    kinds : frozenset of str
+        "QP", "SOCP".
+    note : str
+        How it is used.
+    slow : bool
+        Takes milliseconds: fewer samples.
+    """
+
+    name: str
+    package: str
+    room: str
+    tolerances: tuple[float, ...]
+    kinds: frozenset[str]
+    note: str
+    slow: bool = False
+
+    @property
+    def missing(self) -> bool:
+        """Whether its package is not installed."""
+        from importlib.util import find_spec
+
+        return find_spec(self.package) is None
+
+    def make(self, tolerance: float) -> Peer:
+        """Return the peer at a tolerance."""
+        make: Callable[[float], Peer] = import_module(f"benchmarks.peers.{self.room}").make
+        return make(tolerance)

@@ -1,0 +1,229 @@
+"""The reference equilibrium of a train: found in double precision, settled in 50 digits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from benchmarks.reference.equations import Guess
+from benchmarks.reference.machine import Machine, machine
+from benchmarks.reference.settle import NoReference, Settled, loose_directions, settle
+from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.gear import Vector
+from loadshare.train.train import Situation, Train
+
+__all__ = ["NoReference", "Reference", "reference"]
+
+DIGITS = 70
+"""Digits of the arithmetic; twenty more than are claimed."""
+TOLERANCE = "1e-45"
+"""Largest residual, in forces and lengths of the case."""
+SOFTENINGS = (0.0, 1e-1, 1e-3, 1e-5, 1e-7)
+"""Softenings from which the search for an active set begins, each down to none."""
+FREE = 1e-9
+"""Part of a null vector from which on a coordinate counts as undetermined."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Reference:
+    """An equilibrium in 50 digits, and its nearest doubles.
+
+    Attributes
+    ----------
+    torque : mapping of mesh to float
+        Drive less coast torque at the driver [N·m].
+    displacement : mapping of gear to ndarray, shape (2,)
+        p [m] of every gear that moves, in its transverse frame.
+    force : mapping of contact to float
+        [N], of flanks, arcs and stops; zero where open.
+    pull : mapping of element to ndarray, shape (2,)
+        Force [N] of every spline and round ring on its gear.
+    undetermined : frozenset of str
+        Gears whose displacement the equilibrium does not determine.
+    loose : frozenset of str
+        Gears, these included, whose displacement hangs on forces below 1e-9 of the load: where they
+        come to rest is decided by digits that no case file has.
+    residual : float
+        Largest residual of all equations, in forces and lengths of the case.
+    imbalance : float
+        What the rounding of the train's figures leaves out of balance along free directions, in
+        loads; zero without such directions.
+    slack : float
+        Distance of the nearest sign from its change: smallest force of a closed contact, smallest
+        gap of an open one; near zero on the verge.
+    exact : mapping of mesh to str
+        The torques in 50 digits.
+    """
+
+    torque: Mapping[str, float]
+    displacement: Mapping[str, Vector]
+    force: Mapping[str, float]
+    pull: Mapping[str, Vector]
+    undetermined: frozenset[str]
+    loose: frozenset[str]
+    residual: float
+    imbalance: float
+    slack: float
+    exact: Mapping[str, str]
+
+
+def reference(train: Train, index: int = 1, hint: Equilibrium | None = None) -> Reference:
+    """Find the equilibrium of a position in 50-digit arithmetic.
+
+    Parameters
+    ----------
+    train : Train
+    index : int
+        1-based position.
+    hint : Equilibrium, optional
+        Where to look first. It saves time and cannot change the answer, whose equations and signs
+        are checked in 50 digits.
+
+    Returns
+    -------
+    Reference
+
+    Raises
+    ------
+    NoReference
+        If no active set was found, or the train is not determined to 50 digits.
+    """
+    return report(train, *settled_in_digits(train, index, hint))
+
+
+def settled_in_digits(
+    train: Train, index: int = 1, hint: Equilibrium | None = None
+) -> tuple[Machine, Settled]:
+    """Return the equations of a position in 70 digits, and where they are settled.
+
+    Parameters, errors: as for `reference`.
+    """
+    import mpmath
+
+    situation = train.situation(index)
+    exact = mpmath.MPContext()
+    exact.dps = DIGITS
+    fine = machine(train, situation, exact)
+    start = _hinted(fine, train, hint) if hint else _raised(fine, _found(train, situation))
+    return fine, settle(fine, start, exact.mpf(TOLERANCE), exact.mpf(10) ** -50)
+
+
+def _found(train: Train, situation: Situation) -> Guess:
+    """Settle in double precision, over softened trains if it does not go directly."""
+    import mpmath
+
+    last: NoReference | None = None
+    for first in SOFTENINGS:
+        soft = machine(train, situation, mpmath.fp, first)
+        start = _at_rest(soft)
+        try:
+            for softening in (first, *(s for s in SOFTENINGS[1:] if s < first), 0.0):
+                coarse = machine(train, situation, mpmath.fp, softening)
+                start = settle(coarse, start, 1e-9, 1e-12).at
+        except NoReference as failure:
+            last = failure
+            continue
+        return start
+    raise last or NoReference("nothing was tried")
+
+
+def _at_rest(coarse: Machine) -> Guess:
+    """Drive flanks closed under the whole load, everything else open and unmoved."""
+    unit, zero = coarse.arithmetic.mpf(1), coarse.arithmetic.mpf(0)
+    bounds = {
+        n: g.per_torque * sum(abs(a) for a in g.torque_of.values()) if g.torque_of else g.bound
+        for n, g in coarse.graphs.items()
+    }
+    drive = [n for n in coarse.contacts if not n.startswith("ring ") and not n.endswith(" coast")]
+    return Guess(
+        [zero] * coarse.size,
+        dict.fromkeys(drive, unit),
+        [zero] * len(coarse.ties),
+        {n: g.place(zero, zero, bounds[n]) for n, g in coarse.graphs.items()},
+        {n: [zero, zero] for n in coarse.graphs},
+        bounds,
+    )
+
+
+def _raised(fine: Machine, found: Guess) -> Guess:
+    of = fine.arithmetic.mpf
+    return Guess(
+        [of(v) for v in found.x],
+        {n: of(v) for n, v in found.forces.items()},
+        [of(v) for v in found.ties],
+        dict(found.places),
+        {n: [of(v) for v in p] for n, p in found.pulls.items()},
+        {
+            n: fine.graphs[n].bound if not fine.graphs[n].torque_of else of(b)
+            for n, b in found.bounds.items()
+        },
+    )
+
+
+def _hinted(fine: Machine, train: Train, hint: Equilibrium) -> Guess:
+    """Active set and unknowns of an answer in doubles."""
+    of, zero = fine.arithmetic.mpf, fine.arithmetic.mpf(0)
+    x = [zero] * fine.size
+    for gear, i in fine.turns.items():
+        turned = of(hint.rotation[gear]) * of(train.gears[gear].base_radius)
+        x[i] = turned / of(fine.length)
+    for gear, i in fine.moves.items():
+        for k, value in enumerate(train.gears[gear].frame @ hint.displacement[gear]):
+            x[i + k] = of(float(value)) / of(fine.length)
+    claimed = {**hint.flank_force, **hint.ring_force}
+    band = 1e-11 * max([fine.force, *claimed.values()])
+    forces = {n: of(f) / of(fine.force) for n, f in claimed.items() if f > band}
+    places, pulls, bounds = {}, {}, {}
+    for name, graph in fine.graphs.items():
+        frame = train.gears[graph.gear].frame
+        pulls[name] = [-of(float(v)) / of(fine.force) for v in frame @ hint.radial_reaction[name]]
+        bounds[name] = graph.bound
+        if graph.torque_of:
+            total = sum((a * forces.get(f, zero) for f, a in graph.torque_of.items()), zero)
+            bounds[name] = graph.per_torque * abs(total)
+        q = [x[i] - c for i, c in zip(graph.indices, graph.centre, strict=True)]
+        size = fine.arithmetic.hypot(*pulls[name])
+        places[name] = graph.place(fine.arithmetic.hypot(*q), size, bounds[name])
+    return Guess(x, forces, [zero] * len(fine.ties), places, pulls, bounds)
+
+
+def _moving(fine: Machine, spans: Sequence[Sequence[Any]]) -> frozenset[str]:
+    """Gears that null vectors displace."""
+    return frozenset(
+        gear
+        for gear, i in fine.moves.items()
+        for span in spans
+        if max(abs(span[i]), abs(span[i + 1])) > FREE * max(abs(v) for v in span)
+    )
+
+
+def report(train: Train, fine: Machine, settled: Settled) -> Reference:
+    """Return an equilibrium in 70 digits as doubles."""
+    at, unit, length = settled.at, fine.arithmetic.mpf(fine.force), fine.arithmetic.mpf(fine.length)
+    force = {n: float(at.forces.get(n, 0) * unit) for n in fine.contacts}
+    torque: dict[str, Any] = {}
+    for name, mesh in train.meshes.items():
+        torque[name] = sum(
+            fine.arithmetic.mpf(mesh.lever(d)) * at.forces.get(mesh.flank_name(d), 0) * unit
+            for d in mesh.flanks
+        )
+    gaps = [-c.approach(at.x)[0] for n, c in fine.contacts.items() if n not in at.forces]
+    undetermined = _moving(fine, settled.free)
+    return Reference(
+        torque={n: float(t) for n, t in torque.items()},
+        displacement={
+            g: np.array([float(at.x[i + k] * length) for k in (0, 1)])
+            for g, i in fine.moves.items()
+        },
+        force=force,
+        pull={n: np.array([-float(v * unit) for v in p]) for n, p in at.pulls.items()},
+        undetermined=undetermined,
+        loose=undetermined | _moving(fine, loose_directions(fine, at)),
+        residual=float(settled.residual),
+        imbalance=float(settled.imbalance),
+        slack=float(min([*at.forces.values(), *gaps], default=0)),
+        exact={n: fine.arithmetic.nstr(t, 50) for n, t in torque.items()},
+    )

@@ -1,0 +1,77 @@
+"""Without an answer: no path for the torque, or limits that contradict each other."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from benchmarks.stress.problem import Family
+from benchmarks.stress.workbench import (
+    DEFLECTION,
+    Workbench,
+    pair_of,
+    split_torque,
+    star,
+    two_path,
+)
+
+
+def build(excess: float, generator: np.random.Generator) -> Workbench:
+    """Return a train that must be refused; by `excess` it misses an answer."""
+    kinds = (_pulled, _squeezed, _one_sided, _unheld)
+    kind = kinds[int(generator.integers(len(kinds)))]
+    bench = kind(excess, generator)
+    if generator.random() < 0.5:
+        bench.hertz()
+    return bench
+
+
+def _pulled(excess: float, generator: np.random.Generator) -> Workbench:
+    """A gear is turned against the power flow, and flanks without backlash cannot pull."""
+    bench = two_path() if generator.random() < 0.5 else split_torque(4)
+    wheels = [g for g in bench.gears if g.startswith(("wheel", "idler"))]
+    gear = str(generator.choice(wheels))
+    bench.external(gear, -(1.0 + excess) * 40.0 * bench.rated)
+    return bench
+
+
+def _squeezed(excess: float, generator: np.random.Generator) -> Workbench:
+    """Neighbours of a drum stand closer than rings of the drawing allow."""
+    bench = split_torque(2 * int(generator.integers(1, 5)))
+    pinion = str(generator.choice(bench.named("pinion")))
+    clearance = DEFLECTION * generator.uniform(0.1, 1.0)
+    bench.support(pinion, "free")
+    bench.drum(pinion, pair_of(pinion), clearance, DEFLECTION, DEFLECTION)
+    bench.data["rings"][pinion]["measured"] = "nominal"
+    for neighbour in pair_of(pinion):
+        amount = clearance * (1.0 + excess)
+        bench.installation(neighbour, amount, bench.direction(neighbour, pinion))
+    return bench
+
+
+def _one_sided(excess: float, generator: np.random.Generator) -> Workbench:
+    """All planets of a free sun stand on one side of it."""
+    planets = int(generator.integers(2, 5))
+    bench = star(planets)
+    for number in range(1, planets + 1):
+        bench.place(f"planet{number}", math.pi / (1.2 + excess) * (number - 1) / planets)
+    return bench
+
+
+def _unheld(excess: float, generator: np.random.Generator) -> Workbench:
+    """Idlers float freely between a pinion and a gear that both push them out."""
+    bench = split_torque(2 * int(generator.integers(1, 5)))
+    for idler in bench.named("idler"):
+        bench.support(idler, "free")
+    bench.torque(bench.rated * min(1.0, excess))
+    return bench
+
+
+FAMILY = Family(
+    "impossible",
+    "no answer exists",
+    "what is missing, relative [-]",
+    (10.0, 3.0, 1.0, 0.3, 0.1, 0.03, 0.01, 1e-3),
+    build,
+)

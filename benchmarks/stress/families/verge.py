@@ -1,0 +1,76 @@
+"""On the verge: gap and force of a contact both zero, or a spline just about to slip.
+
+Where that is follows from closed forms. A star with a fixed sun: the planet whose gap is what the
+others yield carries nothing and is not open. A sun on a spring between two opposite planets, one
+of them with the gap g: it moves by g/(2 + k c), c the compliance of a branch along the line
+of action, and a ring or a stick limit of that size is just reached.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from benchmarks.stress.problem import Family
+from benchmarks.stress.workbench import Workbench, star
+
+SUN, RING = 0.036 * 1.5, 0.084 * 1.5
+"""Pitch radii of the star's sun and ring over 1 [m]; only their ratios and cosines matter."""
+FIRST, SECOND = 1.4e6, 7.5e5
+"""Stiffnesses of the star's meshes [N·m/rad] at their drivers."""
+RATIO = 24.0 / 36.0
+"""Planet over sun."""
+
+
+def branch_yield(torque: float, hertz: float) -> float:
+    """Angle of the sun [rad] under which one branch carries `torque` [N·m]."""
+    total = 0.0
+    for stiffness, ratio in ((FIRST, 1.0), (SECOND, RATIO)):
+        # The planet's angle counts at the sun by the ratio of the radii, its torque as well.
+        carried, rated = torque * ratio, 1e-3 * stiffness
+        curved = hertz * np.cbrt(rated) * np.cbrt(carried) ** 2
+        total += ratio * ((1.0 - hertz) * carried + curved) / stiffness
+    return float(total)
+
+
+def build(off: float, generator: np.random.Generator) -> Workbench:
+    """Put a contact at a relative distance `off` from its verge, on either side of it."""
+    kind = generator.choice(["flank", "ring", "spline", "stop"])
+    side = 1.0 + off * generator.choice([-1.0, 1.0])
+    torque = 1000.0 * float(generator.uniform(0.1, 1.0))
+    if kind == "flank":
+        planets = int(generator.integers(2, 7))
+        hertz = float(generator.choice([0.0, 0.3, 1.0]))
+        idle = int(generator.integers(1, planets))
+        bench = star(planets, "rigid")
+        if hertz:
+            bench.hertz(hertz)
+        for number in range(1, idle + 1):
+            verge = branch_yield(torque / (planets - idle), hertz)
+            bench.gap(f"sun-planet{number}", side * verge)
+        bench.torque(torque)
+        return bench
+    bench = star(2)
+    bench.torque(torque)
+    radius = float(bench.data["gears"]["sun"]["base_radius"].split()[0]) * 1e-3
+    compliance = (1.0 / FIRST + RATIO**2 / SECOND) * radius**2
+    gap = 0.3 * torque / radius * compliance
+    bench.gap("sun-planet1", gap / radius)
+    stiffness = float(10.0 ** generator.uniform(5, 8))
+    moved = gap / (2.0 + stiffness * compliance)
+    if kind == "spline":
+        bench.spline("sun", stiffness, 3.0 * moved, stiffness * moved * side)
+    elif kind == "stop":
+        bench.spline("sun", stiffness, moved * side, 100.0 * stiffness * moved)
+    else:
+        bench.support("sun", stiffness)
+        bench.circle("sun", moved * side)
+    return bench
+
+
+FAMILY = Family(
+    "verge",
+    "contact on the verge",
+    "distance from the verge [-]",
+    (1e-1, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-15, 0.0),
+    build,
+)

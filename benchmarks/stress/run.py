@@ -1,0 +1,127 @@
+"""Run the map: every method on every family."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from benchmarks.stress.families import FAMILIES
+from benchmarks.stress.methods import OURS, methods
+from benchmarks.stress.verdict import Outcome, Verdict, judge
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A method on a family.
+
+    Attributes
+    ----------
+    method, family : str
+    counts : mapping of outcome to int
+        Certified, refused, wrong, crashed, or not for it (outside the method's class).
+    missed : int
+        Problems with an answer that were not certified.
+    unnamed : int
+        Problems without an answer whose refusal names no element that lacks one.
+    loose : int
+        Of the wrong ones, how many would pass at 1e-6.
+    seconds : float
+    slowest : float
+        Longest time of a problem [s].
+    sentences : tuple of str
+        How it failed, the commonest first.
+    failures : tuple of (int, str, str)
+        Number, outcome and message of what was not as it should be.
+    """
+
+    method: str
+    family: str
+    counts: dict[str, int]
+    missed: int
+    unnamed: int
+    loose: int
+    seconds: float
+    slowest: float
+    sentences: tuple[str, ...]
+    failures: tuple[tuple[int, str, str], ...]
+
+    @property
+    def total(self) -> int:
+        """Problems given."""
+        return sum(self.counts.values())
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return it as plain data."""
+        return {name: getattr(self, name) for name in self.__slots__}
+
+
+def run(
+    families: Iterable[str],
+    peers: bool,
+    quick: bool,
+    tell: Callable[[str], None],
+) -> Iterator[Cell]:
+    """Judge methods on families.
+
+    Parameters
+    ----------
+    families : iterable of str
+    peers : bool
+        Ours alone, or with peers.
+    quick : bool
+        Every tenth problem.
+    tell : callable
+        Called with what is being done.
+    """
+    for name in families:
+        for method, (answer, every) in methods(peers).items():
+            tell(f"{FAMILIES[name].title}: {method}")
+            stride = max(every, 10 if quick else 1)
+            with warnings.catch_warnings():
+                # What a peer warns of is judged by its answer.
+                warnings.simplefilter("error" if method == OURS else "ignore")
+                verdicts = [judge(p, answer) for p in FAMILIES[name].problems(stride)]
+            yield cell_of(method, name, verdicts)
+
+
+def cell_of(method: str, family: str, verdicts: list[Verdict]) -> Cell:
+    """Count verdicts."""
+    counts = {o.value: 0 for o in Outcome}
+    reasons: dict[str, int] = {}
+    for verdict in verdicts:
+        counts[verdict.outcome.value] += 1
+        if not verdict.as_it_should_be:
+            reason = _reason(verdict)
+            reasons[reason] = reasons.get(reason, 0) + 1
+    wrong = [v for v in verdicts if v.outcome is Outcome.WRONG]
+    return Cell(
+        method=method,
+        family=family,
+        counts=counts,
+        missed=sum(
+            v.solvable and v.outcome not in (Outcome.CERTIFIED, Outcome.UNFIT) for v in verdicts
+        ),
+        unnamed=sum(
+            not v.solvable and v.outcome is Outcome.REFUSED and not v.named for v in verdicts
+        ),
+        loose=sum(v.worst <= 1e-6 for v in wrong),
+        seconds=sum(v.seconds for v in verdicts),
+        slowest=max(v.seconds for v in verdicts),
+        sentences=tuple(sorted(reasons, key=lambda r: -reasons[r])[:2]),
+        failures=tuple(
+            (v.number, v.outcome.value, v.told) for v in verdicts if not v.as_it_should_be
+        ),
+    )
+
+
+def _reason(verdict: Verdict) -> str:
+    """Kind of a failure, without its figures."""
+    told = verdict.told.split(";")[0].split(" (")[0]
+    if verdict.outcome is Outcome.WRONG:
+        told = told.split(" at ")[0]
+        return "claims an answer that fails: " + " ".join(told.split()[:-1] or [told])
+    if verdict.outcome is Outcome.CRASHED:
+        return f"raises {told[:80]}"
+    return told.removeprefix("position 1: ")[:80]

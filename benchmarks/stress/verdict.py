@@ -1,0 +1,130 @@
+"""What becomes of a problem: certified, refused, wrong, crashed."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from time import perf_counter
+
+from benchmarks.peers.loop import Failure, NotForThis
+from benchmarks.stress.problem import Problem
+from benchmarks.stress.truth import Truth, truth_of
+from loadshare.certify import certify
+from loadshare.errors import Refused
+from loadshare.train import Train, build_train
+from loadshare.train.equilibrium import Equilibrium
+
+Method = Callable[[Problem, Train], Equilibrium]
+"""Answers a problem, or raises `Refused` or `Failure`; anything else is a crash."""
+
+
+class Outcome(Enum):
+    """What a method made of a problem."""
+
+    CERTIFIED = "certified"
+    REFUSED = "refused"
+    WRONG = "wrong"
+    CRASHED = "crashed"
+    UNFIT = "not for it"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """One method on one problem.
+
+    Attributes
+    ----------
+    family : str
+    number : int
+    level : float
+    outcome : Outcome
+    solvable : bool
+        Whether an answer exists.
+    told : str
+        The refusal, the residual that failed, or the exception.
+    named : bool
+        Of a problem without an answer: whether the refusal names an element that lacks one.
+    seconds : float
+    worst : float
+        Largest scaled residual of a claimed answer; infinite where there is none.
+    """
+
+    family: str
+    number: int
+    level: float
+    outcome: Outcome
+    solvable: bool
+    told: str
+    named: bool
+    seconds: float
+    worst: float
+
+    @property
+    def as_it_should_be(self) -> bool:
+        """Whether what is solvable was certified, and the rest refused by name."""
+        if self.outcome is Outcome.UNFIT:
+            return True
+        if self.solvable:
+            return self.outcome is Outcome.CERTIFIED
+        return self.outcome is Outcome.REFUSED and self.named
+
+
+def judge(problem: Problem, method: Method) -> Verdict:
+    """Give a problem to a method and judge what comes back.
+
+    An answer counts as certified only if the certificate, evaluated here, passes; a certified
+    answer to a problem that has none would be wrong all the same.
+    """
+    train = build_train(problem.case)
+    truth = truth_of(train)
+    worst = math.inf
+    begun = perf_counter()
+    try:
+        found = method(problem, train)
+    except NotForThis as unfit:
+        told, outcome = str(unfit), Outcome.UNFIT
+    except (Refused, Failure) as refusal:
+        told, outcome = str(refusal), Outcome.REFUSED
+    except Exception as fault:  # noqa: BLE001 -- whatever a method raises is a finding of the map
+        told, outcome = f"{type(fault).__name__}: {fault}", Outcome.CRASHED
+    else:
+        told, outcome, worst = _judged(train, found, truth)
+    return Verdict(
+        family=problem.family,
+        number=problem.number,
+        level=problem.level,
+        outcome=outcome,
+        solvable=truth.solvable,
+        told=told,
+        named=any(_names(told, element) for element in truth.elements),
+        seconds=perf_counter() - begun,
+        worst=worst,
+    )
+
+
+def _names(told: str, gear: str) -> bool:
+    """Tell whether a message names a gear, its ring or spline, or a mesh or shaft of it."""
+    return re.search(rf"\b(gear|ring|spline) {gear}\b|\b{gear}-\w|\w-{gear}\b", told) is not None
+
+
+def _judged(train: Train, found: Equilibrium, truth: Truth) -> tuple[str, Outcome, float]:
+    certificate = certify(train, found)
+    if not certificate.passed:
+        told = "; ".join(
+            f"{name.replace('_', ' ')} {r.scaled:.1e} at {r.where}"
+            for name, r in certificate.failing.items()
+        )
+        return told, Outcome.WRONG, certificate.worst
+    if not truth.solvable:
+        return f"an answer where there is none ({truth.why})", Outcome.WRONG, math.inf
+    return f"residual {certificate.worst:.1e}", Outcome.CERTIFIED, certificate.worst
+
+
+def ours(problem: Problem, train: Train) -> Equilibrium:
+    """Answer a problem as the library does."""
+    import loadshare as ls
+
+    return ls.explain(problem.case, 1).equilibrium

@@ -1,1 +1,0 @@
-"""The evidence, measured and computed again: `chart`, `stress`, `reproduce`."""
