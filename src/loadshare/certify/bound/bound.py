@@ -28,7 +28,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.bound.claim import EPS, Claim
-from loadshare.certify.bound.laws import SOFT, SOFTEST, Act, Codes, Elements, elements
+from loadshare.certify.bound.columns import Columns
+from loadshare.certify.bound.laws import LIGHT, SOFT, SOFTEST, Act, Codes, Elements, elements
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -165,8 +166,28 @@ def aside(claim: Claim, found: Elements, rows: NDArray[np.intp] | slice) -> Arra
     return np.asarray(apart)
 
 
+def put_aside(columns: Columns, spare: Array, torques: Array) -> Array:
+    """Friction that is put aside, as it follows torques over the splines, (S, n) [N].
+
+    Parameters
+    ----------
+    columns : Columns
+    spare : ndarray, shape (S, radials)
+        As in `Elements`.
+    torques : ndarray, shape (S, splines)
+        Sizes of their errors [N·m].
+    """
+    radials = slice(columns.pairs - spare.shape[1], None)
+    pushed = np.repeat(spare * (torques @ columns.splined[radials].T), 2, axis=1)
+    return np.asarray(pushed @ np.abs(columns.matrix.high[columns.radials]))
+
+
 class _Response:
     """How forces and coordinates answer a load [N] and a gap [m], with one claim's compliances.
+
+    Friction that follows a torque T is part of the answer: with levels B per torque, rooms C per
+    torque and T = M F of the response without them, the torque that comes is
+    (1 + M P Aᵀ B − M G C)⁻¹ T, G the forces by gaps.
 
     Parameters
     ----------
@@ -179,6 +200,7 @@ class _Response:
         known = part.statics
         p, n = known.particular, known.redundant
         self.soft, self.skew = part.soft[row], part.skew[row]
+        self.level, self.room = part.level[row], part.room[row]
 
         def bent(forces: Array) -> Array:
             return _yielding(self.soft, self.skew, part.at, forces.T).T
@@ -198,18 +220,53 @@ class _Response:
         self.moved_by = p.T @ bent(by_load), p.T @ (bent(by_gap) - np.eye(len(p)))
         exact = vectors[:, kept].T @ m @ vectors[:, kept] / values[kept]
         self.defect = float(np.abs(exact - np.eye(int(kept.sum()))).sum(axis=1).max(initial=0.0))
+        self._follow(part)
         self._sizes = tuple(np.abs(v) for v in (*self.force_by, *self.moved_by))
+
+    def _follow(self, part: _Part) -> None:
+        """Let levels and rooms follow the torques over their splines."""
+        twist, unit = part.twist, np.eye(len(part.twist))
+        by = [twist @ v for v in self.force_by]
+        sizes = [np.abs(twist) @ np.abs(v) for v in self.force_by]
+        back = part.spread(self.level), part.spread(self.room)
+        pushed = part.statics.directions.T @ back[0]
+        around = unit + by[0] @ pushed - by[1] @ back[1]
+        inverse = np.linalg.pinv(around) if np.isfinite(around).all() else np.zeros_like(unit)
+        wrong = np.abs(inverse @ around - unit).sum(axis=1).max(initial=0.0)
+        self.defect = float(np.maximum(self.defect, wrong))
+        torque_by = inverse @ by[0], inverse @ by[1]
+
+        def followed(ways: tuple[Array, Array]) -> tuple[Array, Array]:
+            more = ways[1] @ back[1] - ways[0] @ pushed
+            return ways[0] + more @ torque_by[0], ways[1] + more @ torque_by[1]
+
+        elastic, self.moved_by = followed(self.force_by), followed(self.moved_by)
+        self.force_by = (
+            elastic[0] + back[0] @ torque_by[0],
+            elastic[1] + back[0] @ torque_by[1],
+        )
+        # What cancels over a spline is known to the rounding of its parts.
+        spread = EPS * len(part.columns) + min(self.defect, 1.0)
+        self._torques = tuple(
+            np.abs(v) + spread * np.abs(inverse) @ size
+            for v, size in zip(torque_by, sizes, strict=True)
+        )
 
     def step(self, load: Array, gap: Array) -> tuple[Array, Array]:
         """Forces and coordinates, of S loads and gaps."""
         forces, moved = self.force_by, self.moved_by
         return load @ forces[0].T + gap @ forces[1].T, load @ moved[0].T + gap @ moved[1].T
 
-    def reach(self, load: Array, gap: Array) -> tuple[Array, Array]:
-        """Largest forces and coordinates under loads and gaps of these sizes."""
+    def reach(self, load: Array, gap: Array) -> tuple[Array, Array, Array]:
+        """Largest forces, coordinates and torques over splines under loads and gaps of sizes."""
         f, g, x, y = self._sizes
+        t, u = self._torques
         enough = 1.0 / (1.0 - self.defect) if self.defect < 0.5 else np.inf
-        return enough * (load @ f.T + gap @ g.T), enough * (load @ x.T + gap @ y.T)
+        return (
+            enough * (load @ f.T + gap @ g.T),
+            enough * (load @ x.T + gap @ y.T),
+            enough * (load @ t.T + gap @ u.T),
+        )
 
 
 class _Part:
@@ -240,7 +297,44 @@ class _Part:
         self.pairs = np.flatnonzero(found.active[rows[0], first::2])
         self.at = at[self.pairs]
         self.skew = found.skew[np.ix_(rows, self.pairs)]
+        self._set_following()
         self.shared = np.zeros(len(columns))
+
+    def _set_following(self) -> None:
+        """Find the torques over splines [N·m], and what follows them.
+
+        Along the line of each pair a level [1/m] and a room [1/N] per torque, (rows, pairs, 2);
+        where next to no torque decides the sense nothing is said to follow. Where nothing follows,
+        no torques are looked at.
+        """
+        columns, found, where = self.claim.columns, self.found, np.ix_(self.rows, self.pairs)
+        rates = found.follows[where], found.shrinks[where], found.spare[self.rows]
+        splines = len(columns.moments) if any(v.any() for v in rates) else 0
+        flanks = self.columns[self.columns < columns.flanks.stop]
+        self.twist = np.zeros((splines, len(self.columns)))
+        self.twist[:, : len(flanks)] = columns.moments[:splines, flanks]
+        self.splined = columns.splined[self.pairs, :splines]
+        claimed = found.force[np.ix_(self.rows, self.columns)]
+        torque = claimed @ self.twist.T
+        sure = np.abs(torque) > LIGHT * (np.abs(claimed) @ np.abs(self.twist).T)
+        self.torque = np.where(sure, np.abs(torque), 0.0)
+        sense = np.where(sure, np.sign(torque), 0.0) @ self.splined.T
+        line = found.line[where] * sense[:, :, None]
+        self.level, self.room = (v[:, :, None] * line for v in rates[:2])
+
+    def spread(self, pairs: Array) -> Array:
+        """Put vectors of the pairs, (pairs, 2), in their columns, by spline: (columns, splines)."""
+        spread = np.zeros((len(self.columns), len(self.twist)))
+        for k in (0, 1):
+            spread[self.at + k] = pairs[:, k, None] * self.splined
+        return spread
+
+    def _per_torque(self, vectors: Array, torque: Array) -> Array:
+        """Vectors of the pairs per torque, (S, pairs, 2), under torques, in their columns."""
+        total = np.zeros((len(torque), len(self.columns)))
+        for k in (0, 1):
+            total[:, self.at + k] = vectors[:, :, k] * (torque @ self.splined.T)
+        return total
 
     def solve(self, scale: Array) -> tuple[Array, Array]:
         """Largest errors of the forces of these columns and of the coordinates.
@@ -268,37 +362,63 @@ class _Part:
         soft, skew, misfit = self.soft[rows], self.skew[rows], self.misfit[rows]
         force, moved = response.step(self.left[rows], misfit)
         # What the step leaves of the linear equations, and the rounding of this very figure.
-        yielded = _yielding(soft, skew, self.at, force)
+        torque = force @ self.twist.T
+        followed = self._per_torque(self.level[rows], torque)
+        yielded = _yielding(soft, skew, self.at, force - followed)
+        misfit = misfit + self._per_torque(self.room[rows], torque)
         over = np.abs(self.left[rows] - force @ known.directions) + self.rounding[rows]
         over += EPS * size * (np.abs(force) @ np.abs(known.directions))
         apart = np.abs(misfit + moved @ known.directions.T - yielded) + self.width[rows]
         apart += EPS * size * (np.abs(moved) @ np.abs(known.directions).T + np.abs(misfit))
-        apart += EPS * size * _yielding(np.abs(soft), np.abs(skew), self.at, np.abs(force))
-        unlike = np.abs(soft - response.soft), np.abs(skew - response.skew)
+        sizes = np.abs(force) + np.abs(followed)
+        apart += EPS * size * _yielding(np.abs(soft), np.abs(skew), self.at, sizes)
+        unlike = tuple(
+            np.abs(one - other)
+            for one, other in (
+                (soft, response.soft),
+                (skew, response.skew),
+                (self.level[rows], response.level),
+                (self.room[rows], response.room),
+            )
+        )
+        levels = np.abs(self.level[rows])
         found = np.full(force.shape, np.inf), np.full(moved.shape, np.inf)
-        forces, places = response.reach(over, apart)
-        box, way = np.zeros_like(forces), np.zeros_like(places)
+        steps = np.abs(force), np.abs(moved), np.abs(torque)
+        reached = response.reach(over, apart)
+        boxes = tuple(np.zeros_like(v) for v in reached)
         left = np.arange(len(rows))
         for _ in range(PASSES):
-            box, way = np.maximum(box, WIDER * forces), np.maximum(way, WIDER * places)
-            push, gap = self._left_out(
-                rows[left], box + np.abs(force[left]), way + np.abs(moved[left])
+            boxes = tuple(np.maximum(b, WIDER * v) for b, v in zip(boxes, reached, strict=True))
+            ends = tuple(b + s[left] for b, s in zip(boxes, steps, strict=True))
+            push, gap = self._left_out(rows[left], *ends)
+            elastic = boxes[0] + self._per_torque(levels[left], boxes[2])
+            gap += _yielding(unlike[0][left], unlike[1][left], self.at, elastic)
+            push += self._per_torque(unlike[2][left], boxes[2])
+            gap += self._per_torque(unlike[3][left], boxes[2])
+            load = over[left] + push @ np.abs(known.directions)
+            if len(self.twist):
+                load += put_aside(
+                    self.claim.columns, self.found.spare[self.rows[rows[left]]], ends[2]
+                )
+            forces, places, torques = response.reach(load, apart[left] + gap)
+            reached = forces + push, places, torques
+            proved = np.logical_and.reduce(
+                [(v <= b).all(axis=1) for v, b in zip(reached, boxes, strict=True)]
             )
-            gap += _yielding(unlike[0][left], unlike[1][left], self.at, box)
-            forces, places = response.reach(over[left] + push, apart[left] + gap)
-            proved = (forces <= box).all(axis=1) & (places <= way).all(axis=1)
             done = left[proved]
-            found[0][done] = forces[proved] + np.abs(force[done])
-            found[1][done] = places[proved] + np.abs(moved[done])
-            more = ~proved & np.isfinite(forces).all(axis=1)
+            for target, v, step in zip(found, reached, steps, strict=False):
+                target[done] = v[proved] + step[done]
+            more = ~proved & np.isfinite(reached[0]).all(axis=1)
             left = left[more]
-            box, way, forces, places = (v[more] for v in (box, way, forces, places))
+            boxes, reached = (tuple(v[more] for v in part) for part in (boxes, reached))
             if not len(left):
                 break
         return found
 
-    def _left_out(self, rows: NDArray[np.intp], reach: Array, ways: Array) -> tuple[Array, Array]:
-        """What the linearisation leaves out of balance [N] and of lengths [m] in a box."""
+    def _left_out(
+        self, rows: NDArray[np.intp], reach: Array, ways: Array, torques: Array
+    ) -> tuple[Array, Array]:
+        """What the linearisation leaves out of forces [N] and of lengths [m] in a box."""
         found, columns = self.found, self.columns
         lengths = ways @ np.abs(self.statics.directions).T
         gap = np.zeros_like(reach)
@@ -308,7 +428,7 @@ class _Part:
         # Over half to twice the force the tangent of a Hertz contact changes by its curvature.
         gap += np.where(curve > 0.0, 0.5 * curve * reach**2, 0.0)
         gap += np.where(curve < 0.0, -curve * reach, 0.0)
-        gap = np.where((curve > 0.0) & light | (reach > found.room[pick]), np.inf, gap)
+        gap = np.where((curve > 0.0) & light, np.inf, gap)
         extra = np.zeros_like(reach)
         if len(self.at):
             where = np.ix_(self.rows[rows], self.pairs)
@@ -325,27 +445,16 @@ class _Part:
                 + found.stiff_error[where] * moved,
                 0.0,
             )
-            turn += found.follows[where] * self._torque_errors(reach)
+            # A torque that passes through zero turns what follows it around.
+            claimed = self.torque[rows]
+            turned = np.where(claimed > 0.0, 2.0 * np.maximum(torques - claimed, 0.0), torques)
+            turned, torques = turned @ self.splined.T, torques @ self.splined.T
+            turn += found.follows[where] * turned
+            bow += found.shrinks[where] * (turned + torques * np.where(lined, moved / near, 0.0))
             for k in (0, 1):
                 gap[:, self.at + k] += bow
                 extra[:, self.at + k] += turn
-        return extra @ np.abs(self.statics.directions), gap
-
-    def _torque_errors(self, reach: Array) -> Array:
-        """Largest error of the torque over the spline of each pair [N·m]."""
-        claim = self.claim
-        arcs = (claim.columns.arcs.stop - claim.columns.arcs.start) // 2
-        rounds, splines = len(claim.columns.train.rounds), len(claim.columns.train.splines)
-        wide = np.zeros((len(reach), claim.columns.flanks.stop))
-        some = self.columns < claim.columns.flanks.stop
-        wide[:, self.columns[some]] = reach[:, some]
-        torque = wide @ np.abs(claim.columns.moments).T
-        errors = np.zeros((len(reach), len(self.pairs)))
-        for j, pair in enumerate(self.pairs):
-            q = pair - arcs
-            if q >= rounds and splines:
-                errors[:, j] = torque[:, (q - rounds) % splines]
-        return errors
+        return extra, gap
 
     def doubts(self, found: Elements, force: Array, coordinate: Array) -> tuple[Flags, Flags]:
         """Elements of which the errors do not show how they act."""

@@ -139,6 +139,15 @@ class Columns:
         return found
 
     @cached_property
+    def splined(self) -> Array:
+        """Which pairs of columns are a spline's, 1 or 0, shape (pairs, splines)."""
+        found = np.zeros((self.pairs, len(self.train.splines)))
+        first = (self.arcs.stop - self.arcs.start) // 2 + len(self.train.rounds)
+        for k in range(first, self.pairs):
+            found[k, (k - first) % len(self.train.splines)] = 1.0
+        return found
+
+    @cached_property
     def all_flanks(self) -> tuple[tuple[Mesh, bool], ...]:
         """Flanks that can touch: mesh, drive or coast."""
         return tuple((m, d) for m in self.train.meshes.values() for d in m.flanks)

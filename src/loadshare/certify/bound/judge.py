@@ -12,7 +12,7 @@ from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.held import with_held_slips
-from loadshare.certify.bound.laws import Act, Codes, assumed, first_acts
+from loadshare.certify.bound.laws import Act, Codes, first_acts
 from loadshare.certify.bound.locked import locked, without
 from loadshare.certify.bound.quick import quick_boxes
 from loadshare.certify.bound.verge import on_the_verge
@@ -152,7 +152,6 @@ def _boxes(claim: Claim, rigorous: bool) -> Bounds:
         relative[rows[better]] = found[better]
         box.force[rows[better]] = force[better]
         box.coordinate[rows[better]] = coordinate[better]
-    relative[_beyond(claim, act, scale, box.force)] = np.inf
     for row in np.flatnonzero(~(relative <= LARGEST) & finite).tolist():
         one = replace(claim.take(np.array([row])), fine=True)
         for way in (_with_locked, _with_light_friction) if columns.pairs else ():
@@ -166,14 +165,6 @@ def _boxes(claim: Claim, rigorous: bool) -> Bounds:
     box.force[:, shared] = np.inf
     torque = _torques(columns, box.force, flanks)
     return Bounds(columns, relative, torque, box.force, box.coordinate)
-
-
-def _beyond(claim: Claim, act: Codes, scale: Array, force: Array) -> NDArray[np.bool_]:
-    """Claims with errors for which the friction that was put aside does not account."""
-    if not claim.radial_gears:
-        return np.zeros(claim.count, dtype=bool)
-    largest = force[:, claim.columns.flanks].max(axis=1, initial=0.0)
-    return np.asarray(largest > assumed(claim, act, scale))
 
 
 def _with_locked(claim: Claim, scale: Array) -> tuple[Array, Array]:
@@ -203,16 +194,13 @@ def _with_light_friction(claim: Claim, scale: Array) -> tuple[Array, Array]:
         pressed = act[:, -splines:] == Act.STOP
         act[:, -2 * splines : -splines][pressed] = Act.OPEN
     force, coordinate = _fine(claim, act, scale)
-    force[_beyond(claim, act, scale, force)] = np.inf
     return force[0], coordinate[0]
 
 
 def _fine(claim: Claim, act: Codes, scale: Array) -> tuple[Array, Array]:
     """Errors from residuals in twice the precision."""
     box = boxes(claim, act, scale)
-    contacts = np.abs(claim.forces[:, claim.columns.contacts])
-    noise = (contacts > 0.0) & (contacts <= NOISE * scale[:, None])
-    box.doubtful[:, : noise.shape[1]] |= noise & (act[:, : noise.shape[1]] != Act.OPEN)
+    box.doubtful[:] |= _of_rounding(claim, scale) & (act != Act.OPEN)
     for row in np.flatnonzero(box.doubtful.any(axis=1)).tolist():
         one = np.array([row])
         single = on_the_verge(claim.take(one), act[one], scale[one], box.part(row))
@@ -223,3 +211,22 @@ def _fine(claim: Claim, act: Codes, scale: Array) -> tuple[Array, Array]:
         single = quick_boxes(claim.take(one), act[one], scale[one])
         box.force[row], box.coordinate[row] = single.force[0], single.coordinate[0]
     return box.force, box.coordinate
+
+
+def _of_rounding(claim: Claim, scale: Array) -> Flags:
+    """Elements with so little force that they may as well be open, shape (S, elements).
+
+    Of splines, their friction is then put aside.
+    """
+    columns, noise = claim.columns, NOISE * scale[:, None]
+    contacts = np.abs(claim.forces[:, columns.contacts])
+    found = np.zeros((claim.count, len(columns.contacts) + columns.pairs), dtype=bool)
+    found[:, : contacts.shape[1]] = (contacts > 0.0) & (contacts <= noise)
+    if claim.radial_gears:
+        size = np.hypot(
+            *np.moveaxis(claim.forces[:, columns.radials].reshape(claim.count, -1, 2), 2, 0)
+        )
+        found[:, -size.shape[1] :] = (
+            (claim.graphs[:, :, 2] <= noise) & (size <= noise) & (size > 0.0)
+        )
+    return found

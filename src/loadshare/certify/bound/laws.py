@@ -29,9 +29,7 @@ SOFT, SOFTEST, YIELDING = 1e5, 1e11, 1e3
 LIGHT = 1e-9
 """Force, in loads of the claim, at which the tangent of a contact without force is taken.
 
-Below it a Hertz contact is softer still: it answers by something between that tangent and none."""
-REACHED = 4.0
-"""Times the force of a contact on the verge up to which its tangent holds."""
+Below it a Hertz contact is softer still, which only lessens what it moves."""
 NOISE, APART = 1e-12, 1e-6
 """Force over the largest one, and gap over the largest deflection, of a contact that is open.
 
@@ -78,17 +76,17 @@ class Elements:
         A X − g − δ(F) [m], and its rounding.
     curve : ndarray, shape (S, m)
         Curvature of the law, as the part of the compliance that goes with F^(−1/3), over F.
-    room : ndarray, shape (S, m)
-        Error of the force [N] up to which the law is described: beyond, a light contact is stiffer,
-        and a table has another corner.
     line, distance, size : ndarray, shape (S, pairs, 2), (S, pairs), (S, pairs)
         u, |d| [m] and the force along it [N].
     along : ndarray, shape (S, pairs)
         Compliance along the line [m/N].
     stiff_error : ndarray, shape (S, pairs)
         Lateral stiffness that `soft` and `skew` leave out or add [N/m].
-    follows : ndarray, shape (S, pairs)
-        Change of the level per torque over the spline [1/m]; 0 where it does not enter.
+    follows, shrinks : ndarray, shape (S, pairs)
+        Change of the level [1/m], and of the room up to a stop [1/N], per torque over the spline;
+        0 where it does not enter.
+    spare : ndarray, shape (S, radials)
+        Change with the torque of friction that is put aside [1/m].
     """
 
     act: Codes
@@ -100,13 +98,14 @@ class Elements:
     misfit: Array
     width: Array
     curve: Array
-    room: Array
     line: Array
     distance: Array
     size: Array
     along: Array
     stiff_error: Array
     follows: Array
+    shrinks: Array
+    spare: Array
 
 
 def first_acts(claim: Claim, noise: float = NOISE) -> Codes:
@@ -179,7 +178,7 @@ def _radial_acts(claim: Claim, noise: Array) -> Codes:
 
 
 def elements(
-    claim: Claim, act: Codes, scale: Array, verge: Flags | None, softest: float = SOFTEST
+    claim: Claim, act: Codes, scale: Array, verge: Flags, softest: float = SOFTEST
 ) -> Elements:
     """Describe the elements at S claims.
 
@@ -190,9 +189,8 @@ def elements(
         How they are taken to act.
     scale : ndarray, shape (S,)
         Load of the claims [N].
-    verge : ndarray of bool, shape (S, elements), or None
-        Elements of which it is open how they act: contacts among them carry next to nothing. None
-        where secants take the place of curvatures.
+    verge : ndarray of bool, shape (S, elements)
+        Elements of which it is open how they act: contacts among them carry next to nothing.
     softest : float
         Largest compliance of a turn, in those of the claim; what a softer one has less in
         stiffness goes to `stiff_error`.
@@ -202,31 +200,23 @@ def elements(
     shape = (count, m)
     active = np.zeros(shape, dtype=bool)
     soft, width, curve = np.zeros(shape), np.zeros(shape), np.zeros(shape)
-    room = np.full(shape, np.inf)
     force = claim.forces.copy()
-    # A flank that pulls has no law: the pull is put aside.
-    force[:, columns.flanks] = np.maximum(force[:, columns.flanks], 0.0)
     rounding = np.zeros(shape)
     lengths, sizes = claim.lengths
     misfit = lengths.value
     flanks, stops = columns.flanks.stop, columns.stops.stop - columns.stops.start
     active[:, columns.flanks] = act[:, :flanks] != Act.OPEN
     active[:, columns.stops] = act[:, flanks : flanks + stops] != Act.OPEN
-    pushed = force[:, columns.flanks]
-    least = LIGHT * scale[:, None]
-    light = np.ones(pushed.shape, bool) if verge is None else verge[:, :flanks] | (pushed == 0.0)
-    reached = pushed if verge is None else REACHED * pushed
-    at = np.where(light, np.maximum(reached, least), pushed)
-    _flanks(claim, scale, at, soft, curve, room, misfit, width)
-    light &= curve[:, columns.flanks] > 0.0
+    at = np.maximum(claim.forces[:, columns.flanks], 0.0)
+    light = verge[:, :flanks] | (at == 0.0)
+    at = np.where(light, np.maximum(at, LIGHT * scale[:, None]), at)
+    _flanks(claim, scale, at, soft, curve, misfit, width)
     curve[:, columns.flanks][light] = 0.0
-    if verge is not None:
-        room[:, columns.flanks][light] = (at - pushed)[light]
     _springs(claim, active, soft, misfit, width)
     scalar = slice(0, columns.first_pair)
     width[:, scalar] += EPS * np.abs(misfit[:, scalar]) + TINY * sizes[:, scalar]
     force[:, scalar] = np.where(active[:, scalar], force[:, scalar], 0.0)
-    lines = [np.zeros((count, pairs)) for _ in range(4)]
+    lines = [np.zeros((count, k)) for k in (*[pairs] * 5, len(claim.radial_gears))]
     found = Elements(
         act,
         active,
@@ -237,28 +227,20 @@ def elements(
         misfit,
         width,
         curve,
-        room,
         np.zeros((count, pairs, 2)),
         np.ones((count, pairs)),
         *lines,
     )
     if pairs:
         with np.errstate(divide="ignore", invalid="ignore"):
-            _pairs(claim, act[:, flanks + stops :], found, scale, softest)
+            _pairs(claim, act[:, flanks + stops :], found, softest)
     if claim.slack is not None:
         found.width[:] += claim.slack
     return found
 
 
 def _flanks(
-    claim: Claim,
-    scale: Array,
-    at: Array,
-    soft: Array,
-    curve: Array,
-    room: Array,
-    misfit: Array,
-    width: Array,
+    claim: Claim, scale: Array, at: Array, soft: Array, curve: Array, misfit: Array, width: Array
 ) -> None:
     """Compliance (at a force), curvature and misfit of flanks, in twice the precision."""
     columns, here = claim.columns, claim.situations
@@ -286,7 +268,7 @@ def _flanks(
     if tabled:
         yielded = type(yielded)(yielded.high.copy(), yielded.low.copy())
     for e in tabled:
-        slope, value, jump, room[:, e] = _table(claim, mesh[e], force[:, e], scale)
+        slope, value, jump = _table(claim, mesh[e], force[:, e], scale)
         soft[:, e], yielded.high[:, e], yielded.low[:, e] = slope, value, 0.0
         width[:, e] += EPS * value
         curve[:, e] = jump
@@ -294,13 +276,8 @@ def _flanks(
     width[:, part] += TINY * (yielded.high + sizes[:, part])
 
 
-def _table(
-    claim: Claim, mesh: int, force: Array, scale: Array
-) -> tuple[Array, Array, Array, Array]:
-    """Slope and value of a tabulated law, a curvature that covers corners close by, and their room.
-
-    The last is the distance to the nearest corner that is not covered [N].
-    """
+def _table(claim: Claim, mesh: int, force: Array, scale: Array) -> tuple[Array, Array, Array]:
+    """Slope and value of a tabulated law, and a curvature that covers a corner close by."""
     table = np.broadcast_to(
         claim.situations.table[:, mesh], (claim.count, *claim.situations.table.shape[2:])
     )
@@ -313,17 +290,13 @@ def _table(
     value = values[rows, k] + slope * (force - forces[rows, k])
     near = LIGHT * scale
     jump = np.zeros(claim.count)
-    corners = np.abs(forces[:, 1:-1] - force[:, None])
-    ends = np.arange(1, forces.shape[1] - 1) > last[:, None]
-    corners = np.where(ends | np.isnan(corners) | (corners <= near[:, None]), np.inf, corners)
-    room = corners.min(axis=1, initial=np.inf)
     for j, corner in ((k - 1, forces[rows, k]), (k + 1, forces[rows, k + 1])):
         there = (j >= 0) & (j <= last) & (np.abs(force - corner) <= near)
         other = slopes[rows, np.clip(j, 0, slopes.shape[1] - 1)]
         with np.errstate(invalid="ignore"):
             # A bend of the law within reach counts as if it were spread over the reach.
             jump = np.maximum(jump, np.where(there, 3.0 * np.abs(other - slope), 0.0))
-    return slope, value, -jump, room
+    return slope, value, -jump
 
 
 def _springs(claim: Claim, active: Flags, soft: Array, misfit: Array, width: Array) -> None:
@@ -356,7 +329,7 @@ def _springs(claim: Claim, active: Flags, soft: Array, misfit: Array, width: Arr
         width[:, at] += EPS * np.abs(yielded)
 
 
-def _pairs(claim: Claim, act: Codes, found: Elements, scale: Array, softest: float) -> None:
+def _pairs(claim: Claim, act: Codes, found: Elements, softest: float) -> None:
     """Arcs and radial elements."""
     columns, here = claim.columns, claim.situations
     first, count = columns.first_pair, claim.count
@@ -418,53 +391,40 @@ def _pairs(claim: Claim, act: Codes, found: Elements, scale: Array, softest: flo
     force = np.where(on[:, :, None], force, 0.0)
     found.force[:, first:] = force.reshape(count, -1)
     found.rounding[:, first:] = np.repeat(np.where(lined & on, 2.0 * EPS * np.abs(size), 0.0), 2, 1)
-    found.rounding[:, columns.radials] += np.repeat(_put_aside(claim, acts, scale), 2, axis=1)
+    aside, found.spare[:] = _put_aside(claim, acts)
+    found.rounding[:, columns.radials] += np.repeat(aside, 2, axis=1)
     found.active[:, first:] = np.repeat(on, 2, axis=1)
     found.line[:], found.distance[:], found.size[:] = line, distance, size
     found.along[:] = yields
     true = np.where(size > 0.0, sign / across, 0.0)
     wrong = np.abs(true - 1.0 / lateral) * (1.0 + EPS) + np.where(act == Act.SLIP, 1.0 / along, 0.0)
     found.stiff_error[:] = np.where(lined, np.maximum(wrong, np.finfo(float).tiny), 0.0)
-    _follow(claim, acts, stopped, yields[:, part], found.follows[:, part])
+    _follow(claim, acts, yields[:, part], found.follows[:, part], found.shrinks[:, part])
 
 
-def _put_aside(claim: Claim, acts: Codes, scale: Array) -> Array:
-    """Friction of splines that are taken as open, at most, shape (S, radials) [N]."""
-    level = claim.graphs[:, :, 2]
-    open_ = (acts == Act.OPEN) & (level > 0.0)
-    if not open_.any():
-        return np.zeros(acts.shape)
-    train, arms = claim.columns.train, np.abs(claim.columns.moments).sum(axis=1)
-    more = np.zeros(acts.shape)
-    for q in range(len(train.rounds), acts.shape[1]):
-        k = (q - len(train.rounds)) % len(train.splines)
-        fixed, rate = claim.situations.spline[:, k, 3], claim.situations.spline[:, k, 4]
-        more[:, q] = np.where(np.isnan(fixed), np.abs(rate), 0.0) * arms[k] * NOISE * scale
-    return np.where(open_, level + more, 0.0)
+def _put_aside(claim: Claim, acts: Codes) -> tuple[Array, Array]:
+    """Friction of splines that are taken as open, (S, radials): its level [N], and per torque."""
+    is_open = acts == Act.OPEN
+    spare = np.zeros(acts.shape)
+    for k in range(len(claim.columns.train.splines)):
+        q = len(claim.columns.train.rounds) + k
+        fixed, rate = (claim.situations.spline[:, k, j] for j in (3, 4))
+        spare[:, q] = np.where(np.isnan(fixed) & is_open[:, q], np.abs(rate), 0.0)
+    return np.where(is_open, claim.graphs[:, :, 2], 0.0), spare
 
 
-def assumed(claim: Claim, act: Codes, scale: Array) -> Array:
-    """Error of flank forces, (S,) [N], up to which friction that was put aside is covered."""
-    train = claim.columns.train
-    if not train.splines:
-        return np.full(claim.count, np.inf)
-    radials = act[:, act.shape[1] - len(claim.radial_gears) :]
-    follows = np.isnan(claim.situations.spline[:, None, :, 3])
-    aside = (radials == Act.OPEN) & (claim.graphs[:, :, 2] > 0.0)
-    aside = aside[:, len(train.rounds) :].reshape(claim.count, -1, len(train.splines)) & follows
-    return np.where(aside.any(axis=(1, 2)), NOISE * scale, np.inf)
-
-
-def _follow(claim: Claim, acts: Codes, stopped: Flags, yields: Array, follows: Array) -> None:
-    """Change of a spline's level with its torque, where the level enters."""
+def _follow(claim: Claim, acts: Codes, yields: Array, follows: Array, shrinks: Array) -> None:
+    """Change of a spline's level and of its room with its torque, where they enter."""
     train, here = claim.columns.train, claim.situations
     rounds, splines = len(train.rounds), len(train.splines)
     for q in range(rounds, acts.shape[1]):
         k = (q - rounds) % splines
-        fixed, rate = here.spline[:, k, 3], here.spline[:, k, 4]
+        stiffness, fixed, rate = (here.spline[:, k, j] for j in (0, 3, 4))
         rate = np.where(np.isnan(fixed), np.abs(rate), 0.0)
-        enters = (acts[:, q] == Act.SLIP) | (stopped[:, q] & (yields[:, q] > 0.0))
+        stopped = acts[:, q] == Act.STOP
         if q >= rounds + splines:
             # With memory the room of a rigid stop shrinks by F_m/K_w.
-            enters = stopped[:, q]
-        follows[:, q] = np.where(enters, rate, 0.0)
+            shrinks[:, q] = np.where(stopped, rate / stiffness, 0.0)
+        else:
+            enters = (acts[:, q] == Act.SLIP) | (stopped & (yields[:, q] > 0.0))
+            follows[:, q] = np.where(enters, rate, 0.0)

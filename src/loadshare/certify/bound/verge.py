@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
-from loadshare.certify.bound.laws import Act, Codes, elements
+from loadshare.certify.bound.laws import NOISE, Act, Codes, elements
 from loadshare.certify.bound.quick import quick_boxes
 
 Array = NDArray[np.float64]
@@ -63,20 +63,11 @@ def on_the_verge(claim: Claim, act: Codes, scale: Array, box: Box) -> Box:
             ]
         )
         # What closes alone, and so can change no force, is as good as open.
-        opened, of = np.unique(
-            [_without_idle(claim, a, list(tried), scale) for a in acts],
-            axis=0,
-            return_inverse=True,
-        )
-        verge = np.zeros(act.shape[1], dtype=bool)
-        verge[list(ways)] = True
-        many = _each(claim, opened, scale, verge)
-        if many.unbalanced.any():
-            # Unless it is what balances residuals that nothing else can.
-            lost = acts[many.unbalanced[of.reshape(-1)]]
-            lost[:, list(idle)] = Act.STOP
-            acts = np.unique(np.concatenate([opened[~many.unbalanced], lost]), axis=0)
-            many = _each(claim, acts, scale, verge)
+        acts = np.unique([_without_idle(claim, a, list(tried), scale) for a in acts], axis=0)
+        verge = np.zeros(acts.shape, dtype=bool)
+        verge[:, list(ways)] = True
+        rows = np.zeros(len(acts), dtype=np.intp)
+        many = boxes(claim.take(rows), acts, scale[rows], verge)
         # A way of acting in which the load is not in balance is no equilibrium's.
         held = ~many.unbalanced
         if not held.any():
@@ -90,12 +81,6 @@ def on_the_verge(claim: Claim, act: Codes, scale: Array, box: Box) -> Box:
             row = int(np.flatnonzero(many.doubtful[:, e] & held)[0])
             ways[e] = _ways(claim, e, int(act[0, e]), bool(many.above[row, e]))
     return quick_boxes(claim, act, scale)
-
-
-def _each(claim: Claim, acts: Codes, scale: Array, verge: NDArray[np.bool_]) -> Box:
-    """Boxes of one claim with its elements acting in several ways."""
-    rows = np.zeros(len(acts), dtype=np.intp)
-    return boxes(claim.take(rows), acts, scale[rows], np.broadcast_to(verge, acts.shape))
 
 
 def _held_by_twins(claim: Claim, box: Box) -> NDArray[np.bool_]:
@@ -133,10 +118,14 @@ def _without_idle(claim: Claim, act: Codes, doubtful: list[int], scale: Array) -
 
 
 def _is_limit(claim: Claim, e: int) -> bool:
-    """Whether an element is open or pressed, and nothing else: a contact, a ring."""
+    """Whether an element is open or pressed, and nothing else.
+
+    A contact, a ring, a spline whose friction is put aside where it is open.
+    """
     columns = claim.columns
     radial = e - len(columns.contacts) - (columns.arcs.stop - columns.arcs.start) // 2
-    return radial < 0 or bool(claim.graphs[0, radial, 2] == 0.0)
+    largest = np.abs(claim.forces[0, columns.flanks]).max(initial=0.0)
+    return radial < 0 or bool(claim.graphs[0, radial, 2] <= NOISE * largest)
 
 
 def _alone(
@@ -173,7 +162,7 @@ def _ways(claim: Claim, e: int, act: int, above: bool) -> tuple[int, ...]:
     columns = claim.columns
     contacts = len(columns.contacts)
     arcs = (columns.arcs.stop - columns.arcs.start) // 2
-    if e < contacts + arcs or act == Act.OPEN:
+    if act == Act.OPEN or (act == Act.STOP and _is_limit(claim, e)):
         return Act.OPEN, Act.STOP
     first, stick, level, reach, _ = claim.graphs[0, e - contacts - arcs].tolist()
     steps = level > 0.0 and (stick == 0.0 or first * stick < level * (1.0 - 1e-12))
