@@ -22,6 +22,35 @@ def any_structure(generator: np.random.Generator, sun: str = "free") -> Workbenc
     return split_torque(2 * int(generator.integers(1, 5)))
 
 
+def dressed(generator: np.random.Generator, sun: str = "free", hertz: float = 0.5) -> Workbench:
+    """Return `any_structure`, of which the part `hertz` has b + c laws."""
+    bench = any_structure(generator, sun)
+    maybe_hertz(bench, generator, hertz)
+    return bench
+
+
+def maybe(generator: np.random.Generator, part: float = 0.5) -> bool:
+    """Tell whether something is there that `part` of the problems have."""
+    return bool(generator.random() < part)
+
+
+def chosen(generator: np.random.Generator, *values: float) -> float:
+    """Return one of some values."""
+    return float(generator.choice(values))
+
+
+def maybe_hertz(bench: Workbench, generator: np.random.Generator, part: float = 0.5) -> None:
+    """Turn stiffnesses into b + c laws, or leave them."""
+    if maybe(generator, part):
+        bench.hertz()
+
+
+def maybe_backlash(bench: Workbench, generator: np.random.Generator) -> None:
+    """Give all meshes a backlash of a tenth of a deflection to three, or none."""
+    if maybe(generator):
+        bench.backlash(DEFLECTION * generator.uniform(0.1, 3.0))
+
+
 def floats_of(bench: Workbench) -> list[str]:
     """Gears that may float: the sun, or the pinions."""
     return bench.named("sun") + bench.named("pinion")

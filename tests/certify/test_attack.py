@@ -13,9 +13,10 @@ import pytest
 
 from benchmarks.attack.__main__ import text
 from benchmarks.attack.balance import Balance
-from benchmarks.attack.judge import ALLOWED, ROUNDING, Attack, attacks
-from benchmarks.attack.victims import victims
+from benchmarks.attack.judge import ALLOWED, ROUNDING, Attack, attacks, one
+from benchmarks.attack.victims import victim, victims
 from benchmarks.attack.ways import WAYS, another_case, self_stress_followed
+from benchmarks.random_trains.draw import draw
 from loadshare.certify import certify
 
 SEED = 7
@@ -29,22 +30,22 @@ def some():
 
 def test_forces_of_right_answers_are_in_balance(some):
     """The attack's own balance, against answers that it had no part in."""
-    for victim in some:
-        balance = Balance(victim.train, victim.answer)
-        assert balance.unbalance() < 1e-13, victim.case.name
-        assert max(victim.errors(victim.answer).values()) < 1e-13 * victim.largest
+    for each in some:
+        balance = Balance(each.train, each.answer)
+        assert balance.unbalance() < 1e-13, each.case.name
+        assert max(each.errors(each.answer).values()) < 1e-13 * each.largest
 
 
 def test_self_stress_is_balanced_and_changes_torques(some):
     changed = 0
-    for victim in some:
-        balance = Balance(victim.train, victim.answer)
+    for each in some:
+        balance = Balance(each.train, each.answer)
         space = balance.null_space(balance.acting)
         assert np.abs(balance.columns[1] @ space).max(initial=0.0) < 1e-12
-        claim = self_stress_followed(victim, np.random.default_rng(SEED))
+        claim = self_stress_followed(each, np.random.default_rng(SEED))
         if claim is not None:
-            assert Balance(victim.train, claim).unbalance() < 1e-9, victim.case.name
-            changed += max(victim.errors(claim).values()) > 0.0
+            assert Balance(each.train, claim).unbalance() < 1e-9, each.case.name
+            changed += max(each.errors(claim).values()) > 0.0
     assert changed == len(some)
 
 
@@ -78,6 +79,19 @@ def test_every_bound_holds_of_wrong_answers_too(found):
     bounded = [a for a in found if a.margin < math.inf]
     assert len(bounded) > 100
     assert [a for a in bounded if a.margin < -ROUNDING] == []
+
+
+@pytest.mark.parametrize("number", [43, 147, 153])
+def test_bounds_hold_of_light_flanks_too(number):
+    """Hertz contacts and tables yield otherwise at light forces."""
+    case = draw(3, number)
+    light = victim(case, 1 + number % case.operating.positions)
+    tried = ("contact dropped", "self-stress", "wrong flank")
+    rng = np.random.default_rng(number)
+    wrong = [a for a in (one(light, tried[k % 3], rng) for k in range(90)) if a is not None]
+    bounded = [a for a in wrong if a.margin < math.inf and a.error > ALLOWED]
+    assert len(bounded) > 5
+    assert [a for a in bounded if a.margin < -ROUNDING or a.passed] == []
 
 
 def test_attacks_depend_on_their_seed_alone(found):

@@ -138,7 +138,7 @@ class Found(NamedTuple):
     push: Array  # largest force [N]
     residual: Array  # largest one of balance [N]
     width: Array  # rounding of lengths [m]
-    light: Array  # smallest force of a flank [N]
+    light: Array  # smallest force of a flank with a Hertz contact [N]
     room: Array  # smallest gap of what does not act [m]
     aside: Array  # largest torque of what is put aside [N·m]
     turned: Array  # largest turn of an arc's line

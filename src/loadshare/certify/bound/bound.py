@@ -428,7 +428,7 @@ class _Part:
         # Over half to twice the force the tangent of a Hertz contact changes by its curvature.
         gap += np.where(curve > 0.0, 0.5 * curve * reach**2, 0.0)
         gap += np.where(curve < 0.0, -curve * reach, 0.0)
-        gap = np.where((curve > 0.0) & light, np.inf, gap)
+        gap = np.where((curve > 0.0) & light | (reach > found.room[pick]), np.inf, gap)
         extra = np.zeros_like(reach)
         if len(self.at):
             where = np.ix_(self.rows[rows], self.pairs)

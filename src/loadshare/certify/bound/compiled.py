@@ -74,7 +74,8 @@ def bound_all(of, found, group, errors):  # type: ignore[no-untyped-def]
             residual += stray + of.eps * scale
         largest, moved, torque = _answered(of, found, group, g, s, residual)
         proved &= found.room[s] > moved + found.width[s]
-        proved &= largest <= 0.1 * max(found.light[s], of.light * scale)
+        # Lighter Hertz contacts, which may yield more than any tangent tells, are for `quick`.
+        proved &= largest <= 0.1 * found.light[s] and found.light[s] >= of.light * scale
         if proved and torque < np.inf and found.aside[s] < np.inf:
             errors[s] = max(torque, found.aside[s])
 
@@ -317,9 +318,10 @@ def _contacts(of, here, claim, s, sheet, found, sets):  # type: ignore[no-untype
         if acts:
             if c < flanks:
                 m = of.mesh[c]
-                soft, lightest = here.bending[rb, m], min(lightest, force)
+                soft = here.bending[rb, m]
                 compression = soft * force
                 if here.hertz[rc, m] > 0.0:
+                    lightest = min(lightest, force)
                     root = np.cbrt(max(force, 0.0))
                     compression += here.hertz[rc, m] * root * root
                     root = root if force >= light else np.cbrt(light)

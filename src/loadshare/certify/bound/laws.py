@@ -29,7 +29,9 @@ SOFT, SOFTEST, YIELDING = 1e5, 1e11, 1e3
 LIGHT = 1e-9
 """Force, in loads of the claim, at which the tangent of a contact without force is taken.
 
-Below it a Hertz contact is softer still, which only lessens what it moves."""
+Below it a Hertz contact is softer still: it answers by something between that tangent and none."""
+REACHED = 4.0
+"""Times the force of a contact on the verge up to which its tangent holds."""
 NOISE, APART = 1e-12, 1e-6
 """Force over the largest one, and gap over the largest deflection, of a contact that is open.
 
@@ -76,6 +78,9 @@ class Elements:
         A X − g − δ(F) [m], and its rounding.
     curve : ndarray, shape (S, m)
         Curvature of the law, as the part of the compliance that goes with F^(−1/3), over F.
+    room : ndarray, shape (S, m)
+        Error of the force [N] up to which the law is described: beyond, a light contact is stiffer,
+        and a table has another corner.
     line, distance, size : ndarray, shape (S, pairs, 2), (S, pairs), (S, pairs)
         u, |d| [m] and the force along it [N].
     along : ndarray, shape (S, pairs)
@@ -98,6 +103,7 @@ class Elements:
     misfit: Array
     width: Array
     curve: Array
+    room: Array
     line: Array
     distance: Array
     size: Array
@@ -178,7 +184,7 @@ def _radial_acts(claim: Claim, noise: Array) -> Codes:
 
 
 def elements(
-    claim: Claim, act: Codes, scale: Array, verge: Flags, softest: float = SOFTEST
+    claim: Claim, act: Codes, scale: Array, verge: Flags | None, softest: float = SOFTEST
 ) -> Elements:
     """Describe the elements at S claims.
 
@@ -189,8 +195,9 @@ def elements(
         How they are taken to act.
     scale : ndarray, shape (S,)
         Load of the claims [N].
-    verge : ndarray of bool, shape (S, elements)
-        Elements of which it is open how they act: contacts among them carry next to nothing.
+    verge : ndarray of bool, shape (S, elements), or None
+        Elements of which it is open how they act: contacts among them carry next to nothing. None
+        where secants take the place of curvatures.
     softest : float
         Largest compliance of a turn, in those of the claim; what a softer one has less in
         stiffness goes to `stiff_error`.
@@ -200,18 +207,26 @@ def elements(
     shape = (count, m)
     active = np.zeros(shape, dtype=bool)
     soft, width, curve = np.zeros(shape), np.zeros(shape), np.zeros(shape)
+    room = np.full(shape, np.inf)
     force = claim.forces.copy()
+    # A flank that pulls has no law: the pull is put aside.
+    force[:, columns.flanks] = np.maximum(force[:, columns.flanks], 0.0)
     rounding = np.zeros(shape)
     lengths, sizes = claim.lengths
     misfit = lengths.value
     flanks, stops = columns.flanks.stop, columns.stops.stop - columns.stops.start
     active[:, columns.flanks] = act[:, :flanks] != Act.OPEN
     active[:, columns.stops] = act[:, flanks : flanks + stops] != Act.OPEN
-    at = np.maximum(claim.forces[:, columns.flanks], 0.0)
-    light = verge[:, :flanks] | (at == 0.0)
-    at = np.where(light, np.maximum(at, LIGHT * scale[:, None]), at)
-    _flanks(claim, scale, at, soft, curve, misfit, width)
+    pushed = force[:, columns.flanks]
+    least = LIGHT * scale[:, None]
+    light = np.ones(pushed.shape, bool) if verge is None else verge[:, :flanks] | (pushed == 0.0)
+    reached = pushed if verge is None else REACHED * pushed
+    at = np.where(light, np.maximum(reached, least), pushed)
+    _flanks(claim, scale, at, soft, curve, room, misfit, width)
+    light &= curve[:, columns.flanks] > 0.0
     curve[:, columns.flanks][light] = 0.0
+    if verge is not None:
+        room[:, columns.flanks][light] = (at - pushed)[light]
     _springs(claim, active, soft, misfit, width)
     scalar = slice(0, columns.first_pair)
     width[:, scalar] += EPS * np.abs(misfit[:, scalar]) + TINY * sizes[:, scalar]
@@ -227,6 +242,7 @@ def elements(
         misfit,
         width,
         curve,
+        room,
         np.zeros((count, pairs, 2)),
         np.ones((count, pairs)),
         *lines,
@@ -240,7 +256,14 @@ def elements(
 
 
 def _flanks(
-    claim: Claim, scale: Array, at: Array, soft: Array, curve: Array, misfit: Array, width: Array
+    claim: Claim,
+    scale: Array,
+    at: Array,
+    soft: Array,
+    curve: Array,
+    room: Array,
+    misfit: Array,
+    width: Array,
 ) -> None:
     """Compliance (at a force), curvature and misfit of flanks, in twice the precision."""
     columns, here = claim.columns, claim.situations
@@ -268,7 +291,7 @@ def _flanks(
     if tabled:
         yielded = type(yielded)(yielded.high.copy(), yielded.low.copy())
     for e in tabled:
-        slope, value, jump = _table(claim, mesh[e], force[:, e], scale)
+        slope, value, jump, room[:, e] = _table(claim, mesh[e], force[:, e], scale)
         soft[:, e], yielded.high[:, e], yielded.low[:, e] = slope, value, 0.0
         width[:, e] += EPS * value
         curve[:, e] = jump
@@ -276,8 +299,13 @@ def _flanks(
     width[:, part] += TINY * (yielded.high + sizes[:, part])
 
 
-def _table(claim: Claim, mesh: int, force: Array, scale: Array) -> tuple[Array, Array, Array]:
-    """Slope and value of a tabulated law, and a curvature that covers a corner close by."""
+def _table(
+    claim: Claim, mesh: int, force: Array, scale: Array
+) -> tuple[Array, Array, Array, Array]:
+    """Slope and value of a tabulated law, a curvature that covers corners close by, and their room.
+
+    The last is the distance to the nearest corner that is not covered [N].
+    """
     table = np.broadcast_to(
         claim.situations.table[:, mesh], (claim.count, *claim.situations.table.shape[2:])
     )
@@ -290,13 +318,17 @@ def _table(claim: Claim, mesh: int, force: Array, scale: Array) -> tuple[Array, 
     value = values[rows, k] + slope * (force - forces[rows, k])
     near = LIGHT * scale
     jump = np.zeros(claim.count)
+    corners = np.abs(forces[:, 1:-1] - force[:, None])
+    ends = np.arange(1, forces.shape[1] - 1) > last[:, None]
+    corners = np.where(ends | np.isnan(corners) | (corners <= near[:, None]), np.inf, corners)
+    room = corners.min(axis=1, initial=np.inf)
     for j, corner in ((k - 1, forces[rows, k]), (k + 1, forces[rows, k + 1])):
         there = (j >= 0) & (j <= last) & (np.abs(force - corner) <= near)
         other = slopes[rows, np.clip(j, 0, slopes.shape[1] - 1)]
         with np.errstate(invalid="ignore"):
             # A bend of the law within reach counts as if it were spread over the reach.
             jump = np.maximum(jump, np.where(there, 3.0 * np.abs(other - slope), 0.0))
-    return slope, value, -jump
+    return slope, value, -jump, room
 
 
 def _springs(claim: Claim, active: Flags, soft: Array, misfit: Array, width: Array) -> None:

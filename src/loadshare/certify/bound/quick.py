@@ -9,10 +9,12 @@ D that no element undercuts
 ε the misfits of the laws. With :math:`L L^T = N (N^T D N)^{-1} N^T` this is
 
 .. math:: \lvert \Delta F_e \rvert \le \lvert P r_f \rvert_e
-    + \lVert L_e \rVert\, \lVert L^T (\epsilon - D P r_f) \rVert .
+    + \lVert L_e \rVert\, \bigl(\lVert L^T \epsilon \rVert
+    + \textstyle\sum_k \lVert L_k \rVert\, \bar D_k \lvert P r_f \rvert_k \bigr),
 
-D, the smallest compliances among claims of which the same elements act, makes L the same for all of
-them: a claim costs two small products. What cannot be shown so is left to `boxes`. Source:
+with compliances that no element exceeds in the last term. D, the smallest compliances among claims
+of which the same elements act, makes L the same for all of them: a claim costs two small
+products. What cannot be shown so is left to `boxes`. Source:
 formulation, section 16.
 """
 
@@ -41,6 +43,8 @@ SECANT = 0.9
 """Part of the tangent compliance that the secant to the exact force keeps.
 
 The bound is far below a tenth of the force wherever it is of use; elsewhere it is refused."""
+ENDLESS = 1e300
+"""Compliance, over the tangent's, of a Hertz contact without force: there is no largest."""
 NEAR = 1e-6
 """Gap, over the widest one, within which a contact counts among those that may carry."""
 OPPOSED = 1.0 - 1e-6
@@ -67,7 +71,7 @@ def quick_boxes(claim: Claim, act: Codes, scale: Array) -> Box:
     """
     box = Box.unproved(claim, act)
     act, doubled = _with_near(claim, act)
-    found = elements(claim, act, scale, np.ones(act.shape, dtype=bool))
+    found = elements(claim, act, scale, None)
     if found.shrinks.any() or (claim.columns.train.slip is not None and found.follows.any()):
         # With memory, what follows the torque is the room of a stop, a length and no force.
         return box
@@ -76,7 +80,7 @@ def quick_boxes(claim: Claim, act: Codes, scale: Array) -> Box:
     rounding = rounding + put_aside(claim.columns, found.spare, NOISE * scale[:, None] * arms)
     for rows in alike(act):
         for _ in range(REFERENCES):
-            group = _Group(claim, found, rows, doubled)
+            group = _Group(claim, found, rows, doubled, scale[rows])
             if not group.is_covered:
                 break
             pick = slice(None) if len(rows) == len(act) else rows
@@ -141,6 +145,22 @@ def alike(codes: Codes) -> list[NDArray[np.intp]]:
     return np.split(order, np.cumsum(np.bincount(group))[:-1])
 
 
+def _over_tangents(
+    claim: Claim, found: Elements, rows: NDArray[np.intp] | slice, scale: Array
+) -> Array:
+    """Largest compliance of flanks between two forces, over the tangent's, shape (rows, flanks).
+
+    The tangent of a light Hertz contact is taken at more than its force.
+    """
+    flanks = claim.columns.flanks
+    force, least = found.force[rows][:, flanks], LIGHT * scale[:, None]
+    with np.errstate(divide="ignore"):
+        light = np.minimum(1.5 * np.cbrt(least / force), ENDLESS)
+    hertz = np.broadcast_to(claim.situations.hertz, (claim.count, claim.situations.hertz.shape[1]))
+    some = hertz[rows][:, claim.columns.meshes] > 0.0
+    return np.where(some & (force < least), light, 1.0 / SECANT)
+
+
 class _Group:
     """Claims whose elements act alike.
 
@@ -148,7 +168,12 @@ class _Group:
     """
 
     def __init__(
-        self, claim: Claim, found: Elements, rows: NDArray[np.intp], doubled: Flags
+        self,
+        claim: Claim,
+        found: Elements,
+        rows: NDArray[np.intp],
+        doubled: Flags,
+        scale: Array,
     ) -> None:
         self.claim, self.found, self.rows, self.doubled = claim, found, rows, doubled
         columns = claim.columns
@@ -189,6 +214,11 @@ class _Group:
         self.is_left = self.is_sliding.copy()
         self.is_left[self.line.stop :] = True
         self.is_covered = True
+        self.over = np.full((len(rows), len(self.directions)), 1.0 / SECANT)
+        over = _over_tangents(claim, found, self.pick, scale)
+        flanks = np.flatnonzero(self.plain < columns.flanks.stop)
+        self.over[:, flanks] = over[:, self.plain[flanks]]
+        self.is_endless = (self.over > 1.0 / SECANT).any(axis=0)
         self._set_particular()
         self._set_stiffness()
 
@@ -200,8 +230,8 @@ class _Group:
     def _set_particular(self) -> None:
         """Find how a load is carried by what yields in proportion."""
         self.particular = self.statics.particular
-        for left in (self.is_left, self.is_sliding):
-            # Turning lines carry a load only where nothing else does.
+        for left in (self.is_left | self.is_endless, self.is_left, self.is_sliding):
+            # What yields without end carries a load only where nothing else does.
             self.is_left = left
             known = Statics.of(self.directions[~left])
             self.is_covered = known.moves.shape == self.statics.moves.shape
@@ -238,6 +268,7 @@ class _Group:
         self.root = n @ (vectors[:, kept] / np.sqrt(values[kept]))
         self.sizes = np.sqrt((self.root**2).sum(axis=1))
         self.passes = np.abs(self.particular)
+        self.soft *= self.over
         self.into_energy = self.passes.T @ (self.soft.max(axis=0) * self.sizes)
 
     def errors(self, left: Array, rounding: Array, scale: Array) -> tuple[Array, Array]:
@@ -307,8 +338,9 @@ class _Group:
 
     def _under(self, load: Array, misfit: Array | float) -> tuple[Array, Array]:
         """Sizes of the forces that carry a load, and of the misfit that is left for self-stress."""
-        force = load @ self.particular.T
-        return np.abs(force), np.sqrt((((misfit - self.soft * force) @ self.root) ** 2).sum(axis=1))
+        force = np.abs(load @ self.particular.T)
+        bent = np.sqrt(((misfit @ self.root) ** 2).sum(axis=1))
+        return force, bent + (self.soft * force) @ self.sizes
 
     def _with(self, base: Array, energy: Array, load: Array, gap: Array) -> tuple[Array, Array]:
         """Add what loads and gaps of given sizes may do."""
@@ -325,7 +357,7 @@ class _Group:
         for pair in np.flatnonzero(rates.any(axis=0)).tolist():
             first = columns.first_pair + 2 * pair
             push = found.line[pick][:, pair] @ columns.matrix.high[first : first + 2]
-            force, bent = self._under(push, 0.0)
+            force, bent = self._under(push, np.zeros(self.over.shape))
             total += (force + bent[:, None] * self.sizes) * rates[:, pair, None]
             k = (pair - arcs - len(columns.train.rounds)) % len(arms)
             most = np.maximum(most, errors[:, : len(at)] @ arms[k, at])
@@ -359,6 +391,7 @@ class _Group:
         proved &= slight | (found.spare[pick] == 0.0).all(axis=1)
         # The curvature of a table is that of a corner within reach.
         proved &= (found.curve[pick] >= 0.0).all(axis=1)
+        proved &= (errors <= found.room[pick]).all(axis=1)
         unsided = np.array([*columns.contacts, *range(columns.arcs.start, columns.arcs.stop)], int)
         doubtful, _ = doubts(claim, found, self.rows, errors, moved)
         sizes = [

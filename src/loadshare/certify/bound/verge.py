@@ -63,11 +63,20 @@ def on_the_verge(claim: Claim, act: Codes, scale: Array, box: Box) -> Box:
             ]
         )
         # What closes alone, and so can change no force, is as good as open.
-        acts = np.unique([_without_idle(claim, a, list(tried), scale) for a in acts], axis=0)
-        verge = np.zeros(acts.shape, dtype=bool)
-        verge[:, list(ways)] = True
-        rows = np.zeros(len(acts), dtype=np.intp)
-        many = boxes(claim.take(rows), acts, scale[rows], verge)
+        opened, of = np.unique(
+            [_without_idle(claim, a, list(tried), scale) for a in acts],
+            axis=0,
+            return_inverse=True,
+        )
+        verge = np.zeros(act.shape[1], dtype=bool)
+        verge[list(ways)] = True
+        many = _each(claim, opened, scale, verge)
+        if many.unbalanced.any():
+            # Unless it is what balances residuals that nothing else can.
+            lost = acts[many.unbalanced[of.reshape(-1)]]
+            lost[:, list(idle)] = Act.STOP
+            acts = np.unique(np.concatenate([opened[~many.unbalanced], lost]), axis=0)
+            many = _each(claim, acts, scale, verge)
         # A way of acting in which the load is not in balance is no equilibrium's.
         held = ~many.unbalanced
         if not held.any():
@@ -81,6 +90,12 @@ def on_the_verge(claim: Claim, act: Codes, scale: Array, box: Box) -> Box:
             row = int(np.flatnonzero(many.doubtful[:, e] & held)[0])
             ways[e] = _ways(claim, e, int(act[0, e]), bool(many.above[row, e]))
     return quick_boxes(claim, act, scale)
+
+
+def _each(claim: Claim, acts: Codes, scale: Array, verge: NDArray[np.bool_]) -> Box:
+    """Boxes of one claim with its elements acting in several ways."""
+    rows = np.zeros(len(acts), dtype=np.intp)
+    return boxes(claim.take(rows), acts, scale[rows], np.broadcast_to(verge, acts.shape))
 
 
 def _held_by_twins(claim: Claim, box: Box) -> NDArray[np.bool_]:

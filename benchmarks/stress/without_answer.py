@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from benchmarks.stress.problem import Family
+from benchmarks.stress.dressing import maybe, maybe_hertz
 from benchmarks.stress.workbench import (
     DEFLECTION,
     Workbench,
@@ -17,19 +17,18 @@ from benchmarks.stress.workbench import (
 )
 
 
-def build(excess: float, generator: np.random.Generator) -> Workbench:
+def without_answer(excess: float, generator: np.random.Generator) -> Workbench:
     """Return a train that must be refused; by `excess` it misses an answer."""
     kinds = (_pulled, _squeezed, _one_sided, _unheld)
     kind = kinds[int(generator.integers(len(kinds)))]
     bench = kind(excess, generator)
-    if generator.random() < 0.5:
-        bench.hertz()
+    maybe_hertz(bench, generator)
     return bench
 
 
 def _pulled(excess: float, generator: np.random.Generator) -> Workbench:
     """A gear is turned against the power flow, and flanks without backlash cannot pull."""
-    bench = two_path() if generator.random() < 0.5 else split_torque(4)
+    bench = two_path() if maybe(generator) else split_torque(4)
     wheels = [g for g in bench.gears if g.startswith(("wheel", "idler"))]
     gear = str(generator.choice(wheels))
     bench.external(gear, -(1.0 + excess) * 40.0 * bench.rated)
@@ -66,12 +65,3 @@ def _unheld(excess: float, generator: np.random.Generator) -> Workbench:
         bench.support(idler, "free")
     bench.torque(bench.rated * min(1.0, excess))
     return bench
-
-
-FAMILY = Family(
-    "impossible",
-    "no answer exists",
-    "what is missing, relative [-]",
-    (10.0, 3.0, 1.0, 0.3, 0.1, 0.03, 0.01, 1e-3),
-    build,
-)

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from benchmarks.stress.problem import Family
 from benchmarks.stress.workbench import Workbench, star
 
 SUN, RING = 0.036 * 1.5, 0.084 * 1.5
@@ -32,7 +31,7 @@ def branch_yield(torque: float, hertz: float) -> float:
     return float(total)
 
 
-def build(off: float, generator: np.random.Generator) -> Workbench:
+def on_the_verge(off: float, generator: np.random.Generator) -> Workbench:
     """Put a contact at a relative distance `off` from its verge, on either side of it."""
     kind = generator.choice(["flank", "ring", "spline", "stop"])
     side = 1.0 + off * generator.choice([-1.0, 1.0])
@@ -65,12 +64,3 @@ def build(off: float, generator: np.random.Generator) -> Workbench:
         bench.support("sun", stiffness)
         bench.circle("sun", moved * side)
     return bench
-
-
-FAMILY = Family(
-    "verge",
-    "contact on the verge",
-    "distance from the verge [-]",
-    (1e-1, 1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-15, 0.0),
-    build,
-)
