@@ -116,6 +116,17 @@ def within(**how: Any) -> Callable[[Callable[..., Any]], Any]:
     return decorated
 
 
+def at_hand(*functions: Any) -> bool:
+    """Tell whether functions run without compiling; what was kept on disk is loaded.
+
+    Parameters
+    ----------
+    *functions
+        Of `jit`.
+    """
+    return why_not() is None and all(f.signatures or f._cache.load_all(f) for f in functions)
+
+
 def words_of(error: BaseException) -> str:
     """Return the kind of an exception and the first line of what it says."""
     first = str(error).strip().splitlines()
@@ -173,6 +184,17 @@ def _caches() -> _Caches:
             except Exception:  # noqa: BLE001 -- it is compiled anew
                 return None
 
+        def load_all(self, function: Any) -> bool:
+            """Load all that is kept of a function, and tell whether there is any."""
+            for sig, *_ in self._cache_file._load_index():
+                code = self.load_overload(sig, function.targetctx)
+                if code is not None:
+                    # As the dispatcher does when it is called.
+                    entry = (code.entry_point, code.fndesc, [code.library])
+                    function.targetctx.insert_user_function(*entry)
+                    function.add_overload(code)
+            return bool(function.signatures)
+
         def save_overload(self, sig: Any, data: Any) -> None:
             try:
                 super().save_overload(sig, data)
@@ -184,6 +206,10 @@ def _caches() -> _Caches:
 
         def __init__(self, why: str) -> None:
             self._why = why
+
+        def load_all(self, function: Any) -> bool:
+            """Nothing is there."""
+            return False
 
         def save_overload(self, sig: Any, data: Any) -> None:
             _watch.not_kept(self._why)

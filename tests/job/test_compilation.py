@@ -16,10 +16,12 @@ from tests.support import CASES, shipped
 
 import loadshare as ls
 from loadshare import compilation
-from loadshare.job.machine import Machine, engine_named
+from loadshare.job import machine as machines
+from loadshare.job.machine import Machine, engine_at_hand, engine_named
 from loadshare.solver.hot import vectorised
 from loadshare.train import build_train
 
+KINDS = ("base", "limit_ring", "spline_clearance", "load")
 PACKAGE = Path(ls.__file__).parent
 CASE = CASES / "fgfbstts" / "limit_ring.toml"
 FLOATS = np.linspace(0.0, 12.0, 9)
@@ -226,6 +228,73 @@ def test_what_cannot_be_written_any_more_is_told_once(tmp_path, monkeypatch, cap
     told = [r.message for r in caplog.records if "could not be kept" in r.message]
     assert len(told) == 1
     assert "No space left on device" in told[0]
+
+
+# --- What is at hand ---
+
+
+def test_at_hand_is_what_was_compiled_or_kept(tmp_path, monkeypatch):
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    file = tmp_path / "kept.py"
+    file.write_text(MODULE, encoding="utf-8")
+    first = loaded(file)
+    assert not compilation.at_hand(first)
+    assert first(2.0) == 4.0
+    assert compilation.at_hand(first)
+    again = loaded(file)
+    assert compilation.at_hand(again)
+    assert again(2.0) == 4.0
+    assert not again.stats.cache_misses
+    monkeypatch.setattr(compilation, "_reason", "of a test")
+    assert not compilation.at_hand(again)
+
+
+def test_what_is_damaged_is_not_at_hand(tmp_path, monkeypatch):
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    file = tmp_path / "kept.py"
+    file.write_text(MODULE, encoding="utf-8")
+    assert loaded(file)(2.0) == 4.0
+    (kept,) = (tmp_path / "__pycache__").glob("*.nbc")
+    kept.write_bytes(flipped(kept.read_bytes()))
+    assert not compilation.at_hand(loaded(file))
+
+
+def test_case_by_case_nothing_is_loaded_before_it_is_worth_while_nor_compiled(monkeypatch):
+    from loadshare.solver.hot import compiled
+
+    needed: list[int] = []
+    monkeypatch.setattr(machines, "_one_by_one", 0)
+    monkeypatch.setattr(compilation, "at_hand", lambda *functions: needed.append(len(functions)))
+    with monkeypatch.context() as new:
+        new.delitem(sys.modules, machines.COMPILED[0])
+        assert engine_at_hand("auto", machines.LOADING) is vectorised.settle
+    assert not needed
+    assert engine_at_hand("auto", 1) is vectorised.settle
+    assert engine_at_hand("auto", compiled.FEW + 1) is vectorised.settle
+    assert needed == [len(machines.KERNELS) - 1, len(machines.KERNELS)]
+    monkeypatch.setattr(compilation, "at_hand", lambda *_: True)
+    assert engine_at_hand("auto", 1) is compiled.settle
+    assert engine_at_hand("vectorised", 1) is vectorised.settle
+
+
+def test_what_is_at_hand_is_all_that_cases_call():
+    """In a process that finds on disk what this one has compiled, nothing else is asked for."""
+    for name in KINDS:
+        ls.solve(CASES / "fgfbstts" / f"{name}.toml", engine="compiled")
+    script = f"""
+import loadshare as ls
+from loadshare.job import machine
+from loadshare.solver.hot import compiled
+from numba.core.dispatcher import Dispatcher
+machine._one_by_one = machine.LOADING
+assert machine.engine_at_hand("auto", compiled.FEW + 1) is compiled.settle
+asked, ask = [], Dispatcher._compile_for_args
+Dispatcher._compile_for_args = lambda self, *a, **k: asked.append(str(self)) or ask(self, *a, **k)
+for name in {KINDS!r}:
+    ls.solve({str(CASES)!r} + f"/fgfbstts/{{name}}.toml")
+print(asked)
+"""
+    assert run(script)[0] == []
 
 
 # --- Compiling is told ---

@@ -20,7 +20,7 @@ from loadshare.certify.certificate import certify_later
 from loadshare.certify.validity import Validity, refusal_told, validity
 from loadshare.errors import Refused
 from loadshare.job.least import least_places
-from loadshare.job.machine import Answers, Machine, engine_named
+from loadshare.job.machine import Answers, Machine, engine_at_hand
 from loadshare.scene import assemble
 from loadshare.scene.elements import elements_of
 from loadshare.scene.plan import Plan, Role
@@ -91,7 +91,7 @@ def climb_all(
     indices: Sequence[int],
     options: Options,
     tolerance: float,
-    engine: str | None = "vectorised",
+    engine: str | None = "auto",
 ) -> Iterator[Answer | Refused]:
     """Answer positions, all of them on the hot path first.
 
@@ -104,7 +104,7 @@ def climb_all(
         For what the hot path leaves.
     tolerance : float
     engine : str or None
-        Of the hot path, by name; None leaves it out.
+        Of the hot path, by name (`engine_at_hand`); None leaves it out.
 
     Yields
     ------
@@ -129,12 +129,12 @@ def hot_answers(
     machine: Machine,
     indices: Sequence[int],
     tolerance: float,
-    engine: str = "vectorised",
+    engine: str = "auto",
 ) -> dict[int, Answer]:
     """Answer what the hot path can, by position."""
     train = machine.train
     situations = machine.situations(indices)
-    found = machine.answer(situations, tolerance, engine_named(engine, len(indices)))
+    found = machine.answer(situations, tolerance, engine_at_hand(engine, len(indices)))
     answers = {}
     loose = np.flatnonzero(found.passed & ~found.determined).tolist()
     least, proved = least_places(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -35,8 +36,19 @@ COMPILED = (
     "loadshare.certify.bound.compiled",
 )
 """What a quick answer calls, all of which must be there."""
+KERNELS = (
+    ("loadshare.solver.hot.lanes", "_settle_all"),
+    ("loadshare.solver.hot.compiled", "_settle_all"),
+    ("loadshare.solver.hot.products", "_times"),
+    ("loadshare.solver.hot.products", "_push"),
+    ("loadshare.solver.hot.products", "_idle"),
+    ("loadshare.certify.compiled", "judge_all"),
+)
+"""What is called at most to answer a case; the first, where it has many positions."""
 FEW = 2000
 """Equilibria up to which compiling, or reading what was compiled, costs more than it saves."""
+LOADING = 100
+"""Equilibria, solved case by case, from which on reading what was compiled is worth while."""
 
 
 def _parts(count: int, parts: int) -> list[slice]:
@@ -61,6 +73,35 @@ def engine_named(name: str, count: int) -> Engine:
     if name == "vectorised" or (name == "auto" and count <= FEW):
         return vectorised.settle
     return _compiled() or vectorised.settle
+
+
+_one_by_one = 0
+
+
+def engine_at_hand(name: str, count: int) -> Engine:
+    """Return an engine by name, for those who solve case by case.
+
+    Parameters
+    ----------
+    name : {"auto", "compiled", "vectorised"}
+        "auto" is the compiled one where that takes no compiling: once it was used in this process,
+        or once so many equilibria were solved that loading it from disk is worth while.
+    count : int
+        Equilibria to solve.
+    """
+    global _one_by_one
+    if name != "auto":
+        return engine_named(name, count)
+    _one_by_one += count
+    if COMPILED[0] not in sys.modules and _one_by_one <= LOADING:
+        return vectorised.settle
+    try:
+        lanes, *others = [getattr(import_module(module), name) for module, name in KERNELS]
+        from loadshare.solver.hot import compiled
+    except Exception:  # noqa: BLE001 -- those who ask for the compiled one are told
+        return vectorised.settle
+    needed = [lanes, *others] if count > compiled.FEW else others
+    return compiled.settle if compilation.at_hand(*needed) else vectorised.settle
 
 
 def _compiled() -> Engine | None:

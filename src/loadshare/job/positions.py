@@ -39,7 +39,7 @@ def solve(
     reduce: bool = True,
     tolerance: float = TOLERANCE,
     positions: Iterable[int] | None = None,
-    engine: str = "vectorised",
+    engine: str = "auto",
     near: Case | None = None,
     progress: Progress | None = None,
 ) -> Result:
@@ -59,9 +59,11 @@ def solve(
         Largest scaled residual of a certified answer, up to 1e-3.
     positions : iterable of int, optional
         1-based positions to solve; all by default.
-    engine : {"vectorised", "compiled"}
-        Of the hot path: NumPy, or Numba, which takes a second to load and is several times faster
-        for those who solve many cases in one process.
+    engine : {"auto", "vectorised", "compiled"}
+        Of the hot path: NumPy, or Numba, which takes half a second to load and a minute to compile
+        the first time. "auto" is Numba where that costs nothing any more, because it was used in
+        this process, or little: it is kept on disk, and a hundred positions were solved before.
+        Answers are the same but for round-off.
     near : Case, optional
         A case that differs little and was solved just before: the search begins at what was found
         there. It takes less time and leads to the same answer, but for round-off.
@@ -153,8 +155,7 @@ def explain(
     case, machine = prepared(case)
     options, hot = _options(solver, method, reduce)
     wanted = wanted_positions(machine.train, [position])
-    settle = "vectorised" if hot else None
-    (found,) = climb_all(machine, wanted, options, tolerance, settle)
+    (found,) = climb_all(machine, wanted, options, tolerance, "auto" if hot else None)
     if isinstance(found, Refused):
         raise found
     if found.rung in (HOT, SEARCHED):

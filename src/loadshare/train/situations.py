@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -106,6 +107,7 @@ VARYING = tuple(f.name for f in fields(Situations) if f.name not in ("train", "c
 """Names of the arrays that a position brings."""
 
 
+@lru_cache(maxsize=64)
 def situation_of(train: Train, index: int) -> Situations:
     """Return the situation of a train at position `index` (1-based), as a single sample."""
     here = train.situation(index)

@@ -87,12 +87,11 @@ class Claim:
         columns, train, answers = self.columns, self.columns.train, self.answers
         found = np.zeros((self.count, len(columns.names)))
         found[:, columns.flanks] = answers.flank_force
-        arms = [train.gears[s.first].base_radius for s in train.shafts.values()]
-        for at, k in enumerate(columns.elastic_shafts, columns.shafts.start):
-            found[:, at] = answers.shaft_torque[:, k] / arms[k]
-        for number, gear in enumerate(columns.places):
-            at = columns.bearings.start + 2 * number
-            found[:, at : at + 2] = answers.support_force[:, columns.order[gear]]
+        torques = answers.shaft_torque[:, columns.elastic_shafts]
+        found[:, columns.shafts] = torques / columns.shaft_arms
+        found[:, columns.bearings] = answers.support_force[:, columns.moving].reshape(
+            self.count, -1
+        )
         stops = 2 * len(train.drums)
         found[:, columns.stops] = answers.ring_force[:, :stops]
         found[:, columns.arcs.start : columns.arcs.stop : 2] = answers.ring_force[:, stops:]

@@ -94,6 +94,8 @@ class Columns:
         self.coordinates = tuple(names)
         rows: list[Twofold] = []
         self._labels: list[str] = []
+        self._turned: list[tuple[Twofold, int, float, float]] = []
+        self._placed: list[tuple[Twofold, int, Array, Array]] = []
         self.flanks = self._add(rows, self._flank_rows())
         self.shafts = self._add(rows, self._shaft_rows())
         self.bearings = self._add(rows, self._bearing_rows())
@@ -102,6 +104,7 @@ class Columns:
         self.arcs = self._add(rows, self._arc_rows())
         self.radials = self._add(rows, self._radial_rows())
         self.names = tuple(self._labels)
+        self._put_all()
         shape = (len(rows), len(names))
         self.matrix = Twofold(
             np.array([r.high for r in rows]).reshape(shape),
@@ -112,11 +115,26 @@ class Columns:
         self._statics: dict[bytes, Statics] = {}
 
     @cached_property
-    def elastic_shafts(self) -> tuple[int, ...]:
+    def elastic_shafts(self) -> NDArray[np.intp]:
         """Numbers of the shafts that yield."""
-        return tuple(
-            k for k, s in enumerate(self.train.shafts.values()) if not math.isinf(s.stiffness)
-        )
+        shafts = self.train.shafts.values()
+        return np.flatnonzero([not math.isinf(s.stiffness) for s in shafts])
+
+    @cached_property
+    def shaft_arms(self) -> Array:
+        """First base radius of every shaft that yields [m]."""
+        gears, shafts = self.train.gears, list(self.train.shafts.values())
+        return np.array([gears[shafts[k].first].base_radius for k in self.elastic_shafts])
+
+    @cached_property
+    def moving(self) -> NDArray[np.intp]:
+        """Numbers of the gears that can be displaced."""
+        return np.array([self.order[gear] for gear in self.places], dtype=np.intp)
+
+    @cached_property
+    def tabled(self) -> NDArray[np.intp]:
+        """Flanks with a tabulated law."""
+        return np.flatnonzero([hasattr(m.laws[0], "forces") for m, _ in self.all_flanks])
 
     @cached_property
     def loads(self) -> Array:
@@ -220,21 +238,32 @@ class Columns:
         return Twofold(np.zeros(len(self.coordinates)), np.zeros(len(self.coordinates)))
 
     def _put_turn(self, row: Twofold, gear: str, arm: float) -> None:
-        """Add what a gear's rotation times an arm [m] contributes."""
+        """Note what a gear's rotation times an arm [m] contributes."""
         turn = self.turns[gear]
         if turn.coordinate is not None:
-            part = quotient(np.array(arm), np.array(turn.radius))
-            row.high[turn.coordinate] += part.high
-            row.low[turn.coordinate] += part.low
+            self._turned.append((row, turn.coordinate, arm, turn.radius))
 
     def _put_place(self, row: Twofold, first: int, frame: Array, direction: Array) -> None:
-        """Add what a displacement in a frame contributes along a direction (3,)."""
-        for k in (0, 1):
-            term = [two_product(a, b) for a, b in zip(frame[k], direction, strict=True)]
-            high = math.fsum(float(v) for t in term for v in t)
-            low = math.fsum([*(float(v) for t in term for v in t), -high])
-            row.high[first + k] += high
-            row.low[first + k] += low
+        """Note what a displacement in a frame contributes along a direction (3,)."""
+        self._placed.append((row, first, frame, direction))
+
+    def _put_all(self) -> None:
+        """Add what was noted."""
+        if self._turned:
+            rows, at, arms, radii = zip(*self._turned, strict=True)
+            high, low = quotient(np.array(arms), np.array(radii))
+            for row, k, *parts in zip(rows, at, high.tolist(), low.tolist(), strict=True):
+                row.high[k] += parts[0]
+                row.low[k] += parts[1]
+        if self._placed:
+            rows, at, frames, directions = zip(*self._placed, strict=True)
+            terms = two_product(np.array(frames), np.array(directions)[:, None, :])
+            every = np.concatenate(terms, axis=2).tolist()
+            for row, first, along in zip(rows, at, every, strict=True):
+                for k, parts in enumerate(along):
+                    total = math.fsum(parts)
+                    row.high[first + k] += total
+                    row.low[first + k] += math.fsum([*parts, -total])
 
     def _flank_rows(self) -> list[tuple[str, Twofold]]:
         rows = []

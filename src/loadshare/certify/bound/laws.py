@@ -154,33 +154,23 @@ def _radial_acts(claim: Claim, noise: Array) -> Codes:
     held = np.where(np.isinf(last), Act.PINNED, Act.STICK)
     below = size < level * (1.0 - CORNER)
     steps = end < level * (1.0 - CORNER)
-    return np.select(
-        [
-            np.isinf(stick),
-            (level <= noise) & (size <= noise) & (distance < reach),
-            (level == 0.0) & (stick == 0.0) & (reach == 0.0),
-            (level == 0.0) & (size == 0.0),
-            steps & below & (stick == 0.0),
-            steps & below & (size > end),
-            (distance < stick) & (stick > 0.0),
-            (size <= end) & steps & (stick > 0.0),
-            (distance < reach) & (distance > 0.0) & (level > 0.0),
-            (distance == 0.0) & (level > 0.0) & (stick == 0.0),
-        ],
-        [
-            Act.STICK,
-            Act.OPEN,
-            held,
-            Act.OPEN,
-            Act.PINNED,
-            Act.STEP,
-            Act.STICK,
-            Act.STICK,
-            Act.SLIP,
-            Act.PINNED,
-        ],
-        Act.STOP,
-    ).astype(np.int8)
+    ways = (
+        (np.isinf(stick), Act.STICK),
+        ((level <= noise) & (size <= noise) & (distance < reach), Act.OPEN),
+        ((level == 0.0) & (stick == 0.0) & (reach == 0.0), held),
+        ((level == 0.0) & (size == 0.0), Act.OPEN),
+        (steps & below & (stick == 0.0), Act.PINNED),
+        (steps & below & (size > end), Act.STEP),
+        ((distance < stick) & (stick > 0.0), Act.STICK),
+        ((size <= end) & steps & (stick > 0.0), Act.STICK),
+        ((distance < reach) & (distance > 0.0) & (level > 0.0), Act.SLIP),
+        ((distance == 0.0) & (level > 0.0) & (stick == 0.0), Act.PINNED),
+    )
+    found = np.full(size.shape, Act.STOP)
+    # The first that holds counts.
+    for there, way in reversed(ways):
+        found = np.where(there, way, found)
+    return found.astype(np.int8)
 
 
 def elements(
@@ -267,8 +257,7 @@ def _flanks(
 ) -> None:
     """Compliance (at a force), curvature and misfit of flanks, in twice the precision."""
     columns, here = claim.columns, claim.situations
-    order = {m: k for k, m in enumerate(columns.train.meshes)}
-    mesh = np.array([order[m.name] for m, _ in columns.all_flanks], dtype=int)
+    mesh = columns.meshes
     b, c = here.bending[:, mesh], here.hertz[:, mesh]
     force = np.maximum(claim.forces[:, columns.flanks], 0.0)
     part = slice(0, columns.flanks.stop)
@@ -287,44 +276,46 @@ def _flanks(
         power = power_two_thirds(force)
         wide = np.broadcast_to(c, force.shape)
         yielded = plus(yielded, plus(two_product(wide, power.high), exact(wide * power.low)))
-    tabled = [e for e, (m, _) in enumerate(columns.all_flanks) if hasattr(m.laws[0], "forces")]
-    if tabled:
+    tabled = columns.tabled
+    if len(tabled):
         yielded = type(yielded)(yielded.high.copy(), yielded.low.copy())
-    for e in tabled:
-        slope, value, jump, room[:, e] = _table(claim, mesh[e], force[:, e], scale)
-        soft[:, e], yielded.high[:, e], yielded.low[:, e] = slope, value, 0.0
-        width[:, e] += EPS * value
-        curve[:, e] = jump
+        slope, value, jump, room[:, tabled] = _tables(claim, mesh[tabled], force[:, tabled], scale)
+        soft[:, tabled], yielded.high[:, tabled], yielded.low[:, tabled] = slope, value, 0.0
+        width[:, tabled] += EPS * value
+        curve[:, tabled] = jump
     misfit[:, part] = minus(length, yielded).value
     width[:, part] += TINY * (yielded.high + sizes[:, part])
 
 
-def _table(
-    claim: Claim, mesh: int, force: Array, scale: Array
+def _tables(
+    claim: Claim, meshes: NDArray[np.intp], force: Array, scale: Array
 ) -> tuple[Array, Array, Array, Array]:
-    """Slope and value of a tabulated law, a curvature that covers corners close by, and their room.
+    """Slopes and values of tabulated laws (S, k), curvatures that cover corners close by, and room.
 
     The last is the distance to the nearest corner that is not covered [N].
     """
     table = np.broadcast_to(
-        claim.situations.table[:, mesh], (claim.count, *claim.situations.table.shape[2:])
+        claim.situations.table[:, meshes], (*force.shape, *claim.situations.table.shape[2:])
     )
-    forces, values = table[:, 0], table[:, 1]
-    last = (~np.isnan(forces)).sum(axis=1) - 2
-    k = np.clip((forces <= force[:, None]).sum(axis=1) - 1, 0, last)
-    rows = np.arange(claim.count)
-    slopes = np.diff(values, axis=1) / np.diff(forces, axis=1)
-    slope = slopes[rows, k]
-    value = values[rows, k] + slope * (force - forces[rows, k])
-    near = LIGHT * scale
-    jump = np.zeros(claim.count)
-    corners = np.abs(forces[:, 1:-1] - force[:, None])
-    ends = np.arange(1, forces.shape[1] - 1) > last[:, None]
-    corners = np.where(ends | np.isnan(corners) | (corners <= near[:, None]), np.inf, corners)
-    room = corners.min(axis=1, initial=np.inf)
-    for j, corner in ((k - 1, forces[rows, k]), (k + 1, forces[rows, k + 1])):
+    forces, values = table[:, :, 0], table[:, :, 1]
+    last = (~np.isnan(forces)).sum(axis=2) - 2
+    k = np.clip((forces <= force[:, :, None]).sum(axis=2) - 1, 0, last)
+    slopes = np.diff(values, axis=2) / np.diff(forces, axis=2)
+
+    def at(array: Array, place: NDArray[np.intp]) -> Array:
+        return np.take_along_axis(array, place[:, :, None], axis=2)[:, :, 0]
+
+    slope = at(slopes, k)
+    value = at(values, k) + slope * (force - at(forces, k))
+    near = LIGHT * scale[:, None]
+    jump = np.zeros(force.shape)
+    corners = np.abs(forces[:, :, 1:-1] - force[:, :, None])
+    ends = np.arange(1, forces.shape[2] - 1) > last[:, :, None]
+    corners = np.where(ends | np.isnan(corners) | (corners <= near[:, :, None]), np.inf, corners)
+    room = corners.min(axis=2, initial=np.inf)
+    for j, corner in ((k - 1, at(forces, k)), (k + 1, at(forces, k + 1))):
         there = (j >= 0) & (j <= last) & (np.abs(force - corner) <= near)
-        other = slopes[rows, np.clip(j, 0, slopes.shape[1] - 1)]
+        other = at(slopes, np.clip(j, 0, slopes.shape[2] - 1))
         with np.errstate(invalid="ignore"):
             # A bend of the law within reach counts as if it were spread over the reach.
             jump = np.maximum(jump, np.where(there, 3.0 * np.abs(other - slope), 0.0))
@@ -333,32 +324,27 @@ def _table(
 
 def _springs(claim: Claim, active: Flags, soft: Array, misfit: Array, width: Array) -> None:
     """Shafts, bearings, stops and the shafts of splines with memory: linear columns."""
-    columns, here, train = claim.columns, claim.situations, claim.columns.train
-    given: list[tuple[int, Array]] = []
-    for at, k in enumerate(columns.elastic_shafts, columns.shafts.start):
-        arm = train.gears[list(train.shafts.values())[k].first].base_radius
-        given.append((at, arm**2 / here.torsion[:, k]))
-    for number, gear in enumerate(columns.places):
-        for k in (0, 1):
-            stiffness = here.support[:, columns.order[gear], k]
-            held = stiffness > 0.0
-            compliance = np.where(held, 1.0 / np.where(held, stiffness, 1.0), np.nan)
-            given.append((columns.bearings.start + 2 * number + k, compliance))
-    stops, bends = columns.stops, columns.bends
-    given += [(stops.start + k, here.wall[:, k // 2]) for k in range(stops.stop - stops.start)]
-    given += [
-        (bends.start + k, 1.0 / here.spline[:, k // 2, 0]) for k in range(bends.stop - bends.start)
+    columns, here = claim.columns, claim.situations
+    support = here.support[:, columns.moving].reshape(len(here.support), -1)
+    held = support > 0.0
+    given = [
+        columns.shaft_arms**2 / here.torsion[:, columns.elastic_shafts],
+        np.where(held, 1.0 / np.where(held, support, 1.0), np.nan),
+        np.repeat(here.wall, 2, axis=1),
     ]
-    for at, compliance in given:
-        held = np.broadcast_to(~np.isnan(compliance), (claim.count,))
-        value = np.nan_to_num(compliance)
-        if not columns.stops.start <= at < columns.stops.stop:
-            active[:, at] = held
-        soft[:, at] = value
-        yielded = value * claim.forces[:, at]
-        length = claim.lengths[0]
-        misfit[:, at] = (length.high[:, at] - yielded) + length.low[:, at]
-        width[:, at] += EPS * np.abs(yielded)
+    if columns.slips:
+        given.append(np.repeat(1.0 / here.spline[:, :, 0], 2, axis=1))
+    rows = max(map(len, given))
+    compliance = np.concatenate([np.broadcast_to(v, (rows, v.shape[1])) for v in given], axis=1)
+    linear, stops = slice(columns.shafts.start, columns.bends.stop), columns.stops
+    held = ~np.isnan(compliance)
+    active[:, linear.start : stops.start] = held[:, : stops.start - linear.start]
+    active[:, columns.bends] = held[:, stops.stop - linear.start :]
+    soft[:, linear] = value = np.nan_to_num(compliance)
+    yielded = value * claim.forces[:, linear]
+    length = claim.lengths[0]
+    misfit[:, linear] = (length.high[:, linear] - yielded) + length.low[:, linear]
+    width[:, linear] += EPS * np.abs(yielded)
 
 
 def _pairs(claim: Claim, act: Codes, found: Elements, softest: float) -> None:

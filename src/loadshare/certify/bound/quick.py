@@ -233,7 +233,7 @@ class _Group:
         for left in (self.is_left | self.is_endless, self.is_left, self.is_sliding):
             # What yields without end carries a load only where nothing else does.
             self.is_left = left
-            known = Statics.of(self.directions[~left])
+            known = Statics.of(self.directions[~left]) if left.any() else self.statics
             self.is_covered = known.moves.shape == self.statics.moves.shape
             if self.is_covered:
                 self.particular = np.zeros(self.particular.shape)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -118,8 +119,14 @@ class _Part:
         offset = (radial.matrix @ self.free.x - radial.centre) / self.unit
         return Disc(matrix, matrix @ self.start - offset, held.radius / self.unit)
 
+    @cached_property
+    def _unchanging(self) -> Region:
+        return Region(self.limits, self.bounds, self.discs)
+
     def _region(self, u: Array) -> Region:
         """The region, with the faces of arcs at u."""
+        if not self.arcs:
+            return self._unchanging
         limits, bounds = [self.limits], [self.bounds]
         x = self.free.x + self.across @ (u - self.start) * self.unit
         for arc in self.arcs:

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,6 +79,24 @@ class Region:
     def size(self) -> int:
         """Number of unknowns d."""
         return int(self.limits.shape[1])
+
+    @cached_property
+    def cones(self) -> tuple[Any, Array, list[Any], Any]:
+        """Rows, bounds and cones of the region as Clarabel takes them, and how it is to go on."""
+        import clarabel
+        from scipy.sparse import csc_matrix
+
+        rows, bounds = [self.limits], [self.bounds]
+        cones: list[Any] = [clarabel.NonnegativeConeT(len(self.bounds))] if len(self.bounds) else []
+        for disc in self.discs:
+            rows += [np.zeros((1, self.size)), -disc.matrix]
+            bounds += [np.array([disc.radius]), -disc.centre]
+            cones.append(clarabel.SecondOrderConeT(3))
+        settings = clarabel.DefaultSettings()
+        settings.verbose = False
+        settings.presolve_enable = False
+        settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-10
+        return csc_matrix(np.vstack(rows)), np.concatenate(bounds), cones, settings
 
     def beyond(self, u: Array) -> float:
         """How far u lies outside; not above zero inside."""
@@ -158,7 +178,8 @@ class Region:
                 normals.append(normal)
                 bends = bends + max(push, 0.0) * turning
             reached = np.vstack([faces, np.array(normals).reshape(-1, d)])
-            matrix = np.block([[bends, reached.T], [reached, np.zeros((count, count))]])
+            matrix = np.zeros((d + count, d + count))
+            matrix[:d, :d], matrix[:d, d:], matrix[d:, :d] = bends, reached.T, reached
             misfit = [*(self.bounds[rows] - faces @ u), *(-disc.beyond(u) for disc in discs)]
             right = np.concatenate([-curvature * u - slope, misfit])
             step = np.linalg.lstsq(matrix, right, rcond=INSIDE)[0]
@@ -186,26 +207,11 @@ def _proposed(region: Region, curvature: float, slope: Array) -> tuple[Array, Ar
     from scipy.sparse import csc_matrix
 
     d, k = region.size, len(region.bounds)
-    rows, bounds = [region.limits], [region.bounds]
-    cones: list[object] = [clarabel.NonnegativeConeT(k)] if k else []
-    for disc in region.discs:
-        rows += [np.zeros((1, d)), -disc.matrix]
-        bounds += [np.array([disc.radius]), -disc.centre]
-        cones.append(clarabel.SecondOrderConeT(3))
-    if not cones:
+    if not k and not region.discs:
         return None if slope.any() else (np.zeros(d), np.zeros(0), np.zeros(0))
-    settings = clarabel.DefaultSettings()
-    settings.verbose = False
-    settings.presolve_enable = False
-    settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-10
-    answer = clarabel.DefaultSolver(
-        csc_matrix(curvature * np.eye(d)),
-        slope,
-        csc_matrix(np.vstack(rows)),
-        np.concatenate(bounds),
-        cones,
-        settings,
-    ).solve()
+    bends = csc_matrix(curvature * np.eye(d)) if curvature else csc_matrix((d, d))
+    rows, bounds, cones, settings = region.cones
+    answer = clarabel.DefaultSolver(bends, slope, rows, bounds, cones, settings).solve()
     if "DualInfeasible" in str(answer.status):
         return None
     dual = np.array(answer.z)
