@@ -22,15 +22,8 @@ import scipy
 from scipy.optimize import nnls
 
 from loadshare.solver.backend import backend
-from loadshare.tooth.body import Array
-from loadshare.tooth.compliance.slices import Slices
-from loadshare.tooth.contact import PairGeometry
-from loadshare.tooth.contact_problem import ContactProblem
-from loadshare.tooth.contact_programme import by_interface, exchange, solve_contact
-from loadshare.tooth.helicoid import HelicoidGear
-from loadshare.tooth.helicoid_pair import HelicoidPair
-from loadshare.tooth.law_fit import FIT_LOADS
-from loadshare.tooth.ltca import (
+from loadshare.tooth.analysis.fit import FIT_LOADS
+from loadshare.tooth.analysis.ltca import (
     POINTS,
     Model,
     PairCompliance,
@@ -38,8 +31,15 @@ from loadshare.tooth.ltca import (
     ltca,
     pair_compliance,
 )
-from loadshare.tooth.modification import Modification
-from loadshare.tooth.pairfile import load_pair
+from loadshare.tooth.compliance.slices import Slices
+from loadshare.tooth.contact.problem import ContactProblem
+from loadshare.tooth.contact.programme import by_interface, exchange, solve_contact
+from loadshare.tooth.cylindrical.gear import HelicoidGear
+from loadshare.tooth.cylindrical.modification import Modification
+from loadshare.tooth.cylindrical.pair import HelicoidPair
+from loadshare.tooth.geometry.body import Array
+from loadshare.tooth.pair.file import load_pair
+from loadshare.tooth.unloaded.contact import PairGeometry
 
 T = TypeVar("T")
 PAIRS = Path(__file__).parents[1] / "cases/pairs"

@@ -18,11 +18,11 @@ from scipy.optimize import brentq
 
 from loadshare.report.figure import Figure
 from loadshare.report.palette import COLOURS
+from loadshare.tooth.analysis.fit import FIT_LOADS
+from loadshare.tooth.analysis.ltca import PairCompliance, ltca
 from loadshare.tooth.compliance.finite import FiniteElements
 from loadshare.tooth.compliance.slices import Slices
-from loadshare.tooth.law_fit import FIT_LOADS
-from loadshare.tooth.ltca import PairCompliance, ltca
-from loadshare.tooth.pairfile import load_pair
+from loadshare.tooth.pair.file import load_pair
 
 LEVELS = (1, 2, 3)
 LAYERS = {"p12": 3, "p46": 4, "p610": 2}

@@ -16,16 +16,16 @@ from typing import TypeVar
 
 import numpy as np
 
+from loadshare.tooth.analysis.fit import FIT_LOADS
+from loadshare.tooth.analysis.ltca import PairCompliance, contact_problem, ltca, pair_compliance
 from loadshare.tooth.compliance.block import Divisions
 from loadshare.tooth.compliance.finite import FiniteElements
 from loadshare.tooth.compliance.slices import Slices
-from loadshare.tooth.contact_programme import solve_contact
-from loadshare.tooth.helicoid import HelicoidGear
-from loadshare.tooth.helicoid_pair import HelicoidPair
-from loadshare.tooth.iso6336 import formula_stiffness
-from loadshare.tooth.law_fit import FIT_LOADS
-from loadshare.tooth.ltca import PairCompliance, contact_problem, ltca, pair_compliance
-from loadshare.tooth.pairfile import PairFile, load_pair
+from loadshare.tooth.contact.programme import solve_contact
+from loadshare.tooth.cylindrical.gear import HelicoidGear
+from loadshare.tooth.cylindrical.pair import HelicoidPair
+from loadshare.tooth.law.iso6336 import formula_stiffness
+from loadshare.tooth.pair.file import PairFile, load_pair
 
 T = TypeVar("T")
 PAIRS = Path(__file__).parents[1] / "cases/pairs"

@@ -17,7 +17,7 @@ from loadshare.train import build_train
 
 if TYPE_CHECKING:
     from loadshare.results import Position
-    from loadshare.tooth.pairfile import PairFile
+    from loadshare.tooth.pair.file import PairFile
 
 GEARS = tuple(str(n) for n in range(1, 11))
 PAIRS = {"4": ("6-10", "7-10"), "5": ("8-10", "9-10")}
@@ -62,7 +62,7 @@ class Seed:
         """A pair of gears with its teeth; None if the folder does not hold it."""
         path = self.folder / "pairs" / f"{name}.toml"
         if name not in self._pairs and path.is_file():
-            from loadshare.tooth.pairfile import load_pair
+            from loadshare.tooth.pair.file import load_pair
 
             self._pairs[name] = load_pair(path)
         return self._pairs.get(name)

@@ -115,7 +115,7 @@ def test_without_a_usable_numba_the_vectorised_kernel_answers(torques, spoil):
 def test_without_numba_the_contact_programme_runs_as_it_is_written():
     script = """
 import sys; sys.modules["numba"] = None
-from loadshare.tooth.compiled_contact import settle
+from loadshare.tooth.contact.compiled import settle
 print(type(settle).__name__ == "function")
 """
     assert run(script)[0]

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from loadshare.report.figure import Figure
-    from loadshare.tooth.lawfile import MeshLaw
-    from loadshare.tooth.ltca_result import Ltca
-    from loadshare.tooth.pairfile import PairFile
+    from loadshare.tooth.analysis.result import Ltca
+    from loadshare.tooth.law.file import MeshLaw
+    from loadshare.tooth.pair.file import PairFile
 
 PICTURES = (".svg", ".png", ".html")
 
@@ -60,8 +60,8 @@ def ltca(
     The folder receives law.toml, which a mesh of a case can name as its law_file, table.csv,
     lines.csv, and pictures as SVG, PNG and HTML.
     """
-    from loadshare.tooth.lawcache import kept_law
-    from loadshare.tooth.pairfile import load_pair
+    from loadshare.tooth.law.cached import kept_law
+    from loadshare.tooth.pair.file import load_pair
 
     load = _torque(torque)
     with problems_told():
@@ -86,7 +86,7 @@ def _torque(text: str | None) -> float | None:
         return None
     from pydantic import TypeAdapter, ValidationError
 
-    from loadshare.tooth.pairfile_model import Load
+    from loadshare.tooth.pair.model import Load
 
     try:
         return float(TypeAdapter(Load).validate_python(text))
@@ -96,7 +96,7 @@ def _torque(text: str | None) -> float | None:
 
 
 def _print_heading(screen: Console, pair: PairFile, file: Path) -> None:
-    from loadshare.tooth.findings import findings
+    from loadshare.tooth.pair.findings import findings
 
     geometry, chosen = pair.geometry, pair.analysis
     screen.print(pair.title, style="bold")
@@ -115,7 +115,7 @@ def _print_positions(screen: Console, found: Ltca, law: MeshLaw) -> None:
     from loadshare.cli.tables.table import show, table
     from loadshare.report.figures.ltca_cycle import stiffness_unit
     from loadshare.report.numbers import decimals, fixed
-    from loadshare.tooth.ltca_tables import STIFFNESS_LOADS
+    from loadshare.tooth.analysis.tables import STIFFNESS_LOADS
 
     made = table(("position", "phase", "a", "b", "c", "misfit", "unloaded lead"))
     for k, phase in enumerate(found.phase):
@@ -167,8 +167,8 @@ def _print_summary(screen: Console, pair: PairFile, found: Ltca) -> None:
 
 def _written(folder: Path, pair: PairFile, found: Ltca, law: MeshLaw) -> Iterator[Path]:
     """Write everything, and tell each file."""
-    from loadshare.tooth.lawfile import law_text
-    from loadshare.tooth.ltca_tables import line_rows, position_rows
+    from loadshare.tooth.analysis.tables import line_rows, position_rows
+    from loadshare.tooth.law.file import law_text
 
     texts = {
         "law.toml": law_text(law),

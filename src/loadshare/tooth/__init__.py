@@ -6,14 +6,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from loadshare.tooth.lawfile import load_law
-    from loadshare.tooth.mesh_laws import resolve
-    from loadshare.tooth.pairfile import load_pair
+    from loadshare.tooth.law.file import load_law
+    from loadshare.tooth.law.meshes import resolve
+    from loadshare.tooth.pair.file import load_pair
 
 _LAZY = {
-    "load_law": "loadshare.tooth.lawfile",
-    "load_pair": "loadshare.tooth.pairfile",
-    "resolve": "loadshare.tooth.mesh_laws",
+    "load_law": "loadshare.tooth.law.file",
+    "load_pair": "loadshare.tooth.pair.file",
+    "resolve": "loadshare.tooth.law.meshes",
 }
 
 __all__ = ["load_law", "load_pair", "resolve"]

@@ -2,13 +2,13 @@
 
 import math
 
-from loadshare.tooth.face_build import face_gear_pair
-from loadshare.tooth.face_gear import FaceGear, Shaper
-from loadshare.tooth.face_pair import FaceGearPair, FaceMisalignment
-from loadshare.tooth.helicoid import HelicoidGear
-from loadshare.tooth.helicoid_build import helicoid_pair
-from loadshare.tooth.helicoid_pair import HelicoidPair, Misalignment
-from loadshare.tooth.modification import Modification
+from loadshare.tooth.cylindrical.build import helicoid_pair
+from loadshare.tooth.cylindrical.gear import HelicoidGear
+from loadshare.tooth.cylindrical.modification import Modification
+from loadshare.tooth.cylindrical.pair import HelicoidPair, Misalignment
+from loadshare.tooth.face.build import face_gear_pair
+from loadshare.tooth.face.gear import FaceGear, Shaper
+from loadshare.tooth.face.pair import FaceGearPair, FaceMisalignment
 
 RELIEVED = Modification(
     tip_relief=20e-6,

@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.tooth.geometry.samples import face_gear, face_pair, gear, pair
 
-from loadshare.tooth.face_body import FaceBody
-from loadshare.tooth.helicoid_body import HelicoidBody
-from loadshare.tooth.positions import position
-from loadshare.tooth.root import root_curve
+from loadshare.tooth.cylindrical.body import HelicoidBody
+from loadshare.tooth.cylindrical.root import root_curve
+from loadshare.tooth.face.body import FaceBody
+from loadshare.tooth.unloaded.positions import position
 
 BODIES = [
     HelicoidBody(gear()),

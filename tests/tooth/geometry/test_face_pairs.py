@@ -6,18 +6,18 @@ import numpy as np
 import pytest
 from tests.tooth.geometry.samples import face_gear, face_pair
 
-from loadshare.tooth.face_flank import FaceFlank
-from loadshare.tooth.face_limits import (
+from loadshare.tooth.cylindrical.modification import Modification
+from loadshare.tooth.face.flank import FaceFlank
+from loadshare.tooth.face.limits import (
     planar_pointing_limit,
     pointing_limit,
     regularity,
     tip_half_angle,
     undercut_limit,
 )
-from loadshare.tooth.face_pair import FaceMisalignment
-from loadshare.tooth.modification import Modification
-from loadshare.tooth.positions import position, positions, transmission_error
-from loadshare.tooth.touch import contact_points
+from loadshare.tooth.face.pair import FaceMisalignment
+from loadshare.tooth.unloaded.positions import position, positions, transmission_error
+from loadshare.tooth.unloaded.touch import contact_points
 
 
 @pytest.mark.parametrize("angle", [90.0, 85.0])
@@ -156,7 +156,7 @@ def test_transmission_error_is_within_its_tolerance(monkeypatch, tolerance):
         modification=Modification(profile_crowning=30e-6, lead_crowning=10e-6),
     )
     exact = min(point.lead for point in contact_points(mesh, 0.35))
-    monkeypatch.setattr("loadshare.tooth.positions.TOUCHING", tolerance)
+    monkeypatch.setattr("loadshare.tooth.unloaded.positions.TOUCHING", tolerance)
     assert abs(transmission_error(mesh, 0.35) - exact) < tolerance / mesh.arm + 1e-10
 
 

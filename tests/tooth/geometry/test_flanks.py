@@ -10,11 +10,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.tooth.geometry.samples import RELIEVED, face_gear, gear
 
-from loadshare.tooth.compiled_flank import lead, profile
-from loadshare.tooth.face_flank import FaceFlank
-from loadshare.tooth.flank import dot, principal_directions, unit
-from loadshare.tooth.helicoid_flank import HelicoidFlank
-from loadshare.tooth.modification import Modification
+from loadshare.tooth.cylindrical.flank import HelicoidFlank
+from loadshare.tooth.cylindrical.modification import Modification
+from loadshare.tooth.face.flank import FaceFlank
+from loadshare.tooth.geometry.compiled import lead, profile
+from loadshare.tooth.geometry.flank import dot, principal_directions, unit
 
 STEP = 1e-6
 

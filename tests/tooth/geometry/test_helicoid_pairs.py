@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.tooth.geometry.samples import RELIEVED, gear, pair
 
-from loadshare.tooth.helicoid_pair import HelicoidPair, Misalignment
-from loadshare.tooth.involute import inv
-from loadshare.tooth.modification import Modification
-from loadshare.tooth.positions import position, positions, transmission_error
-from loadshare.tooth.touch import contact_points
+from loadshare.tooth.cylindrical.modification import Modification
+from loadshare.tooth.cylindrical.pair import HelicoidPair, Misalignment
+from loadshare.tooth.geometry.involute import inv
+from loadshare.tooth.unloaded.positions import position, positions, transmission_error
+from loadshare.tooth.unloaded.touch import contact_points
 
 PAIRS = {
     "spur": {},

@@ -7,17 +7,17 @@ import pytest
 from tests.tooth.geometry.samples import face_gear, face_pair, gear, pair
 
 from loadshare.errors import CaseError
-from loadshare.tooth.face_build import face_gear_pair
-from loadshare.tooth.face_gear import FaceGear, Shaper
-from loadshare.tooth.face_pair import FaceMisalignment
-from loadshare.tooth.findings import edge_contacts, findings
-from loadshare.tooth.gap import NoContactError
-from loadshare.tooth.helicoid import HelicoidGear
-from loadshare.tooth.helicoid_build import helicoid_pair
-from loadshare.tooth.helicoid_checks import gear_problems
-from loadshare.tooth.helicoid_pair import HelicoidPair, Misalignment
-from loadshare.tooth.modification import Modification
-from loadshare.tooth.positions import position
+from loadshare.tooth.cylindrical.build import helicoid_pair
+from loadshare.tooth.cylindrical.checks import gear_problems
+from loadshare.tooth.cylindrical.gear import HelicoidGear
+from loadshare.tooth.cylindrical.modification import Modification
+from loadshare.tooth.cylindrical.pair import HelicoidPair, Misalignment
+from loadshare.tooth.face.build import face_gear_pair
+from loadshare.tooth.face.gear import FaceGear, Shaper
+from loadshare.tooth.face.pair import FaceMisalignment
+from loadshare.tooth.geometry.gap import NoContactError
+from loadshare.tooth.pair.findings import edge_contacts, findings
+from loadshare.tooth.unloaded.positions import position
 
 PINION = HelicoidGear(6.35e-3, 25, 90e-3, math.radians(25.0), tip_radius=0.3)
 

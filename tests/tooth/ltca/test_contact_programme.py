@@ -10,12 +10,12 @@ from scipy.optimize import nnls
 
 from loadshare.errors import Refused
 from loadshare.solver.backend import SOLVERS, backend
-from loadshare.tooth import contact_programme
-from loadshare.tooth.contact_certificate import certify_contact
-from loadshare.tooth.contact_problem import ContactBatch, ContactProblem
-from loadshare.tooth.contact_programme import by_interface, exchange, solve_contact, solve_contacts
-from loadshare.tooth.hertz import PointContact, compression, contact_modulus, half_width
-from loadshare.tooth.strips import StripLine
+from loadshare.tooth.contact import programme as contact_programme
+from loadshare.tooth.contact.certificate import certify_contact
+from loadshare.tooth.contact.hertz import PointContact, compression, contact_modulus, half_width
+from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
+from loadshare.tooth.contact.programme import by_interface, exchange, solve_contact, solve_contacts
+from loadshare.tooth.contact.strips import StripLine
 
 STEEL = ((206e9, 206e9), (0.3, 0.3))
 E_STAR = contact_modulus(*STEEL)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from loadshare.tooth.hertz import (
+from loadshare.tooth.contact.hertz import (
     PointContact,
     axis_ratio,
     compression,
@@ -15,8 +15,8 @@ from loadshare.tooth.hertz import (
     half_width,
     width_factor,
 )
-from loadshare.tooth.strips import StripLine, strip_shape
-from loadshare.tooth.surface import Surface
+from loadshare.tooth.contact.strips import StripLine, strip_shape
+from loadshare.tooth.contact.surface import Surface
 
 STEEL = ((206e9, 206e9), (0.3, 0.3))
 E_STAR = contact_modulus(*STEEL)

@@ -6,11 +6,11 @@ from functools import cache
 import numpy as np
 import pytest
 
-from loadshare.tooth.face_build import face_gear_pair
-from loadshare.tooth.face_gear import FaceGear, Shaper
-from loadshare.tooth.helicoid import HelicoidGear
-from loadshare.tooth.helicoid_build import helicoid_pair
-from loadshare.tooth.ltca import ltca
+from loadshare.tooth.analysis.ltca import ltca
+from loadshare.tooth.cylindrical.build import helicoid_pair
+from loadshare.tooth.cylindrical.gear import HelicoidGear
+from loadshare.tooth.face.build import face_gear_pair
+from loadshare.tooth.face.gear import FaceGear, Shaper
 
 TURN = math.radians(30.0)
 

@@ -8,11 +8,11 @@ import pytest
 from tests.tooth.bodies import SpurPair, SpurTooth
 
 from loadshare.errors import Refused
+from loadshare.tooth.analysis.fit import fit_law
+from loadshare.tooth.analysis.ltca import PairCompliance, contact_problem, ltca, pair_compliance
 from loadshare.tooth.compliance.block import Divisions
 from loadshare.tooth.compliance.finite import FiniteElements
-from loadshare.tooth.contact_certificate import certify_contact
-from loadshare.tooth.law_fit import fit_law
-from loadshare.tooth.ltca import PairCompliance, contact_problem, ltca, pair_compliance
+from loadshare.tooth.contact.certificate import certify_contact
 
 DRIVER = SpurTooth(teeth=25, module=5e-3, face_width=50e-3, rim=0.035)
 DRIVEN = SpurTooth(teeth=40, module=5e-3, face_width=50e-3, rim=0.07)

@@ -11,11 +11,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from loadshare.tooth.analysis.ltca import PairCompliance, contact_problem, ltca, pair_compliance
 from loadshare.tooth.compliance.slices import Slices
-from loadshare.tooth.contact_programme import solve_contact
-from loadshare.tooth.helicoid import HelicoidGear
-from loadshare.tooth.helicoid_pair import HelicoidPair
-from loadshare.tooth.ltca import PairCompliance, contact_problem, ltca, pair_compliance
+from loadshare.tooth.contact.programme import solve_contact
+from loadshare.tooth.cylindrical.gear import HelicoidGear
+from loadshare.tooth.cylindrical.pair import HelicoidPair
 
 HELIX = math.radians(15.8)
 SINGLE, CYCLE = 12.37047, 17.46485

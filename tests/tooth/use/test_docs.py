@@ -5,7 +5,7 @@ import re
 from tests.tooth.use.pairs import PAIRS, written
 
 from loadshare.tooth import load_pair
-from loadshare.tooth.pairfile_model import CONTENTS
+from loadshare.tooth.pair.model import CONTENTS
 
 PAGE = (PAIRS.parents[1] / "docs/ltca.md").read_text(encoding="utf-8")
 

@@ -7,7 +7,7 @@ import pytest
 
 from loadshare.report.figures.ltca_cycle import stiffness, transmission_error
 from loadshare.report.figures.ltca_flank import contact_pattern, load_map, plane_of
-from loadshare.tooth.pairfile import load_pair
+from loadshare.tooth.pair.file import load_pair
 
 
 @pytest.fixture

@@ -5,10 +5,10 @@ import pytest
 from tests.tooth.use.pairs import SPUR, written
 
 from loadshare.errors import CaseError
-from loadshare.tooth import cache
-from loadshare.tooth.lawcache import computed_law, known_law
-from loadshare.tooth.lawfile import law_of, law_text, load_law, parsed_law
-from loadshare.tooth.pairfile import load_pair
+from loadshare.tooth.law import folder as cache
+from loadshare.tooth.law.cached import computed_law, known_law
+from loadshare.tooth.law.file import law_of, law_text, load_law, parsed_law
+from loadshare.tooth.pair.file import load_pair
 
 
 def test_a_law_file_holds_the_law_bit_for_bit(spur, tmp_path):

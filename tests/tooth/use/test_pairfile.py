@@ -7,10 +7,10 @@ import pytest
 from tests.tooth.use.pairs import FACE, PAIRS, SPUR, written
 
 from loadshare.errors import CaseError
-from loadshare.tooth.face_pair import FaceGearPair
-from loadshare.tooth.helicoid_pair import Misalignment
-from loadshare.tooth.pairfile import load_pair
-from loadshare.tooth.pairfile_model import CONTENTS
+from loadshare.tooth.cylindrical.pair import Misalignment
+from loadshare.tooth.face.pair import FaceGearPair
+from loadshare.tooth.pair.file import load_pair
+from loadshare.tooth.pair.model import CONTENTS
 
 
 def told(path):

@@ -20,7 +20,7 @@ from loadshare.report.palette import look
 from loadshare.report.units import MICRORADIAN, Unit
 
 if TYPE_CHECKING:
-    from loadshare.tooth.ltca_result import Ltca
+    from loadshare.tooth.analysis.result import Ltca
 
 WIDTH, HEIGHT = 400, 240
 STIFFNESS_LOADS = (1.0, 0.95, 0.9)

@@ -15,8 +15,8 @@ from loadshare.report.palette import FAINT, SOFT
 from loadshare.report.units import MILLIMETRE
 
 if TYPE_CHECKING:
-    from loadshare.tooth.body import ToothBody
-    from loadshare.tooth.ltca_result import LineLoad, Ltca
+    from loadshare.tooth.analysis.result import LineLoad, Ltca
+    from loadshare.tooth.geometry.body import ToothBody
 
 WIDTH, HEIGHT = 460, 230
 SHADES: Literal["tealblues"] = "tealblues"

@@ -26,8 +26,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.tooth.body import Array
 from loadshare.tooth.compliance.middle import MiddleSurface, under
+from loadshare.tooth.geometry.body import Array
 
 Index = NDArray[np.int64]
 Key = tuple[object, ...]

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from loadshare.tooth.body import Array, ToothBody
 from loadshare.tooth.compliance.block import (
     BlockMesh,
     Divisions,
@@ -19,6 +18,7 @@ from loadshare.tooth.compliance.interface import Flank
 from loadshare.tooth.compliance.middle import MiddleSurface, under
 from loadshare.tooth.compliance.sheet import Sheet
 from loadshare.tooth.compliance.solid import Solid, build_solid
+from loadshare.tooth.geometry.body import Array, ToothBody
 
 REACH = 4.0
 """Distance from the loaded tooth to the cut, in rim depths."""

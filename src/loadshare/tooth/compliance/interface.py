@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from loadshare.tooth.body import Array
+from loadshare.tooth.geometry.body import Array
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,7 +32,7 @@ class Compliance(Protocol):
     where that normal meets the middle surface of the tooth, at the depth h: there a concentrated
     force is felt as a smooth field, so the figure does not depend on how finely the flank is
     divided. What the tooth yields between flank and middle surface belongs to the contact law
-    (:mod:`loadshare.tooth.strips`). This is Weber and Banaschek's division.
+    (:mod:`loadshare.tooth.contact.strips`). This is Weber and Banaschek's division.
     """
 
     def bulk(self, flanks: tuple[Flank, ...]) -> Array:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.tooth.body import Array
+from loadshare.tooth.geometry.body import Array
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_matrix

@@ -7,8 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from loadshare.tooth.body import Array, ToothBody
-from loadshare.tooth.flank import dot, solve_2
+from loadshare.tooth.geometry.body import Array, ToothBody
+from loadshare.tooth.geometry.flank import dot, solve_2
 
 STEP = 1e-5
 """Step in u and w of the differences that give normals and slopes."""

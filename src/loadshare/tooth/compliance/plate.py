@@ -8,9 +8,9 @@ from functools import cache, cached_property
 import numpy as np
 from numpy.polynomial.legendre import legder, leggauss, legvander
 
-from loadshare.tooth.body import Array
 from loadshare.tooth.compliance.smooth import SmoothMiddle
-from loadshare.tooth.flank import cross, dot
+from loadshare.tooth.geometry.body import Array
+from loadshare.tooth.geometry.flank import cross, dot
 
 HEIGHT_DEGREE = 6
 """Degree of the polynomials along the tooth's height."""

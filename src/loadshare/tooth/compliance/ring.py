@@ -23,7 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from loadshare.tooth.body import Array
+from loadshare.tooth.geometry.body import Array
 
 FINEST = 12.0
 """Last harmonic, in radians over half a root; of the others only the mean over a wave counts."""

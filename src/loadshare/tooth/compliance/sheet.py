@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.tooth.body import Array
+from loadshare.tooth.geometry.body import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,13 +24,13 @@ from functools import cache, cached_property
 
 import numpy as np
 
-from loadshare.tooth.body import Array, ToothBody
 from loadshare.tooth.compliance.interface import Flank
 from loadshare.tooth.compliance.middle import waist_of
 from loadshare.tooth.compliance.plate import ROOT_TANGENT, Plate, root_compliance
 from loadshare.tooth.compliance.ring import Ring
 from loadshare.tooth.compliance.sheet import Sheet
 from loadshare.tooth.compliance.smooth import SmoothMiddle
+from loadshare.tooth.geometry.body import Array, ToothBody
 
 LEAN = 18.0 / np.pi
 """Lean of a half-plane's edge under a linear traction, by the work it does; as for `Ring`."""

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from loadshare.tooth.body import Array, ToothBody
 from loadshare.tooth.compliance.middle import MiddleSurface, both_sides
-from loadshare.tooth.flank import cross
+from loadshare.tooth.geometry.body import Array, ToothBody
+from loadshare.tooth.geometry.flank import cross
 
 DEGREE = 9
 """Degree of the polynomials, in u on either side of the end of the fillet and in w."""

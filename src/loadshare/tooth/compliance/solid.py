@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.tooth.body import Array
 from loadshare.tooth.compliance.block import BlockMesh
 from loadshare.tooth.compliance.layered import LayeredFactor
+from loadshare.tooth.geometry.body import Array
 
 Index = NDArray[np.int64]
 

@@ -1,0 +1,101 @@
+"""The law Δφ(T) = a + bT + cT^(2/3) of a mesh, per meshing position, from computed angles.
+
+Source: formulation, section 3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from loadshare.tooth.geometry.body import Array
+
+FIT_LOADS = (0.1, 0.5, 0.9)
+"""Parts of the rated torque from which a, b and c follow."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LawFit:
+    """Coefficients of the law at K positions.
+
+    Attributes
+    ----------
+    a : array (K,)
+        [rad].
+    b : array (K,)
+        [rad/(N·m)], ≥ 0.
+    c : array (K,)
+        [rad/(N·m)^(2/3)], ≥ 0.
+    bounded : array (K,) of bool
+        Where the three angles ask for a negative b or c, which is no law: the coefficient is 0
+        there, and the other two are the best in the least-squares sense.
+    """
+
+    a: Array
+    b: Array
+    c: Array
+    bounded: np.ndarray
+
+    def angle(self, torque: float) -> Array:
+        """Δφ (K,) [rad] under `torque` [N·m]."""
+        return np.asarray(self.a + self.b * torque + self.c * np.cbrt(torque) ** 2)
+
+    def secant(self, torque: float) -> Array:
+        """K = T/(Δφ − a) (K,) [N·m/rad at the driver]."""
+        return np.asarray(torque / (self.angle(torque) - self.a))
+
+    def tangent(self, torque: float) -> Array:
+        """dT/dΔφ (K,) [N·m/rad at the driver]; 0 without load where c > 0."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            hertz = np.where(self.c > 0.0, 2.0 / 3.0 * self.c / np.cbrt(torque), 0.0)
+        return np.asarray(1.0 / (self.b + hertz))
+
+
+def fit_law(torque: Array, angle: Array) -> LawFit:
+    """Fit a, b and c to angles under three torques or more.
+
+    Parameters
+    ----------
+    torque : array (L,)
+        [N·m], positive.
+    angle : array (K, L)
+        Δφ [rad].
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than three different torques, or one is not positive.
+    """
+    if len(np.unique(torque)) < 3 or np.any(torque <= 0.0):
+        raise ValueError(
+            f"torques {[float(t) for t in torque]} N·m: a, b and c need three different torques, "
+            "each above 0"
+        )
+    unit = float(torque.max())
+    t = torque / unit
+    terms = np.column_stack([np.ones_like(t), t, np.cbrt(t) ** 2])
+    found = np.array([_bounded(terms, row) for row in angle])
+    return LawFit(
+        a=found[:, 0],
+        b=found[:, 1] / unit,
+        c=found[:, 2] / np.cbrt(unit) ** 2,
+        bounded=(found[:, 1] == 0.0) | (found[:, 2] == 0.0),
+    )
+
+
+def _bounded(terms: Array, angle: Array) -> Array:
+    """Least squares with the last two coefficients not below zero."""
+    scale = float(np.abs(angle).max()) or 1.0
+
+    def tried() -> Iterable[tuple[float, Array]]:
+        for keep_b, keep_c in product((True, False), repeat=2):
+            kept = [0] + [1] * keep_b + [2] * keep_c
+            found = np.zeros(3)
+            found[kept] = np.linalg.lstsq(terms[:, kept], angle / scale, rcond=None)[0] * scale
+            if found[1] >= 0.0 and found[2] >= 0.0:
+                yield float(np.linalg.norm(terms @ found - angle)), found
+
+    return min(tried(), key=lambda one: one[0])[1]

@@ -1,0 +1,283 @@
+"""Loaded tooth contact analysis: from a pair's geometry to its loaded transmission error.
+
+Source: formulation, section 9.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
+from math import ceil
+from typing import Literal
+
+import numpy as np
+
+from loadshare.errors import Refused
+from loadshare.tooth.analysis.fit import FIT_LOADS
+from loadshare.tooth.analysis.result import LineLoad, Ltca
+from loadshare.tooth.compliance.interface import Compliance, Flank
+from loadshare.tooth.contact.hertz import width_factor
+from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
+from loadshare.tooth.contact.programme import Contact, solve_contacts
+from loadshare.tooth.contact.strips import StripLine
+from loadshare.tooth.geometry.body import Array
+from loadshare.tooth.unloaded.contact import ContactLine, MeshPosition, PairGeometry
+
+LOADS = (0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 1.0)
+"""Parts of the rated torque: those of the fit, others to see its misfit, and the seed's three."""
+POINTS: dict[str, int] = {"finite elements": 32, "slices": 16}
+"""Points on a contact line by model: more would refine what the slices do not tell."""
+BATCH = 2**16
+"""Entries of the compliance matrices of positions that are solved at once: a few megabytes."""
+Model = Literal["finite elements", "slices"]
+
+
+@dataclass(frozen=True, eq=False)
+class PairCompliance:
+    """Compliances of both gears.
+
+    Attributes
+    ----------
+    driver, driven : Compliance
+    model : str
+    """
+
+    driver: Compliance
+    driven: Compliance
+    model: str
+
+
+def pair_compliance(
+    pair: PairGeometry,
+    model: Model = "finite elements",
+    *,
+    teeth: int | None = None,
+    layers: int | None = None,
+) -> PairCompliance:
+    """Compliances of a pair from finite elements or, hundreds of times faster, from slices.
+
+    Parameters
+    ----------
+    pair : PairGeometry
+    model : {"finite elements", "slices"}
+    teeth : int, optional
+        Teeth in the finite-element model, odd; by default as many as feel one another.
+    layers : int, optional
+        Finite elements over the face width; by default the shape of the tooth decides.
+
+    Raises
+    ------
+    ValueError
+        If there is no such model.
+    """
+    driver, driven = (pair.driver, 1), (pair.driven, pair.driven_side)
+    if model == "finite elements":
+        from loadshare.tooth.compliance.finite import FiniteElements, default_divisions
+
+        # Pairs in contact at once are no more than the contact ratio rounded up.
+        count = teeth or 2 * max(1, ceil(pair.contact_ratio + pair.overlap_ratio) - 1) + 1
+        first, second = (
+            FiniteElements(
+                body,
+                side,
+                teeth=count,
+                divisions=replace(default_divisions(body), width=layers) if layers else None,
+            )
+            for body, side in (driver, driven)
+        )
+        return PairCompliance(first, second, model)
+    if model == "slices":
+        from loadshare.tooth.compliance.slices import Slices
+
+        return PairCompliance(Slices(*driver), Slices(*driven), model)
+    raise ValueError(f"compliance model {model!r}; allowed: 'finite elements', 'slices'")
+
+
+def ltca(
+    pair: PairGeometry,
+    torque: float,
+    phases: int | Sequence[float] = 5,
+    loads: Sequence[float] = LOADS,
+    compliance: PairCompliance | Model = "finite elements",
+    points: int | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Ltca:
+    """Analyse the loaded contact of a pair over its mesh cycle.
+
+    Parameters
+    ----------
+    pair : PairGeometry
+    torque : float
+        Rated torque T on the driver [N·m].
+    phases : int or sequence of float
+        Number of equal parts of the mesh cycle, or the phases themselves, 0 ≤ phase < 1.
+    loads : sequence of float
+        Parts of T; 0.1, 0.5 and 0.9 are added where they are missing.
+    compliance : PairCompliance or {"finite elements", "slices"}
+        Compliances that are already there, or the model to make them with.
+    points : int, optional
+        Points on each contact line; by default 32 with finite elements, 16 with slices.
+    progress : callable, optional
+        Told after each position how many are done, and how many there are.
+
+    Raises
+    ------
+    ValueError
+        If torque, loads or the number of points are out of range.
+    Refused
+        If a position has no contact, or one that its certificate does not pass.
+    """
+    parts = sorted({float(p) for p in (*loads, *FIT_LOADS)})
+    if not (torque > 0.0 and parts[0] > 0.0):
+        raise ValueError(
+            f"torque {torque} N·m, parts {parts}: allowed: both above 0; turn the driver round to "
+            "load the other flanks"
+        )
+    if points is not None and points < 3:
+        raise ValueError(f"points = {points} on a contact line; allowed: 3 or more")
+    places = [k / phases for k in range(phases)] if isinstance(phases, int) else list(phases)
+    if isinstance(compliance, str):
+        compliance = pair_compliance(pair, compliance)
+    torques = torque * np.array(parts)
+    count = POINTS.get(compliance.model, 32) if points is None else points
+    positions = pair.positions(places, count)
+    problems = contact_problems(pair, positions, compliance)
+    found: dict[int, tuple[Contact, ...]] = {}
+    for group in _groups(problems, len(parts)):
+        solved = _under_all([problems[k] for k in group], torques / (pair.arm * pair.helices))
+        for k, own in zip(group, solved, strict=True):
+            found[k] = own
+            if progress is not None:
+                progress(len(found), len(places))
+    contacts = tuple(found[k] for k in range(len(positions)))
+    return Ltca(
+        rated=torque,
+        torque=torques,
+        positions=positions,
+        arm=pair.arm,
+        helices=pair.helices,
+        contacts=contacts,
+        lines=tuple(
+            _line_loads(position, problem, under_all)
+            for position, problem, under_all in zip(positions, problems, contacts, strict=True)
+        ),
+        compliance=compliance.model,
+    )
+
+
+def contact_problem(
+    pair: PairGeometry, position: MeshPosition, compliance: PairCompliance
+) -> ContactProblem:
+    """Contact problem of one position; see :func:`contact_problems`."""
+    return contact_problems(pair, (position,), compliance)[0]
+
+
+def contact_problems(
+    pair: PairGeometry, positions: Sequence[MeshPosition], compliance: PairCompliance
+) -> tuple[ContactProblem, ...]:
+    """Contact problems of positions: every point of every line that may close.
+
+    Raises
+    ------
+    Refused
+        If a position has no contact line.
+    """
+    for position in positions:
+        if not position.lines:
+            raise Refused(
+                f"no pair of teeth meets at phase {position.phase:.4g} of the mesh cycle "
+                f"(transverse contact ratio {pair.contact_ratio:.4g}); longer teeth, or a smaller "
+                "centre distance, bring them into contact"
+            )
+    driver, driven = (
+        tuple(tuple(Flank(line.pair * step, at(line)) for line in p.lines) for p in positions)
+        for step, at in ((1, _driver_uw), (pair.driven_step, _driven_uw))
+    )
+    bulks = zip(compliance.driver.bulks(driver), compliance.driven.bulks(driven), strict=True)
+    strips = _strips(pair, [line for position in positions for line in position.lines], compliance)
+    return tuple(
+        ContactProblem(
+            bulk=one + other,
+            gap=np.concatenate([line.gap for line in position.lines]),
+            lines=tuple(islice(strips, len(position.lines))),
+            name=f"phase {position.phase:.4g}",
+        )
+        for position, (one, other) in zip(positions, bulks, strict=True)
+    )
+
+
+def _driver_uw(line: ContactLine) -> Array:
+    return line.driver_uw
+
+
+def _driven_uw(line: ContactLine) -> Array:
+    return line.driven_uw
+
+
+def _strips(
+    pair: PairGeometry, lines: Sequence[ContactLine], compliance: PairCompliance
+) -> Iterator[StripLine]:
+    """Local contact of lines, what can be computed for all of them at once done so."""
+    ends = np.cumsum([len(line.length) for line in lines])[:-1]
+    along, across = (
+        np.concatenate([getattr(line, name) for line in lines])
+        for name in ("curvature_along", "curvature")
+    )
+    depths = (
+        np.split(gear.depth(np.concatenate([at(line) for line in lines])), ends)
+        for gear, at in ((compliance.driver, _driver_uw), (compliance.driven, _driven_uw))
+    )
+    factors = np.split(width_factor(along, across), ends)
+    for line, factor, *depth in zip(lines, factors, *depths, strict=True):
+        yield StripLine(
+            length=line.length,
+            curvature=line.curvature,
+            curvature_along=line.curvature_along,
+            modulus=(pair.driver.youngs_modulus, pair.driven.youngs_modulus),
+            poisson=(pair.driver.poisson, pair.driven.poisson),
+            depth=(depth[0], depth[1]),
+            factor=factor,
+        )
+
+
+def _groups(problems: Sequence[ContactProblem], loads: int) -> Iterator[list[int]]:
+    """Numbers of the problems that are solved at once: equally many points, and not too many."""
+    sizes = [len(problem.gap) for problem in problems]
+    for size in sorted(set(sizes)):
+        alike = [k for k, own in enumerate(sizes) if own == size]
+        most = max(1, BATCH // (loads * size**2))
+        for start in range(0, len(alike), most):
+            yield alike[start : start + most]
+
+
+def _under_all(problems: Sequence[ContactProblem], loads: Array) -> Iterator[tuple[Contact, ...]]:
+    """Contacts of every problem under every load, solved together.
+
+    From even forces a contact settles in no more passes than from those under another load.
+    """
+    every = np.repeat(np.arange(len(problems)), len(loads))
+    batch = ContactBatch(problems).rows(every)
+    found = iter(solve_contacts(batch, np.tile(loads, len(problems))))
+    for _ in problems:
+        yield tuple(islice(found, len(loads)))
+
+
+def _line_loads(
+    position: MeshPosition, problem: ContactProblem, contacts: Sequence[Contact]
+) -> tuple[tuple[LineLoad, ...], ...]:
+    """The contacts under every load told line by line."""
+    force = np.stack([contact.force for contact in contacts])
+    distance = np.stack([contact.distance for contact in contacts])
+    told = []
+    for line, strips, part in zip(position.lines, problem.lines, problem.parts, strict=True):
+        own = force[:, part]
+        told.append(
+            [
+                LineLoad(line, *values)
+                for values in zip(
+                    own, strips.widths(own), strips.pressure(own), distance[:, part], strict=True
+                )
+            ]
+        )
+    return tuple(zip(*told, strict=True))

@@ -1,0 +1,219 @@
+"""What loaded tooth contact analysis finds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from loadshare.tooth.analysis.fit import FIT_LOADS, LawFit, fit_law
+from loadshare.tooth.contact.programme import Contact
+from loadshare.tooth.geometry.body import Array
+from loadshare.tooth.unloaded.contact import ContactLine, MeshPosition
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LineLoad:
+    """The load on one contact line.
+
+    Attributes
+    ----------
+    line : ContactLine
+        Where it is.
+    force : array (n,)
+        Force on each point [N]; of one half for a herringbone pair.
+    half_width : array (n,)
+        Half-width of the contact across the line [m]; 0 where there is none.
+    pressure : array (n,)
+        Largest pressure across the line [Pa].
+    distance : array (n,)
+        Gap left between the flanks [m]; 0 where they touch.
+    """
+
+    line: ContactLine
+    force: Array
+    half_width: Array
+    pressure: Array
+    distance: Array
+
+    @property
+    def per_length(self) -> Array:
+        """Load per length of line (n,) [N/m]."""
+        return np.asarray(self.force / self.line.length)
+
+    @property
+    def loaded(self) -> bool:
+        """Whether the pair carries load."""
+        return bool(np.any(self.force > 0.0))
+
+
+@dataclass(frozen=True, slots=True)
+class EdgeContact:
+    """Load that reaches an edge of the flanks.
+
+    Attributes
+    ----------
+    position, load : int
+        Number of the meshing position and of the load.
+    pair : int
+    edge : str
+        "tip of the driver", "tip of the driven gear" or "end of the face".
+    share : float
+        Load per length at the edge over the largest on the line.
+    pressure : float
+        Pressure at the edge [Pa], without the stress concentration of a sharp edge.
+    """
+
+    position: int
+    load: int
+    pair: int
+    edge: str
+    share: float
+    pressure: float
+
+
+@dataclass(frozen=True, eq=False)
+class Ltca:
+    """Loaded tooth contact at K positions of the mesh cycle and under L torques.
+
+    Attributes
+    ----------
+    rated : float
+        Rated torque on the driver [N·m].
+    torque : array (L,)
+        Torques on the driver [N·m], rising.
+    positions : tuple of MeshPosition
+        Unloaded contact at the K positions.
+    arm : float
+        Approach along the normal per radian of the driver [m].
+    helices : int
+        2 where forces and lines are those of one half.
+    contacts : tuple of tuple of Contact
+        Certified contact of each position and load.
+    lines : tuple of tuple of tuple of LineLoad
+        Load on each line of each position and load.
+    compliance : str
+        Model that the compliances came from.
+    """
+
+    rated: float
+    torque: Array
+    positions: tuple[MeshPosition, ...]
+    arm: float
+    helices: int
+    contacts: tuple[tuple[Contact, ...], ...]
+    lines: tuple[tuple[tuple[LineLoad, ...], ...], ...] = field(repr=False)
+    compliance: str
+
+    @cached_property
+    def phase(self) -> Array:
+        """Phases (K,) of the mesh cycle."""
+        return np.array([p.phase for p in self.positions])
+
+    @cached_property
+    def approach(self) -> Array:
+        """Approach Z (K, L) [m] along the normal."""
+        return np.array([[c.approach for c in row] for row in self.contacts])
+
+    @cached_property
+    def unloaded_error(self) -> Array:
+        """Transmission error without load (K,) [rad at the driver]."""
+        return np.array([p.transmission_error for p in self.positions])
+
+    @cached_property
+    def angle(self) -> Array:
+        """Loaded transmission error Δφ (K, L) [rad at the driver]."""
+        return np.asarray(self.unloaded_error[:, None] + self.approach / self.arm)
+
+    @cached_property
+    def law(self) -> LawFit:
+        """a, b, c of every position, from 0.1, 0.5 and 0.9 of the rated torque."""
+        fit = np.isclose(self.torque[:, None], self.rated * np.array(FIT_LOADS)).any(axis=1)
+        return fit_law(self.torque[fit], self.angle[:, fit])
+
+    @cached_property
+    def misfit(self) -> Array:
+        """Law minus computed angle (K, L), over the elastic angle Δφ − a under that torque."""
+        fitted = np.column_stack([self.law.angle(t) for t in self.torque])
+        return np.asarray((fitted - self.angle) / (self.angle - self.law.a[:, None]))
+
+    def secant(self, part: float = 1.0) -> Array:
+        """K = T/(Δφ − a) (K,) [N·m/rad at the driver] under a computed part of the rated torque."""
+        k = self._load(part)
+        return np.asarray(self.torque[k] / (self.angle[:, k] - self.law.a))
+
+    def tangent(self, part: float = 1.0) -> Array:
+        """dT/dΔφ (K,) [N·m/rad at the driver] under a computed part of the rated torque.
+
+        From the derivative of the contact itself, not from the fitted law.
+        """
+        k = self._load(part)
+        slope = np.array([row[k].tangent for row in self.contacts])
+        return np.asarray(self.helices * self.arm**2 / slope)
+
+    def increment(self, low: float, high: float) -> Array:
+        """ΔT/ΔΔφ (K,) [N·m/rad at the driver] between two computed parts of the rated torque."""
+        i, j = self._load(low), self._load(high)
+        return np.asarray((self.torque[j] - self.torque[i]) / (self.angle[:, j] - self.angle[:, i]))
+
+    @cached_property
+    def contact_ratio(self) -> Array:
+        """Contact ratio under each load (L,): pairs that carry load, averaged over the cycle.
+
+        It is exact to one over the number of positions.
+        """
+        loaded = [[sum(one.loaded for one in lines) for lines in row] for row in self.lines]
+        return np.asarray(np.mean(np.array(loaded, dtype=float), axis=0))
+
+    @cached_property
+    def largest_pressure(self) -> Array:
+        """Largest pressure (K, L) [Pa]."""
+        return np.array(
+            [
+                [max(float(one.pressure.max()) for one in lines) for lines in row]
+                for row in self.lines
+            ]
+        )
+
+    @cached_property
+    def edges(self) -> tuple[EdgeContact, ...]:
+        """Every load on an edge of the flanks."""
+        return tuple(
+            edge
+            for k, row in enumerate(self.lines)
+            for i, lines in enumerate(row)
+            for one in lines
+            for edge in _edges(k, i, one)
+        )
+
+    def _load(self, part: float) -> int:
+        found = np.flatnonzero(np.isclose(self.torque, part * self.rated))
+        if not len(found):
+            parts = ", ".join(f"{t / self.rated:.4g}" for t in self.torque)
+            raise ValueError(
+                f"{part} of the rated torque was not computed; computed parts: {parts}"
+            )
+        return int(found[0])
+
+
+def _edges(position: int, load: int, one: LineLoad) -> list[EdgeContact]:
+    """Loaded ends of a line; a line's ends stand on edges of the flanks.
+
+    The tip is named where the end's flank coordinate lies nearer to the tip than one spacing of
+    the points, or than a thousandth of the flank.
+    """
+    found = []
+    density = one.per_length
+    for end, inner in ((0, 1), (-1, -2)):
+        if not one.force[end] > 0.0:
+            continue
+        edge = "end of the face"
+        for name, uw in (("driver", one.line.driver_uw), ("driven gear", one.line.driven_uw)):
+            spacing = abs(float(uw[end, 0] - uw[inner, 0])) if len(uw) > 1 else 0.0
+            if uw[end, 0] > 1.0 - max(spacing, 1e-3):
+                edge = f"tip of the {name}"
+        share = float(density[end] / density.max())
+        pressure = float(one.pressure[end])
+        found.append(EdgeContact(position, load, one.line.pair, edge, share, pressure))
+    return found

@@ -1,0 +1,1 @@
+"""The loaded contact of all lines of action: surfaces, programme, certificate."""

@@ -1,0 +1,90 @@
+"""The certificate of a contact: recomputed from compliance, gap and contact law alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
+from loadshare.tooth.geometry.body import Array
+
+TOLERANCE = 1e-9
+"""Largest scaled residual of a certified contact."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContactCertificate:
+    """Verdict on a claimed contact.
+
+    Attributes
+    ----------
+    residuals : mapping of str to float
+        Scaled by the load P and the largest yielding: "pull" (p < 0), "penetration" (d < 0),
+        "complementarity" (p·d) and "balance" (Σp − P).
+    tolerance : float
+    """
+
+    residuals: Mapping[str, float]
+    tolerance: float
+
+    @property
+    def worst(self) -> float:
+        """Largest residual."""
+        return max(self.residuals.values())
+
+    @property
+    def passed(self) -> bool:
+        """Whether every residual is within the tolerance."""
+        return self.worst <= self.tolerance
+
+    @property
+    def failing(self) -> dict[str, float]:
+        """Residuals beyond the tolerance."""
+        return {n: r for n, r in self.residuals.items() if not r <= self.tolerance}
+
+
+def certify_contact(
+    problem: ContactProblem,
+    load: float,
+    force: Array,
+    approach: float,
+    tolerance: float = TOLERANCE,
+) -> ContactCertificate:
+    """Judge the forces (N,) [N] and the approach [m] claimed for a load [N].
+
+    Nothing is raised for a wrong answer; figures that are not numbers fail.
+    """
+    return certify_contacts(
+        problem.alone, np.array([load]), force[None], np.array([approach]), tolerance
+    )[0]
+
+
+def certify_contacts(
+    batch: ContactBatch,
+    load: Array,
+    force: Array,
+    approach: Array,
+    tolerance: float = TOLERANCE,
+) -> tuple[ContactCertificate, ...]:
+    """Judge forces (K, N) [N] and approaches (K,) [m] claimed for loads (K,) [N]."""
+    with np.errstate(invalid="ignore"):
+        yielded = batch.yielded(force)
+        distance = yielded + batch.gap - approach[:, None]
+        deflection = np.abs(yielded).max(axis=1)
+        deflection = np.where(deflection > 0.0, deflection, 1e-6)
+        found = {
+            "pull": np.max(-force, axis=1) / load,
+            "penetration": np.max(-distance, axis=1) / deflection,
+            "complementarity": np.sum(np.abs(force * distance), axis=1) / (load * deflection),
+            "balance": np.abs(np.sum(force, axis=1) - load) / load,
+        }
+    finite = np.isfinite(force).all(axis=1) & np.isfinite(approach)
+    return tuple(
+        ContactCertificate(
+            {n: max(float(v[k]), 0.0) if finite[k] else np.inf for n, v in found.items()},
+            tolerance,
+        )
+        for k in range(len(approach))
+    )

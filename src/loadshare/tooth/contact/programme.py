@@ -1,0 +1,345 @@
+r"""The contact programme: quadratic programmes that follow the contact law.
+
+With the strips' widths held, or the law replaced by its tangent, the problem of
+:mod:`loadshare.tooth.contact.problem` is the quadratic programme
+
+.. math:: \min_{p\ge 0}\ \tfrac12 p^\mathsf{T} F p + w^\mathsf{T} p
+    \quad\text{s.t.}\quad \textstyle\sum p = P \qquad : Z
+
+It is solved exactly, by exchange of closed points, and where an exchange comes back to a set by the
+package's solver interface: with :math:`F = L L^\mathsf{T}` its dual has the interface's form,
+
+.. math:: \min_{Z, y}\ \tfrac12\lVert y\rVert^2 - P Z
+    \quad\text{s.t.}\quad Z - (L y)_i \le w_i \qquad : p_i
+
+The first programme holds the widths, the next ones are Newton's method on the law with its closed
+points (semismooth), which converges quadratically; where a step is no shorter than the last, widths
+are held once more. What leaves is in touch to round-off, and certified.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.errors import Refused
+from loadshare.scene.programme import Programme
+from loadshare.solver.backend import Backend, backend
+from loadshare.solver.findings import Unsolved
+from loadshare.solver.inner import solve_programme
+from loadshare.tooth.contact.certificate import ContactCertificate, certify_contacts
+from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
+from loadshare.tooth.contact.strips import FAINT
+from loadshare.tooth.contact.surface import Strips
+from loadshare.tooth.geometry.body import Array
+
+Mask = NDArray[np.bool_]
+
+PASSES = 60
+"""Passes after which a contact that does not settle is given up."""
+SETTLED = 1e-12
+"""Distance of closed points, in deflections, at which a contact has settled."""
+ROUND_OFF = 16.0 * float(np.finfo(float).eps)
+"""Part of a gap that counts as nothing."""
+EXCHANGES = 40
+"""Exchanges in one pass before the solver interface is asked instead."""
+BAND = 1e-13
+"""Violation of a sign, in loads and deflections, that counts as round-off."""
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """A certified contact.
+
+    Attributes
+    ----------
+    force : array (N,)
+        [N].
+    approach : float
+        Z [m].
+    distance : array (N,)
+        d [m]; 0 where the flanks touch.
+    tangent : float
+        dZ/dP [m/N].
+    passes : int
+    certificate : ContactCertificate
+    """
+
+    force: Array
+    approach: float
+    distance: Array
+    tangent: float
+    passes: int
+    certificate: ContactCertificate
+
+
+def solve_contact(
+    problem: ContactProblem,
+    load: float,
+    warm: Array | None = None,
+    solver: str = "clarabel",
+) -> Contact:
+    """Solve one contact under a load P [N] from `warm` (N,) [N]; see :func:`solve_contacts`."""
+    begun = None if warm is None else warm[None]
+    return solve_contacts(problem.alone, np.array([load]), begun, solver)[0]
+
+
+def solve_contacts(
+    batch: ContactBatch,
+    load: Array,
+    warm: Array | None = None,
+    solver: str = "clarabel",
+) -> tuple[Contact, ...]:
+    """Solve several contacts at once, each for itself.
+
+    Parameters
+    ----------
+    batch : ContactBatch
+    load : array (K,)
+        P [N] of each, positive.
+    warm : array (K, N), optional
+        Forces under another load, to begin from.
+    solver : str
+        Back-end for programmes that the exchange does not solve.
+
+    Raises
+    ------
+    ValueError
+        If the load is not positive.
+    Refused
+        If one of the contacts is not found, or not passed by its certificate.
+    """
+    load = np.array(load, float)
+    wrong = load[~((load > 0.0) & np.isfinite(load))]
+    if len(wrong):
+        raise ValueError(f"load = {wrong[0]}: the flanks are pressed together; allowed: above 0 N")
+    if warm is None:
+        real = np.arange(batch.gap.shape[1]) < batch.count[:, None]
+        force = np.where(real, (load / batch.count)[:, None], 0.0)
+    else:
+        force = warm * (load / np.sum(warm, axis=1))[:, None]
+    found = _Found.begun(force, warm is not None)
+    of, linear = _Batch(batch.which, load, batch.gap, batch.fixed), _Linear.empty(force.shape[1])
+    strips = batch.surface.strips
+    circling = -1
+    while (circling := _settle(strips, of, found, linear, circling)) >= 0:
+        try:
+            linear.answer(batch.count[circling], load[circling], force[circling], solver)
+        except Refused as refusal:
+            told = _called(batch.names[circling]) + str(refusal)
+            raise Refused(told, refusal.figures) from refusal
+    for k in np.flatnonzero(~found.settled)[:1]:
+        raise Refused(
+            f"{_called(batch.names[k])}the contact under {load[k]:.6g} N did not settle in "
+            f"{PASSES} passes; more points a line, or a smoother gap, may help",
+        )
+    return _certified(batch, load, found)
+
+
+def _settle(strips: Strips, of: _Batch, found: _Found, linear: _Linear, answered: int) -> int:
+    """Number of the next contact whose exchange goes in a circle, −1 when all is done."""
+    from loadshare.tooth.contact.compiled import settle
+
+    try:
+        return int(settle(strips, of, found, linear, _limits(), answered))
+    except np.linalg.LinAlgError as error:
+        raise Refused(
+            "the compliance of a contact is singular or not a number; gap, lengths, curvatures and "
+            "elasticity of the teeth must be finite"
+        ) from error
+
+
+class _Limits(NamedTuple):
+    """When compiled code stops; handed over, for it would keep an old limit."""
+
+    passes: int
+    exchanges: int
+    settled: float
+    round_off: float
+    band: float
+    faint: float
+
+
+def _limits() -> _Limits:
+    return _Limits(PASSES, EXCHANGES, SETTLED, ROUND_OFF, BAND, FAINT)
+
+
+class _Batch(NamedTuple):
+    """Contacts to be settled, as compiled code reads them."""
+
+    which: NDArray[np.int64]  # (K,)
+    load: Array  # (K,)
+    gap: Array  # (K, N)
+    fixed: Array  # (M, N, N)
+
+
+class _Found(NamedTuple):
+    """How far the contacts have settled."""
+
+    force: Array  # (K, N)
+    approach: Array  # (K,)
+    distance: Array  # (K, N)
+    slope: Array  # (K,): dZ/dP
+    step: Array  # (K,): largest change of a force in the last pass
+    passes: NDArray[np.int64]  # (K,)
+    newton: Mask  # (K,): whether the next pass takes the tangent
+    settled: Mask  # (K,)
+
+    @classmethod
+    def begun(cls, force: Array, newton: bool) -> _Found:
+        count = len(force)
+        approach, slope = np.zeros((2, count))
+        step, passes = np.full(count, np.inf), np.zeros(count, dtype=np.int64)
+        newtons, settled = np.full(count, newton), np.zeros(count, dtype=bool)
+        return cls(force, approach, np.zeros_like(force), slope, step, passes, newtons, settled)
+
+
+class _Linear(NamedTuple):
+    """A contact with its law held, and its forces."""
+
+    matrix: Array  # (N, N)
+    gap: Array  # (N,)
+    force: Array  # (N,)
+
+    @classmethod
+    def empty(cls, count: int) -> _Linear:
+        return cls(np.empty((count, count)), np.empty(count), np.empty(count))
+
+    def answer(self, count: int, load: float, last: Array, solver: str) -> None:
+        """Solve it by the solver interface; only `count` of the points are real."""
+        linear = self.matrix[:count, :count], self.gap[:count], float(load), last[:count]
+        self.force[:] = 0.0
+        self.force[:count] = by_interface(*linear, backend(solver))
+
+
+def _certified(batch: ContactBatch, load: Array, found: _Found) -> tuple[Contact, ...]:
+    certificates = certify_contacts(batch, load, found.force, found.approach)
+    for name, part, certificate in zip(batch.names, load, certificates, strict=True):
+        if not certificate.passed:
+            raise Refused(_told(name, float(part), certificate), certificate.failing)
+    distance = np.where(found.force > 0.0, 0.0, found.distance)
+    return tuple(
+        Contact(
+            found.force[k, :n], float(found.approach[k]), distance[k, :n], float(found.slope[k]),
+            int(found.passes[k]), certificates[k],
+        )
+        for k, n in enumerate(batch.count)
+    )  # fmt: skip
+
+
+def _called(name: str) -> str:
+    return f"{name}: " if name else ""
+
+
+def _told(name: str, load: float, certificate: ContactCertificate) -> str:
+    figures = ", ".join(f"{n} {v:.1e}" for n, v in certificate.failing.items())
+    return (
+        f"{_called(name)}the contact under {load:.6g} N does not pass its certificate: {figures}, "
+        f"allowed {certificate.tolerance:.0e}"
+    )
+
+
+def exchange(matrix: Array, gap: Array, load: float, closed: Mask) -> Array | None:
+    """Solve the linear contact by exchanging closed points.
+
+    Parameters
+    ----------
+    matrix : array (N, N)
+        F [m/N]; it need not be symmetric.
+    gap : array (N,)
+        w [m].
+    load : float
+        P [N].
+    closed : array (N,) of bool
+        Where to begin.
+
+    Returns
+    -------
+    array (N,) or None
+        Forces [N]; None if the exchange comes back to a set.
+    """
+    from loadshare.tooth.contact.compiled import exchange as exchanged
+
+    force, compliance = np.empty(len(gap)), np.ascontiguousarray(matrix, float)
+    found = exchanged(compliance, gap, float(load), closed.copy(), _limits(), force)
+    return force if found else None
+
+
+def contact_rows(matrix: Array, gap: Array, load: float) -> tuple[Programme, Array]:
+    """Write the linear contact as a programme of the package, dimensionless.
+
+    Parameters
+    ----------
+    matrix : array (N, N)
+        F [m/N], symmetric.
+    gap : array (N,)
+        w [m].
+    load : float
+        P [N].
+
+    Returns
+    -------
+    Programme
+        In units of the load and of the load times the mean of F's diagonal.
+    array (N,)
+        What a row's multiplier is to be multiplied by to give the point's force [N].
+    """
+    count = len(gap)
+    size = float(np.trace(matrix)) / count
+    values, vectors = np.linalg.eigh(matrix / size)
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    rows = np.hstack([np.ones((count, 1)), -root])
+    norm = np.linalg.norm(rows, axis=1)
+    stiffness = np.eye(count + 1)
+    stiffness[0, 0] = 0.0
+    programme = Programme(
+        coordinates=("approach", *(f"mode {k}" for k in range(count))),
+        stiffness=stiffness,
+        load=np.eye(count + 1)[0],
+        names=tuple(f"point {k}" for k in range(count)),
+        rows=rows / norm[:, None],
+        gaps=gap / (size * load) / norm,
+        linear=np.zeros(count),
+        hertz=np.zeros(count),
+        assumed_closed=np.zeros(count, dtype=bool),
+        cones=(),
+    )
+    return programme, load / norm
+
+
+def by_interface(matrix: Array, gap: Array, load: float, force: Array, solver: Backend) -> Array:
+    """Solve the linear contact by the package's solver interface.
+
+    Reading at a point what a strip of another width does leaves a small skew part in the matrix;
+    it acts on the last forces, beside the gap.
+
+    Parameters
+    ----------
+    matrix, gap, load
+        As for :func:`exchange`.
+    force : array (N,)
+        The last forces [N].
+    solver : Backend
+
+    Returns
+    -------
+    array (N,)
+        Forces [N].
+
+    Raises
+    ------
+    Refused
+        If the solver finds no answer.
+    """
+    even = 0.5 * (matrix + matrix.T)
+    programme, unit = contact_rows(even, gap + (matrix - even) @ force, load)
+    try:
+        answer = solve_programme(programme, solver, None, polish=True)
+    except Unsolved as failure:
+        raise Refused(
+            f"the contact programme under {load:.6g} N was not solved: {failure}"
+        ) from failure
+    return np.maximum(answer.point.forces * unit, 0.0)

@@ -1,0 +1,162 @@
+r"""A contact line as a row of strips on two elastic bodies.
+
+Each point of a line stands for a strip of length ℓ and half-width b that carries its force as a
+half-ellipse of pressure across. On a half-space such a strip moves the middle of the line, at the
+distance x, by
+
+.. math:: \frac{1-\nu^2}{\pi E}\,\frac{p}{\ell}\left[g\left(\frac{x+\ell/2}{b}\right)
+    - g\left(\frac{x-\ell/2}{b}\right)\right],\qquad
+    g(\tau) = \frac{4}{\pi}\int_0^1 \sqrt{1-y^2}\,\operatorname{asinh}\frac{\tau}{y}\,dy
+
+(Boussinesq), with b² = κ·4q/(πE*k) of `hertz.width_factor`. A long row is
+Hertz's line contact, a crowned one Hertz's ellipse, and what lies between needs no case of its own.
+
+The bulk compliance of a tooth is that of its middle surface, so only what lies between the flank
+and the depth h may be added here: the half-space's displacement at the depth h is taken off. For a
+long line this is Weber and Banaschek's compression to the depth h.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from loadshare.tooth.contact.hertz import contact_modulus, half_width, width_factor
+from loadshare.tooth.geometry.body import Array
+
+FAINT = 1e-12
+"""Part of a line's whole load below which a point's strip narrows no further: its effect is 0."""
+
+
+FIRST, LAST = 1e-7, 1e9
+"""First and last knot τ of the table."""
+
+
+def _slope(tau: Array) -> Array:
+    """Derivative g'(τ) = (4/π) √(1 + τ²) (K − E), parameter 1/(1 + τ²), for τ > 0."""
+    from scipy.special import ellipe, ellipkm1
+
+    m = 1.0 / (1.0 + tau**2)
+    far = tau > 1e3  # K − E cancels there; its series does not
+    exact = 4.0 / pi * np.sqrt(1.0 + tau**2) * (ellipkm1(tau**2 * m) - ellipe(m))
+    return np.where(far, np.sqrt(m) * (1.0 + 0.375 * m), exact)
+
+
+class StripTable(NamedTuple):
+    """Knots, evenly spaced in ln τ, with g and dg/d ln τ, as compiled code reads them."""
+
+    first: float
+    last: float
+    values: Array  # (n,)
+    slopes: Array  # (n,)
+
+
+@cache
+def strip_table() -> StripTable:
+    """The table of g."""
+    knots = np.linspace(np.log(FIRST), np.log(LAST), 1200)
+    nodes, weights = np.polynomial.legendre.leggauss(6)
+    middle, half = 0.5 * (knots[1:] + knots[:-1]), 0.5 * np.diff(knots)
+    inner = np.exp(middle[:, None] + half[:, None] * nodes)
+    parts = half * ((inner * _slope(inner)) @ weights)
+    tau = np.exp(knots)
+    first = 4.0 / pi * tau[0] * np.log(4.0 / tau[0])  # leading order near 0
+    values = first + np.concatenate([[0.0], np.cumsum(parts)])
+    return StripTable(FIRST, LAST, values, tau * _slope(tau))
+
+
+def strip_shape(tau: Array) -> tuple[Array, Array]:
+    """g(τ), odd, and τ g'(τ), odd; from a cubic table good to about 1e-9.
+
+    Below the table's first knot (τ = 1e-7) both go to 0 in proportion to τ.
+    """
+    from loadshare.tooth.contact.compiled import shapes
+
+    value, slope = np.empty((2, tau.size))
+    shapes(tau.ravel(), strip_table(), value, slope)
+    return value.reshape(tau.shape), slope.reshape(tau.shape)
+
+
+@dataclass(frozen=True, eq=False)
+class StripLine:
+    """The local contact of one line.
+
+    Parameters
+    ----------
+    length : array (n,)
+        Length of line of each point [m]; the points stand in line, one after another.
+    curvature, curvature_along : array (n,)
+        Relative curvatures across and along the line [1/m].
+    modulus, poisson : tuple of float
+        E [Pa] and ν of the driver and of the driven tooth.
+    depth : tuple of array (n,), optional
+        Distance from flank to middle surface [m] in the driver and in the driven tooth; without
+        it the bodies are half-spaces and the approach is that of distant points.
+    factor : array (n,), optional
+        κ of the points, where it is known already.
+
+    Raises
+    ------
+    ValueError
+        If the flanks do not part across the line.
+    """
+
+    length: Array
+    curvature: Array
+    curvature_along: Array
+    modulus: tuple[float, float]
+    poisson: tuple[float, float]
+    depth: tuple[Array, Array] | None = None
+    factor: Array | None = None
+
+    def __post_init__(self) -> None:
+        if np.any(self.curvature <= 0.0):
+            raise ValueError(
+                "the flanks must part on both sides of the contact line: relative curvature "
+                f"{float(np.min(self.curvature)):.4g} 1/m, allowed > 0"
+            )
+
+    @cached_property
+    def place(self) -> Array:
+        """Coordinates (n,) of the points along the line [m]."""
+        return np.asarray(np.cumsum(self.length) - 0.5 * self.length)
+
+    @cached_property
+    def effective(self) -> float:
+        """E* [Pa]."""
+        return contact_modulus(self.modulus, self.poisson)
+
+    @cached_property
+    def _bend(self) -> Array:
+        """Curvature of the line contact that has the strips' width [1/m]."""
+        factor = self.factor
+        if factor is None:
+            factor = width_factor(self.curvature_along, self.curvature)
+        return self.curvature / factor
+
+    def widths(self, force: Array) -> Array:
+        """Half-widths b (n,) [m] under the points' forces (n,) [N]."""
+        return half_width(force / self.length, self._bend, self.effective)
+
+    def pressure(self, force: Array) -> Array:
+        """Largest pressure (n,) [Pa] across each strip under `force` (n,) [N]."""
+        width = self.widths(force)
+        loaded = width > 0.0
+        safe = np.where(loaded, width, 1.0)
+        return np.where(loaded, 2.0 * force / (self.length * pi * safe), 0.0)
+
+    @cached_property
+    def removed(self) -> Array:
+        """Compliance (n, n) [m/N] of two half-spaces at the depths of the middle surfaces."""
+        from loadshare.tooth.contact.compiled import add_below
+
+        total = np.zeros((len(self.length),) * 2)
+        if self.depth is not None:
+            for depth, e, nu in zip(self.depth, self.modulus, self.poisson, strict=True):
+                scale = (1.0 + nu) / (2.0 * pi * e * self.length)
+                add_below(self.place, self.length, scale, depth, float(nu), total)
+        return total

@@ -1,0 +1,1 @@
+"""Cylindrical involute gears: dimensions, flanks, solid teeth, pairs."""

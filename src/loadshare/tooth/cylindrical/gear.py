@@ -1,0 +1,176 @@
+"""A cylindrical involute gear and the dimensions that follow from its data."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Literal
+
+from loadshare.tooth.cylindrical.modification import Deviation, Modification
+from loadshare.tooth.geometry.involute import inv
+
+
+@dataclass(frozen=True)
+class HelicoidGear:
+    """An involute spur or helical gear, external or internal; one half of a herringbone gear.
+
+    Names and signs are those of ISO 21771 with positive tooth counts: a positive profile shift
+    thickens the tooth at the reference circle, and moves the teeth of an internal gear inwards.
+
+    Parameters
+    ----------
+    module : float
+        Normal module [m].
+    teeth : int
+        Number of teeth, positive for internal gears too.
+    face_width : float
+        Face width [m], of one half for a herringbone gear.
+    pressure_angle : float
+        Normal pressure angle [rad].
+    helix_angle : float
+        Helix angle at the reference circle [rad], positive for a right-hand helix.
+    profile_shift : float
+        Profile shift coefficient x.
+    addendum, dedendum : float
+        Heights of the tooth above and below the datum line, in modules.
+    tip_radius : float
+        Tip radius of the generating rack in modules. An internal gear has this radius between
+        flank and root circle.
+    internal : bool
+        Whether the teeth point to the axis.
+    modification : Modification
+        Micro-geometry.
+    helices : {1, 2}
+        2 for a herringbone gear.
+    helix_gap : float
+        Gap between the two halves of a herringbone gear [m].
+    rim : float, optional
+        Inner radius of the gear's body, outer radius if internal [m]; by default 1.5 tooth
+        heights of material below the root.
+    youngs_modulus, poisson : float
+        Elasticity, [Pa] and 1.
+    """
+
+    module: float
+    teeth: int
+    face_width: float
+    pressure_angle: float = math.radians(20.0)
+    helix_angle: float = 0.0
+    profile_shift: float = 0.0
+    addendum: float = 1.0
+    dedendum: float = 1.25
+    tip_radius: float = 0.38
+    internal: bool = False
+    modification: Modification = field(default_factory=Modification)
+    helices: Literal[1, 2] = 1
+    helix_gap: float = 0.0
+    rim: float | None = None
+    youngs_modulus: float = 2.06e11
+    poisson: float = 0.3
+
+    @property
+    def kind(self) -> int:
+        """σ: +1 external, −1 internal."""
+        return -1 if self.internal else 1
+
+    @property
+    def total_width(self) -> float:
+        """Width over both halves and their gap [m]."""
+        return self.helices * self.face_width + self.helix_gap * (self.helices - 1)
+
+    @cached_property
+    def transverse_angle(self) -> float:
+        """Transverse pressure angle α_t [rad]."""
+        return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
+
+    @cached_property
+    def radius(self) -> float:
+        """Reference radius [m]."""
+        return 0.5 * self.module * self.teeth / math.cos(self.helix_angle)
+
+    @cached_property
+    def base_radius(self) -> float:
+        """Base radius r_b [m]."""
+        return self.radius * math.cos(self.transverse_angle)
+
+    @property
+    def tip(self) -> float:
+        """Tip radius [m]."""
+        return self.radius + self.kind * (self.addendum + self.profile_shift) * self.module
+
+    @property
+    def root(self) -> float:
+        """Root radius [m]."""
+        return self.radius + self.kind * (self.profile_shift - self.dedendum) * self.module
+
+    @cached_property
+    def twist(self) -> float:
+        """Turn of the transverse section per axial length, tan β / r [rad/m]."""
+        return math.tan(self.helix_angle) / self.radius
+
+    @cached_property
+    def base_helix_angle(self) -> float:
+        """Helix angle on the base cylinder β_b [rad]."""
+        return math.asin(math.sin(self.helix_angle) * math.cos(self.pressure_angle))
+
+    @cached_property
+    def base_half_angle(self) -> float:
+        """Half the angle of a tooth where its involutes, prolonged, meet the base circle [rad]."""
+        thickness = 0.5 * math.pi + 2.0 * self.profile_shift * math.tan(self.pressure_angle)
+        return thickness / self.teeth + self.kind * inv(self.transverse_angle)
+
+    def half_angle(self, radius: float) -> float:
+        """Half the angle of a tooth at a radius [m] not below the base radius [rad]."""
+        return self.base_half_angle - self.kind * inv(math.acos(self.base_radius / radius))
+
+    @property
+    def straight_dedendum(self) -> float:
+        """Depth below the datum line to which the rack's flank is straight, in modules."""
+        return self.dedendum - self.tip_radius * (1.0 - math.sin(self.pressure_angle))
+
+    @property
+    def least_profile_shift(self) -> float:
+        """Profile shift below which the rack undercuts an external gear.
+
+        h* − z sin²α_t/(2 cos β), h* the depth of the rack's straight flank in modules.
+        """
+        return self.straight_dedendum - 0.5 * self.teeth * math.sin(
+            self.transverse_angle
+        ) ** 2 / math.cos(self.helix_angle)
+
+    @cached_property
+    def form_roll(self) -> float:
+        """Angle of roll where the fillet ends and the involute begins [rad].
+
+        External: where the rack's straight flank ends. Internal: where the root radius touches.
+        """
+        if self.internal:
+            fillet = self.tip_radius * self.module
+            beside = math.sqrt((self.root - fillet) ** 2 - self.base_radius**2)
+            return (fillet + beside) / self.base_radius
+        depth = (self.straight_dedendum - self.profile_shift) * self.module
+        past_pitch = depth / math.sin(self.transverse_angle)
+        return math.tan(self.transverse_angle) - past_pitch / self.base_radius
+
+    @cached_property
+    def tip_roll(self) -> float:
+        """Angle of roll at the tip [rad]."""
+        return math.sqrt((self.tip / self.base_radius) ** 2 - 1.0)
+
+    @cached_property
+    def deviation(self) -> Deviation:
+        """The modification laid on the usable flank."""
+        return Deviation(
+            self.modification,
+            self.base_radius * self.form_roll,
+            self.base_radius * self.tip_roll,
+            self.face_width,
+        )
+
+    @property
+    def rim_radius(self) -> float:
+        """Radius at which the gear's body ends [m]."""
+        if self.rim is not None:
+            return self.rim
+        return self.root - self.kind * 1.5 * abs(self.tip - self.root)

@@ -1,0 +1,296 @@
+"""Two cylindrical gears in mesh: their contact lines lie in the plane of action."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TypeVar
+
+import numpy as np
+
+from loadshare.tooth.cylindrical.body import HelicoidBody
+from loadshare.tooth.cylindrical.flank import HelicoidFlank
+from loadshare.tooth.cylindrical.gear import HelicoidGear
+from loadshare.tooth.geometry.body import Array
+from loadshare.tooth.geometry.flank import Patch
+from loadshare.tooth.geometry.gap import Extents, Trace, meet
+from loadshare.tooth.geometry.involute import inv, inverse_inv
+from loadshare.tooth.geometry.placement import Placement, about_x, about_y, fixed
+from loadshare.tooth.unloaded.contact import MeshPosition
+from loadshare.tooth.unloaded.positions import between, positions
+
+Roll = TypeVar("Roll", float, Array)
+
+
+@dataclass(frozen=True)
+class Misalignment:
+    """How far the axes of a cylindrical pair are off.
+
+    Parameters
+    ----------
+    centre_distance : float
+        Change of the centre distance [m].
+    inclination : float
+        Turn of the driven axis within the common plane of the axes [rad], positive if the driven
+        gear's axis leans to +x at +z.
+    deviation : float
+        Turn of the driven axis out of that plane [rad], positive if it leans to +y at +z, the
+        direction in which the driver's teeth run at the pitch point.
+    axial_shift : float
+        Shift of the driven gear along its axis [m].
+    """
+
+    centre_distance: float = 0.0
+    inclination: float = 0.0
+    deviation: float = 0.0
+    axial_shift: float = 0.0
+
+
+@dataclass(frozen=True)
+class HelicoidPair:
+    """A pair of cylindrical gears, built by `helicoid_pair`.
+
+    The fixed frame has the driver's axis as z and the driver's mid-width as origin; the pitch
+    point lies on +x, and the driver turns positively. Stations of a contact line are axial
+    coordinates.
+
+    Parameters
+    ----------
+    driver_gear, driven_gear : HelicoidGear
+        The gears; at most one is internal.
+    centre_distance : float
+        Centre distance before misalignment [m].
+    misalignment : Misalignment
+        How far the axes are off.
+    """
+
+    driver_gear: HelicoidGear
+    driven_gear: HelicoidGear
+    centre_distance: float
+    misalignment: Misalignment = field(default_factory=Misalignment)
+
+    @property
+    def kind(self) -> int:
+        """σ of the pair: +1 for two external gears, −1 with an internal one."""
+        return self.driver_gear.kind * self.driven_gear.kind
+
+    @property
+    def driven_side(self) -> int:
+        """Side of the driven tooth that is pushed."""
+        return self.kind
+
+    @property
+    def driven_step(self) -> int:
+        """The teeth of two external gears are met in opposite order."""
+        return -self.kind
+
+    @property
+    def helices(self) -> int:
+        """2 for a herringbone pair."""
+        return self.driver_gear.helices
+
+    @property
+    def ratio(self) -> float:
+        """Teeth of the driven gear over teeth of the driver."""
+        return self.driven_gear.teeth / self.driver_gear.teeth
+
+    @property
+    def arm(self) -> float:
+        """r_b cos β_b of the driver [m]."""
+        return self.driver_gear.base_radius * math.cos(self.driver_gear.base_helix_angle)
+
+    @cached_property
+    def working_angle(self) -> float:
+        """Transverse pressure angle at the actual centre distance [rad]."""
+        actual = self.centre_distance + self.misalignment.centre_distance
+        base = self.driven_gear.base_radius + self.kind * self.driver_gear.base_radius
+        return math.acos(abs(base) / actual)
+
+    @cached_property
+    def _roll_range(self) -> tuple[float, float]:
+        """Driver's angle of roll over which both flanks are active."""
+        own = sorted((self.driver_gear.form_roll, self.driver_gear.tip_roll))
+        other = sorted(
+            self.partner_roll(roll, of_driven=True)
+            for roll in (self.driven_gear.form_roll, self.driven_gear.tip_roll)
+        )
+        return max(own[0], other[0]), min(own[1], other[1])
+
+    def partner_roll(self, roll: Roll, *, of_driven: bool = False) -> Roll:
+        """The other gear's angle of roll at the same point of the line of action.
+
+        Parameters
+        ----------
+        roll : array or float
+            Angle of roll [rad] of the driver, or of the driven gear if `of_driven`.
+        of_driven : bool
+            Whose angle is given.
+        """
+        scale = self.driver_gear.base_radius / self.driven_gear.base_radius
+        pitch = math.tan(self.working_angle)
+        return pitch - self.kind * (1.0 / scale if of_driven else scale) * (roll - pitch)
+
+    @property
+    def contact_ratio(self) -> float:
+        """Transverse contact ratio ε_α without load."""
+        first, last = self._roll_range
+        return (last - first) * self.driver_gear.teeth / (2.0 * math.pi)
+
+    @property
+    def overlap_ratio(self) -> float:
+        """Overlap ratio ε_β of one half."""
+        first, last = self.axial_range
+        twist = abs(self.driver_gear.twist)
+        return max(last - first, 0.0) * twist * self.driver_gear.teeth / (2.0 * math.pi)
+
+    @property
+    def axial_range(self) -> tuple[float, float]:
+        """Axial coordinates between which both gears have face width [m]."""
+        shift = self.misalignment.axial_shift
+        own, other = 0.5 * self.driver_gear.face_width, 0.5 * self.driven_gear.face_width
+        return max(-own, shift - other), min(own, shift + other)
+
+    @cached_property
+    def driver(self) -> HelicoidBody:
+        """The driver's tooth."""
+        return HelicoidBody(self.driver_gear, fixed())
+
+    @cached_property
+    def driven(self) -> HelicoidBody:
+        """The driven gear's tooth."""
+        off = self.misalignment
+        distance = self.centre_distance + off.centre_distance
+        # The pitch point is on +x of both centres when the driven gear is internal.
+        towards = -1.0 if self.driven_gear.internal else 1.0
+        axes = about_y(off.inclination) @ about_x(-off.deviation)
+        centre = np.array([towards * distance, 0.0, 0.0]) + off.axial_shift * axes[:, 2]
+        return HelicoidBody(self.driven_gear, Placement(centre, axes))
+
+    @cached_property
+    def _flanks(self) -> tuple[HelicoidFlank, HelicoidFlank]:
+        return HelicoidFlank(self.driver_gear), HelicoidFlank(self.driven_gear, self.driven_side)
+
+    def ideal(self, phase: Array) -> tuple[Array, Array]:
+        """Rotations at which the unmodified, parallel pair touches [rad].
+
+        At phase 0 pair 0 touches at the pitch point in the middle of the driver's face width.
+        """
+        one, two = self.driver_gear, self.driven_gear
+        pitch = inv(self.working_angle)
+        turn = 2.0 * math.pi * phase / one.teeth
+        driver = one.kind * pitch - one.base_half_angle + turn
+        # The driven flank faces the driver: its base tangent is the same line of action.
+        facing = (math.pi if self.kind > 0 else 0.0) - one.kind * self.working_angle
+        at_pitch = self.driven_side * (two.kind * math.tan(self.working_angle))
+        at_pitch += facing - self.driven_side * two.base_half_angle
+        at_pitch += two.twist * self.misalignment.axial_shift
+        return driver, at_pitch - self.kind * turn / self.ratio
+
+    def _roll(self, pairs: Array, axial: Array, driver: Array) -> Array:
+        """Driver's angle of roll where its flank crosses the plane of action."""
+        gear = self.driver_gear
+        phi = driver + 2.0 * math.pi * pairs / gear.teeth + gear.base_half_angle
+        return self.working_angle + gear.kind * (phi + gear.twist * axial)
+
+    def extents(self, driver: Array, driven: Array) -> Extents:
+        """Lines of the pairs on both active flanks at positions (k,), by position and pair."""
+        gear = self.driver_gear
+        first, last = self._roll_range
+        low, high = self.axial_range
+        per_tooth = 2.0 * math.pi / gear.teeth
+        reach = abs(gear.twist) * max(abs(low), abs(high))
+        middle = self._roll(np.zeros(1), np.zeros(1), driver)
+        # The pitch at which the roll of pair k is within the range, for either kind of driver.
+        bounds = [gear.kind * (roll - middle) / per_tooth for roll in (first - reach, last + reach)]
+        position, pairs = between(*np.sort(bounds, axis=0))
+        driver, driven = driver[position], driven[position]
+        at_middle = self._roll(pairs, np.zeros_like(pairs), driver)
+        slope = gear.kind * gear.twist
+        if slope == 0.0:
+            start, end = np.full_like(pairs, low), np.full_like(pairs, high)
+            inside = (at_middle >= first) & (at_middle <= last) & (low < high)
+        else:
+            crossing = np.sort([(first - at_middle) / slope, (last - at_middle) / slope], axis=0)
+            start, end = np.maximum(crossing[0], low), np.minimum(crossing[1], high)
+            inside = start < end
+        rows = pairs[inside], driver[inside], driven[inside]
+        return Extents(
+            position[inside],
+            rows[0],
+            start[inside],
+            end[inside],
+            *rows[1:],
+            lambda stations: self.trace(*rows, stations),
+        )
+
+    def margins_about(self, driver: Array, driven: Array) -> Mapping[str, Array]:
+        """Margins along the lines of pairs near contact, on both flanks or not."""
+        gear, (first, last) = self.driver_gear, self._roll_range
+        axial = np.linspace(*self.axial_range, 33)
+        step = 2.0 * math.pi / gear.teeth
+        middle = self._roll(np.zeros(1), np.zeros(1), driver)
+        pairs = np.rint(gear.kind * (0.5 * (first + last) - middle) / step) + np.arange(-1.0, 2.0)
+        roll, axial = np.broadcast_arrays(self._roll(pairs[:, None], axial, driver), axial)
+        other = self.partner_roll(roll), axial - self.misalignment.axial_shift
+        return self.margins((roll, axial), other)
+
+    def driver_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
+        """Points of the driver's flanks at surface parameters `at`, fixed frame."""
+        turn = rotation + 2.0 * math.pi / self.driver_gear.teeth * pairs
+        return self._flanks[0].patch(*at, turn)
+
+    def driven_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
+        """Points of the driven gear's flanks at surface parameters `at`, fixed frame."""
+        turn = rotation + self.driven_step * 2.0 * math.pi / self.driven_gear.teeth * pairs
+        place = self.driven.placement
+        return self._flanks[1].patch(*at, turn).turned(place.axes, place.origin)
+
+    def trace(self, pairs: Array, driver: Array, driven: Array, stations: Array) -> Trace:
+        """Flanks and gap at axial stations (m, n) [m] of the lines of pairs (m,)."""
+        pairs, driver, driven = (
+            np.broadcast_to(part[:, None], stations.shape) for part in (pairs, driver, driven)
+        )
+        roll = self._roll(pairs, stations, driver)
+        start = (self.partner_roll(roll), stations - self.misalignment.axial_shift)
+        own, other, driven_at, gap = meet(self, pairs, (roll, stations), start, driver, driven)
+        slope = self.driver_gear.kind * self.driver_gear.twist
+        tangent = slope * own.rays[0] + own.rays[1]
+        return Trace(own, other, (roll, stations), driven_at, gap, tangent)
+
+    def margins(
+        self, driver_at: tuple[Array, Array], driven_at: tuple[Array, Array]
+    ) -> Mapping[str, Array]:
+        """Distance to every edge of the active flanks by name [m], negative beyond it."""
+        edges = {}
+        for name, gear, (roll, axial) in (
+            ("driver", self.driver_gear, driver_at),
+            ("driven", self.driven_gear, driven_at),
+        ):
+            reach = gear.kind * gear.base_radius
+            edges[f"{name} tip"] = reach * (gear.tip_roll - roll)
+            edges[f"{name} root"] = reach * (roll - gear.form_roll)
+            edges[f"{name} face"] = 0.5 * gear.face_width - np.abs(axial)
+        return edges
+
+    def positions(self, phases: Sequence[float], points_per_line: int) -> tuple[MeshPosition, ...]:
+        """Unloaded contact at phases of the mesh cycle; see `positions.positions`."""
+        return positions(self, phases, points_per_line)
+
+
+def working_angle_without_backlash(one: HelicoidGear, two: HelicoidGear) -> float:
+    """Transverse working pressure angle at which both flanks touch [rad].
+
+    inv α_wt = inv α_t + 2 tan α_n (x1 + x2)/(z1 ± z2), the lower sign with an internal gear
+    (ISO 21771, in which z2 < 0).
+
+    Raises
+    ------
+    ValueError
+        If the profile shifts bring the gears closer than their base circles allow.
+    """
+    teeth = one.kind * one.teeth + two.kind * two.teeth
+    shift = one.profile_shift + two.profile_shift
+    change = 2.0 * math.tan(one.pressure_angle) * shift / teeth
+    return inverse_inv(inv(one.transverse_angle) + change)

@@ -1,0 +1,1 @@
+"""Face gears and their pinions: generation, flanks, limits, pairs."""

@@ -1,0 +1,119 @@
+"""The flank of a face gear in closed form, as the envelope of its shaper."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from loadshare.tooth.face.gear import FaceGear
+from loadshare.tooth.geometry.body import Array
+from loadshare.tooth.geometry.flank import Patch, patch
+
+# A Newton step below this [rad] is the last: what is left is about its square, below round-off.
+LAST_TURN = 1e-8
+
+
+@dataclass(frozen=True)
+class FaceFlank:
+    """One side of tooth 0 of a face gear.
+
+    The parameters are the shaper's angle of roll ξ and the angle Φ of the base tangent, along
+    which the shaper's flank is normal to the gear's while it generates the point. With shaper axis
+    a, e_r and e_t at Φ in its transverse plane, s its side and m the ratio of the rotations,
+
+        X = u(Φ) a + r_bs e_r + s r_bs ξ e_t,    u cos Φ = const (equation of meshing),
+
+    in the frame in which both turn; turning back by m φ_s, φ_s = Φ − s(ψ_bs − ξ), gives the flank.
+    The normal is that of the shaper's flank, reversed. Litvin & Fuentes, Gear Geometry and Applied
+    Theory, ch. 18, give the same surface as vector equations.
+
+    Parameters
+    ----------
+    gear : FaceGear
+        The gear.
+    side : {+1, −1}
+        Which flank.
+    """
+
+    gear: FaceGear
+    side: int = -1
+
+    def patch(self, a: Array, b: Array, turn: Array | float) -> Patch:
+        """Points of the flank at ξ = `a` and Φ = `b` [rad]; see `HelicoidFlank.patch`."""
+        from loadshare.tooth.geometry.compiled import faces
+
+        return patch(faces, self.numbers, a, b, turn)
+
+    @cached_property
+    def numbers(self) -> FaceNumbers:
+        """The flank, as compiled code reads it."""
+        gear, shaper = self.gear, self.gear.shaper
+        return FaceNumbers(
+            side=float(self.side),
+            teeth=gear.teeth,
+            ratio=gear.roll_ratio,
+            scale=gear.axial_scale,
+            base=shaper.base_radius,
+            half_angle=shaper.base_half_angle,
+            axes=gear.axes,
+        )
+
+    def point(self, roll: Array, phi: Array) -> Array:
+        """Points (..., 3) of the flank of tooth 0 at surface parameters ξ and Φ [m]."""
+        return self.patch(roll, phi, 0.0).point
+
+    def at_blank(self, length: Array, depth: Array) -> tuple[Array, Array]:
+        """Surface parameters of the points at given lengths and depths of the blank [m].
+
+        Newton's method from the plane section that the flank would have at infinite radius.
+
+        Returns
+        -------
+        roll, phi : array
+            NaN where the flank has no such point.
+        """
+        from loadshare.tooth.geometry.compiled import at_blank
+
+        gear = self.gear
+        lengths, depths = (np.array(x, float) for x in np.broadcast_arrays(length, depth))
+        with np.errstate(invalid="ignore"):
+            start = np.arccos(gear.axial_scale / lengths)
+            roll = (depths / gear.shaper.base_radius - np.cos(start)) / np.sin(start)
+        roll, phi = roll.ravel(), self.side * start.ravel()
+        at_blank(self.numbers, lengths.ravel(), depths.ravel(), roll, phi, _LIMITS)
+        return roll.reshape(lengths.shape), phi.reshape(lengths.shape)
+
+    def at_length(self, length: Array, roll: Array | float) -> Array:
+        """Base-tangent angle Φ of the points with a given shaper roll at lengths of the blank."""
+        from loadshare.tooth.geometry.compiled import at_length
+
+        lengths, rolls = (np.array(x, float) for x in np.broadcast_arrays(length, roll))
+        with np.errstate(invalid="ignore"):
+            phi = self.side * np.arccos(self.gear.axial_scale / lengths).ravel()
+        at_length(self.numbers, lengths.ravel(), rolls.ravel(), phi, _LIMITS)
+        return phi.reshape(lengths.shape)
+
+
+class _Limits(NamedTuple):
+    """When compiled code stops; handed over, for it would keep an old limit."""
+
+    steps: int
+    last: float
+
+
+_LIMITS = _Limits(30, LAST_TURN)
+
+
+class FaceNumbers(NamedTuple):
+    """Numbers of a flank by the names of `FaceGear`; `base` and `half_angle` are the shaper's."""
+
+    side: float
+    teeth: int
+    ratio: float
+    scale: float
+    base: float
+    half_angle: float
+    axes: Array

@@ -1,0 +1,371 @@
+"""Points of tooth flanks, and the valleys of the gap between them, compiled with Numba.
+
+What is computed is told where the numbers are made: :mod:`loadshare.tooth.cylindrical.flank`,
+:mod:`loadshare.tooth.face.flank` and `valley`. A point is an array (6, 3): the
+position, the unit normal, and the derivatives of either over both surface parameters. All of it
+stands in this one file, because Numba looks at no other to tell whether what it keeps is valid.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loadshare.compilation import jit
+
+compiled = jit(nogil=True, error_model="numpy")
+
+
+@compiled
+def profile(taken, roll):  # type: ignore[no-untyped-def]
+    """Material taken off at a length of roll [m], with first and second derivative."""
+    half = 0.5 * (taken.tip - taken.root)
+    middle = roll - 0.5 * (taken.tip + taken.root)
+    bend = taken.profile_crowning / half**2
+    height, slope, second = bend * middle**2, 2.0 * bend * middle, 2.0 * bend
+    if taken.tip_relief != 0.0:
+        # Grows towards the tip, which an internal gear has at its shorter roll.
+        length, n = np.sign(half) * taken.tip_relief_length, taken.tip_relief_exponent
+        into = (roll - taken.tip) / length + 1.0
+        if into > 0.0:
+            height += taken.tip_relief * into**n
+            slope += taken.tip_relief * n * into ** (n - 1) / length
+            second += taken.tip_relief * n * (n - 1) / length**2
+    return height, slope, second
+
+
+@compiled
+def lead(taken, axial):  # type: ignore[no-untyped-def]
+    """Material taken off at ζ [m], with first and second derivative."""
+    bend = 4.0 * taken.lead_crowning / taken.width**2
+    height, slope, second = bend * axial**2, 2.0 * bend * axial, 2.0 * bend
+    if taken.end_relief != 0.0:
+        into = (abs(axial) - 0.5 * taken.width) / taken.end_relief_length + 1.0
+        if into > 0.0:
+            height += taken.end_relief * into
+            slope += taken.end_relief / taken.end_relief_length * np.sign(axial)
+    return height, slope, second
+
+
+@compiled
+def helicoid(gear, roll, axial, turn, point):  # type: ignore[no-untyped-def]
+    """One point of a cylindrical gear's flank, turned about z."""
+    s, radius, twist, sine, cosine = gear.side, gear.radius, gear.twist, gear.sine, gear.cosine
+    per_roll = -s * gear.kind
+    phi = turn + s * gear.half_angle + per_roll * roll + twist * axial
+
+    # Components along e_r, e_t and e_z, which turn with φ: the generator of the helicoid is
+    # (0, sin β_b, cos β_b), the plain normal s (0, cos β_b, −sin β_b).
+    across, up, arc = s * cosine, -s * sine, -per_roll * radius * roll
+    if gear.plain:
+        reach = radius * roll
+        _put(point, 0, radius, arc, axial)
+        _put(point, 1, 0.0, across, up)
+        # Along ξ only e_r changes the point, along ζ also the generator does.
+        _put(point, 2, reach, 0.0, 0.0)
+        _put(point, 3, twist * per_roll * reach, sine / cosine, 1.0)
+        _put(point, 4, -per_roll * across, 0.0, 0.0)
+        _put(point, 5, -twist * across, 0.0, 0.0)
+        _spin(point, phi)
+        return
+    taken, by_roll, by_roll2 = profile(gear.taken, radius * roll)
+    by_roll, by_roll2 = radius * by_roll, radius**2 * by_roll2
+    more, by_axial, by_axial2 = lead(gear.taken, axial)
+    taken += more
+    reach = radius * roll - gear.kind * cosine * taken
+    # The normal along e_r, generator and plain normal is (tilt, lean, 1), made unit.
+    tilt = by_roll / reach
+    lean = cosine * (by_axial - twist * per_roll * by_roll)
+    over = 1.0 / np.sqrt(1.0 + tilt**2 + lean**2)
+    _put(point, 0, radius, arc - across * taken, axial - up * taken)
+    _put(point, 1, tilt * over, (lean * sine + across) * over, (lean * cosine + up) * over)
+    _put(point, 2, reach, -across * by_roll, -up * by_roll)
+    tangential = sine / cosine - across * by_axial
+    _put(point, 3, twist * per_roll * reach, tangential, 1.0 - up * by_axial)
+    # It changes with tilt, lean and φ, over ξ and over ζ, and keeps its length.
+    tilts = (by_roll2 - tilt * (radius - gear.kind * cosine * by_roll)) * (over / reach)
+    leans = -cosine * twist * per_roll * by_roll2 * over
+    _bend(point, 4, tilts, sine * leans, cosine * leans, per_roll)
+    tilts = tilt * gear.kind * cosine * by_axial * (over / reach)
+    leans = cosine * by_axial2 * over
+    _bend(point, 5, tilts, sine * leans, cosine * leans, twist)
+    _spin(point, phi)
+
+
+@compiled
+def face(gear, roll, phi, turn, point):  # type: ignore[no-untyped-def]
+    """One point of a face gear's flank, in its own frame, turned about z."""
+    s, base = -gear.side, gear.base
+    cosine, sine = np.cos(phi), np.sin(phi)
+    x, y = base * (cosine - s * roll * sine), base * (sine + s * roll * cosine)
+    u = gear.scale / cosine
+    # Seen from the gear, everything also turns back about z = (−sin Γ, 0, cos Γ) by m φ_s.
+    k, n = gear.ratio * gear.axes[2, 2], gear.ratio * gear.axes[2, 0]
+    _put(point, 0, x, y, u)
+    _put(point, 1, s * sine, -s * cosine, 0.0)
+    _put(point, 2, s * (k * y - base * sine), s * (base * cosine - k * x + n * u), -s * n * y)
+    _put(point, 3, (k - 1.0) * y, (1.0 - k) * x + n * u, u * sine / cosine - n * y)
+    _put(point, 4, -k * cosine, -k * sine, n * cosine)
+    _put(point, 5, s * (1.0 - k) * cosine, s * (1.0 - k) * sine, s * n * cosine)
+    _carry(point, gear.axes)
+    shaper_turn = phi - s * gear.half_angle + s * roll
+    _spin(point, turn - gear.ratio * shaper_turn + gear.side * np.pi / gear.teeth)
+
+
+@compiled
+def helicoids(gear, roll, axial, turn, points):  # type: ignore[no-untyped-def]
+    """Points (6, 3, n) of a cylindrical gear's flank."""
+    point = np.empty((6, 3))
+    for k in range(len(roll)):
+        helicoid(gear, roll[k], axial[k], turn[k], point)
+        _keep(point, points, k)
+
+
+@compiled
+def faces(gear, roll, phi, turn, points):  # type: ignore[no-untyped-def]
+    """Points (6, 3, n) of a face gear's flank."""
+    point = np.empty((6, 3))
+    for k in range(len(roll)):
+        face(gear, roll[k], phi[k], turn[k], point)
+        _keep(point, points, k)
+
+
+@compiled
+def at_blank(gear, length, depth, roll, phi, limits):  # type: ignore[no-untyped-def]
+    """Newton's method for parameters (n,) of points at lengths and depths of the blank."""
+    for k in range(len(length)):
+        for _ in range(limits.steps):
+            at, over_roll, over_phi = _blank(gear, roll[k], phi[k])
+            along, down = at[0] - length[k], at[1] - depth[k]
+            area = over_roll[0] * over_phi[1] - over_phi[0] * over_roll[1]
+            first = (over_phi[1] * along - over_phi[0] * down) / area
+            second = (over_roll[0] * down - over_roll[1] * along) / area
+            roll[k] -= first
+            phi[k] -= second
+            if not abs(first) + abs(second) > limits.last:
+                break
+
+
+@compiled
+def at_length(gear, length, roll, phi, limits):  # type: ignore[no-untyped-def]
+    """Newton's method for angles Φ (n,) of points at lengths of the blank."""
+    for k in range(len(length)):
+        for _ in range(limits.steps):
+            at, _, over_phi = _blank(gear, roll[k], phi[k])
+            step = (at[0] - length[k]) / over_phi[0]
+            phi[k] -= step
+            if not abs(step) > limits.last:
+                break
+
+
+@compiled
+def _blank(gear, roll, phi):  # type: ignore[no-untyped-def]
+    """Length and depth of the blank [m], then the slopes of both over ξ, and over Φ."""
+    s, base, cosine, sine = -gear.side, gear.base, np.cos(phi), np.sin(phi)
+    towards = base * (cosine - s * roll * sine)
+    tangential, axial = base * (sine + s * roll * cosine), gear.scale / cosine
+    # Components in the gear's frame, first of the point, then of its derivatives.
+    c, n = gear.axes[0, 0], gear.axes[0, 2]
+    x, y, z = c * towards + n * axial, tangential, c * axial - n * towards
+    radius = np.hypot(x, y)
+    out = (s * base * cosine * y - c * s * base * sine * x) / radius
+    up = n * s * base * sine
+    over_roll = n * out + c * up, c * out - n * up
+    drawn = axial * sine / cosine
+    out = ((n * drawn - c * tangential) * x + towards * y) / radius
+    up = c * drawn + n * tangential
+    over_phi = n * out + c * up, c * out - n * up
+    return (n * radius + c * z, c * radius - n * z), over_roll, over_phi
+
+
+@compiled
+def find(flanks, start, turns, known, stations, last, limits, found):  # type: ignore[no-untyped-def]
+    """Unknowns (m, n, 5) of valleys at stations (m, n), NaN where there are none."""
+    own, other, work, step = np.empty((6, 3)), np.empty((6, 3)), np.empty((7, 3)), np.empty(5)
+    slope = np.empty(5)
+    for i in range(len(stations)):
+        here = start.at[i]
+        _both(flanks, here[0], here[1], here[2], here[3], turns[i], own, other)
+        work[6] = 0.0
+        _solve(own, other, 0.0, start.major[i], start.minor[i], 1.0, 0.0, work, slope)
+        for j in range(stations.shape[1]):
+            at = found[i, j]
+            _interpolate(known, i, stations[i, j], at)
+            for k in range(5):
+                if not np.isfinite(at[k]):
+                    at[k] = slope[k] * stations[i, j] + (here[k] if k < 4 else 0.0)
+            before, done = np.inf, False
+            for number in range(limits.steps):
+                moved = _newton(
+                    flanks, start, i, turns[i], stations[i, j], at, own, other, work, step
+                )
+                done = moved <= last
+                if done or not np.isfinite(moved):
+                    break
+                # Later steps are a quarter of the one before, or Newton's method gets nowhere.
+                if number >= limits.sure and not moved < 0.25 * before:
+                    break
+                before = moved
+            if not done:
+                at[:] = np.nan
+
+
+@compiled
+def interpolate(known, stations, found):  # type: ignore[no-untyped-def]
+    """Unknowns (m, n, 5) at stations (m, n) from what is known at evenly spaced ones."""
+    for i in range(len(stations)):
+        for j in range(stations.shape[1]):
+            _interpolate(known, i, stations[i, j], found[i, j])
+
+
+@compiled
+def trace(flanks, start, turns, found, own, other, tangent):  # type: ignore[no-untyped-def]
+    """Flanks (6, 3, m·n) and derivatives (m, n, 3) of the driver's points over the station."""
+    first, second, work, slope = np.empty((6, 3)), np.empty((6, 3)), np.zeros((7, 3)), np.empty(5)
+    for i in range(found.shape[0]):
+        for j in range(found.shape[1]):
+            a, b, c, d, gap = found[i, j]
+            _both(flanks, a, b, c, d, turns[i], first, second)
+            work[6] = 0.0
+            _solve(first, second, gap, start.major[i], start.minor[i], 1.0, 0.0, work, slope)
+            _keep(first, own, i * found.shape[1] + j)
+            _keep(second, other, i * found.shape[1] + j)
+            for k in range(3):
+                tangent[i, j, k] = slope[0] * first[2, k] + slope[1] * first[3, k]
+
+
+@compiled
+def _interpolate(known, i, station, at):  # type: ignore[no-untyped-def]
+    """Cubic interpolation of the unknowns (5,) of valley `i`; NaN where nothing is known."""
+    count = known.stations.shape[1]
+    if count == 0:
+        at[:] = np.nan
+        return
+    first, end = known.stations[i, 0], known.stations[i, count - 1]
+    x = (station - first) * (count - 1) / (end - first)
+    k = min(max(int(x) - 1, 0), count - 4)
+    x -= k
+    low, high = (x - 1.0) * (x - 2.0), x * (x - 3.0)
+    near = known.found[i]
+    for n in range(5):
+        at[n] = 0.5 * (high * ((x - 2.0) * near[k + 1, n] - (x - 1.0) * near[k + 2, n]))
+        at[n] += low * (x * near[k + 3, n] - (x - 3.0) * near[k, n]) / 6.0
+
+
+@compiled
+def _both(flanks, a, b, c, d, turns, own, other):  # type: ignore[no-untyped-def]
+    """Points of the driver's and of the driven flank in the fixed frame."""
+    helicoid(flanks.driver, a, b, turns[0], own)
+    face(flanks.driven, c, d, turns[1], other)
+    _carry(other, flanks.axes)
+    for k in range(3):
+        other[0, k] += flanks.origin[k]
+
+
+@compiled
+def _newton(flanks, start, i, turns, station, at, own, other, work, step):  # type: ignore[no-untyped-def]
+    """Newton's step of valley `i` on the unknowns `at`; returns how far it moves points [m]."""
+    _both(flanks, at[0], at[1], at[2], at[3], turns, own, other)
+    gap, ahead, aside = at[4], station, 0.0
+    for k in range(3):
+        work[6, k] = other[0, k] - own[0, k] - gap * own[1, k]
+        ahead -= (own[0, k] - start.point[i, k]) * start.major[i, k]
+        aside -= (own[1, k] + other[1, k]) * start.minor[i, k]
+    _solve(own, other, gap, start.major[i], start.minor[i], ahead, aside, work, step)
+    at += step
+    moved = abs(step[4])
+    for k in range(2):
+        moved = max(moved, abs(step[k]) * np.sqrt(_dot(own[2 + k], own[2 + k])))
+        moved = max(moved, abs(step[2 + k]) * np.sqrt(_dot(other[2 + k], other[2 + k])))
+    return moved if np.isfinite(step.sum()) else np.nan
+
+
+@compiled
+def _solve(own, other, gap, major, minor, ahead, aside, work, step):  # type: ignore[no-untyped-def]
+    """Solve the linearised equations of a valley for the changes (5,) of its unknowns.
+
+    With δ the changes of the driver's parameters a, b, the driven flank's c, d and the gap t,
+
+        (X_a + t n_a) δa + (X_b + t n_b) δb − Y_c δc − Y_d δd + n δt = apart,
+        (X_a δa + X_b δb)·e_major = ahead,
+        (n_a δa + n_b δb + m_c δc + m_d δd)·e_minor = aside,
+
+    `apart` in the last row of `work`. The first three give δc and δd by δa and δb, for which two
+    equations are left.
+    """
+    normal, ray_a, ray_b, lean, apart = own[1], work[0], work[1], work[5], work[6]
+    # Rows that read δc, δd and −δt off Y_c δc + Y_d δd − n δt, once divided by the determinant.
+    reads = work[2:5]
+    _cross(other[3], normal, reads[0])
+    _cross(normal, other[2], reads[1])
+    _cross(other[2], other[3], reads[2])
+    over = 1.0 / _dot(reads[2], normal)
+    turn_c, turn_d = _dot(other[4], minor) * over, _dot(other[5], minor) * over
+    for k in range(3):
+        ray_a[k] = own[2, k] + gap * own[4, k]
+        ray_b[k] = own[3, k] + gap * own[5, k]
+        lean[k] = turn_c * reads[0, k] + turn_d * reads[1, k]
+    first_a, first_b = _dot(own[2], major), _dot(own[3], major)
+    second_a = _dot(own[4], minor) + _dot(lean, ray_a)
+    second_b = _dot(own[5], minor) + _dot(lean, ray_b)
+    aside += _dot(lean, apart)
+    area = first_a * second_b - first_b * second_a
+    step[0] = (second_b * ahead - first_b * aside) / area
+    step[1] = (first_a * aside - second_a * ahead) / area
+    for k in range(3):
+        apart[k] = ray_a[k] * step[0] + ray_b[k] * step[1] - apart[k]
+    for k in range(3):
+        step[2 + k] = _dot(reads[k], apart) * over
+    step[4] *= -1.0
+
+
+@compiled
+def _put(point, row, x, y, z):  # type: ignore[no-untyped-def]
+    point[row, 0], point[row, 1], point[row, 2] = x, y, z
+
+
+@compiled
+def _keep(point, points, k):  # type: ignore[no-untyped-def]
+    """Write a point down as number `k` of points (6, 3, n)."""
+    # A slice on the left would take seconds to compile, for what it says of wrong shapes.
+    for row in range(6):
+        for axis in range(3):
+            points[row, axis, k] = point[row, axis]
+
+
+@compiled
+def _bend(point, row, x, y, z, turn):  # type: ignore[no-untyped-def]
+    """Change of the unit normal that turns about z besides; its part along the normal is nil."""
+    normal = point[1]
+    x, y = x - turn * normal[1], y + turn * normal[0]
+    along = normal[0] * x + normal[1] * y + normal[2] * z
+    _put(point, row, x - along * normal[0], y - along * normal[1], z - along * normal[2])
+
+
+@compiled
+def _spin(point, angle):  # type: ignore[no-untyped-def]
+    """Turn a point with its vectors about z."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    for row in range(6):
+        x, y = point[row, 0], point[row, 1]
+        point[row, 0], point[row, 1] = cosine * x - sine * y, sine * x + cosine * y
+
+
+@compiled
+def _carry(point, axes):  # type: ignore[no-untyped-def]
+    """Turn a point with its vectors by a rotation (3, 3)."""
+    for row in range(6):
+        x, y, z = point[row]
+        for k in range(3):
+            point[row, k] = axes[k, 0] * x + axes[k, 1] * y + axes[k, 2] * z
+
+
+@compiled
+def _dot(a, b):  # type: ignore[no-untyped-def]
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@compiled
+def _cross(a, b, product):  # type: ignore[no-untyped-def]
+    product[0] = a[1] * b[2] - a[2] * b[1]
+    product[1] = a[2] * b[0] - a[0] * b[2]
+    product[2] = a[0] * b[1] - a[1] * b[0]

@@ -1,0 +1,175 @@
+"""A point of a tooth flank with all that contact needs to know of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from loadshare.tooth.geometry.body import Array
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """Points of a flank X(a, b), with first derivatives of position and normal.
+
+    Parameters
+    ----------
+    components : array (6, 3, ...)
+        Components of `vectors`, each for itself, for all six are turned as one.
+    """
+
+    components: Array
+
+    @cached_property
+    def vectors(self) -> Array:
+        """Position, unit normal, and derivatives of either over a and b (6, ..., 3)."""
+        return np.moveaxis(self.components, 1, -1)
+
+    @property
+    def point(self) -> Array:
+        """Positions (..., 3) [m]."""
+        return np.asarray(self.vectors[0])
+
+    @property
+    def normal(self) -> Array:
+        """Unit vectors (..., 3) out of the tooth."""
+        return np.asarray(self.vectors[1])
+
+    @property
+    def rays(self) -> Array:
+        """Derivatives (2, ..., 3) of the position over both surface parameters."""
+        return self.vectors[2:4]
+
+    @property
+    def bends(self) -> Array:
+        """Derivatives (2, ..., 3) of the unit normal over both surface parameters."""
+        return self.vectors[4:6]
+
+    def turned(self, rotation: Array, origin: Array | None = None) -> Patch:
+        """The patch carried to another frame: x ↦ rotation x + origin."""
+        shape = self.components.shape
+        components = (rotation @ self.components.reshape(6, 3, -1)).reshape(shape)
+        if origin is not None:
+            components[0] += origin.reshape(3, *[1] * (len(shape) - 2))
+        return Patch(components)
+
+    def normal_change(self, direction: Array) -> Array:
+        """Change of the unit normal per length along tangential directions.
+
+        This is Weingarten's map. The curvature of the flank in a unit tangent t is
+        t·(change along t), positive where the flank is convex.
+
+        Parameters
+        ----------
+        direction : array (..., 3)
+            Directions; the part along the normal is ignored.
+
+        Returns
+        -------
+        array (..., 3)
+            Derivative of the normal [1/m] times the length of `direction`.
+        """
+        a, b = self.rays
+        (aa, ab), bb = dot(self.rays, a), dot(b, b)
+        along = solve_2((aa, ab), (ab, bb), *dot(self.rays, direction))
+        change = along[0][..., None] * self.bends[0] + along[1][..., None] * self.bends[1]
+        return np.asarray(change)
+
+
+def patch(fill: Callable[..., None], numbers: tuple[Any, ...], *at: Array | float) -> Patch:
+    """Points at surface parameters a, b and turns [rad], broadcast against one another.
+
+    Parameters
+    ----------
+    fill : callable
+        Compiled; from the numbers of a flank and the parameters (n,) to points (6, 3, n).
+    numbers : tuple
+        The flank.
+    *at : array or float
+        a, b and the turns.
+    """
+    parameters = np.broadcast_arrays(*at)
+    components = np.empty((6, 3, parameters[0].size))
+    fill(numbers, *(np.array(part, float, order="C").ravel() for part in parameters), components)
+    return Patch(components.reshape(6, 3, *parameters[0].shape))
+
+
+def dot(first: Array, second: Array) -> Array:
+    """Scalar products along the last axis."""
+    product: Array = np.einsum("...i,...i->...", first, second)
+    return product
+
+
+def cross(first: Array, second: Array) -> Array:
+    """Vector products along the last axis."""
+    a, b, c = first[..., 0], first[..., 1], first[..., 2]
+    d, e, f = second[..., 0], second[..., 1], second[..., 2]
+    product = np.empty((3, *np.broadcast_shapes(a.shape, d.shape)))
+    product[0] = b * f - c * e
+    product[1] = c * d - a * f
+    product[2] = a * e - b * d
+    return _last(product)
+
+
+def _last(vectors: Array) -> Array:
+    """Components (3, ...) as the last axis."""
+    return vectors.transpose(*range(1, vectors.ndim), 0)
+
+
+def solve_2(
+    first: Iterable[Array], second: Iterable[Array], right_1: Array, right_2: Array
+) -> tuple[Array, Array]:
+    """Solve stacked systems of two equations, given by their rows."""
+    (a, b), (c, d) = first, second
+    area = a * d - b * c
+    return (d * right_1 - b * right_2) / area, (a * right_2 - c * right_1) / area
+
+
+def solve_3(first: Array, second: Array, third: Array, right: Array) -> tuple[Array, Array, Array]:
+    """Solve stacked systems of three equations, given by their columns (..., 3).
+
+    A singular system gives infinite or undefined numbers.
+    """
+    across = cross(first, second)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        over = 1.0 / dot(across, third)
+        beside = cross(right, third)
+        return -dot(beside, second) * over, dot(beside, first) * over, dot(across, right) * over
+
+
+def unit(vectors: Array) -> Array:
+    """Vectors of length one."""
+    return vectors / np.sqrt(dot(vectors, vectors))[..., None]
+
+
+def relative_curvature(driver: Patch, driven: Patch, direction: Array) -> Array:
+    """Curvature of the gap between two touching flanks in a unit tangent direction [1/m].
+
+    Both flanks count as positive where they are convex, so that two convex flanks add up.
+    """
+    return dot(direction, driver.normal_change(direction) + driven.normal_change(direction))
+
+
+def principal_directions(driver: Patch, driven: Patch) -> tuple[Array, Array]:
+    """Directions of least and of greatest relative curvature at points of contact.
+
+    The first is the major axis of the contact ellipse.
+
+    Returns
+    -------
+    major, minor : array (..., 3)
+        Unit tangents of the driver's flank, major × minor = normal.
+    """
+    first = unit(driver.rays[0])
+    second = cross(driver.normal, first)
+    change_1 = driver.normal_change(first) + driven.normal_change(first)
+    change_2 = driver.normal_change(second) + driven.normal_change(second)
+    k11, k22 = dot(first, change_1), dot(second, change_2)
+    k12 = 0.5 * (dot(first, change_2) + dot(second, change_1))
+    greatest = 0.5 * np.arctan2(2.0 * k12, k11 - k22)
+    minor = np.cos(greatest)[..., None] * first + np.sin(greatest)[..., None] * second
+    return cross(minor, driver.normal), minor

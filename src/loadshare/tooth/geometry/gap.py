@@ -1,0 +1,241 @@
+"""The gap between two flanks along the line on which they come closest."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.errors import Refused
+from loadshare.tooth.geometry.body import Array
+from loadshare.tooth.geometry.flank import Patch, dot, solve_3
+
+# A Newton step below this [m] is the last: convergence is quadratic, so that what is left is its
+# square over a radius of curvature, below round-off.
+LAST_STEP = 1e-9
+# Parts of a line in which the least gap is looked for, at least.
+FEWEST = 15
+# Stations of the second look, between those beside the least gap of the first.
+FINER = 9
+
+
+class NoContactError(Refused):
+    """At some position of the mesh cycle no pair of teeth is within both active flanks."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """Points of contact lines, m lines with n stations each.
+
+    Parameters
+    ----------
+    driver, driven : Patch
+        Both flanks where the normal of the driver's meets them, fixed frame.
+    driver_at, driven_at : tuple of two arrays (m, n)
+        Their surface parameters.
+    gap : array (m, n)
+        Distance along the driver's normal [m], negative where the flanks overlap; NaN where the
+        normal does not meet the driven flank.
+    tangent : array (m, n, 3)
+        Derivative of the driver's point with respect to the station.
+    """
+
+    driver: Patch
+    driven: Patch
+    driver_at: tuple[Array, Array]
+    driven_at: tuple[Array, Array]
+    gap: Array
+    tangent: Array
+
+    @property
+    def slope(self) -> Array:
+        """Derivative of the gap with respect to the station (m, n).
+
+        X + t n stays on the driven flank, so that its derivative has no part along that normal.
+        """
+        across = self.driven.normal
+        moving = self.tangent + self.gap[..., None] * self.driver.normal_change(self.tangent)
+        slope: Array = -dot(moving, across) / dot(self.driver.normal, across)
+        return slope
+
+    def at(self, stations: slice) -> Trace:
+        """The trace at some of the stations."""
+        own, other = (Patch(f.components[..., stations]) for f in (self.driver, self.driven))
+        (a, b), (c, d) = self.driver_at, self.driven_at
+        return Trace(
+            driver=own,
+            driven=other,
+            driver_at=(a[:, stations], b[:, stations]),
+            driven_at=(c[:, stations], d[:, stations]),
+            gap=self.gap[:, stations],
+            tangent=self.tangent[:, stations],
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Extents:
+    """Contact lines of several positions, and how far they reach on both active flanks.
+
+    Parameters
+    ----------
+    position : array (m,) of int
+        Which of the positions asked for a line belongs to.
+    pairs : array (m,)
+        Pairs of teeth.
+    start, end : array (m,)
+        First and last station of the lines [m].
+    driver, driven : array (m,)
+        Rotations of the gears [rad].
+    trace : callable
+        From stations (m, n) [m] to the `Trace` of the lines there.
+    """
+
+    position: NDArray[np.int64]
+    pairs: Array
+    start: Array
+    end: Array
+    driver: Array
+    driven: Array
+    trace: Callable[[Array], Trace]
+
+    def spread(self, points: int) -> tuple[Array, slice]:
+        """Stations (m, n) for a first look at the lines, and which of them are wanted.
+
+        Wanted are the middles of `points` equal parts of every line. Where these are few the parts
+        are divided further; the ends of the line are always there.
+        """
+        finer = -(-FEWEST // points) | 1  # odd, so that the middles of the parts stay
+        middles = (np.arange(finer * points) + 0.5) / (finer * points)
+        share = np.concatenate([[0.0], middles, [1.0]])
+        stations = self.start[:, None] + (self.end - self.start)[:, None] * share
+        return stations, slice(1 + finer // 2, -1, finer)
+
+
+class Lines(Protocol):
+    """The contact lines of a pair of gears, as geometry gives them before any gap is known."""
+
+    @property
+    def arm(self) -> float:
+        """Approach along the normal per radian of the driver [m]."""
+        ...
+
+    def ideal(self, phase: Array) -> tuple[Array, Array]:
+        """Rotations of driver and driven gear at phases of the ideal pair [rad]."""
+        ...
+
+    def extents(self, driver: Array, driven: Array) -> Extents:
+        """Lines of the pairs on both active flanks at positions (k,), by position and pair."""
+        ...
+
+    def margins_about(self, driver: Array, driven: Array) -> Mapping[str, Array]:
+        """`margins` along the lines of pairs near contact, on both flanks or not."""
+        ...
+
+    def driver_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
+        """Points of the driver's flanks at surface parameters `at`, fixed frame."""
+        ...
+
+    def driven_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
+        """Points of the driven gear's flanks at surface parameters `at`, fixed frame."""
+        ...
+
+    def margins(
+        self, driver_at: tuple[Array, Array], driven_at: tuple[Array, Array]
+    ) -> Mapping[str, Array]:
+        """Distance to every edge of the active flanks by name [m], negative beyond it."""
+        ...
+
+
+def least_gap(lines: Extents, points: int = FEWEST) -> tuple[Array, Array, Trace]:
+    """Least gap on each line, ends included, and the station where it stands.
+
+    Two grids find the place; where the slope of the gap changes sign beside it, the secant of the
+    slope gives the station.
+
+    Returns
+    -------
+    gap, station : array (m,)
+        Both in metres.
+    trace : Trace
+        The lines in the middles of `points` equal parts.
+    """
+    row = np.arange(len(lines.pairs))
+    stations, wanted = lines.spread(points)
+    trace = lines.trace(stations)
+    middles = trace.at(wanted)
+    for last in (False, True):
+        if not np.isfinite(trace.gap).all():
+            raise NoContactError(
+                "the flanks do not face each other along the whole contact line; "
+                "make the misalignment or the modifications smaller"
+            )
+        at = np.argmin(trace.gap, axis=1)
+        left, right = np.maximum(at - 1, 0), np.minimum(at + 1, stations.shape[1] - 1)
+        if not last:
+            low, high = stations[row, left], stations[row, right]
+            stations = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, FINER)
+            trace = lines.trace(stations)
+    least, station = trace.gap[row, at], stations[row, at]
+    slope = trace.slope
+    falling = slope[row, at] > 0.0
+    left, right = np.where(falling, left, at), np.where(falling, at, right)
+    before, after = slope[row, left], slope[row, right]
+    turns = (before < 0.0) & (after > 0.0)
+    if turns.any():
+        share = before / np.where(turns, before - after, 1.0)
+        between = stations[row, left] + share * (stations[row, right] - stations[row, left])
+        between = np.where(turns, between, station)
+        found = lines.trace(between[:, None]).gap[:, 0]
+        better = found < least
+        least, station = np.where(better, found, least), np.where(better, between, station)
+    return least, station, middles
+
+
+def meet(
+    lines: Lines,
+    pairs: Array,
+    driver_at: tuple[Array, Array],
+    driven_at: tuple[Array, Array],
+    driver: Array,
+    driven: Array,
+) -> tuple[Patch, Patch, tuple[Array, Array], Array]:
+    """Follow the driver's normals to the driven flank, by Newton's method.
+
+    Parameters
+    ----------
+    lines : Lines
+        The pair of gears.
+    pairs : array (m, n)
+        Pair of teeth of every point.
+    driver_at : tuple of two arrays (m, n)
+        Points of the driver's flank.
+    driven_at : tuple of two arrays (m, n)
+        Where to start on the driven flank.
+    driver, driven : array (m, n)
+        Rotations [rad].
+
+    Returns
+    -------
+    driver, driven : Patch
+        Both flanks where the normals meet them.
+    driven_at : tuple of two arrays (m, n)
+        Surface parameters there.
+    gap : array (m, n)
+        Distance along the normals [m], NaN where Newton's method found no point.
+    """
+    a, b = driven_at
+    own = lines.driver_patch(pairs, driver_at, driver)
+    other = lines.driven_patch(pairs, (a, b), driven)
+    gap = dot(other.point - own.point, own.normal)
+    for _ in range(25):
+        apart = own.point + gap[..., None] * own.normal - other.point
+        step = solve_3(other.rays[0], other.rays[1], -own.normal, apart)
+        a, b, gap = a + step[0], b + step[1], gap + step[2]
+        other = lines.driven_patch(pairs, (a, b), driven)
+        moved = np.abs(apart).max(axis=-1)
+        if moved.max(initial=0.0) < LAST_STEP:
+            break
+    return own, other, (a, b), np.where(moved < LAST_STEP, gap, np.nan)

@@ -1,0 +1,153 @@
+"""Contact lines where contact is localised: the valley of the gap between two flanks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.tooth.cylindrical.flank import HelicoidNumbers
+from loadshare.tooth.face.flank import FaceNumbers
+from loadshare.tooth.geometry.body import Array
+from loadshare.tooth.geometry.flank import Patch, principal_directions
+from loadshare.tooth.geometry.gap import LAST_STEP, Trace
+
+# From the anchor, points on the flanks are found in three to six steps, from their neighbours in
+# two or three; what takes longer lies beyond the edge of regression of the driven flank or inside
+# the driver's base circle.
+NEWTON_STEPS = 10
+# After so many steps each is a quarter of the one before, or Newton's method gets nowhere in time.
+SURE = 3
+
+Index: TypeAlias = NDArray[np.int64] | NDArray[np.bool_]
+
+
+class Flanks(NamedTuple):
+    """Both flanks, as compiled code reads them; the driven gear's frame stands at `origin`."""
+
+    driver: HelicoidNumbers
+    driven: FaceNumbers
+    axes: Array  # (3, 3)
+    origin: Array  # (3,)
+
+
+class Anchor(NamedTuple):
+    """Where the valleys of m pairs of teeth begin: points at which both flanks nearly touch."""
+
+    at: Array  # (m, 4): surface parameters on the driver's and on the driven flank
+    point: Array  # (m, 3): origin of the stations [m]
+    major: Array  # (m, 3): direction of least relative curvature
+    minor: Array  # (m, 3): direction of greatest relative curvature
+
+    def rows(self, chosen: Index) -> Anchor:
+        """Anchors of some lines."""
+        return Anchor(*(part[chosen] for part in self))
+
+
+class Known(NamedTuple):
+    """Evenly spaced stations with what was found there; none where nothing was."""
+
+    stations: Array  # (m, g)
+    found: Array  # (m, g, 5)
+
+    @classmethod
+    def nothing(cls, lines: int) -> Known:
+        """Of lines of which nothing is known."""
+        return cls(np.empty((lines, 0)), np.empty((lines, 0, 5)))
+
+    def rows(self, chosen: Index) -> Known:
+        """What is known of some lines."""
+        return Known(self.stations[chosen], self.found[chosen])
+
+
+class _Limits(NamedTuple):
+    """When compiled code stops; handed over, for it would keep an old limit."""
+
+    steps: int
+    sure: int
+
+
+def anchor(
+    driver_at: tuple[Array, Array], driven_at: tuple[Array, Array], flanks: tuple[Patch, Patch]
+) -> Anchor:
+    """Anchor the valleys at given points (m,), with the principal directions found there."""
+    parts = flanks[0].point, *principal_directions(*flanks)
+    at = np.stack([*driver_at, *driven_at], axis=-1)
+    return Anchor(at, *(np.ascontiguousarray(part) for part in parts))
+
+
+@dataclass(frozen=True, eq=False)
+class Valleys:
+    """Valleys of the gap between the flanks of m pairs, along the axis of the contact ellipse.
+
+    At every station s the point X of the driver's flank lies at (X − X0)·e_major = s, its normal
+    meets the driven flank at the distance t, and the gap does not change along e_minor:
+
+        X + t n = Y,   (X − X0)·e_major = s,   (n + n_driven)·e_minor = 0,
+
+    five equations for two parameters on either flank and t, solved by Newton's method. The line so
+    found passes through the point of contact, is tangent there to the major axis, and is the
+    contact line itself where the flanks touch along one.
+
+    Parameters
+    ----------
+    flanks : Flanks
+        The flanks of the gears.
+    turns : array (m, 2)
+        How far the teeth of either gear have turned [rad].
+    start : Anchor
+        Where the stations count from.
+    known : Known
+        From which Newton's method begins.
+    """
+
+    flanks: Flanks
+    turns: Array
+    start: Anchor
+    known: Known = field(repr=False)
+
+    def rows(self, chosen: Index) -> Valleys:
+        """The valleys of some pairs."""
+        parts = self.turns[chosen], self.start.rows(chosen), self.known.rows(chosen)
+        return Valleys(self.flanks, *parts)
+
+    def knowing(self, stations: Array, found: Array) -> Valleys:
+        """The same valleys with what was found (5, m, g) at evenly spaced stations (m, g)."""
+        kept = np.ascontiguousarray(np.moveaxis(found, 0, -1))
+        return replace(self, known=Known(stations, kept))
+
+    def guess(self, stations: Array) -> Array | None:
+        """What :meth:`find` finds, good to micrometres, where all that it takes is known."""
+        from loadshare.tooth.geometry.compiled import interpolate
+
+        near = np.empty((*stations.shape, 5))
+        interpolate(self.known, stations, near)
+        return np.moveaxis(near, -1, 0) if np.isfinite(near).all() else None
+
+    def find(self, stations: Array, last: float = LAST_STEP) -> Array:
+        """Surface parameters on both flanks and gap (5, m, n) at stations (m, n) [m].
+
+        The gap is NaN where Newton's method finds no point. A step below `last` [m] is the last.
+        """
+        return np.moveaxis(self._find(stations, last), -1, 0)
+
+    def trace(self, stations: Array) -> Trace:
+        """Flanks and gap at stations (m, n) [m]."""
+        from loadshare.tooth.geometry.compiled import trace
+
+        found, shape = self._find(stations, LAST_STEP), stations.shape
+        points, tangent = np.empty((2, 6, 3, stations.size)), np.empty((*shape, 3))
+        trace(self.flanks, self.start, self.turns, found, points[0], points[1], tangent)
+        own, other = (Patch(components) for components in points.reshape(2, 6, 3, *shape))
+        a, b, c, d, gap = np.moveaxis(found, -1, 0)
+        return Trace(own, other, (a, b), (c, d), gap, tangent)
+
+    def _find(self, stations: Array, last: float) -> Array:
+        """Unknowns (m, n, 5)."""
+        from loadshare.tooth.geometry.compiled import find
+
+        found, limits = np.empty((*stations.shape, 5)), _Limits(NEWTON_STEPS, SURE)
+        find(self.flanks, self.start, self.turns, self.known, stations, last, limits, found)
+        return found

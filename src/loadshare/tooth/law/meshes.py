@@ -1,0 +1,138 @@
+"""Meshes that name a pair file or a law file, turned into meshes with their law."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from loadshare.case.keys import dotted, parse
+from loadshare.case.words import count
+from loadshare.errors import CaseError, Problem
+
+if TYPE_CHECKING:
+    from loadshare.case import Case
+    from loadshare.tooth.law.file import MeshLaw
+    from loadshare.tooth.pair.file import PairFile
+
+Tick = Callable[[int, int], None]
+
+SOURCES = ("geometry", "law_file")
+"""Keys of a mesh that name a file its law follows from."""
+
+
+def resolve(case: Case, progress: Tick | None = None) -> Case:
+    """Replace `geometry` and `law_file` of the meshes of a case by `law`.
+
+    Laws of pairs are computed at the positions of the case, once for each pair file, and kept on
+    disk (:mod:`loadshare.tooth.law.folder`). File names count from the file in which they stand.
+
+    Parameters
+    ----------
+    case : Case
+    progress : callable, optional
+        Told after each computed position how many are done, and how many there are.
+
+    Returns
+    -------
+    Case
+        The same object where no mesh names a file.
+
+    Raises
+    ------
+    CaseError
+        With all problems of the files, and all that the case says otherwise of the gears.
+    Refused
+        If a position of a pair has no certified contact.
+    """
+    sources = {
+        name: source
+        for name, mesh in case.meshes.items()
+        for source in SOURCES
+        if getattr(mesh, source) is not None
+    }
+    if not sources:
+        return case
+    laws, pairs, problems = _read(case, sources)
+    if problems:
+        raise CaseError(problems)
+    by_hash = _laws({pair.hash: pair for pair in pairs.values()}, progress)
+    laws |= {name: by_hash[pair.hash] for name, pair in pairs.items()}
+    changes: dict[str, object] = {}
+    for name, source in sources.items():
+        changes[dotted(("meshes", name, source))] = None
+        changes[dotted(("meshes", name, "law"))] = laws[name].coefficients
+    if case.assumed:
+        changes["assumed"] = _still_assumed(case.assumed)
+    return case.replace(changes)
+
+
+def _read(
+    case: Case, sources: dict[str, str]
+) -> tuple[dict[str, MeshLaw], dict[str, PairFile], list[Problem]]:
+    """Laws and pairs by mesh, and what is wrong with their files or does not fit the case."""
+    from loadshare.tooth.law.file import load_law
+    from loadshare.tooth.pair.agree import disagreements
+    from loadshare.tooth.pair.file import load_pair
+
+    laws: dict[str, MeshLaw] = {}
+    pairs: dict[str, PairFile] = {}
+    problems: dict[Problem, None] = {}  # what several meshes share is told once
+    positions = case.operating.positions
+    known: dict[Path, PairFile] = {}
+    for name, source in sources.items():
+        key = dotted(("meshes", name, source))
+        place = case.problem(key, "there is no such file")
+        file = Path(place.file).parent / getattr(case.meshes[name], source)
+        if not file.is_file():
+            problems[place] = None
+            continue
+        try:
+            if source == "law_file":
+                laws[name] = load_law(file)
+                found = laws[name].computed.positions
+                if found != positions:
+                    told = f"holds {count(found, 'position')}, operating.positions is {positions}"
+                    hint = f"Write it again: loadshare ltca PAIR.toml --positions {positions}."
+                    problems[case.problem(key, told, "", hint)] = None
+            else:
+                if file not in known:
+                    known[file] = load_pair(file).revised(positions=positions)
+                pairs[name] = known[file]
+                problems |= dict.fromkeys(disagreements(case, name, pairs[name]))
+        except CaseError as error:
+            problems |= dict.fromkeys(error.problems)
+    return laws, pairs, list(problems)
+
+
+def _laws(pairs: dict[str, PairFile], progress: Tick | None) -> dict[str, MeshLaw]:
+    """Laws by the hash of their pair: those of the cache, and the others computed."""
+    from loadshare.tooth.law.cached import computed_law, known_law
+
+    found = {key: known_law(pair) for key, pair in pairs.items()}
+    missing = [key for key, law in found.items() if law is None]
+    total = sum(pairs[key].analysis.positions for key in missing)
+    before = 0
+    laws = {key: law for key, law in found.items() if law is not None}
+    for key in missing:
+        laws[key] = computed_law(pairs[key], _from(progress, before, total))
+        before += pairs[key].analysis.positions
+    return laws
+
+
+def _from(progress: Tick | None, before: int, total: int) -> Tick | None:
+    """Progress of one pair told as that of all."""
+    if progress is None:
+        return None
+    tell = progress
+    return lambda done, _: tell(before + done, total)
+
+
+def _still_assumed(patterns: Iterable[str]) -> list[str]:
+    """Patterns of `assumed` that follow the files to the laws that take their place."""
+    found: dict[str, None] = {}
+    for pattern in patterns:
+        last = parse(pattern)[-1]
+        moved = last in SOURCES
+        found[pattern.removesuffix(str(last)) + "law" if moved else pattern] = None
+    return list(found)

@@ -1,0 +1,1 @@
+"""Pair files: what they may say, how they are read, what is worth knowing of them."""

@@ -1,0 +1,81 @@
+"""What a case says of two gears against what their pair file says."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from loadshare.case.keys import dotted
+from loadshare.errors import Problem
+from loadshare.tooth.face.pair import FaceGearPair
+from loadshare.tooth.words import degrees, millimetres
+
+if TYPE_CHECKING:
+    from loadshare.case import Case, Gear
+    from loadshare.tooth.pair.file import PairFile
+
+RADIUS = 1e-3
+"""How far a base radius of the case may be from the pair's, as a part of it [-]."""
+ANGLE = math.radians(0.05)
+"""How far an angle of the case may be from the pair's [rad]."""
+
+
+def disagreements(case: Case, name: str, pair: PairFile) -> Iterator[Problem]:
+    """Yield what a case says otherwise of a mesh than the pair that it names.
+
+    Parameters
+    ----------
+    case : Case
+    name : str
+        Name of the mesh.
+    pair : PairFile
+    """
+    mesh, geometry = case.meshes[name], pair.geometry
+    here = f"{pair.name} has"
+    arm = geometry.arm / math.cos(_base_helix(pair))
+    sides = (
+        (mesh.driver, arm, pair.content.driver.teeth, _type(pair, "driver")),
+        (mesh.driven, arm * geometry.ratio, pair.content.driven.teeth, _type(pair, "driven")),
+    )
+    for gear, radius, teeth, kind in sides:
+        yield from _gear(case, gear, here, radius, teeth, kind)
+    angles = [("pressure_angle", geometry.working_angle)]
+    if "helix_angle" in mesh.model_fields_set:
+        # The helix is not needed for the law; a case that leaves it out says nothing of it.
+        angles.append(("helix_angle", _base_helix(pair)))
+    for key, wanted in angles:
+        if abs(abs(getattr(mesh, key).si) - wanted) > ANGLE:
+            path = dotted(("meshes", name, key))
+            yield case.problem(path, f"{here} {degrees(wanted)}", degrees(wanted))
+
+
+def _gear(
+    case: Case, name: str, here: str, radius: float, teeth: int, kind: str
+) -> Iterator[Problem]:
+    gear: Gear = case.gears[name]
+    if gear.type != kind:
+        yield case.problem(dotted(("gears", name, "type")), f"{here} a gear of type {kind}", kind)
+    elif abs(gear.acting_radius - radius) > RADIUS * radius:
+        keys = gear.given("base_radius", "inner_radius")
+        message = f"{here} the base radius {millimetres(radius)}"
+        if keys == ["inner_radius"]:
+            message += f", and (L1 + L2)/2 is {millimetres(gear.acting_radius)}"
+        path = dotted(("gears", name, keys[0]))
+        yield case.problem(path, message, f'base_radius = "{millimetres(radius)}"')
+    if gear.teeth is not None and gear.teeth != teeth:
+        yield case.problem(dotted(("gears", name, "teeth")), f"{here} {teeth} teeth", str(teeth))
+
+
+def _base_helix(pair: PairFile) -> float:
+    geometry = pair.geometry
+    if isinstance(geometry, FaceGearPair):
+        return 0.0
+    return abs(geometry.driver_gear.base_helix_angle)
+
+
+def _type(pair: PairFile, which: str) -> str:
+    said = getattr(pair.content, which)
+    if isinstance(pair.geometry, FaceGearPair):
+        return "external" if which == "driver" else "face"
+    return "internal" if said.internal else "external"

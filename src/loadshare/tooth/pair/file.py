@@ -1,0 +1,235 @@
+"""Pair files: two gears in mesh and their load, read, checked and built."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError
+
+from loadshare.case.keys import parse, walk
+from loadshare.case.origin import Origin
+from loadshare.case.patterns import covers
+from loadshare.case.reader import read_toml
+from loadshare.case.translate import translate
+from loadshare.case.words import as_given, choices, did_you_mean
+from loadshare.errors import CaseError, Problem, Refused
+from loadshare.tooth.analysis.ltca import LOADS, POINTS, Model, ltca, pair_compliance
+from loadshare.tooth.analysis.result import Ltca
+from loadshare.tooth.cylindrical.pair import HelicoidPair, Misalignment
+from loadshare.tooth.face.pair import FaceGearPair, FaceMisalignment
+from loadshare.tooth.pair.build import built
+from loadshare.tooth.pair.model import (
+    ABOUT,
+    CONTENTS,
+    Analysis,
+    FaceGearContent,
+    HelicoidContent,
+)
+from loadshare.tooth.unloaded.positions import transmission_error
+
+Tick = Callable[[int, int], None]
+
+
+@dataclass(frozen=True, eq=False)
+class PairFile:
+    """A pair of gears with its rated torque and the way it is analysed.
+
+    Attributes
+    ----------
+    name : str
+        Of the file, without its ending.
+    content : HelicoidContent or FaceGearContent
+        What the file says.
+    geometry : HelicoidPair or FaceGearPair
+        The two gears in mesh, without undercut, pointed teeth or interference.
+    """
+
+    name: str
+    content: HelicoidContent | FaceGearContent
+    geometry: HelicoidPair | FaceGearPair
+
+    @property
+    def title(self) -> str:
+        """One line that says what the pair is; the name where the file has none."""
+        return self.content.title or self.name
+
+    @property
+    def torque(self) -> float:
+        """Rated torque on the driver [N·m]."""
+        return self.content.torque.si
+
+    @property
+    def analysis(self) -> Analysis:
+        """How the pair is analysed."""
+        return self.content.analysis
+
+    @cached_property
+    def hash(self) -> str:
+        """SHA-256 of what bears on the law: all values in SI units, no titles and notes."""
+        said = self.content.model_dump(mode="json", exclude=set(ABOUT), context="SI")
+        text = json.dumps(said, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    @cached_property
+    def offset(self) -> float:
+        """Mean lead of the driver that only the misalignment causes [rad].
+
+        A misaligned pair as a whole is turned by a constant angle against the aligned one. In a
+        train that angle is a consequence of the errors of the gears, which the case states; the
+        law holds what is left, so that it is not counted twice.
+        """
+        if self.geometry.misalignment == type(self.geometry.misalignment)():
+            return 0.0
+        aligned = _aligned(self.geometry)
+        phases = [k / self.analysis.positions for k in range(self.analysis.positions)]
+        leads = [
+            transmission_error(self.geometry, phase) - transmission_error(aligned, phase)
+            for phase in phases
+        ]
+        return sum(leads) / len(leads)
+
+    def revised(
+        self,
+        *,
+        torque: float | None = None,
+        positions: int | None = None,
+        compliance: Model | None = None,
+    ) -> PairFile:
+        """Return the pair under another torque [N·m], or analysed in another way."""
+        content = self.content
+        if torque is not None:
+            load = {"torque": type(content.torque)(f"{torque!r} N*m", torque)}
+            content = content.model_copy(update=load)
+        analysis: dict[str, Any] = {}
+        if positions is not None:
+            analysis["positions"] = positions
+        if compliance is not None:
+            analysis["compliance"] = compliance
+            if compliance == "slices":
+                analysis |= {"teeth": None, "layers": None}
+        changed = content.analysis.model_copy(update=analysis)
+        if compliance is not None and "points" not in content.analysis.model_fields_set:
+            changed = changed.model_copy(update={"points": POINTS[compliance]})
+            changed.model_fields_set.discard("points")  # it follows the model
+        return replace(self, content=content.model_copy(update={"analysis": changed}))
+
+    def analyse(self, progress: Tick | None = None) -> Ltca:
+        """Analyse the loaded contact at all positions.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Told after each position how many are done, and how many there are.
+
+        Raises
+        ------
+        Refused
+            If a position has no contact, or one that its certificate does not pass.
+        """
+        chosen = self.analysis
+        compliance = pair_compliance(
+            self.geometry, chosen.compliance, teeth=chosen.teeth, layers=chosen.layers
+        )
+        try:
+            return ltca(
+                self.geometry,
+                self.torque,
+                chosen.positions,
+                LOADS,
+                compliance,
+                chosen.points,
+                progress,
+            )
+        except Refused as refusal:
+            raise Refused(f"{self.name}: {refusal}", refusal.figures) from refusal
+
+
+def load_pair(path: str | Path) -> PairFile:
+    """Read a pair file.
+
+    Parameters
+    ----------
+    path : str or pathlib.Path
+        The file.
+
+    Returns
+    -------
+    PairFile
+        The pair, named after the file.
+
+    Raises
+    ------
+    CaseError
+        With all problems of the file at once; those of the geometry are told when every value
+        can be read.
+    """
+    path = Path(path)
+    data = read_toml(path)
+    origin = Origin(str(path))
+    content, problems = _content(data, origin)
+    problems += _unmatched(data, origin)
+    if content is None or problems:
+        raise CaseError(problems)
+    try:
+        geometry = built(content)
+    except CaseError as error:
+        raise CaseError([_placed(problem, data, origin) for problem in error.problems]) from None
+    return PairFile(path.stem, content, geometry)
+
+
+def _content(
+    data: dict[str, Any], origin: Origin
+) -> tuple[HelicoidContent | FaceGearContent | None, list[Problem]]:
+    kind = data.get("kind")
+    model = CONTENTS.get(kind) if isinstance(kind, str) else None
+    if model is None:
+        what = "is missing" if kind is None else "is not a kind of pair"
+        hint = did_you_mean(kind, CONTENTS)
+        return None, [origin.problem(data, ("kind",), what, choices(CONTENTS), hint)]
+    try:
+        return TypeAdapter(model).validate_python(data), []
+    except ValidationError as error:
+        # A default that follows other keys cannot be made while one of them is wrong.
+        found = [
+            translate(details, model)
+            for details in error.errors(include_url=False)
+            if details["type"] != "default_factory_not_called"
+        ]
+        return None, [
+            origin.problem(data, one.path, one.message, one.allowed, one.hint) for one in found
+        ]
+
+
+def _unmatched(data: Mapping[str, Any], origin: Origin) -> list[Problem]:
+    """Patterns of `assumed` that match no key of the file."""
+    assumed = data.get("assumed")
+    known = [path for path in walk(data) if path[0] not in ABOUT]
+    found = []
+    for number, pattern in enumerate(assumed if isinstance(assumed, list) else ()):
+        try:
+            fits = any(covers(parse(pattern), key) for key in known)
+        except (ValueError, TypeError):
+            fits = False
+        if not fits:
+            path = ("assumed", number)
+            allowed = 'a key path such as "driver.module"'
+            found.append(origin.problem(data, path, "matches no key of the file", allowed, ""))
+    return found
+
+
+def _placed(problem: Problem, data: Mapping[str, Any], origin: Origin) -> Problem:
+    """A problem of the geometry, with its file and what was written there."""
+    here = origin.problem(data, parse(problem.key), problem.message, problem.allowed, problem.hint)
+    return here if here.given else replace(here, given=as_given(problem.given).strip('"'))
+
+
+def _aligned(geometry: HelicoidPair | FaceGearPair) -> HelicoidPair | FaceGearPair:
+    if isinstance(geometry, HelicoidPair):
+        return replace(geometry, misalignment=Misalignment())
+    return replace(geometry, misalignment=FaceMisalignment())

@@ -1,0 +1,119 @@
+"""What is worth knowing of a pair though it does not forbid it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loadshare.errors import Problem
+from loadshare.tooth.cylindrical.pair import HelicoidPair
+from loadshare.tooth.face.limits import tip_half_angle
+from loadshare.tooth.face.pair import FaceGearPair
+from loadshare.tooth.unloaded.touch import contact_points
+from loadshare.tooth.words import millimetres, plain, problem
+
+# Tips thinner than this, in modules, are commonly avoided for case-hardened teeth.
+THIN_TIP = 0.2
+# Pairs that touch within this of the first [rad] count as touching.
+TOGETHER = 1e-9
+
+REMEDY = {
+    "face": "Crown the flank along the lead, relieve its ends, or make the misalignment smaller.",
+    "inner end": "Take fewer pinion teeth, or make the misalignment smaller.",
+    "outer end": "Take fewer pinion teeth, or make the misalignment smaller.",
+    "tip": "Relieve the tip.",
+    "root": "Relieve the partner's tip.",
+}
+
+
+def findings(pair: HelicoidPair | FaceGearPair, positions: int = 16) -> tuple[Problem, ...]:
+    """Contact at edges, thin tips and contact that is not localised.
+
+    Parameters
+    ----------
+    pair : HelicoidPair or FaceGearPair
+        The two gears.
+    positions : int
+        Positions of the mesh cycle that are looked at for contact at an edge.
+
+    Returns
+    -------
+    tuple of Problem
+        Warnings with the dimension they come from; nothing here is fatal.
+
+    Raises
+    ------
+    NoContactError
+        If at some position no pair of teeth is within both active flanks.
+    """
+    found = []
+    gears = (
+        {"driver": pair.pinion}
+        if isinstance(pair, FaceGearPair)
+        else {"driver": pair.driver_gear, "driven": pair.driven_gear}
+    )
+    for name, gear in gears.items():
+        land = 2.0 * gear.tip * gear.half_angle(gear.tip)
+        if land < THIN_TIP * gear.module:
+            found.append(_thin_tip(f"{name}.addendum", plain(gear.addendum), land, gear.module))
+    if isinstance(pair, FaceGearPair):
+        face = pair.gear
+        land = 2.0 * face.outer * tip_half_angle(pair.driven.flank, face.outer)
+        if land < THIN_TIP * face.shaper.module:
+            found.append(
+                _thin_tip("driven.outer", millimetres(face.outer), land, face.shaper.module)
+            )
+        if pair.pinion.teeth == face.shaper.teeth:
+            found.append(
+                problem(
+                    "driven.shaper.teeth",
+                    str(face.shaper.teeth),
+                    "the pinion has as many teeth as the shaper: contact is along a line and "
+                    "moves to an end of the teeth when the pair is misaligned",
+                    f"{pair.pinion.teeth + 1} to {pair.pinion.teeth + 3} for localised contact",
+                )
+            )
+    return (*found, *edge_contacts(pair, positions))
+
+
+def edge_contacts(pair: HelicoidPair | FaceGearPair, positions: int = 16) -> tuple[Problem, ...]:
+    """One finding for every edge of the active flanks at which the pair touches first.
+
+    Parameters
+    ----------
+    pair : HelicoidPair or FaceGearPair
+        The two gears.
+    positions : int
+        Positions of the mesh cycle that are looked at.
+
+    Returns
+    -------
+    tuple of Problem
+        Keyed by gear and edge, with the phases.
+    """
+    phases: dict[str, list[float]] = {}
+    for phase in np.arange(positions) / positions:
+        points = contact_points(pair, float(phase))
+        first = min(point.lead for point in points)
+        for point in points:
+            if point.edge and point.lead <= first + TOGETHER:
+                phases.setdefault(point.edge, []).append(float(phase))
+    return tuple(
+        problem(
+            edge.replace(" ", ".", 1).replace(" ", "_"),
+            "",
+            f"the unloaded flanks touch first at the {edge}, at "
+            f"{len(where)} of {positions} positions (phase {plain(where[0])} first)",
+            "contact within both active flanks",
+            REMEDY[edge.split(" ", 1)[1]],
+        )
+        for edge, where in sorted(phases.items())
+    )
+
+
+def _thin_tip(key: str, given: str, land: float, module: float) -> Problem:
+    return problem(
+        key,
+        given,
+        f"the tip land is {millimetres(land)} wide",
+        f"{millimetres(THIN_TIP * module)} or more for case-hardened teeth",
+    )

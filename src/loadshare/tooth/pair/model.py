@@ -1,0 +1,267 @@
+"""What a pair file may say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated, Literal
+
+from pydantic import Field, Strict
+
+from loadshare.case.element import Element, Rule
+from loadshare.case.quantity import ANGLE, LENGTH, TORQUE, Angle, Dimension, Length, Quantity
+from loadshare.tooth.analysis.ltca import POINTS
+
+PRESSURE = Dimension("Pa", "a pressure", "206 GPa")
+
+Size = Annotated[Quantity, LENGTH.bounded(above=0)]
+Amount = Annotated[Quantity, LENGTH.bounded(at_least=0)]
+Steep = Annotated[Quantity, ANGLE.bounded(above=0)]
+Modulus = Annotated[Quantity, PRESSURE.bounded(above=0)]
+Load = Annotated[Quantity, TORQUE.bounded(above=0)]
+Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
+Teeth = Annotated[int, Strict(), Field(ge=4)]
+Positions = Annotated[int, Strict(), Field(ge=1)]
+
+ABOUT = ("title", "source", "notes", "assumed")
+"""The keys that say something about a pair and nothing about its teeth."""
+STEEL = "206 GPa"
+
+
+class Modified(Element):
+    """Micro-geometry of both flanks of a gear's teeth, as material taken off."""
+
+    tip_relief: Amount = Quantity("0 um", 0.0)
+    """Relief at the tip corner [length]."""
+
+    tip_relief_length: Amount = Quantity("0 mm", 0.0)
+    """Length of roll, along the line of action, over which the tip relief grows [length]."""
+
+    tip_relief_exponent: Literal[1, 2] = 1
+    """1 for linear, 2 for parabolic tip relief [-]."""
+
+    profile_crowning: Amount = Quantity("0 um", 0.0)
+    """Height of a parabola at both ends of the usable profile [length]."""
+
+    lead_crowning: Amount = Quantity("0 um", 0.0)
+    """Height of a parabola at both ends of the face width [length]."""
+
+    end_relief: Amount = Quantity("0 um", 0.0)
+    """Linear relief at both ends of the face width [length]."""
+
+    end_relief_length: Amount = Quantity("0 mm", 0.0)
+    """Length along the axis over which the end relief grows [length]."""
+
+
+class Body(Element):
+    """What any gear has."""
+
+    teeth: Teeth
+    """Number of teeth [-]."""
+
+    rim: Size | None = None
+    """Where the gear's body ends: radius, of a face gear thickness below the root [length]."""
+
+    youngs_modulus: Modulus = Quantity(STEEL, 2.06e11)
+    """Modulus of elasticity [pressure]."""
+
+    poisson: Annotated[float, Strict(), Field(ge=0, lt=0.5)] = 0.3
+    """Poisson's ratio [-]."""
+
+
+class Cylindrical(Body):
+    """A cylindrical gear, or one half of a herringbone gear."""
+
+    face_width: Size
+    """Face width, of one half for a herringbone gear [length]."""
+
+    module: Size | None = None
+    """Normal module [length]; the driven gear takes it from the driver."""
+
+    pressure_angle: Steep | None = None
+    """Normal pressure angle [angle]; the driven gear takes it from the driver."""
+
+    helix_angle: Angle | None = None
+    """Helix angle, positive for a right-hand helix [angle]; none, or what fits the driver."""
+
+    profile_shift: Number = 0.0
+    """Profile shift coefficient [-]."""
+
+    addendum: Number = 1.0
+    """Height of the tooth above the datum line, in modules [-]."""
+
+    dedendum: Number = 1.25
+    """Depth of the tooth below the datum line, in modules [-]."""
+
+    tip_radius: Number = 0.38
+    """Tip radius of the generating rack, in modules [-]."""
+
+    internal: bool = False
+    """Whether the teeth point to the axis."""
+
+    modification: Modified = Modified()
+    """Micro-geometry of its flanks."""
+
+
+class Cutter(Element):
+    """The shaper of a face gear, with the module and pressure angle of the pinion."""
+
+    teeth: Teeth
+    """Number of teeth, one to three more than the pinion's for localised contact [-]."""
+
+    profile_shift: Number | None = None
+    """Profile shift coefficient [-]; the pinion's when left out."""
+
+    addendum: Number = 1.25
+    """Height of the tip above the datum line, in modules [-]."""
+
+
+class Face(Body):
+    """A face gear, the envelope of its shaper."""
+
+    inner: Size
+    """L1, inner end of the teeth [length]."""
+
+    outer: Size
+    """L2, outer end of the teeth [length]."""
+
+    addendum: Number = 1.0
+    """Height of the teeth above the shaper's pitch cylinder, in modules [-]."""
+
+    shaft_angle: Steep = Quantity("90 deg", 1.5707963267948966)
+    """Angle between the axes [angle]."""
+
+    shaper: Cutter
+    """The shaper that cuts it."""
+
+
+class Parallel(Element):
+    """How far the axes of a cylindrical pair are off."""
+
+    centre_distance: Length = Quantity("0 mm", 0.0)
+    """Change of the centre distance [length]."""
+
+    inclination: Angle = Quantity("0 deg", 0.0)
+    """Turn of the driven axis within the plane of both axes [angle]."""
+
+    deviation: Angle = Quantity("0 deg", 0.0)
+    """Turn of the driven axis out of that plane [angle]."""
+
+    axial_shift: Length = Quantity("0 mm", 0.0)
+    """Shift of the driven gear along its axis [length]."""
+
+
+class Crossed(Element):
+    """How far a face-gear pair is off."""
+
+    shaft_angle: Angle = Quantity("0 deg", 0.0)
+    """Change of the angle between the axes [angle]."""
+
+    offset: Length = Quantity("0 mm", 0.0)
+    """Shift of the gear across both axes [length]."""
+
+    gear_shift: Length = Quantity("0 mm", 0.0)
+    """Shift of the gear along its axis, positive towards the pinion [length]."""
+
+    pinion_shift: Length = Quantity("0 mm", 0.0)
+    """Shift of the pinion along its axis, positive away from the gear's axis [length]."""
+
+
+class Analysis(Element):
+    """How the pair is analysed."""
+
+    positions: Positions = 5
+    """Positions of the mesh cycle [-]."""
+
+    compliance: Literal["finite elements", "slices"] = "finite elements"
+    """Model of the teeth: finite elements, or slices, which are a hundred times faster."""
+
+    points: Annotated[int, Strict(), Field(ge=3)] = Field(
+        default_factory=lambda said: POINTS[said.get("compliance", "finite elements")]
+    )
+    """Points on a contact line [-]; 32 with finite elements, 16 with slices when left out."""
+
+    teeth: Annotated[int, Strict(), Field(ge=1)] | None = None
+    """Teeth in the finite-element model, odd [-]; the contact ratio decides when left out."""
+
+    layers: Annotated[int, Strict(), Field(ge=1)] | None = None
+    """Finite elements over the face width [-]; the shape of the tooth decides when left out."""
+
+    def rules(self) -> Iterator[Rule]:
+        """Yield options that do not fit the model."""
+        for key in self.given("teeth", "layers") if self.compliance == "slices" else ():
+            hint = 'Leave it out, or take compliance = "finite elements".'
+            yield Rule("is of finite elements, not of slices", (key,), hint=hint)
+        if self.teeth is not None and self.teeth % 2 == 0:
+            yield Rule("is even: the loaded tooth stands in the middle", ("teeth",), "1, 3, 5, …")
+
+
+class PairContent(Element):
+    """What pair files of every kind say."""
+
+    title: str = ""
+    """One line that says what the pair is."""
+
+    source: str = ""
+    """Where its numbers come from."""
+
+    notes: str = ""
+    """Anything else a reader should know."""
+
+    assumed: tuple[str, ...] = ()
+    """Key paths of inputs that are assumptions; a star stands for any name."""
+
+    torque: Load
+    """Rated torque T on the driver [torque]; the law is fitted at 0.1, 0.5 and 0.9 of it."""
+
+    driver: Cylindrical
+    """The driving gear."""
+
+    analysis: Analysis = Analysis()
+    """How the pair is analysed."""
+
+    def rules(self) -> Iterator[Rule]:
+        """Yield what the driver must say for both gears."""
+        for key, allowed in (("module", LENGTH.allowed), ("pressure_angle", ANGLE.allowed)):
+            if getattr(self.driver, key) is None:
+                yield Rule("is missing", ("driver", key), allowed)
+
+
+class HelicoidContent(PairContent):
+    """Two cylindrical gears: spur, helical or herringbone, one of them internal or none."""
+
+    kind: Literal["helicoid"]
+    """helicoid: two cylindrical gears."""
+
+    driven: Cylindrical
+    """The driven gear."""
+
+    helices: Literal[1, 2] = 1
+    """2 for a herringbone pair [-]."""
+
+    helix_gap: Amount = Quantity("0 mm", 0.0)
+    """Gap between the halves of a herringbone pair [length]."""
+
+    centre_distance: Size | None = None
+    """Centre distance [length]; the one without backlash when left out."""
+
+    misalignment: Parallel = Parallel()
+    """How far the axes are off."""
+
+
+class FaceGearContent(PairContent):
+    """A spur pinion that drives a face gear."""
+
+    kind: Literal["face-gear"]
+    """face-gear: a spur pinion and a face gear."""
+
+    driven: Face
+    """The face gear."""
+
+    misalignment: Crossed = Crossed()
+    """How far the pair is off."""
+
+
+CONTENTS: dict[str, type[HelicoidContent] | type[FaceGearContent]] = {
+    "helicoid": HelicoidContent,
+    "face-gear": FaceGearContent,
+}

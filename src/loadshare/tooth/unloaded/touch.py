@@ -1,0 +1,172 @@
+"""Points at which unloaded flanks touch, and the contact ellipses there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from loadshare.tooth.geometry.body import Array
+from loadshare.tooth.geometry.flank import dot, principal_directions, relative_curvature, unit
+from loadshare.tooth.geometry.gap import LAST_STEP, least_gap
+from loadshare.tooth.unloaded.positions import Pair, touching
+
+# A gap that grows by less than this per length of line [m/m] is level: an unmodified line contact.
+LEVEL = 1e-9
+# The least gap on a line and the one at the point of contact agree within this [m].
+NEAR = 1e-9
+# Ends of two gears closer than this [m] are one edge, named after the driver.
+SAME_EDGE = 50e-6
+# A station this near to an end of its line [m] is that end.
+AT_END = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class ContactPoint:
+    """Where one pair of teeth would first touch if it were alone.
+
+    Parameters
+    ----------
+    pair : int
+        Index of the pair of teeth.
+    lead : float
+        Lead of the driver over the ideal pair when this pair touches [rad]; the least over all
+        pairs is the transmission error.
+    point, normal : array (3,)
+        Point of contact [m] and unit vector from the driver into the driven tooth, fixed frame.
+    major, minor : array (3,)
+        Unit vectors along the axes of the contact ellipse.
+    least_curvature, greatest_curvature : float
+        Relative curvatures along the major and the minor axis [1/m].
+    edge : str
+        Empty for a contact within both active flanks, else the edge at which the flanks touch,
+        such as "driven tip".
+    """
+
+    pair: int
+    lead: float
+    point: Array
+    normal: Array
+    major: Array
+    minor: Array
+    least_curvature: float
+    greatest_curvature: float
+    edge: str
+
+
+def contact_points(pair: Pair, phase: float) -> tuple[ContactPoint, ...]:
+    """First contact of every pair of teeth at one phase, each pair taken alone.
+
+    The contact equations, equal points and opposite normals in five unknowns (two parameters on
+    either flank and the driver's angle), are solved by Newton's method from the place of the least
+    gap on the pair's line. Steps along a line contact, where the equations are singular, are
+    left out. Where the flanks touch at an edge, no inner point of contact exists and the edge is
+    named.
+
+    Parameters
+    ----------
+    pair : Pair
+        The two gears.
+    phase : float
+        0 ≤ phase < 1 of the mesh cycle.
+
+    Returns
+    -------
+    tuple of ContactPoint
+        By rising pair index.
+
+    Raises
+    ------
+    NoContactError
+        If no pair of teeth is within both active flanks.
+    """
+    error, lines, _ = touching(pair, [phase])
+    gap, station, _ = least_gap(lines)
+    trace = lines.trace(station[:, None])
+    pairs, driver, driven = (x[:, None] for x in (lines.pairs, lines.driver, lines.driven))
+    at_end = np.minimum(np.abs(station - lines.start), np.abs(station - lines.end)) < AT_END
+    at_edge = at_end & (np.abs(trace.slope[:, 0]) > LEVEL)
+
+    unknowns = np.stack([*trace.driver_at, *trace.driven_at, np.zeros_like(trace.gap)], axis=-1)
+    unknowns[..., 4] = gap[:, None] / pair.arm
+    inner = ~at_edge
+    if inner.any():
+        turned = (rotation[inner] for rotation in (driver, driven))
+        refined = _newton(pair, pairs[inner], unknowns[inner], *turned)
+        # Next to a line contact the equations are nearly singular and can lead off the line; the
+        # place of the least gap then stands.
+        lead = refined[..., 4] - unknowns[inner][..., 4]
+        near = np.abs(lead) * pair.arm < NEAR
+        unknowns[inner] = np.where(near[..., None], refined, unknowns[inner])
+    a, b, c, d, lead = np.moveaxis(unknowns, -1, 0)
+    own = pair.driver_patch(pairs, (a, b), driver + lead)
+    other = pair.driven_patch(pairs, (c, d), driven)
+    major, minor = principal_directions(own, other)
+    least = relative_curvature(own, other, major)
+    greatest = relative_curvature(own, other, minor)
+    margins = {name: margin[:, 0] for name, margin in pair.margins((a, b), (c, d)).items()}
+
+    points = []
+    for i, number in enumerate(lines.pairs):
+        nearest = min(float(margin[i]) for margin in margins.values())
+        edge = next(name for name, margin in margins.items() if margin[i] <= nearest + SAME_EDGE)
+        points.append(
+            ContactPoint(
+                int(number),
+                float(error[0] + lead[i, 0]),
+                own.point[i, 0],
+                own.normal[i, 0],
+                major[i, 0],
+                minor[i, 0],
+                float(least[i, 0]),
+                float(greatest[i, 0]),
+                edge if at_edge[i] else "",
+            )
+        )
+    return tuple(points)
+
+
+def _newton(pair: Pair, pairs: Array, unknowns: Array, driver: Array, driven: Array) -> Array:
+    """Solve the contact equations; unknowns (m, 1, 5) with the driver's further turn as last."""
+    for _ in range(20):
+        a, b, c, d, turn = np.moveaxis(unknowns, -1, 0)
+        own = pair.driver_patch(pairs, (a, b), driver + turn)
+        other = pair.driven_patch(pairs, (c, d), driven)
+        first = unit(own.rays[0])
+        second = np.cross(own.normal, first)
+        columns = [*own.rays, *-other.rays, _about_z(own.point)]
+        changes = [*own.bends, *other.bends, _about_z(own.normal)]
+        opening = own.normal + other.normal
+        matrix = np.stack(
+            [
+                np.concatenate(
+                    [
+                        column,
+                        # In metres too, so that the rows weigh alike.
+                        pair.arm * dot(change, first)[..., None],
+                        pair.arm * dot(change, second)[..., None],
+                    ],
+                    axis=-1,
+                )
+                for column, change in zip(columns, changes, strict=True)
+            ],
+            axis=-1,
+        )
+        right = np.concatenate(
+            [
+                other.point - own.point,
+                -pair.arm * dot(opening, first)[..., None],
+                -pair.arm * dot(opening, second)[..., None],
+            ],
+            axis=-1,
+        )
+        scale = np.sqrt((matrix**2).sum(axis=-2))
+        step = np.linalg.pinv(matrix / scale[..., None, :], rcond=1e-9) @ right[..., None]
+        unknowns = unknowns + step[..., 0] / scale
+        if np.abs(step).max() < LAST_STEP:
+            break
+    return unknowns
+
+
+def _about_z(vectors: Array) -> Array:
+    return np.cross(np.array([0.0, 0.0, 1.0]), vectors)
