@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import loadshare as ls
+from benchmarks.random_trains.far import is_far
 from benchmarks.random_trains.limit import TooLong, limited
 from benchmarks.random_trains.play import play
 from benchmarks.reference import NoReference, Reference
@@ -34,8 +35,6 @@ OPEN = 1e-5
 find it leave open."""
 BEYOND = "displacements are too large for the geometry"
 """What a refusal says where small displacements are none."""
-FAR = 1e-2
-"""Displacement, over the smallest base radius, from which on such a refusal is right."""
 NO_FORCE = 1e-40
 """Force, in loads, that is none in 70 digits."""
 SOLVING, REFERRING = 60.0, 60.0
@@ -125,7 +124,12 @@ def _compare(case: Case, train: Train, found: Position | None, told: str, findin
     machine, settled = _settled(case, train, found, finding)
     if found is None:
         finding.told = told
-        if BEYOND in told and _far(train, machine, settled):
+        if BEYOND in told and (
+            machine is None
+            or settled is None
+            or is_far(train, finding.position, report(train, machine, settled))
+        ):
+            # Where there is no reference, it is believed.
             finding.outcome = "too far"
             return
         if machine is None or settled is None:
@@ -146,15 +150,6 @@ def _compare(case: Case, train: Train, found: Position | None, told: str, findin
     finding.misplaced = misplaced(train, found, exact, machine, settled)
     claimed = torque_bounds(found.certificate)
     finding.bound = [[claimed[n], error] for n, error in errors.items() if n in claimed]
-
-
-def _far(train: Train, machine: Machine | None, settled: Settled | None) -> bool:
-    """Tell whether the reference moves far as well; where there is none, it is believed."""
-    if machine is None or settled is None:
-        return True
-    smallest = min(g.base_radius for g in train.gears.values())
-    furthest = max(abs(float(v)) for v in settled.at.x) * machine.length
-    return furthest > FAR * smallest
 
 
 def _settled(

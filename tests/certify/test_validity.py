@@ -54,11 +54,11 @@ def pair(kind: str, teeth: int | None = None) -> ls.Case:
 
 
 def claim(train, moved) -> Equilibrium:
-    """An answer in which the pinion is displaced by `moved` (2,) [m] and nothing else is said."""
-    gears = train.gears
+    """An answer in which the pinion is displaced by `moved` (2,) [m] and turned to touch."""
+    apart = -float(train.meshes["1-2"].drive_normal[:2] @ np.asarray(moved))
     return Equilibrium(
         index=1,
-        rotation=dict.fromkeys(gears, 0.0),
+        rotation={"1": max(apart, 0.0) / R1, "2": 0.0},
         displacement={"1": np.array([*moved, 0.0]), "2": np.zeros(3)},
         flank_force={"1-2": 0.0},
         ring_force={},
@@ -169,6 +169,43 @@ def test_the_bound_of_the_neglected_approach():
                                 (0.99 / MEANINGLESS, "meaningless")):  # fmt: skip
         found = validity(train, claim(train, moved), deflection * neglected)
         assert found.verdict == verdict, found.measures["approach"]
+
+
+def test_what_a_gap_takes_up_is_not_neglected():
+    """A flank that is open by more cannot close by what its approach is off."""
+    train = build_train(pair("external"))
+    n = train.meshes["1-2"].drive_normal[:2]
+    touching = claim(train, 1e-4 * np.array([-n[1], n[0]]))
+    neglected = 1e-8 / (2.0 * 0.17 * math.tan(ALPHA))
+    for gap, left in ((0.0, 1.0), (0.25, 0.75), (1.0, 0.0), (3.0, 0.0)):
+        turned = {"1": touching.rotation["1"] - gap * neglected / R1, "2": 0.0}
+        found = validity(train, replace(touching, rotation=turned), neglected)
+        assert found.measures["approach"].value == pytest.approx(left, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("gap", "force", "left"), [(3.0, 0.0, 0.0), (3.0, 1.0, 1.0), (0.5, 0.0, 1.0)]
+)
+def test_a_gear_that_carries_nothing_turns_in_its_play(gap, force, left):
+    """An idler touches its driver and is open by `gap` towards the gear that it drives."""
+    data = pair("external").to_dict()
+    far = (R1 + 0.12) / math.cos(ALPHA) + 0.24 / math.cos(ALPHA)
+    data["gears"]["3"] = {"base_radius": "0.12 m", "centre": [f"{far!r} m", "0 m"]}
+    data["meshes"]["2-3"] = data["meshes"]["1-2"]
+    data["operating"]["output"] = "3"
+    train = build_train(ls.Case(data))
+    n = train.meshes["1-2"].drive_normal[:2]
+    neglected = 1e-8 / (2.0 * 0.17 * math.tan(ALPHA))
+    touching = claim(train, 1e-4 * np.array([-n[1], n[0]]))
+    turn = -gap * neglected / 0.12
+    answer = replace(
+        touching,
+        rotation={"1": turn * 0.12 / R1, "2": turn, "3": 0.0},
+        displacement={**touching.displacement, "3": np.zeros(3)},
+        flank_force={"1-2": force, "2-3": 0.0},
+    )
+    found = validity(train, answer, neglected)
+    assert found.measures["approach"].value == pytest.approx(left, abs=1e-6)
 
 
 def test_many_answers_are_measured_as_single_ones():

@@ -9,7 +9,8 @@ neglects is estimated here from the answer alone, and so are the bounds:
   Δ⊥/L, where Δ⊥ is the part of Δ across it. Forces are off in direction by this angle, which is a
   share of their size. The line vanishes where the base circles touch: it takes Δ = L tan(α_t/2) at
   least. For a face gear the pinion's part, r_b tan α_t, stands for L, which is on the safe side.
-- **Approach.** The approach is then off by Δ⊥²/2L, which counts by the deflection of the case.
+- **Approach.** The approach is then off by Δ⊥²/2L. What of it the gap of an open flank does not
+  take up counts by the deflection of the case; a gear that carries nothing may turn in its play.
 - **Compression.** A tooth bent by a part ε of its height is shorter by ε²; where the compression is
   all of the height, the flanks have passed through each other. The height is 2.25 modules where a
   gear's teeth are given; a gear of 17, the fewest without undercut, stands for one without: teeth
@@ -58,6 +59,8 @@ FEWEST = 17
 """Teeth of a gear of which none are known: the fewest without undercut (20 deg), so that its teeth
 are the highest."""
 
+NOISE = 1e-12
+"""Force, over the largest one, that is a solver's rounding."""
 ALIKE = 1e-9
 """Relative difference of figures that differ by round-off alone."""
 
@@ -168,6 +171,8 @@ class Measuring:
         self.line, angle, self.height = geometry.T[:, :, None]
         self.vanishing = float(np.tan(0.5 * angle).min(initial=math.inf))
         self.radius = np.array([g.base_radius for g in train.gears.values()])
+        held = {train.output, *(g for s in train.shafts.values() for g in (s.first, s.second))}
+        self.turnable = [k for g, k in order.items() if g not in held]
         self.arms = [
             (order[r.gear], order[n], _distance(train, r.gear, n), r)
             for r in train.drums
@@ -216,15 +221,36 @@ class Measuring:
         compression = self.turning @ answers.rotation.T
         compression += self.along @ shifts
         compression -= gap.T
-        compression /= self.height
         turned = np.abs((self.across / self.line) @ shifts)
+        neglected = 0.5 * self.line * turned * turned
+        room = np.maximum(-compression, 0.0) - neglected
+        near = np.flatnonzero((-room > NEGLECTED * deflection).any(axis=0))
+        if len(near):
+            room[:, near] = self._room_of_idle(situations, answers, room, near)
         found = {
-            "compression": compression,
+            "compression": compression / self.height,
             "line_of_action": turned,
-            "approach": turned * turned * (0.5 * self.line / deflection),
+            "approach": np.maximum(-room, 0.0) / deflection,
         }
         if self.arms:
             found["ring"] = self._arms(answers)
+        return found
+
+    def _room_of_idle(
+        self, situations: Situations, answers: Equilibria, room: Array, rows: NDArray[np.intp]
+    ) -> Array:
+        """Room of the flanks of some answers [m], (flanks, rows), as gears without force turn."""
+        force = np.abs(answers.flank_force[rows].T)
+        idle = force <= NOISE * force.max(axis=0)
+        torque = np.broadcast_to(situations.torque, answers.rotation.shape)[rows]
+        found = here = room[:, rows]
+        for gear in self.turnable:
+            closing, opening = self.turning[:, gear] > 0.0, self.turning[:, gear] < 0.0
+            both = closing | opening
+            play = here[closing].min(axis=0, initial=np.inf)
+            play = play + here[opening].min(axis=0, initial=np.inf)
+            free = idle[both].all(axis=0) & (torque[:, gear] == 0.0) & (play >= 0.0)
+            found = np.where(both[:, None] & free, np.maximum(found, 0.0), found)
         return found
 
     def _arms(self, answers: Equilibria) -> Array:

@@ -1,0 +1,77 @@
+"""Whether a reference moves too far for the geometry in which it was found."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from benchmarks.reference import Reference
+from loadshare.train import Train
+from loadshare.train.gear import Vector
+
+FAR = 1e-2
+"""Displacement, over the smallest base radius, from which on small displacements are none."""
+NEGLECTED = 0.99
+"""Approach that linear geometry misses, over the deflection, from which on it tells nothing; what
+refuses from 1 on has an estimate of it."""
+
+
+def is_far(train: Train, index: int, exact: Reference) -> bool:
+    """Tell whether the displacements of a reference have no meaning.
+
+    Parameters
+    ----------
+    train : Train
+    index : int
+        1-based position.
+    exact : Reference
+    """
+    smallest = min(g.base_radius for g in train.gears.values())
+    furthest = max((abs(float(v)) for p in exact.displacement.values() for v in p), default=0.0)
+    return furthest > FAR * smallest or neglected(train, index, exact) >= NEGLECTED
+
+
+def neglected(train: Train, index: int, exact: Reference) -> float:
+    """Return the largest approach that is missed at a flank with a force, over the deflection.
+
+    The deflection is the largest compression, gap taken up, or error. Face gears are left out.
+    """
+    here = train.situation(index)
+    still = np.zeros(2)
+    moved = {
+        name: here.offset[name] + exact.displacement.get(name, still) @ gear.frame
+        for name, gear in train.gears.items()
+    }
+    missed = [0.0]
+    lengths = [float(np.linalg.norm(c)) for c in here.offset.values()]
+    for mesh in train.meshes.values():
+        first, second = train.gears[mesh.driver], train.gears[mesh.driven]
+        at = here.mesh_position[mesh.name]
+        for drive in mesh.flanks:
+            force = exact.force[mesh.flank_name(drive)]
+            if force <= 0.0:
+                continue
+            lengths += [mesh.law(at).compression(force), abs(mesh.gap(at, drive))]
+            if "face" not in (first.kind, second.kind):
+                normal, way = mesh.direction(drive)[2], first.centre - second.centre
+                shift = moved[mesh.driver] - moved[mesh.driven]
+                missed.append(_missed(way, shift, normal, np.cross(first.axis, normal)))
+    return max(missed) / (max(lengths, default=0.0) or math.inf)
+
+
+def _missed(way: Vector, shift: Vector, along: Vector, across: Vector) -> float:
+    """Approach [m] by which two involutes miss the linear one when their centres shift.
+
+    The strings of their base circles leave along the line of action, of length L and direction χ,
+    and the derivative of the approach is the direction of the line. So the approach grows by
+    ΔL − R Δχ, with R the distance of the centres across the line, which stays.
+    """
+    length, offset = float(way @ along), float(way @ across)
+    there = length + float(shift @ along), offset + float(shift @ across)
+    squared = there[0] ** 2 + there[1] ** 2 - offset**2
+    if squared <= 0.0:
+        return math.inf
+    reached = math.copysign(math.sqrt(squared), length)
+    turned = math.atan2(there[1], there[0]) - math.atan2(offset, reached)
+    return abs(reached - length - offset * turned - float(shift @ along))

@@ -1,0 +1,29 @@
+"""What random trains count as too far, against exact involutes."""
+
+import pytest
+from tests.certify.test_validity import exact, pair
+
+from benchmarks.random_trains.draw import draw
+from benchmarks.random_trains.far import is_far, neglected
+from benchmarks.reference import reference
+from loadshare.train import build_train
+
+
+@pytest.mark.parametrize("kind", ["external", "internal"])
+@pytest.mark.parametrize("torque", ["100 N*m", "3e4 N*m"])
+def test_missed_approach_is_that_of_exact_involutes(kind: str, torque: str) -> None:
+    case = pair(kind).replace({"operating.torque": torque, "gears.1.support": "1e6 N/m"})
+    train = build_train(case)
+    found = reference(train, 1)
+    mesh = train.meshes["1-2"]
+    moved = train.gears["1"].frame.T @ found.displacement["1"]
+    missed = exact(kind, mesh.radii[1], moved[:2]) - float(mesh.drive_normal @ moved)
+    deflection = mesh.law(0).compression(found.force["1-2"])
+    assert neglected(train, 1, found) == pytest.approx(abs(missed) / deflection, rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize(("number", "far"), [(681, True), (796, False)])
+def test_only_flanks_with_a_force_are_far(number: int, far: bool) -> None:
+    """Light loads: of one train a wedged planet is shifted, of the other one that is idle."""
+    train = build_train(draw(1, number))
+    assert is_far(train, 1, reference(train, 1)) == far
