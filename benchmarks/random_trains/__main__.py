@@ -1,8 +1,8 @@
 """Random trains against the 50-digit reference.
 
-Run with ``python -m benchmarks.random_trains --count 5000 --seed 1 [--processes 2]``. It may be
-stopped at any time; the same command goes on where it was. Tables are over all trains of the seed
-that are on file.
+Run with ``python -m benchmarks.random_trains --count 5000 --seed 1 [--processes 2]``, or with
+``--stress`` for the problems of the stability map instead. It may be stopped at any time; the same
+command goes on where it was. Tables are over all trains of the seed that are on file.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from benchmarks.random_trains.run import run, write_failures
+from benchmarks.random_trains.run import PROBLEMS, STRESS, run, write_failures
 from benchmarks.random_trains.table import text
 
 
@@ -20,14 +20,18 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=5000, help="trains")
     parser.add_argument("--first", type=int, default=0, help="number of the first one")
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--stress", action="store_true", help="the stability map's problems, all")
     parser.add_argument("--processes", type=int, default=1)
     parser.add_argument(
         "--out", type=Path, default=Path("build/random_trains"), help="folder of what is found"
     )
     asked = parser.parse_args()
     numbers = range(asked.first, asked.first + asked.count)
+    seed = asked.seed
+    if asked.stress:
+        seed, numbers = STRESS, range(PROBLEMS)
 
-    rows = run(numbers, asked.seed, asked.out / "verdicts.jsonl", asked.processes)
+    rows = run(numbers, seed, asked.out / "verdicts.jsonl", asked.processes)
     count = write_failures(rows, asked.out / "failing")
     print(text(rows))  # noqa: T201
     if count:

@@ -1,4 +1,4 @@
-"""Many random trains, over processes; what is done is kept, and not done again."""
+"""Many random trains, or stress problems, over processes; what is done is kept."""
 
 from __future__ import annotations
 
@@ -11,7 +11,14 @@ import loadshare as ls
 from benchmarks import kept
 from benchmarks.random_trains.draw import draw
 from benchmarks.random_trains.judge import judged
+from benchmarks.stress.families import FAMILIES
+from benchmarks.stress.problem import COUNT
+from loadshare.case import Case
 
+STRESS = -1
+"""In the place of a seed: the problems of the stability map, family after family."""
+PROBLEMS = len(FAMILIES) * COUNT
+"""Of the stability map."""
 FAILURES = ("wrong", "refused", "open", "crashed")
 """Outcomes that are to be looked into."""
 
@@ -32,7 +39,14 @@ def run(
 
 def one(seed: int, number: int) -> dict[str, Any]:
     """Judge one train; plain data."""
-    return judged(draw(seed, number))
+    return judged(case_of(seed, number))
+
+
+def case_of(seed: int, number: int) -> Case:
+    """Return a train of a seed, or a problem of the stability map (`STRESS`)."""
+    if seed == STRESS:
+        return list(FAMILIES.values())[number // COUNT].problem(number % COUNT).case
+    return draw(seed, number)
 
 
 def _warm() -> None:
@@ -63,7 +77,7 @@ def write_failures(rows: list[dict[str, Any]], folder: Path) -> int:
     for row in rows:
         lines = failures(row)
         if lines:
-            case = draw(row["seed"], row["number"])
+            case = case_of(row["seed"], row["number"])
             text = "".join(f"# {line[:400]}\n" for line in lines) + case.to_toml()
             (folder / f"{case.name.replace(' ', '_')}.toml").write_text(text, encoding="utf-8")
             count += 1

@@ -12,7 +12,7 @@ import loadshare as ls
 from benchmarks.kept import known
 from benchmarks.random_trains.draw import LAYOUTS, draw
 from benchmarks.random_trains.judge import AGREES, judged
-from benchmarks.random_trains.run import failures, run
+from benchmarks.random_trains.run import PROBLEMS, STRESS, failures, one, run
 from benchmarks.random_trains.table import text
 
 SEED = 7
@@ -82,6 +82,11 @@ def test_an_exception_is_a_crash(monkeypatch):
     finding = judged(draw(SEED, 0))["positions"][0]
     assert finding["outcome"] == "crashed"
     assert "KeyError" in finding["told"]
+
+
+def test_problems_of_the_stability_map_are_judged_too():
+    assert one(STRESS, 0)["name"] == "stiffness-ratio 0"
+    assert one(STRESS, PROBLEMS - 1)["positions"][0]["outcome"] == "no answer"
 
 
 def test_a_run_goes_on_where_it_was_stopped(tmp_path):
