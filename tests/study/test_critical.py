@@ -278,6 +278,33 @@ def test_a_ring_without_play_pins_its_gear_only_there():
     assert search._exit(first, last) == 0.0
 
 
+def drawn(number: int) -> Search:
+    path = random_path(number)
+    line = Line(path.case, read_parameter(path.case, path.keys, path.unit), path.start, path.stop)
+    return Search(line, 1, path.start, path.stop)
+
+
+def test_a_spline_without_friction_and_force_is_free():
+    """A pinion has lost its branch, and its spline the torque that its friction follows."""
+    points = drawn(329).points(np.array([680.0, 1000.0, 2000.0, 3295.5, 3295.512343928895]))
+    assert len({p.held for p in points}) == 1
+
+
+def test_a_float_comes_to_its_round_limit_where_the_limit_lets_go_of_it():
+    """The force of a spline at the end of its clearance vanishes where the float begins."""
+    search = drawn(37)
+    pressed = search.points(np.array([2.1867, 2.18701]))
+    (floating,) = search.points(np.array([2.19]))
+    beyond = []
+    for point in pressed:
+        equations = search.equations(point.held)
+        state = equations.state(point.z[None], search.line.numbers(1, np.array([point.value])))
+        beyond.append(float(state.radials[1].radius[0] - state.laws[1].reach[0]))
+    values = [p.value for p in pressed]
+    zero = values[1] + beyond[1] * (values[1] - values[0]) / (beyond[0] - beyond[1])
+    assert search._exit(floating, pressed[1]) == pytest.approx(zero, rel=1e-9)
+
+
 @pytest.mark.parametrize("number", [1, 6, 193])
 def test_random_paths_agree_with_a_scan(number):
     """On path 193 an enclosure neither contracts nor diverges: a matrix is singular."""

@@ -18,7 +18,13 @@ from loadshare.study.follow.equations import Equations, free_moves, scaling
 from loadshare.study.follow.line import Numbers
 
 FACETS = 24
-"""Sides of the polygon that stands for a round ring in which a body floats."""
+"""Sides at first of the polygon that stands for a round ring in which a body floats."""
+PASSES = 24
+"""Polygons at most; two are taken as a rule, and each leaves a quarter of the error at most."""
+FULL, SPENT = 1e-3, 1e-12
+"""Part of the room a polygon promises that may be missing, and room [deflections] that is none."""
+LEAST = 1e-6
+"""Unit of room [deflections] in which a linear programme is exact to the last digits."""
 BINDS = 1e-6
 """Room [deflections] left by the linear programme at which a limit binds."""
 ROOM = 1.0
@@ -46,32 +52,53 @@ def centred(equations: Equations, z: Array, numbers: Numbers) -> Array:
 def _into_the_middle(
     equations: Equations, z: Array, numbers: Numbers, moves: Sequence[Array]
 ) -> Array:
-    """Move points (S, size) along moves (k, n) that nothing resists, to where room is largest."""
+    """Move points (S, size) along moves (k, n) that nothing resists, to where room is largest.
+
+    A round limit is the polygon of its tangents, at first in equal turns, then where points came to
+    stand as well, until there is as much room as the polygon promises.
+    """
     z = z.copy()
     moves = [m / np.maximum(np.abs(m).max(axis=1, initial=0.0), 1e-300)[:, None] for m in moves]
-    curved = len(equations.arc_acts) or (equations.places == at.OPEN).any()
-    # Limits that curve are straight around the point: the second time they are nearly exact.
-    for _ in range(2 if curved else 1):
-        room, closing = _rooms(equations, z, numbers)
-        blocks: list[tuple[int, Array, Array]] = []
-        for k, mine in enumerate(moves):
-            speed = closing[k] @ mine.T
-            near = (np.abs(speed).max(axis=1, initial=0.0) > FELT) & np.isfinite(room[k])
+    turns = 2.0 * np.pi * np.arange(FACETS) / FACETS
+    ways = np.stack([np.cos(turns), np.sin(turns)], axis=1)
+    facets = np.broadcast_to(ways, (len(z), len(equations.places), FACETS, 2))
+    bends = len(equations.arc_at) < len(equations.arc_acts)
+    rows, scale = np.arange(len(z)), np.ones(len(z))
+    for number in range(PASSES):
+        here = numbers.take(rows)
+        room, closing = _rooms(equations, z[rows], here, facets)
+        blocks: dict[int, tuple[Array, Array]] = {}
+        for i, k in enumerate(rows.tolist()):
+            speed = closing[i] @ moves[k].T
+            near = (np.abs(speed).max(axis=1, initial=0.0) > FELT) & np.isfinite(room[i])
             if near.any():
-                rows = np.hstack([speed[near], np.ones((int(near.sum()), 1))])
-                blocks.append((k, rows, room[k, near]))
-        for (k, *_), step in zip(blocks, _widest([b[1:] for b in blocks]), strict=True):
-            z[k, : equations.n] += step @ moves[k]
+                limits = np.hstack([speed[near], np.ones((int(near.sum()), 1))])
+                blocks[i] = limits, room[i, near] / scale[i]
+        promised = np.full(len(rows), -np.inf)
+        steps = _widest(list(blocks.values()), ROOM / scale[list(blocks)])
+        for i, step in zip(blocks, steps, strict=True):
+            z[rows[i], : equations.n] += scale[i] * step[:-1] @ moves[rows[i]]
+            promised[i] = scale[i] * step[-1]
+        along, actual = _round(equations, z[rows], here)
+        short = (promised > SPENT) & (actual < (1.0 - FULL) * promised)
+        # Arcs are straight around the point: the second time they are nearly exact.
+        again = short | (bends and number == 0) & np.isfinite(promised)
+        if not again.any():
+            break
+        rows, facets = rows[again], np.concatenate([facets, along[:, :, None]], axis=2)[again]
+        scale = np.clip(np.where(short, promised - actual, 1.0), LEAST, 1.0)[again]
     return z
 
 
-def _widest(blocks: Sequence[tuple[Array, Array]]) -> list[Array]:
-    """How far to go along every move of a block, so that its least room becomes largest.
+def _widest(blocks: Sequence[tuple[Array, Array]], most: Array) -> list[Array]:
+    """How far to go along every move of a block, so that its least room becomes largest; that room.
 
     Parameters
     ----------
     blocks : sequence of (ndarray, ndarray), shapes (rows, moves + 1) and (rows,)
         How fast the moves close every limit, then 1 for the least room; rooms.
+    most : ndarray, shape (blocks,)
+        Room that is as good as any more.
     """
     if not blocks:
         return []
@@ -80,7 +107,7 @@ def _widest(blocks: Sequence[tuple[Array, Array]]) -> list[Array]:
     cost = np.zeros(sum(widths))
     cost[last] = -1.0
     upper = np.full(len(cost), np.inf)
-    upper[last] = ROOM
+    upper[last] = most
     answer = linprog(  # type: ignore[call-overload]
         cost,
         A_ub=block_diag([rows for rows, _ in blocks], format="csc"),
@@ -89,19 +116,22 @@ def _widest(blocks: Sequence[tuple[Array, Array]]) -> list[Array]:
         method="highs-ds",
     )
     if answer.x is None:
-        return [np.zeros(width - 1) for width in widths]
+        return [np.zeros(width) for width in widths]
     steps = []
     for (rows, room), found in zip(blocks, np.split(answer.x, last[:-1] + 1), strict=True):
         # The programme is solved to its tolerance; what binds is met to round-off.
         left = room - rows @ found
         binds = left <= BINDS
         more = np.linalg.lstsq(rows[binds], left[binds], rcond=None)[0]
-        steps.append((found + more)[:-1])
+        steps.append(found + more)
     return steps
 
 
-def _rooms(equations: Equations, z: Array, numbers: Numbers) -> tuple[Array, Array]:
-    """Room before open limits (S, k), infinite where there is none, and how fast it closes."""
+def _rooms(equations: Equations, z: Array, numbers: Numbers, facets: Array) -> tuple[Array, Array]:
+    """Room before open limits (S, k), infinite where there is none, and how fast it closes.
+
+    Round limits are the polygons whose sides face the ways `facets` (S, radials, sides, 2).
+    """
     state = equations.state(z, numbers)
     count, n = len(z), equations.n
     idle = np.flatnonzero(~equations.acts[equations.elements.springs :])
@@ -114,10 +144,20 @@ def _rooms(equations: Equations, z: Array, numbers: Numbers) -> tuple[Array, Arr
         if a not in equations.arc_at:
             room.append(state.margin[:, [a]])
             closing.append(-polar.along[:, None, :] @ polar.matrix)
-    turns = 2.0 * np.pi * np.arange(FACETS) / FACETS
-    ways = np.stack([np.cos(turns), np.sin(turns)], axis=1)
     for j, polar in state.radials.items():
         if equations.places[j] == at.OPEN:
-            room.append(state.laws[j].reach[:, None] - polar.offset @ ways.T)
+            ways = facets[:, j]
+            room.append(state.laws[j].reach[:, None] - (ways @ polar.offset[:, :, None])[:, :, 0])
             closing.append(ways @ np.broadcast_to(polar.matrix, (count, 2, n)))
     return np.concatenate(room, axis=1), np.concatenate(closing, axis=1)
+
+
+def _round(equations: Equations, z: Array, numbers: Numbers) -> tuple[Array, Array]:
+    """Ways (S, radials, 2) of floats from the centres of round limits, and the least room."""
+    state = equations.state(z, numbers)
+    ways, least = np.zeros((len(z), len(equations.places), 2)), np.full(len(z), np.inf)
+    for j, polar in state.radials.items():
+        if equations.places[j] == at.OPEN:
+            ways[:, j] = polar.along
+            least = np.minimum(least, state.laws[j].reach - polar.radius)
+    return ways, least

@@ -92,11 +92,13 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """An interval in which nothing was proved, and why."""
+    """An interval in which nothing was proved, why, and what stands at its ends."""
 
     start: float
     stop: float
     why: str
+    first: Point | str
+    last: Point | str
 
 
 Stretch = tuple[Point | str, Point | str, float, float]
@@ -124,6 +126,7 @@ class Search:
         self.gaps: list[Gap] = []
         self._equations: dict[Held, Equations] = {}
         self._hints: dict[tuple[float, float], float] = {}
+        self._sharp: dict[float, bool] = {}
 
     def run(self) -> None:
         """Find all changes, by value, and what could not be proved.
@@ -153,8 +156,9 @@ class Search:
                     self._give_up(stretch, "too many stretches")
                 break
             stretches = self._cut(left)
-        self.changes.sort(key=lambda c: c.value)
         self.gaps = merged(self.gaps)
+        self.changes += [c for c in map(self._unconfirmed, self.gaps) if c is not None]
+        self.changes.sort(key=lambda c: c.value)
 
     # --- Points ---------------------------------------------------------------------------------
 
@@ -232,9 +236,13 @@ class Search:
                 loose &= np.abs(state.margin[:, a]) <= IDLE
             code[loose, len(columns) + a] = at.OPEN
         for j, place in enumerate(equations.places.tolist()):
-            if place == at.WALL:
-                loose = np.abs(state.radials[j].size) <= band
-                code[loose, equations.elements.rows + j] = at.OPEN
+            if place == at.OPEN:
+                continue
+            loose = np.abs(state.radials[j].size) <= band
+            if place != at.WALL:
+                # Whether it slips or sticks hangs on rounding once its friction is gone.
+                loose &= np.abs(state.laws[j].bound) <= band
+            code[loose, equations.elements.rows + j] = at.OPEN
         return code
 
     def equations(self, held: Held) -> Equations:
@@ -259,18 +267,23 @@ class Search:
         return False
 
     def _give_up(self, stretch: Stretch, why: str) -> None:
-        """Name a stretch as not proved, with the change between its ends if there is one."""
+        """Name a stretch as not proved."""
         first, last, low, high = stretch
-        self.gaps.append(Gap(low, high, why))
-        if (
-            isinstance(first, Point)
-            and isinstance(last, Point)
-            and first.held.code != last.held.code
-        ):
-            value = 0.5 * (low + high)
-            worst = max(first.worst, last.worst)
-            change = Change(value, first.held, last.held, False, worst, high - value)
-            self.changes.append(change)
+        self.gaps.append(Gap(low, high, why, first, last))
+
+    def _unconfirmed(self, gap: Gap) -> Change | None:
+        """Return the change between the ends of what is not proved, if there is one."""
+        first, last = gap.first, gap.last
+        if not (isinstance(first, Point) and isinstance(last, Point)):
+            return None
+        if first.held.code == last.held.code:
+            return None
+        # What was found last was found from nearest.
+        value = 0.5 * (gap.start + gap.stop)
+        for hint in self._hints.values():
+            value = hint if gap.start <= hint <= gap.stop else value
+        apart = max(value - gap.start, gap.stop - value)
+        return Change(value, first.held, last.held, False, max(first.worst, last.worst), apart)
 
     def _stretches(
         self, equations: Equations, ends: list[tuple[float, float, Array, Array]]
@@ -294,8 +307,24 @@ class Search:
         for held, group in groups.items():
             ends = [(low, high, a.z, b.z) for a, b, low, high in group]  # type: ignore[union-attr]
             holds = self._stretches(self._equations[held], ends).prove().holds
-            left += [s for s, good in zip(group, holds, strict=True) if not good]
+            failed = [s for s, good in zip(group, holds, strict=True) if not good]
+            left += [s for s in failed if not self._hidden(held, s)]
         return left
+
+    def _hidden(self, held: Held, stretch: Stretch) -> bool:
+        """Give up a stretch at both ends of which round-off alone leaves no enclosure."""
+        if any(self._is_sharp(held, p) for p in stretch[:2] if isinstance(p, Point)):
+            return False
+        self._give_up(stretch, "round-off hides what holds its bodies")
+        return True
+
+    def _is_sharp(self, held: Held, point: Point) -> bool:
+        """Whether a point is enclosed by itself."""
+        if point.value not in self._sharp:
+            ends = [(point.value, point.value, point.z, point.z)]
+            enclosed = self._stretches(self._equations[held], ends).prove().enclosed
+            self._sharp[point.value] = bool(enclosed[0])
+        return self._sharp[point.value]
 
     def _crossed(self, stretch: Stretch) -> bool:
         """Find and prove the change between two ends; on failure note where it may stand."""
@@ -404,7 +433,7 @@ class Search:
         """Cut stretches, beside an event where one is expected."""
         cuts: list[list[float]] = []
         for _, _, low, high in stretches:
-            width, hint = high - low, self._hints.pop((low, high), None)
+            width, hint = high - low, self._hints.get((low, high))
             inner = [low + CUT * width]
             if hint is not None:
                 inner = [hint - BESIDE * width, hint + BESIDE * width]
@@ -424,7 +453,7 @@ def merged(gaps: Iterable[Gap]) -> list[Gap]:
     found: list[Gap] = []
     for gap in sorted(gaps, key=lambda g: g.start):
         if found and gap.start <= found[-1].stop:
-            found[-1] = replace(found[-1], stop=max(gap.stop, found[-1].stop))
+            found[-1] = replace(found[-1], stop=gap.stop, last=gap.last)
         else:
             found.append(gap)
     return found
