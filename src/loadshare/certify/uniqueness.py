@@ -25,6 +25,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -134,13 +135,20 @@ class _System:
         self.stiffness = np.zeros((self.size, self.size))
         self.taken = np.zeros((self.size, self.size))
         self.rigid: list[Array] = []
-        self.bent: list[str] = []
         self.torque_slope = {g: np.zeros(self.size) for g in train.splines}
+
+    @cached_property
+    def bent(self) -> tuple[str, ...]:
+        """Elements that are not convex and carry."""
+        arcs = [p.name for p in self._carrying_ring_contacts() if p.pushing is not None]
+        return (*arcs, *(p.name for p in self.state.pulls if self._follows(p)))
+
+    def _assemble(self) -> None:
         self._flanks()
         self._ring_contacts()
         self._springs()
-        self.open = False
-        for pull in state.pulls:
+        train = self.state.train
+        for pull in self.state.pulls:
             if pull.is_ring or train.slip is None:
                 self._pull(pull)
         if train.slip is not None:
@@ -195,7 +203,6 @@ class _System:
             beside = np.cross(self.state.train.gears[push.pushed].axis, push.normal)
             across = self._moved(push.pushed, beside) - self._moved(push.pushing, beside)
             self.taken += push.force / self._distance(push) * np.outer(across, across)
-            self.bent.append(push.name)
 
     def _carrying_ring_contacts(self) -> Iterator[Push]:
         return (p for p in self.state.pushes if p.gear is not None and p.force > self.load)
@@ -221,6 +228,18 @@ class _System:
             at = self.move_at[name]
             self.stiffness[[at, at + 1], [at, at + 1]] += held
 
+    def _follows(self, pull: Pull) -> bool:
+        """Whether the force of a radial element follows the torque where it stands."""
+        spline = self.state.train.splines.get(pull.gear)
+        if pull.is_ring or spline is None or pull.name != spline.name or not _follows(spline):
+            return False
+        radius, force = float(np.linalg.norm(pull.offset)), float(np.linalg.norm(pull.reaction))
+        if radius <= self.near:
+            return False
+        if self.state.train.slip is not None:
+            return True
+        return _piece(pull, radius, force, self.near, self.load)[0].name != "stick"
+
     def _pull(self, pull: Pull) -> None:
         """A radial element: the slope of its piece along, force over radius across."""
         frame = self.state.train.gears[pull.gear].frame
@@ -236,14 +255,13 @@ class _System:
         along = self._moved(pull.gear, outward)
         self._hold(along, math.inf if at_stop else piece.stiffness)
         self._hold(self._moved(pull.gear, beside), force / radius)
-        spline = self.state.train.splines.get(pull.gear)
-        if pull.is_ring or spline is None or piece.name == "stick" or not _follows(spline):
+        if not self._follows(pull):
             return
+        spline = self.state.train.splines[pull.gear]
         torque = self.state.transmitted(pull.gear)
         follow = math.copysign(spline.friction_per_torque, torque) * self.torque_slope[pull.gear]
         coupling = np.outer(along, follow)
         self.taken -= 0.5 * (coupling + coupling.T)
-        self.bent.append(pull.name)
 
     def _remembering(self) -> None:
         """Splines with memory: held by their shaft where the slip is, and by nothing elsewhere."""
@@ -254,14 +272,12 @@ class _System:
             if float(np.linalg.norm(pull.offset)) <= self.near:
                 for way in self.state.train.gears[pull.gear].frame:
                     self._hold(self._moved(pull.gear, way), spline.bending_stiffness)
-            elif _follows(spline):
-                self.bent.append(pull.name)
-                self.open = True
 
     def curvature(self) -> float:
         """Largest κ of M z = κ K z on the moves that rigid contacts leave, at least 0."""
-        if self.open:
+        if self.state.train.slip is not None and any(map(self._follows, self.state.pulls)):
             return math.inf
+        self._assemble()
         free = np.eye(self.size)
         if self.rigid:
             rows = np.array([r / (np.linalg.norm(r) or 1.0) for r in self.rigid])

@@ -8,6 +8,7 @@ small interior-point number.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +22,7 @@ SIGN = 1e-11
 ROUNDING = 1e-14
 """The same, relative to the largest quantity of its sort."""
 NEWTON_STEPS = 40
+_NONE, _BOTH = np.zeros((0, 2)), np.eye(2)
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,7 +204,8 @@ def _newton_system(programme: Programme, active: ActiveSet, at: Point) -> Point 
     matrix[:size, size:] = border
     matrix[size:, :size] = border.T
     flanks = int(closed.sum())
-    matrix[range(size, size + flanks), range(size, size + flanks)] = -compliance[closed]
+    diagonal = matrix.reshape(-1)[:: size + count + 1]
+    diagonal[size : size + flanks] = -compliance[closed]
     solved = solve_symmetric(matrix, np.concatenate([load, *bounds]), size)
     if solved is None:
         return None
@@ -236,7 +239,7 @@ def _piece_force(cone: Cone, place: Place, offset: Array) -> Array:
     """Force of a radial element on a piece, as a vector along its offset."""
     piece = cone.law.pieces[place.piece]
     begin = cone.law.start(place.piece)
-    radius = float(np.linalg.norm(offset))
+    radius = _size(offset)
     if piece.force == piece.stiffness * begin or radius == 0.0:
         return np.asarray(piece.stiffness * offset)
     return np.asarray((piece.force + piece.stiffness * (radius - begin)) / radius * offset)
@@ -246,15 +249,14 @@ def _cone_tangent(
     cone: Cone, place: Place, x: Array, force: Array
 ) -> tuple[Array, Array, Array, Array]:
     """Tangent (2, 2), force at x (2,), multiplier directions (d, 2) and their bounds (d,)."""
-    none = np.zeros((0, 2))
     offset = cone.offset(x)
-    radius = float(np.linalg.norm(offset))
+    radius = _size(offset)
     if place.corner:
         limit = cone.law.start(place.piece)
         if limit == 0.0:
-            return np.zeros((2, 2)), np.zeros(2), np.eye(2), np.zeros(2)
+            return np.zeros((2, 2)), np.zeros(2), _BOTH, np.zeros(2)
         along = offset / radius if radius > 0.0 else _direction(force)
-        across = np.eye(2) - np.outer(along, along)
+        across = _BOTH - along[:, None] * along
         size = max(float(along @ force), 0.0)
         # The step's multiplier turns with the offset: its share of the tangent is λ/R across the
         # radius.
@@ -263,20 +265,25 @@ def _cone_tangent(
     piece = cone.law.pieces[place.piece]
     begin = cone.law.start(place.piece)
     if piece.force == piece.stiffness * begin:
-        return piece.stiffness * np.eye(2), piece.stiffness * offset, none, np.zeros(0)
+        return piece.stiffness * _BOTH, piece.stiffness * offset, _NONE, np.zeros(0)
     if radius == 0.0:
         offset, radius = _direction(force) * max(begin, 1e-9), max(begin, 1e-9)
     along = offset / radius
     size = piece.force + piece.stiffness * (radius - begin)
-    tangent = piece.stiffness * np.outer(along, along)
+    tangent = piece.stiffness * (along[:, None] * along)
     # Beyond the piece the true tangent across the radius is too soft to find the way back.
     near = min(radius, begin + piece.length)
-    tangent = tangent + max(size, 0.0) / near * (np.eye(2) - np.outer(along, along))
-    return tangent, size * along, none, np.zeros(0)
+    tangent = tangent + max(size, 0.0) / near * (_BOTH - along[:, None] * along)
+    return tangent, size * along, _NONE, np.zeros(0)
+
+
+def _size(vector: Array) -> float:
+    """Length of a vector, without what `numpy.linalg.norm` asks first."""
+    return math.sqrt(vector @ vector)
 
 
 def _direction(force: Array) -> Array:
-    size = float(np.linalg.norm(force))
+    size = _size(force)
     return force / size if size > 0.0 else np.array([1.0, 0.0])
 
 
@@ -323,7 +330,7 @@ def _misplaced(
         if size > high:
             return (size - high) / force_band, Place(k)
         return (low - size) / force_band, Place(k - 1) if k > 0 else place
-    radius = float(np.linalg.norm(offset))
+    radius = _size(offset)
     begin, end = law.start(k), law.start(k + 1)
     if radius > end:
         low, high = law.step(k + 1)

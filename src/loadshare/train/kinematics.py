@@ -56,8 +56,9 @@ def settle(
         driver, driven = meshes[name]
         try:
             if here == driver:
-                contact = contact_of(settled[here], gears[driven])
-                sense, other = contact.driven_sense, driven
+                # Where the driven gear turns to does not enter.
+                contacts[name] = contact_of(settled[here], gears[driven])
+                sense, other = contacts[name].driven_sense, driven
             else:
                 trial = replace(gears[driver], sense=1)
                 forward = contact_of(trial, gears[driven])
@@ -93,7 +94,7 @@ def settle(
                 else:
                     conflicts += _compare(key, known, found)
     for name, (driver, driven) in meshes.items():
-        if driver in settled and driven in settled:
+        if name not in contacts and driver in settled and driven in settled:
             try:
                 contacts[name] = contact_of(settled[driver], settled[driven])
             except MeshGeometryError:

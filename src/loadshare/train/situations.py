@@ -155,6 +155,8 @@ def situation_of(train: Train, index: int) -> Situations:
 def stack(situations: Sequence[Situations]) -> Situations:
     """Put situations of one train after one another, such as all positions of a cycle."""
     first = situations[0]
+    if len(situations) == 1:
+        return first
     count = sum(s.count for s in situations)
     together: dict[str, Any] = {}
     every = [s._arrays() for s in situations]

@@ -65,16 +65,17 @@ def minus(one: Twofold, other: Twofold) -> Twofold:
 def product(a: Array, b: Array) -> tuple[Twofold, Array]:
     """Matrix product (S, k) by (k, m) of doubles, and the sum of the sizes of its terms.
 
-    Column by column of `a`, so that all samples and rows are added up at once.
+    Only entries of `b` that are not zero are multiplied; all columns are added up at once.
     """
-    total = Twofold(np.zeros((len(a), b.shape[1])), np.zeros((len(a), b.shape[1])))
-    sizes = np.zeros((len(a), b.shape[1]))
-    for k in np.flatnonzero(b.any(axis=1)):
-        rows = np.flatnonzero(b[k])
-        term = two_product(a[:, k, None], b[None, k, rows])
-        added = plus(Twofold(total.high[:, rows], total.low[:, rows]), term)
-        total.high[:, rows], total.low[:, rows] = added
-        sizes[:, rows] += np.abs(term.high)
+    some = b != 0.0
+    most = int(some.sum(axis=0).max(initial=0))
+    rows = np.argsort(~some, axis=0, kind="stable")[:most]
+    terms = two_product(a[:, rows], np.take_along_axis(b, rows, axis=0))
+    shape = len(a), b.shape[1]
+    total, sizes = Twofold(np.zeros(shape), np.zeros(shape)), np.zeros(shape)
+    for k in range(most):
+        total = plus(total, Twofold(terms.high[:, k], terms.low[:, k]))
+        sizes += np.abs(terms.high[:, k])
     return total, sizes
 
 

@@ -17,6 +17,7 @@ from loadshare.solver.hot.state import State
 Rows = NDArray[np.intp]
 Codes = NDArray[np.int8]
 Flags = NDArray[np.bool_]
+_BOTH = np.eye(2)
 
 
 def settle(
@@ -142,7 +143,9 @@ class _Passes:
         self.bending = np.broadcast_to(pick(data.bending, rows)[:, columns], shape)
         self.hertz = np.broadcast_to(pick(data.hertz, rows)[:, columns], shape)
         self.power = np.flatnonzero((data.hertz[:, columns] > 0.0).any(axis=0))
-        self.table = np.flatnonzero(data.tabulated[columns] >= 0).tolist()
+        self.table = np.flatnonzero(data.tabulated[columns] >= 0)
+        tables = pick(data.tables, rows)[:, data.tabulated[columns[self.table]]]
+        self.points = tables[:, :, 0], tables[:, :, 1]
         self.x, self.floor = state.x[rows], state.floor[rows]
         self.force, self.root = state.force[rows][:, columns], state.root[rows][:, columns]
         self.z = self.force @ basis.redundant
@@ -287,17 +290,10 @@ class _Passes:
             root, c = self.root[:, self.power], self.hertz[:, self.power]
             tangent[:, self.power] += 2.0 / 3.0 * c / root
             shift[:, self.power] = c * root**2 / 3.0
-        for k in self.table:
-            forces, compressions = self._points(k)
-            force, start, slope = piece(forces, compressions, forces, self.root[:, k] ** 3)
-            tangent[:, k], shift[:, k] = slope, start - slope * force
+        if len(self.table):
+            force, start, slope = piece(*self.points, self.root[:, self.table] ** 3)
+            tangent[:, self.table], shift[:, self.table] = slope, start - slope * force
         return tangent, shift
-
-    def _points(self, k: int) -> tuple[Array, Array]:
-        """Points of a tabulated law, (S or 1, points) each."""
-        mesh = self.data.tabulated[self.basis.columns[k]]
-        table = pick(self.data.tables, self.rows)[:, mesh]
-        return table[:, 0], table[:, 1]
 
     def _renew_laws(self) -> Array:
         """Take the next tangents at the compressions; return the laws' misfit, relative."""
@@ -320,11 +316,11 @@ class _Passes:
             self.root[:, self.power] = np.maximum(
                 np.where(touching, following, at.SHRINK * root), floor
             )
-        for k in self.table:
-            forces, compressions = self._points(k)
-            compression = self.compression[:, k]
-            force, start, slope = piece(compressions, forces, compressions, compression)
-            self.root[:, k] = np.cbrt(np.maximum(start + slope * (compression - force), 0.0))
+        if len(self.table):
+            compression = self.compression[:, self.table]
+            start, force, slope = piece(*self.points[::-1], compression)
+            force = force + slope * (compression - start)
+            self.root[:, self.table] = np.cbrt(np.maximum(force, 0.0))
         return misfit
 
     def _at_arcs(self) -> tuple[Array, Array]:
@@ -554,8 +550,12 @@ def solve(matrix: Array, sides: Array, size: int) -> Array:
     scale = np.where(scale > 0.0, scale, 1.0)
     normed, target = matrix / scale[:, None, None], sides / scale[:, None]
     solved: Array = np.zeros(sides.shape)
-    regular = np.linalg.slogdet(normed)[0] != 0.0
-    solved[regular] = np.linalg.solve(normed[regular], target[regular][:, :, None])[:, :, 0]
+    regular = np.ones(len(sides), dtype=bool)
+    try:
+        solved[:] = np.linalg.solve(normed, target[:, :, None])[:, :, 0]
+    except np.linalg.LinAlgError:
+        regular = np.linalg.slogdet(normed)[0] != 0.0
+        solved[regular] = np.linalg.solve(normed[regular], target[regular][:, :, None])[:, :, 0]
     residual = np.abs(times(normed, solved) - target).max(axis=1)
     regular &= residual <= at.REFINED * np.maximum(np.abs(solved).max(axis=1), 1e-300)
     if not regular.all():
@@ -598,13 +598,19 @@ def root_of(b: Array, c: Array, compression: Array) -> Array:
     return y
 
 
-def piece(axis: Array, values: Array, points: Array, where: Array) -> tuple[Array, Array, Array]:
-    """Start on the axis, start value and slope of the piece of a table that holds `where`."""
-    last = (~np.isnan(axis)).sum(axis=1) - 2
-    k = np.minimum(np.maximum((points <= where[:, None]).sum(axis=1) - 1, 0), last)
-    on_axis, among = (np.arange(len(k)) if len(v) > 1 else 0 for v in (axis, values))
-    x0, y0 = axis[on_axis, k], values[among, k]
-    return x0, y0, (values[among, k + 1] - y0) / (axis[on_axis, k + 1] - x0)
+def piece(axis: Array, values: Array, where: Array) -> tuple[Array, Array, Array]:
+    """Start on the axis, start value and slope of the pieces of tables that hold some places.
+
+    Parameters
+    ----------
+    axis, values : ndarray, shape (S or 1, tables, points)
+    where : ndarray, shape (S, tables)
+    """
+    last = (~np.isnan(axis)).sum(axis=2) - 2
+    k = np.minimum(np.maximum((axis <= where[:, :, None]).sum(axis=2) - 1, 0), last)
+    at = np.arange(len(k))[:, None] if len(axis) > 1 else 0, np.arange(k.shape[1])
+    x0, y0 = axis[(*at, k)], values[(*at, k)]
+    return x0, y0, (values[(*at, k + 1)] - y0) / (axis[(*at, k + 1)] - x0)
 
 
 def arc_at(data: Data, a: int, rows: Rows, x: Array) -> tuple[Array, Array]:
@@ -652,7 +658,6 @@ def block(
 ) -> _Block:
     """Tangent of a radial element at its current offset and force."""
     count = len(offset)
-    one = np.broadcast_to(np.eye(2), (count, 2, 2))
     radius, size = (np.sqrt((v * v).sum(axis=1)) for v in (offset, force))
     if place in (at.CORNER, at.WALL):
         along = direction(force, offset)
@@ -680,7 +685,7 @@ def block(
     # force makes immense would only drown all others.
     outer = np.minimum(outer, at.SOFTEST)
     dyad = along[:, :, None] * along[:, None, :]
-    compliance = inner[:, None, None] * dyad + outer[:, None, None] * (one - dyad)
+    compliance = inner[:, None, None] * dyad + outer[:, None, None] * (_BOTH - dyad)
     bound = law.bound if place == at.SLIP else None
     return _Block(columns, compliance, start[:, None] * along, along, bound)
 
