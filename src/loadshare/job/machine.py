@@ -19,7 +19,7 @@ from loadshare.scene.data import Data, data_of
 from loadshare.scene.elements import Elements, elements_of
 from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.hot import vectorised
-from loadshare.solver.hot.answer import equilibria
+from loadshare.solver.hot.answer import equilibria, pin
 from loadshare.solver.hot.determined import determined
 from loadshare.solver.hot.exchange import Codes, Engine, Found, exchange, first_sets
 from loadshare.solver.hot.proximal import search
@@ -274,6 +274,7 @@ class Machine:
         while True:
             found = self._search(data, state, found, left)
             searched |= left
+            pin(self.elements, data, state, found.code)
             answers, verdicts = self._judged(situations, state, tolerance, engine)
             left = found.solved & ~verdicts.passed & ~searched
             if not left.any():

@@ -7,8 +7,11 @@ from typing import NamedTuple, cast
 
 import numpy as np
 
+from loadshare.scene.data import Data
 from loadshare.scene.elements import Elements, wind_up
 from loadshare.scene.scene import Array
+from loadshare.solver.hot.exchange import Codes
+from loadshare.solver.hot.places import PINNED
 from loadshare.solver.hot.state import State
 from loadshare.train.equilibria import Equilibria, Names
 
@@ -47,6 +50,20 @@ def equilibria(elements: Elements, state: State, compiled: bool = False) -> Equi
         torque,
         support.reshape(count, gears, 2),
     )
+
+
+def pin(elements: Elements, data: Data, state: State, code: Codes) -> None:
+    """Put gears that are pinned to where their pins are, to the last digit.
+
+    A friction bound may be so far above the load that a slip by round-off is work that counts.
+    """
+    for j in range(code.shape[1] - elements.rows):
+        rows = np.flatnonzero(code[:, elements.rows + j] == PINNED)
+        first = elements.radial_column(j)
+        for column in (first, first + 1) if len(rows) else ():
+            (at,) = np.flatnonzero(elements.vectors[column])
+            pins = np.broadcast_to(data.gap[:, column], len(code))
+            state.x[rows, at] = pins[rows] / elements.vectors[column, at]
 
 
 def _pushes(force: Array, first: int, last: int, unit: float) -> Array:
