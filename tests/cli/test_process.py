@@ -7,7 +7,7 @@ import pytest
 
 HEAVY = (
     *("numpy", "scipy", "pint", "numba", "clarabel", "osqp", "cvxpy", "skfem"),
-    *("xarray", "pandas", "pyarrow", "distributed", "altair", "vl_convert"),
+    *("xarray", "pandas", "pyarrow", "distributed", "altair", "vl_convert", "loky"),
 )
 
 

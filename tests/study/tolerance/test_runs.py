@@ -119,9 +119,8 @@ def test_killed_and_resumed(reference, tmp_path):
         until(lambda: len(list(out.glob("part-*.parquet"))) >= 2, process)
     finally:
         process.send_signal(signal.SIGKILL)
-        # Workers end when their study is gone; one may still finish its part. The last of them
-        # closes the other end of this pipe.
-        assert process.stderr.read() == b""
+        # Workers end when their study is gone. The last of them closes the other end of this pipe.
+        assert b"Traceback" not in process.stderr.read()
         process.stderr.close()
         process.wait()
     kept = {file: file.stat().st_mtime_ns for file in out.glob("part-*.parquet")}
@@ -263,36 +262,40 @@ def test_a_folder_of_something_else_is_left_alone(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["mine.txt"]
 
 
-def test_a_worker_that_dies_is_replaced_once(reference, tmp_path, monkeypatch, processes):
-    """The first process of each worker is killed on its first part; the next one solves it."""
-    begun = []
-    begin = local._Worker._begin
+def test_a_worker_that_dies_is_replaced(reference, tmp_path, monkeypatch, processes):
+    """The process of the first part is killed; the next one solves it."""
+    solve, killed = local.solve_there, tmp_path / "killed"
 
-    def dying(self):
-        process = begin(self)
-        begun.append(process)
-        if len(begun) == 1:
-            process.kill()
-        return process
+    def dying(path, job, part):
+        if not killed.exists():
+            killed.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+        return solve(path, job, part)
 
-    monkeypatch.setattr(local._Worker, "_begin", dying)
+    monkeypatch.setattr(local, "solve_there", dying)
     found = run(tmp_path / "study", samples=4096, workers=1)
-    assert (found.samples, len(begun)) == (4096, 2)
+    assert killed.exists()
+    assert found.samples == 4096
     first = found.parts[0]
     assert parquet.read_table(first).equals(parquet.read_table(reference / first.name))
 
 
 def test_a_worker_that_dies_again_ends_the_study(tmp_path, monkeypatch, processes):
-    begin = local._Worker._begin
+    def dying(path, job, part):
+        os.kill(os.getpid(), signal.SIGKILL)
 
-    def dying(self):
-        process = begin(self)
-        process.kill()
-        return process
-
-    monkeypatch.setattr(local._Worker, "_begin", dying)
-    with pytest.raises(ls.LoadshareError, match="died 2 times"):
+    monkeypatch.setattr(local, "solve_there", dying)
+    with pytest.raises(ls.LoadshareError, match="part 0 of samples: its worker process died twice"):
         run(tmp_path / "study", samples=64, workers=2)
+
+
+def test_what_a_worker_cannot_write_is_told(tmp_path, processes):
+    out = tmp_path / "study"
+    (part,) = run(out, samples=64).parts
+    part.unlink()
+    part.mkdir()
+    with pytest.raises(ls.LoadshareError, match="part 0 of samples: IsADirectoryError"):
+        run(out, samples=64)
 
 
 def test_refused_samples_are_counted_and_told():

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from platformdirs import user_cache_path
 from tests.tooth.use.pairs import SPUR, written
 
 from loadshare.errors import CaseError
@@ -95,12 +96,4 @@ def test_a_cache_that_cannot_be_written_is_done_without(spur, tmp_path, monkeypa
 def test_where_the_cache_is(tmp_path, monkeypatch):
     assert cache.cache_folder() == tmp_path / "cache"
     monkeypatch.delenv("LOADSHARE_CACHE")
-    monkeypatch.setattr(cache.sys, "platform", "linux")
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    assert cache.cache_folder() == tmp_path / "loadshare"
-    monkeypatch.setattr(cache.sys, "platform", "win32")
-    monkeypatch.setenv("LOCALAPPDATA", str(tmp_path / "local"))
-    assert cache.cache_folder() == tmp_path / "local" / "loadshare"
-    monkeypatch.setattr(cache.sys, "platform", "darwin")
-    monkeypatch.setenv("HOME", str(tmp_path))
-    assert cache.cache_folder() == tmp_path / "Library" / "Caches" / "loadshare"
+    assert cache.cache_folder() == user_cache_path("loadshare", appauthor=False)

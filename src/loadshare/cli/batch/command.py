@@ -43,7 +43,9 @@ def batch(
     Writes one JSON file per case and a summary.json into DIR. A bad case stops no other. After an
     interruption the same command goes on.
     """
-    from loadshare.cli.batch.pool import outcomes, processors
+    from loky import cpu_count
+
+    from loadshare.cli.batch.pool import outcomes
 
     found = find_cases(cases)
     tasks = [
@@ -56,7 +58,7 @@ def batch(
     interrupted = False
     with progress("cases", len(tasks)) as tick:
         try:
-            for outcome in outcomes(tasks, min(jobs or processors(), len(tasks))):
+            for outcome in outcomes(tasks, min(jobs or cpu_count(), len(tasks))):
                 done[outcome.name] = outcome
                 if tick is not None:
                     tick(len(done), len(tasks))

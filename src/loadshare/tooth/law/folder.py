@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import hashlib
 import os
-import sys
 import tempfile
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
+
+from platformdirs import user_cache_path
 
 VARIABLE = "LOADSHARE_CACHE"
 """Environment variable that names another folder."""
@@ -21,15 +22,7 @@ VARIABLE = "LOADSHARE_CACHE"
 def cache_folder() -> Path:
     """Folder of the cache: ``$LOADSHARE_CACHE``, or ``loadshare`` among the user's caches."""
     told = os.environ.get(VARIABLE)
-    if told:
-        return Path(told).expanduser()
-    if sys.platform == "win32":
-        above = os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local"
-    elif sys.platform == "darwin":
-        above = Path.home() / "Library" / "Caches"
-    else:
-        above = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
-    return Path(above) / "loadshare"
+    return Path(told).expanduser() if told else user_cache_path("loadshare", appauthor=False)
 
 
 def key_of(*parts: str) -> str:
