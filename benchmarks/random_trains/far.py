@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
-from benchmarks.reference import Reference
+from benchmarks.random_trains.limit import TooLong, limited
+from benchmarks.reference import NoReference, Reference, reference
 from loadshare.train import Train
 from loadshare.train.gear import Vector
 
@@ -15,6 +17,10 @@ FAR = 1e-2
 NEGLECTED = 0.99
 """Approach that linear geometry misses, over the deflection, from which on it tells nothing; what
 refuses from 1 on has an estimate of it."""
+LIGHTER = (0.5, 0.1)
+"""Shares of the load that are looked at where there is no reference."""
+SECONDS = 20.0
+"""Processor time that a reference of a lighter load may take [s]."""
 
 
 def is_far(train: Train, index: int, exact: Reference) -> bool:
@@ -30,6 +36,25 @@ def is_far(train: Train, index: int, exact: Reference) -> bool:
     smallest = min(g.base_radius for g in train.gears.values())
     furthest = max((abs(float(v)) for p in exact.displacement.values() for v in p), default=0.0)
     return furthest > FAR * smallest or neglected(train, index, exact) >= NEGLECTED
+
+
+def is_far_before(train: Train, index: int) -> bool:
+    """Tell whether a part of the load displaces a train too far already.
+
+    Soft rings that give way let a gear roll along their arcs until nothing holds it any more: such
+    a train has no equilibrium under its load, nor a meaning of displacements long before.
+    """
+    for share in LIGHTER:
+        torque = tuple(share * t for t in train.input_torque)
+        external = {g: share * t for g, t in train.external.items()}
+        lighter = replace(train, input_torque=torque, external=external)
+        try:
+            with limited(SECONDS):
+                found = reference(lighter, index)
+        except (NoReference, ArithmeticError, TooLong):
+            continue
+        return is_far(lighter, index, found)
+    return False
 
 
 def neglected(train: Train, index: int, exact: Reference) -> float:

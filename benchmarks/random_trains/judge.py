@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import loadshare as ls
-from benchmarks.random_trains.far import is_far
+from benchmarks.random_trains.far import is_far, is_far_before
 from benchmarks.random_trains.limit import TooLong, limited
 from benchmarks.random_trains.play import play
 from benchmarks.reference import NoReference, Reference
@@ -50,8 +50,9 @@ class Finding:
     position : int
     outcome : str
         "agrees", "wrong", "unchecked" (certified, without reference), "refused" (has an answer),
-        "too far" (refused as its displacements have no meaning), "no answer" (refused, and known
-        to have none), "open" (refused, neither is known), "crashed".
+        "too far" (refused, and its displacements have no meaning, be it under a part of the load),
+        "no answer" (refused, and known to have none), "open" (refused, neither is known),
+        "crashed".
     told : str
         Refusal, exception, or why there is no reference.
     rung : str
@@ -124,18 +125,15 @@ def _compare(case: Case, train: Train, found: Position | None, told: str, findin
     machine, settled = _settled(case, train, found, finding)
     if found is None:
         finding.told = told
-        if BEYOND in told and (
-            machine is None
-            or settled is None
-            or is_far(train, finding.position, report(train, machine, settled))
-        ):
-            # Where there is no reference, it is believed.
+        if machine is not None and settled is not None:
+            far = is_far(train, finding.position, report(train, machine, settled))
+            finding.outcome = "too far" if BEYOND in told and far else "refused"
+        elif BEYOND in told:
             finding.outcome = "too far"
-            return
-        if machine is None or settled is None:
-            finding.outcome = "open" if solvable(train, finding.position) else "no answer"
+        elif not solvable(train, finding.position):
+            finding.outcome = "no answer"
         else:
-            finding.outcome = "refused"
+            finding.outcome = "too far" if is_far_before(train, finding.position) else "open"
         return
     finding.rung = found.effort.rung
     if machine is None or settled is None:

@@ -4,7 +4,7 @@ import pytest
 from tests.certify.test_validity import exact, pair
 
 from benchmarks.random_trains.draw import draw
-from benchmarks.random_trains.far import is_far, neglected
+from benchmarks.random_trains.far import is_far, is_far_before, neglected
 from benchmarks.reference import reference
 from loadshare.train import build_train
 
@@ -27,3 +27,9 @@ def test_only_flanks_with_a_force_are_far(number: int, far: bool) -> None:
     """Light loads: of one train a wedged planet is shifted, of the other one that is idle."""
     train = build_train(draw(1, number))
     assert is_far(train, 1, reference(train, 1)) == far
+
+
+def test_part_of_the_load_may_be_too_much_already() -> None:
+    """Soft rings give way, and the input rolls along an arc; of another train nothing moves far."""
+    assert is_far_before(build_train(draw(1, 1292)), 1)
+    assert not is_far_before(build_train(draw(1, 796)), 1)
