@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import multiprocessing
 import sys
@@ -10,6 +11,36 @@ from pathlib import Path
 from typing import Any
 
 Row = dict[str, Any]
+
+
+def parser(description: str, what: str, count: int, folder: str) -> argparse.ArgumentParser:
+    """Return a parser of what every run is asked: how many, from which on, and where to keep them.
+
+    Parameters
+    ----------
+    description : str
+    what : str
+        What is counted.
+    count : int
+        How many by default.
+    folder : str
+        Name of the folder in ``build`` by default.
+    """
+    found = argparse.ArgumentParser(
+        description=description, formatter_class=argparse.RawTextHelpFormatter
+    )
+    found.add_argument("--count", type=int, default=count, help=what)
+    found.add_argument("--first", type=int, default=0, help="number of the first one")
+    found.add_argument("--processes", type=int, default=1)
+    found.add_argument(
+        "--out", type=Path, default=Path("build") / folder, help="folder of what is found"
+    )
+    return found
+
+
+def numbers(asked: argparse.Namespace) -> range:
+    """Return the numbers that a run is asked for."""
+    return range(asked.first, asked.first + asked.count)
 
 
 def known(path: Path, of: Mapping[str, Any]) -> dict[int, Row]:

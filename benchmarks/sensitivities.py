@@ -12,7 +12,6 @@ of the sensitivities only their stated errors.
 
 from __future__ import annotations
 
-import argparse
 import math
 import traceback
 from collections import Counter
@@ -350,19 +349,12 @@ def text(rows: Sequence[dict[str, Any]]) -> str:
 
 def main() -> None:
     """Run it, and print what was found."""
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
-    )
-    parser.add_argument("--count", type=int, default=400, help="problems, each of some inputs")
-    parser.add_argument("--first", type=int, default=0, help="number of the first one")
+    what = "problems, each of some inputs"
+    parser = kept.parser(str(__doc__), what, 400, "sensitivities")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--processes", type=int, default=1)
-    parser.add_argument(
-        "--out", type=Path, default=Path("build/sensitivities"), help="folder of what is found"
-    )
     asked = parser.parse_args()
     rows = kept.run(
-        range(asked.first, asked.first + asked.count),
+        kept.numbers(asked),
         {"seed": asked.seed},
         asked.out / "verdicts.jsonl",
         partial(one, asked.seed),

@@ -10,9 +10,7 @@ be stopped at any time; the same command goes on where it was.
 
 from __future__ import annotations
 
-import argparse
 from functools import partial
-from pathlib import Path
 
 from benchmarks import kept
 from benchmarks.critical_paths.judge import one
@@ -21,18 +19,12 @@ from benchmarks.critical_paths.table import text
 
 def main() -> None:
     """Judge many paths and print a Markdown table."""
-    parser = argparse.ArgumentParser(description="Critical values against dense scans.")
-    parser.add_argument("--count", type=int, default=500)
-    parser.add_argument("--first", type=int, default=0, help="number of the first one")
-    parser.add_argument("--points", type=int, default=100_000)
+    parser = kept.parser("Critical values against dense scans.", "paths", 500, "critical_paths")
+    parser.add_argument("--points", type=int, default=100_000, help="of a scan")
     parser.add_argument("--engine", default="compiled")
-    parser.add_argument("--processes", type=int, default=1)
-    parser.add_argument(
-        "--out", type=Path, default=Path("build/critical_paths"), help="folder of what is found"
-    )
     asked = parser.parse_args()
     rows = kept.run(
-        range(asked.first, asked.first + asked.count),
+        kept.numbers(asked),
         {"points": asked.points, "engine": asked.engine},
         asked.out / "verdicts.jsonl",
         partial(one, asked.points, asked.engine),

@@ -16,8 +16,11 @@ from benchmarks.critical_paths.compare import apart, between, compared
 from benchmarks.critical_paths.draw import Path, random_path, text
 from benchmarks.critical_paths.scan import scanned
 from loadshare.errors import Refused
+from loadshare.study.critical import Critical
 from loadshare.study.follow.line import Line
 
+Array = NDArray[np.float64]
+States = NDArray[np.str_]
 EVERY = 3
 """Each how many-th path is followed to another end as well."""
 
@@ -30,8 +33,8 @@ class Outcome:
     ----------
     keys, unit, start, stop
         The path's own.
-    seconds : float
-        Processor time of finding its events.
+    seconds, scanning : float
+        Processor time of finding its events, and of the scan.
     events, unproved, unconfirmed : int
         How many there are.
     width : float
@@ -51,6 +54,7 @@ class Outcome:
     start: float
     stop: float
     seconds: float = 0.0
+    scanning: float = 0.0
     events: int = 0
     unproved: int = 0
     width: float = 0.0
@@ -66,18 +70,14 @@ class Outcome:
 def judged(path: Path, points: int, engine: str) -> Outcome:
     """Find a path's events, and compare them with a scan and with a path of another end."""
     outcome = Outcome(path.keys, path.unit, path.start, path.stop)
-    ends = [text(v, path.unit) for v in (path.start, path.stop, path.other)]
     try:
         begun = time.process_time()
-        found = ls.critical(path.case, path.keys, ends[0], ends[1], positions=[1])
+        found = followed(path, path.stop)
         outcome.seconds = time.process_time() - begun
-        again = found
-        if path.number % EVERY == 0:
-            again = ls.critical(path.case, path.keys, ends[0], ends[2], positions=[1])
-        line = Line(path.case, found.parameter, path.start, path.stop)
-        count = min(points, 1000) if path.machines else points
-        values = np.union1d(np.linspace(path.start, path.stop, count), between(found))
-        seen = scanned(path, line, values, engine)
+        again = followed(path, path.other) if path.number % EVERY == 0 else found
+        begun = time.process_time()
+        values, seen = shown(path, found, min(points, 1000) if path.machines else points, engine)
+        outcome.scanning = time.process_time() - begun
         outcome.asked = _answered(seen, len(values))
     except Refused as refusal:
         outcome.refused = str(refusal).splitlines()[0]
@@ -94,7 +94,20 @@ def judged(path: Path, points: int, engine: str) -> Outcome:
     return outcome
 
 
-def _answered(seen: Mapping[str, NDArray[np.str_]], count: int) -> int:
+def followed(path: Path, stop: float) -> Critical:
+    """Find a path's events up to an end."""
+    ends = [text(v, path.unit) for v in (path.start, stop)]
+    return ls.critical(path.case, path.keys, *ends, positions=[1])
+
+
+def shown(path: Path, found: Critical, points: int, engine: str) -> tuple[Array, dict[str, States]]:
+    """Scan a path at so many values, and between its events: the values, and states there."""
+    line = Line(path.case, found.parameter, path.start, path.stop)
+    values = np.union1d(np.linspace(path.start, path.stop, points), between(found))
+    return values, scanned(path, line, values, engine)
+
+
+def _answered(seen: Mapping[str, States], count: int) -> int:
     """Samples of which any state is told."""
     told = np.zeros(count, dtype=bool)
     for states in seen.values():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
@@ -10,13 +11,12 @@ from numpy.typing import NDArray
 from benchmarks.critical_paths.draw import Path
 from loadshare.certify.bound import Bounds
 from loadshare.certify.certificate import TOLERANCE
-from loadshare.certify.many import Judge, Verdicts
-from loadshare.certify.mechanics import judged
+from loadshare.certify.many import Judge
 from loadshare.job.machine import Machine, engine_named
 from loadshare.job.many import solve_blocks
 from loadshare.scene.data import Data
 from loadshare.solver.hot import places as at
-from loadshare.solver.hot.exchange import Found, exchange
+from loadshare.solver.hot.exchange import Codes, Engine, Found, exchange
 from loadshare.solver.hot.state import State
 from loadshare.study.follow.line import Line
 from loadshare.train.equilibria import Equilibria
@@ -25,12 +25,15 @@ from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 BAND = 1e-8
 """Force over load, or radius over deflection, within which a state is not told by a scan."""
 BLOCK = 8192
 """Samples solved together."""
 ASKED = 20
 """Samples of a block at most that climb the ladder where the hot path has no answer."""
+SPACING = 32
+"""Of so many samples one is solved first, for the others to begin at."""
 FEW, ROUNDS = 8, 6
 """Samples searched at a time for others to begin at, and how many times."""
 
@@ -90,19 +93,11 @@ def _spline_state(law: at.Graph, radius: Array, force: Array) -> Array:
 class Balance(Judge):
     """A judge of balance alone: states do not hang on bounds, which take ten times as long."""
 
-    def judge(
-        self,
-        situations: Situations,
-        answers: Equilibria,
-        tolerance: float = TOLERANCE,
-        compiled: bool = False,
-    ) -> Verdicts:
-        """Judge S claimed equilibria, whatever their bounds."""
-        unasked = Bounds(self.columns, np.zeros(len(answers.rotation)), None, None, None)
-        if not compiled:
-            return self._together(situations, answers, tolerance, unasked)
-        residuals, load, deflection = judged(self._mechanics, situations, answers)
-        return Verdicts(residuals, tolerance, load, deflection, unasked)
+    def bounds(
+        self, situations: Situations, answers: Equilibria, wanted: Flags | None = None
+    ) -> Bounds:
+        """Bound nothing."""
+        return Bounds(self.columns, np.zeros(len(answers.rotation)), None, None, None)
 
 
 class Scan(Machine):
@@ -117,28 +112,45 @@ class Scan(Machine):
         """Its certificate."""
         return Balance(self.train)
 
-    def _search(self, data: Data, state: State, found: Found, rows: NDArray[np.bool_]) -> Found:
+    def _pilots(
+        self, parts: Sequence[slice], data: Data, state: State, code: Codes, engine: Engine
+    ) -> Found:
+        """Solve every how many-th sample; those in between begin where it stands."""
+        pilots = _only(np.arange(0, data.count, SPACING), np.zeros(data.count, dtype=bool))
+        found = exchange(self.elements, data, state, engine, code, only=pilots)
+        found = self._search(data, state, found, pilots & ~found.solved)
+        self._begin_beside(found, state, code, np.flatnonzero(~found.solved))
+        return found
+
+    def _search(self, data: Data, state: State, found: Found, rows: Flags) -> Found:
         """Search a few at a time, and begin with the others where their neighbours stand."""
         left = np.flatnonzero(rows)
         for _ in range(ROUNDS):
             found = super()._search(data, state, found, _only(_thinned(left, FEW), rows))
             left = left[~found.solved[left]]
-            known = np.flatnonzero(found.solved)
-            if not len(left) or not len(known):
+            if not len(left) or not found.solved.any():
                 break
-            near = known[np.clip(np.searchsorted(known, left), 0, len(known) - 1)]
-            for array in (state.x, state.force, state.root, state.floor, state.stays):
-                array[left] = array[near]
             code = found.code.copy()
-            code[left] = code[near]
+            self._begin_beside(found, state, code, left)
             engine, only = engine_named(self.engine, data.count), _only(left, rows)
             more = exchange(self.elements, data, state, engine, code, only=only)
             found = found.completed(more)
             left = left[~found.solved[left]]
         return found
 
+    def _begin_beside(
+        self, found: Found, state: State, code: Codes, left: NDArray[np.intp]
+    ) -> None:
+        """Let samples begin where the next ones stand that are solved."""
+        known = np.flatnonzero(found.solved)
+        if len(known):
+            near = known[np.clip(np.searchsorted(known, left), 0, len(known) - 1)]
+            for array in (state.x, state.force, state.root, state.floor, state.stays):
+                array[left] = array[near]
+            code[left] = found.code[near]
 
-def _only(rows: NDArray[np.intp], of: NDArray[np.bool_]) -> NDArray[np.bool_]:
+
+def _only(rows: NDArray[np.intp], of: Flags) -> Flags:
     some = np.zeros_like(of)
     some[rows] = True
     return some

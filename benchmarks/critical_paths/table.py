@@ -31,6 +31,7 @@ def summary(every: Sequence[Row]) -> str:
     """Return a Markdown table of many paths."""
     answered = [o for o in every if not o["refused"] and not o["raised"]]
     seconds = np.array([o["seconds"] for o in answered] or [0.0])
+    scans = [o["scanning"] for o in answered] or [0.0]
     rows = [
         ("paths", str(len(every))),
         ("refused at an end", str(sum(bool(o["refused"]) for o in every))),
@@ -44,6 +45,8 @@ def summary(every: Sequence[Row]) -> str:
         ("events not confirmed", str(sum(o["unconfirmed"] for o in answered))),
         ("median processor time of a path [s]", f"{np.median(seconds):.2f}"),
         ("longest [s]", f"{seconds.max():.1f}"),
+        ("mean [s]", f"{seconds.mean():.2f}"),
+        ("mean processor time of a scan [s]", f"{np.mean(scans):.2f}"),
     ]
     rows += list(facts().items())
     return "\n".join(["| | |", "|---|---|", *(f"| {name} | {value} |" for name, value in rows)])

@@ -7,26 +7,19 @@ command goes on where it was. Tables are over all trains of the seed that are on
 
 from __future__ import annotations
 
-import argparse
-from pathlib import Path
-
+from benchmarks import kept
 from benchmarks.random_trains.run import PROBLEMS, STRESS, run, write_failures
 from benchmarks.random_trains.table import text
 
 
 def main() -> None:
     """Draw, judge, tell."""
-    parser = argparse.ArgumentParser(description="Random trains against the 50-digit reference.")
-    parser.add_argument("--count", type=int, default=5000, help="trains")
-    parser.add_argument("--first", type=int, default=0, help="number of the first one")
+    about = "Random trains against the 50-digit reference."
+    parser = kept.parser(about, "trains", 5000, "random_trains")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--stress", action="store_true", help="the stability map's problems, all")
-    parser.add_argument("--processes", type=int, default=1)
-    parser.add_argument(
-        "--out", type=Path, default=Path("build/random_trains"), help="folder of what is found"
-    )
     asked = parser.parse_args()
-    numbers = range(asked.first, asked.first + asked.count)
+    numbers = kept.numbers(asked)
     seed = asked.seed
     if asked.stress:
         seed, numbers = STRESS, range(PROBLEMS)

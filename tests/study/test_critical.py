@@ -7,10 +7,9 @@ import pytest
 from tests.support import coasting, lost_contact, round_ring, shipped
 
 import loadshare as ls
-from benchmarks.critical_paths.compare import between, compared
+from benchmarks.critical_paths.compare import compared
 from benchmarks.critical_paths.draw import random_path
-from benchmarks.critical_paths.judge import Outcome, judged
-from benchmarks.critical_paths.scan import scanned
+from benchmarks.critical_paths.judge import Outcome, followed, judged, shown
 from benchmarks.critical_paths.table import text
 from loadshare.case import families
 from loadshare.scene import assemble
@@ -333,12 +332,9 @@ def test_more_random_paths_agree_with_a_scan(number):
 def test_a_scan_shows_what_events_leave_out():
     """The comparison itself: without one of the events, or with one too many, it complains."""
     path = random_path(6)
-    ends = [f"{v!r} {path.unit}" for v in (path.start, path.stop)]
-    found = ls.critical(path.case, path.keys, *ends, positions=[1])
+    found = followed(path, path.stop)
     assert found.events
-    line = Line(path.case, found.parameter, path.start, path.stop)
-    values = np.union1d(np.linspace(path.start, path.stop, 400), between(found))
-    seen = scanned(path, line, values, "vectorised")
+    values, seen = shown(path, found, 400, "vectorised")
     assert compared(found, values, seen) == ([], [])
     fewer = replace(found, events=found.events[1:])
     assert compared(fewer, values, seen)[0]

@@ -22,6 +22,7 @@ from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 TOGETHER = 2048
 """Answers judged together: as many as a processor's own memory holds."""
@@ -133,9 +134,9 @@ class Judge:
             residuals, load, deflection = judged(self._mechanics, situations, answers)
             # What is out of balance is refused in any case.
             wanted = residuals.max(axis=1) <= tolerance
-            limits = bounds(self.columns, situations, answers, compiled=True, wanted=wanted)
+            limits = self.bounds(situations, answers, wanted)
             return Verdicts(residuals, tolerance, load, deflection, limits)
-        limits = bounds(self.columns, situations, answers)
+        limits = self.bounds(situations, answers)
         count = len(answers.rotation)
         if count <= TOGETHER:
             return self._together(situations, answers, tolerance, limits)
@@ -144,6 +145,21 @@ class Judge:
             [self._together(situations.take(p), answers.part(p), tolerance, limits) for p in parts],
             limits,
         )
+
+    def bounds(
+        self, situations: Situations, answers: Equilibria, wanted: Flags | None = None
+    ) -> Bounds:
+        """Bound the errors of S claimed equilibria.
+
+        Parameters
+        ----------
+        situations : Situations
+        answers : Equilibria
+        wanted : ndarray of bool, shape (S,), optional
+            Claims that are worth every effort; with it, bounds are found by Numba.
+        """
+        compiled = wanted is not None
+        return bounds(self.columns, situations, answers, compiled=compiled, wanted=wanted)
 
     def _together(
         self, situations: Situations, answers: Equilibria, tolerance: float, limits: Bounds
