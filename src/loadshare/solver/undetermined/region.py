@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -204,18 +204,23 @@ def _pushed(reached: Array, pulled: Array) -> float:
 def _proposed(region: Region, curvature: float, slope: Array) -> tuple[Array, Array, Array] | None:
     """Answer of an interior-point method: point, pushes of half-planes, pushes of discs."""
     import clarabel
-    from scipy.sparse import csc_matrix
 
     d, k = region.size, len(region.bounds)
     if not k and not region.discs:
         return None if slope.any() else (np.zeros(d), np.zeros(0), np.zeros(0))
-    bends = csc_matrix(curvature * np.eye(d)) if curvature else csc_matrix((d, d))
-    rows, bounds, cones, settings = region.cones
-    answer = clarabel.DefaultSolver(bends, slope, rows, bounds, cones, settings).solve()
+    bends, cones = _bends(curvature, d), region.cones
+    answer = clarabel.DefaultSolver(bends, slope, *cones).solve()
     if "DualInfeasible" in str(answer.status):
         return None
     dual = np.array(answer.z)
     return np.array(answer.x), dual[:k], dual[k::3]
+
+
+@cache
+def _bends(curvature: float, size: int) -> Any:
+    from scipy.sparse import csc_matrix
+
+    return csc_matrix(curvature * np.eye(size))
 
 
 def stacked(rows: Iterable[Array], size: int) -> Array:
