@@ -11,6 +11,7 @@ import pytest
 from tests.support import answer, disagreement, furthest, lost_contact, round_ring, shipped
 
 import loadshare as ls
+from benchmarks.random_trains.draw import draw
 from loadshare.certify import certify
 from loadshare.certify.certificate import TOLERANCE
 from loadshare.certify.state import State, turned
@@ -380,3 +381,11 @@ def test_the_rungs_after_the_hot_path_give_up_after_so_many_steps():
     with pytest.raises(Refused, match="in the steps allowed"):
         climb(train, 1, Options(), TOLERANCE, steps=1)
     assert climb(train, 1, Options(), TOLERANCE, steps=STEPS).certificate.passed
+
+
+def test_a_refusal_tells_of_a_part_of_the_load_that_is_too_much_already():
+    """Soft rings give way until the input rolls off its arc: half the load turns it far."""
+    with pytest.raises(ls.Refused, match="large for the geometry already") as told:
+        ls.solve(draw(1, 1292))
+    assert "under 50% of the load" in str(told.value)
+    assert "line of action turned" in str(told.value)

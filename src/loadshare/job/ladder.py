@@ -17,7 +17,7 @@ import numpy as np
 from loadshare.certify import Certificate, certify
 from loadshare.certify.bound import Bound, bound_of
 from loadshare.certify.certificate import certify_later
-from loadshare.certify.validity import Validity, refusal_told, validity
+from loadshare.certify.validity import TOLD, Validity, refusal_told, validity
 from loadshare.errors import Refused
 from loadshare.job.least import least_places
 from loadshare.job.machine import Answers, Machine, engine_at_hand
@@ -40,6 +40,8 @@ PLAINLY = 1e-6
 STEPS = 20_000
 """Newton steps in which the rungs after the hot path answer or give up: some ten seconds, and twice
 what ever led to an answer that neither exchange nor search had found."""
+LIGHTER = (0.5, 0.1)
+"""Shares of the load that are looked at where arcs may have lost their hold under all of it."""
 AUTO = "auto"
 """Instead of a back-end's name: the hot path, and Clarabel for what it leaves."""
 
@@ -248,7 +250,9 @@ def climb(
         if not options.polish:
             break
     _refuse_if_none(scene)
-    raise first or Refused(f"position {index}: nothing was tried")
+    raise _far_before(
+        train, index, tolerance, first or Refused(f"position {index}: nothing was tried")
+    )
 
 
 def _refuse_if_none(scene: Scene, overlap: float = OVERLAP) -> None:
@@ -268,6 +272,29 @@ def _refuse_if_none(scene: Scene, overlap: float = OVERLAP) -> None:
             f"{here} nothing balances the load on {moves[0]}: no contact, support or limit holds "
             f"it{also}"
         )
+
+
+def _far_before(train: Train, index: int, tolerance: float, refusal: Refused) -> Refused:
+    """Add to a refusal what a part of the load displaces too far for the geometry already.
+
+    Only arcs can lose their hold on a gear that rolls along them: without, the problem is convex.
+    """
+    for share in LIGHTER if train.drums and train.slip is None else ():
+        torque = tuple(share * t for t in train.input_torque)
+        external = {g: share * t for g, t in train.external.items()}
+        lighter = Machine(replace(train, input_torque=torque, external=external))
+        for answer in hot_answers(lighter, [index], tolerance).values():
+            told = "; ".join(
+                f"{TOLD[name]} {m.value:.3g} at {m.where} (told of above {m.warning:.3g})"
+                for name, m in answer.validity.warned.items()
+            )
+            if told:
+                return Refused(
+                    f"{refusal}; under {share:.0%} of the load displacements are large for the "
+                    f"geometry already: {told}; check the load and the stiffnesses",
+                    refusal.figures,
+                )
+    return refusal
 
 
 def displaced(answer: Answer) -> Refused | None:
