@@ -9,7 +9,9 @@ import pytest
 import loadshare as ls
 from benchmarks.reference import reference
 from loadshare.certify.bound import bound_of
+from loadshare.job.ladder import climb
 from loadshare.job.machine import Machine, engine_named
+from loadshare.solver import Options
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium
 
@@ -121,3 +123,24 @@ def test_bound_on_friction_covers_what_follows(friction: float) -> None:
     pull = reference(train, 1).pull["spline a"]
     apart = claim.radial_reaction["spline a"][:2] - pull
     assert 0.0 < math.hypot(*apart) <= bound_of(train, claim).force["spline a"]
+
+
+@pytest.mark.parametrize("friction", [0.02, 0.3])
+@pytest.mark.parametrize("slip", [(0.0, -8e-6, 0.0), (3e-6, 5e-6, 0.0)])
+@pytest.mark.parametrize("off", [1e-9, 1e-7])
+def test_room_of_a_slip_that_is_remembered_shrinks_with_the_torque(
+    friction: float, slip: tuple[float, ...], off: float
+) -> None:
+    """With memory, against an answer that is itself known to its bound."""
+    before = {"a": np.array(slip)}
+    train = two_shafts(friction).remembering(before)
+    other = two_shafts(friction, f"{1000.0 * (1.0 + off)!r} N*m").remembering(before)
+    right, claim = (climb(t, 1, Options(), 1e-9).equilibrium for t in (train, other))
+    known, bound = bound_of(train, right), bound_of(train, claim)
+    for name, mesh in train.meshes.items():
+        flank, radius = mesh.flank_name(True), mesh.radii[0]
+        error = abs(claim.flank_force[flank] - right.flank_force[flank]) * radius
+        assert error <= bound.torque[name] + known.torque[name]
+    for name, pull in right.radial_reaction.items():
+        error = math.hypot(*(claim.radial_reaction[name] - pull)[:2])
+        assert error <= bound.force[name] + known.force[name]
