@@ -71,7 +71,7 @@ def run(
     judge: Callable[[int], Row],
     *,
     processes: int = 1,
-    warm: Callable[[], None] = lambda: None,
+    warm: Callable[[], object] = lambda: None,
     tell: Callable[[int, int], None] | None = None,
 ) -> list[Row]:
     """Judge problems and keep every verdict as a line of a file.
@@ -126,7 +126,7 @@ class _Judge:
 
 
 def _each(
-    judge: Callable[[int], Row], numbers: list[int], processes: int, warm: Callable[[], None]
+    judge: Callable[[int], Row], numbers: list[int], processes: int, warm: Callable[[], object]
 ) -> Iterator[tuple[int, Row]]:
     if processes == 1:
         if numbers:

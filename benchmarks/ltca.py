@@ -1,6 +1,6 @@
 """Loaded tooth contact analysis: time and agreement, as Markdown tables.
 
-Run with ``python benchmarks/ltca.py``. First both models of the teeth on the shipped pairs and on
+Run with ``python -m benchmarks.ltca``. First both models of the teeth on the shipped pairs and on
 that of ISO/TR 6336-30, example 1, at five positions of the mesh cycle and three loads; then the
 contact programme against other methods. Times are processor times, the least of several runs, so
 that no model pays for what is imported and set up once.
@@ -86,6 +86,13 @@ def gears() -> HelicoidPair:
     return HelicoidPair(pinion, wheel, 0.5)
 
 
+def on_half_planes(gears: PairGeometry) -> PairCompliance:
+    """Compliances by slices whose bodies are rigid."""
+    driver = Slices(gears.driver, 1, rigid_body=True)
+    driven = Slices(gears.driven, gears.driven_side, rigid_body=True)
+    return PairCompliance(driver, driven, "slices")
+
+
 def compare_models() -> None:
     """Time and error of the slices against finite elements, for every pair."""
     pairs: dict[str, tuple[PairGeometry, float]] = {}
@@ -101,21 +108,25 @@ def compare_models() -> None:
     )  # fmt: skip
 
 
+def renewed(pair: PairGeometry) -> PairGeometry:
+    """The pair anew, so that nothing is kept from run to run."""
+    made: PairGeometry = replace(pair)  # type: ignore[type-var]
+    return made
+
+
 def model_row(pair: PairGeometry, torque: float) -> list[str]:
     """Times and errors of one pair."""
 
     def whole(compliance: PairCompliance | Model) -> Array:
-        # A pair that is new, so that nothing is kept from run to run.
-        return ltca(replace(pair), torque, POSITIONS, FIT_LOADS, compliance).secant(0.9)
+        return ltca(renewed(pair), torque, POSITIONS, FIT_LOADS, compliance).secant(0.9)
 
-    exact, build = CLOCK.timed(lambda: pair_compliance(replace(pair)), 3)
-    _, short = CLOCK.timed(lambda: pair_compliance(replace(pair), "slices"), 40)
+    exact, build = CLOCK.timed(lambda: pair_compliance(renewed(pair)), 3)
+    _, short = CLOCK.timed(lambda: pair_compliance(renewed(pair), "slices"), 40)
     wanted, rest = CLOCK.timed(lambda: whole(exact), 5)
     found, quick = CLOCK.timed(lambda: whole("slices"), 40)
-    finer = ltca(pair, torque, POSITIONS, FIT_LOADS, "slices", POINTS["finite elements"])
-    finer = finer.secant(0.9)
-    sides = ((pair.driver, 1), (pair.driven, pair.driven_side))
-    plane = PairCompliance(*(Slices(*side, rigid_body=True) for side in sides), "slices")
+    points = POINTS["finite elements"]
+    finer = ltca(pair, torque, POSITIONS, FIT_LOADS, "slices", points).secant(0.9)
+    plane = on_half_planes(pair)
     return [
         f"{build:.2f}", f"{1e3 * short:.1f}", f"{build / short:.0f}",
         f"{build + rest:.2f}", f"{1e3 * quick:.0f}", f"{(build + rest) / quick:.0f}",

@@ -1,6 +1,6 @@
 """Chart of both models of the teeth, time against accuracy.
 
-Run with ``python benchmarks/ltca_chart.py docs/pictures/ltca_models.svg``. Whole analyses of the
+Run with ``python -m benchmarks.ltca_chart docs/pictures/ltca_models.svg``. Whole analyses of the
 shipped pairs, five positions and three loads, by finite elements of three refinements, by slices on
 the gear's body and by slices on half-planes. The error is that of the mean stiffness against the
 limit of refinement, K₀ of K(h) = K₀ + c hᵖ through the three.
@@ -9,19 +9,20 @@ limit of refinement, K₀ of K(h) = K₀ + c hᵖ through the three.
 from __future__ import annotations
 
 import sys
+from functools import partial
 from itertools import pairwise
+from typing import Any
 
 import altair as alt
-from ltca import CLOCK, PAIRS, POSITIONS
-from ltca_evidence import refined, table
 from scipy.optimize import brentq
 
+from benchmarks.ltca import CLOCK, PAIRS, POSITIONS, on_half_planes, table
+from benchmarks.ltca_evidence import refined
 from loadshare.report.figure import Figure
 from loadshare.report.palette import COLOURS
 from loadshare.tooth.analysis.fit import FIT_LOADS
-from loadshare.tooth.analysis.ltca import PairCompliance, ltca
+from loadshare.tooth.analysis.ltca import PairCompliance, ltca, pair_compliance
 from loadshare.tooth.compliance.finite import FiniteElements
-from loadshare.tooth.compliance.slices import Slices
 from loadshare.tooth.pair.file import load_pair
 
 LEVELS = (1, 2, 3)
@@ -34,25 +35,24 @@ def measured(name: str) -> dict[str, tuple[float, float]]:
     """Time [s] and mean stiffness [N·m/rad] of every model on a shipped pair."""
     pair = load_pair(PAIRS / f"{name}.toml")
     gears = pair.geometry
-    sides = ((gears.driver, 1), (gears.driven, gears.driven_side))
 
     def compliance(model: str) -> PairCompliance:
-        if model.startswith("elements"):
-            mesh = refined(int(model[-1]), LAYERS[name])
-            made = (FiniteElements(*side, teeth=3, divisions=mesh) for side in sides)
-        else:
-            made = (Slices(*side, rigid_body="half-planes" in model) for side in sides)
-        kind = "finite elements" if model.startswith("elements") else "slices"
-        return PairCompliance(*made, kind)
+        if not model.startswith("elements"):
+            on_body = "half-planes" not in model
+            return pair_compliance(gears, "slices") if on_body else on_half_planes(gears)
+        mesh = refined(int(model[-1]), LAYERS[name])
+        driver = FiniteElements(gears.driver, 1, teeth=3, divisions=mesh)
+        driven = FiniteElements(gears.driven, gears.driven_side, teeth=3, divisions=mesh)
+        return PairCompliance(driver, driven, "finite elements")
+
+    def mean_of(model: str) -> float:
+        analysis = ltca(gears, pair.torque, POSITIONS, FIT_LOADS, compliance(model))
+        return float(analysis.secant(0.9).mean())
 
     found = {}
     for model in MODELS:
-        mean, spent = CLOCK.timed(
-            lambda model=model: float(
-                ltca(gears, pair.torque, POSITIONS, FIT_LOADS, compliance(model)).secant(0.9).mean()
-            ),
-            2 if model.startswith("elements") else 40,
-        )
+        repeat = 2 if model.startswith("elements") else 40
+        mean, spent = CLOCK.timed(partial(mean_of, model), repeat)
         found[model] = spent, mean
     return found
 
@@ -62,15 +62,15 @@ def limit(stiffness: list[float]) -> float:
     first, second = (a - b for a, b in pairwise(stiffness))
 
     def misfit(p: float) -> float:
-        return (1.0 - 2.0**-p) * second - (2.0**-p - 3.0**-p) * first
+        return float((1.0 - 2.0**-p) * second - (2.0**-p - 3.0**-p) * first)
 
     order = brentq(misfit, 0.1, 8.0)
-    return stiffness[0] - first / (1.0 - 2.0**-order)
+    return float(stiffness[0] - first / (1.0 - 2.0**-order))
 
 
 def main() -> None:
     """Measure, print the figures and write the chart."""
-    rows = []
+    rows: list[dict[str, Any]] = []
     for name in LAYERS:
         found = measured(name)
         exact = limit([found[model][1] for model in MODELS[: len(LEVELS)]])
@@ -85,9 +85,9 @@ def main() -> None:
     Figure("ltca_models", chart(rows)).save(sys.argv[1])
 
 
-def chart(rows: list[dict[str, str | float]]) -> alt.TopLevelMixin:
+def chart(rows: list[dict[str, Any]]) -> Any:
     """Errors over times, both logarithmic; refinements of the elements joined."""
-    data = alt.Data(values=[row | {"%": abs(row["%"])} for row in rows])
+    data = alt.InlineData(values=[row | {"%": abs(row["%"])} for row in rows])
     families = ["finite elements", "slices", "slices on half-planes"]
     seconds, percents = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0), (0.3, 1.0, 3.0, 10.0, 30.0)
     base = alt.Chart(data).encode(
@@ -112,5 +112,5 @@ def chart(rows: list[dict[str, str | float]]) -> alt.TopLevelMixin:
 
 if __name__ == "__main__":
     if len(sys.argv) != 2:
-        sys.exit("usage: python benchmarks/ltca_chart.py PICTURE.svg")
+        sys.exit("usage: python -m benchmarks.ltca_chart PICTURE.svg")
     main()

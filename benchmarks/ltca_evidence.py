@@ -1,6 +1,6 @@
 """Loaded tooth contact analysis against published figures and its own refinement, as Markdown.
 
-Run with ``python benchmarks/ltca_evidence.py`` in the repository. It measures what the page on
+Run with ``python -m benchmarks.ltca_evidence`` in the repository. It measures what the page on
 loaded tooth contact states: ISO/TR 6336-30, example 1; refinement of elements and of contact
 points; the stiffness ranges of the seed paper. Times are in ``benchmarks/ltca.py``.
 """
@@ -11,24 +11,24 @@ import math
 import sys
 from collections.abc import Iterable
 from dataclasses import replace
-from pathlib import Path
-from typing import TypeVar
 
-import numpy as np
-
+from benchmarks.ltca import PAIRS, on_half_planes, table
 from loadshare.tooth.analysis.fit import FIT_LOADS
-from loadshare.tooth.analysis.ltca import PairCompliance, contact_problem, ltca, pair_compliance
+from loadshare.tooth.analysis.ltca import (
+    Model,
+    PairCompliance,
+    contact_problem,
+    ltca,
+    pair_compliance,
+)
 from loadshare.tooth.compliance.block import Divisions
 from loadshare.tooth.compliance.finite import FiniteElements
-from loadshare.tooth.compliance.slices import Slices
 from loadshare.tooth.contact.programme import solve_contact
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.cylindrical.pair import HelicoidPair
 from loadshare.tooth.law.iso6336 import formula_stiffness
 from loadshare.tooth.pair.file import PairFile, load_pair
 
-T = TypeVar("T")
-PAIRS = Path(__file__).parents[1] / "cases/pairs"
 PAPER = {"p12": (7.46e5, 9.27e5), "p46": (3.77e6, 4.78e6), "p610": (6.17e6, 6.68e6)}
 """Ranges of the seed's Fig. 7 [N·m/rad at the driver]."""
 HELIX = math.radians(15.8)
@@ -42,44 +42,32 @@ def say(text: str = "") -> None:
     sys.stdout.flush()
 
 
-def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> None:
-    """Print a Markdown table."""
-    lines = [list(head), *map(list, rows)]
-    lines.insert(1, ["---"] * len(lines[0]))
-    say("\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n")
-
-
 def iso_pair(bore: float | None = None) -> HelicoidPair:
     """ISO/TR 6336-30, example 1, its wheel solid to a bore radius [m]."""
-    common = {"module": 8e-3, "face_width": 0.1, "dedendum": 1.4}
-    pinion = HelicoidGear(teeth=17, helix_angle=HELIX, profile_shift=0.145, **common)
-    wheel = HelicoidGear(teeth=103, helix_angle=-HELIX, rim=bore, **common)
+    pinion = HelicoidGear(8e-3, 17, 0.1, helix_angle=HELIX, profile_shift=0.145, dedendum=1.4)
+    wheel = HelicoidGear(8e-3, 103, 0.1, helix_angle=-HELIX, dedendum=1.4, rim=bore)
     return HelicoidPair(pinion, wheel, 0.5)
 
 
-def compliances(gears: HelicoidPair, model: str) -> PairCompliance:
-    """Compliances from finite elements, from slices, or from slices on half-planes."""
-    if model != "half-planes":
-        return pair_compliance(gears, model)
-    sides = ((gears.driver, 1), (gears.driven, gears.driven_side))
-    return PairCompliance(*(Slices(*side, rigid_body=True) for side in sides), "slices")
+def compliances(gears: HelicoidPair, model: Model | None) -> PairCompliance:
+    """Compliances from finite elements, from slices, or (None) from slices on half-planes."""
+    return pair_compliance(gears, model) if model else on_half_planes(gears)
 
 
-def mean_stiffness(gears: HelicoidPair, model: str) -> float:
+def mean_stiffness(gears: HelicoidPair, model: Model | None) -> float:
     """Mean over the cycle at 300 N/mm, per face width [N/(mm·µm)]."""
     torque = LINE_LOAD * 0.1 * gears.driver_gear.radius
     found = ltca(gears, torque, 8, FIT_LOADS, compliances(gears, model), 32).secant(0.9)
     return float(found.mean()) / gears.driver_gear.base_radius**2 / 0.1 * 1e-9
 
 
-def single_stiffness(model: str, bore: float | None) -> float:
+def single_stiffness(model: Model | None, bore: float | None) -> float:
     """Largest stiffness of one pair alone, virtual spur pair times cos β [N/(mm·µm)]."""
-    common = {"module": 8e-3, "face_width": 0.1, "dedendum": 1.4}
-    pinion = HelicoidGear(teeth=19, profile_shift=0.145, **common)
-    wheel = HelicoidGear(teeth=115, rim=bore, **common)
+    pinion = HelicoidGear(8e-3, 19, 0.1, profile_shift=0.145, dedendum=1.4)
+    wheel = HelicoidGear(8e-3, 115, 0.1, dedendum=1.4, rim=bore)
     gears = HelicoidPair(pinion, wheel, 134 * 4e-3 + 0.14 * 8e-3)
     compliance, load, found = compliances(gears, model), LINE_LOAD * 0.1, []
-    for position in gears.positions(np.arange(10) / 10.0, 32):
+    for position in gears.positions([k / 10.0 for k in range(10)], 32):
         for line in position.lines:
             alone = contact_problem(gears, replace(position, lines=(line,)), compliance)
             found.append(load / solve_contact(alone, load).approach / 0.1 * 1e-9)
@@ -94,17 +82,18 @@ def standard() -> None:
     )  # fmt: skip
     single, mesh = formula.single * 1e-9, formula.mesh * 1e-9
     rows = [["standard, by formula", f"{single:.2f}", "–", f"{mesh:.2f}", "–"]]
-    for model in ("finite elements", "slices"):
+    models: tuple[Model, ...] = ("finite elements", "slices")
+    for model in models:
         for wheel, bore in (
             ("wheel solid to 0.72 of its root radius", 0.30),
             ("rim of 1.5 tooth heights, held", None),
         ):
             rows.append([f"{model}, {wheel}", *against(model, bore, single, mesh)])
-    rows.append(["slices on half-planes", *against("half-planes", None, single, mesh)])
+    rows.append(["slices on half-planes", *against(None, None, single, mesh)])
     table(("ISO/TR 6336-30, example 1", "c'", "difference", "c_γα", "difference"), rows)
 
 
-def against(model: str, bore: float | None, single: float, mesh: float) -> list[str]:
+def against(model: Model | None, bore: float | None, single: float, mesh: float) -> list[str]:
     """C' and c_γα of a model with their differences from the standard."""
     # The virtual spur wheel is solid to the same part of its root.
     spur = bore and bore * (115 * 4e-3 - 1.4 * 8e-3) / iso_pair().driven_gear.root
@@ -128,12 +117,11 @@ def convergence(name: str, layers: int, levels: Iterable[int]) -> None:
     reference = stiffness(pair, default, 32)
     found, rows = {}, []
     for level in levels:
-        sides = [
-            FiniteElements(body, side, teeth=3, divisions=refined(level, layers))
-            for body, side in ((gears.driver, 1), (gears.driven, gears.driven_side))
-        ]
-        found[level] = stiffness(pair, PairCompliance(*sides, "finite elements"), 32)
-        size = f"{sides[0].size} + {sides[1].size}"
+        mesh = refined(level, layers)
+        driver = FiniteElements(gears.driver, 1, teeth=3, divisions=mesh)
+        driven = FiniteElements(gears.driven, gears.driven_side, teeth=3, divisions=mesh)
+        found[level] = stiffness(pair, PairCompliance(driver, driven, "finite elements"), 32)
+        size = f"{driver.size} + {driven.size}"
         rows.append([str(level), size, f"{found[level]:.5g}", percent(reference, found[level])])
     table((f"{name}: elements", "unknowns", "mean K [N·m/rad]", "default against it"), rows)
     say_order(found)

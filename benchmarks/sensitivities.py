@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 import traceback
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from itertools import pairwise
@@ -164,7 +164,7 @@ def _said(error: Array, value: Array) -> float:
     return float(error.max(initial=0.0)) / size if size else math.inf
 
 
-def held(train: Train, cycle: dict[str, int]) -> Train:
+def held(train: Train, cycle: Mapping[str, int]) -> Train:
     """Return a train that stands still in its mesh cycle."""
     meshes = {
         n: replace(m, laws=(m.law(cycle[n]),), gaps=(m.gap(cycle[n], True),))

@@ -1,6 +1,6 @@
 """Tolerance study of the seed's transmission: time, rate, memory, and the peer way beside it.
 
-Run with ``python benchmarks/tolerance.py [--samples N] [--workers K] [--peers N]``. The peer way is
+Run with ``python -m benchmarks.tolerance [--samples N] [--workers K] [--peers N]``. The peer way is
 a loop over CVXPY with parameters, compiled once and solved again for every sample and position; it
 is given the first samples of the study, and its answers are compared with the study's. Neither
 building its data nor compiling it is in its time; all is in the study's.
@@ -154,8 +154,8 @@ def peer_way(case: ls.Case, found: Tolerance, count: int, ours: float) -> list[t
                 for name, mesh in train.meshes.items()
             }
             shares.append(stage_shares(torque, train.stages))
-        if len(shares) == len(positions):
-            top = largest(shares, train.stages)["system"]
+        top = largest(shares, train.stages)["system"]
+        if len(shares) == len(positions) and top is not None:
             apart = max(apart, abs(float(np.subtract(top, omega[sample]))))
     each = spent / (count * len(positions))
     return [

@@ -11,6 +11,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -172,12 +173,12 @@ class Balance:
                 soft = radius**2 / shaft.stiffness
                 turns = {shaft.first: -radius, shaft.second: radius}
                 add(Column("shaft_torque", name, 0, radius, soft, acts=True), {}, turns)
-        for name, gear in train.gears.items():
-            for axis in (0, 1) if gear.support is not None else ():
-                if gear.support[axis] > 0.0:
-                    soft = 1.0 / gear.support[axis]
+        for name, held in train.gears.items():
+            for axis in (0, 1) if held.support is not None else ():
+                if held.support is not None and held.support[axis] > 0.0:
+                    soft = 1.0 / held.support[axis]
                     column = Column("support_force", name, axis, 1.0, soft, acts=True)
-                    add(column, {name: -gear.frame[axis]}, {})
+                    add(column, {name: -held.frame[axis]}, {})
 
     @cached_property
     def compliance(self) -> Array:
@@ -218,7 +219,7 @@ class Balance:
 
     def with_forces(self, more: Array) -> Equilibrium:
         """Return the claim with forces [N] added, column by column."""
-        fields: dict[str, dict[str, object]] = {}
+        fields: dict[str, Any] = {}
         for column, value in zip(self.columns[0], more.tolist(), strict=True):
             if value == 0.0:
                 continue

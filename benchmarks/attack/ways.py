@@ -56,13 +56,14 @@ def a_number(victim: Victim, rng: np.random.Generator) -> Claim:
     at = rng.integers(value.size) if value.ndim else ()
     value[at] *= factor
     table[name] = value if value.ndim else float(value)
-    return replace(victim.answer, **{field: table})
+    changed: dict[str, Any] = {field: table}
+    return replace(victim.answer, **changed)
 
 
 def all_numbers(victim: Victim, rng: np.random.Generator) -> Claim:
     """Every claimed number, each by as much of itself at random."""
     size = _spread(rng, 1e-12, 1e-6)
-    fields = {
+    fields: dict[str, Any] = {
         field: {
             name: value * (1.0 + size * rng.normal(size=np.shape(value)))
             for name, value in getattr(victim.answer, field).items()
@@ -79,7 +80,8 @@ def _stressed(victim: Victim, rng: np.random.Generator, more: Array, follow: boo
 
 
 def _sized(victim: Victim, rng: np.random.Generator, direction: Array) -> Array:
-    return direction * _spread(rng, SMALLEST, LARGEST) * _load(victim) / np.abs(direction).max()
+    largest: float = np.abs(direction).max()
+    return direction * _spread(rng, SMALLEST, LARGEST) * _load(victim) / largest
 
 
 def self_stress(victim: Victim, rng: np.random.Generator) -> Claim:
@@ -238,7 +240,7 @@ def another_load(victim: Victim, rng: np.random.Generator) -> Claim:
     if rng.integers(2) and all(isinstance(law, PowerLaw) and law.is_linear for law in laws):
         # The external torque is then the only thing that disagrees.
         factor = 1.0 + (factor - 1.0) * 1e-2
-    fields = {
+    fields: dict[str, Any] = {
         field: {name: value * factor for name, value in getattr(victim.answer, field).items()}
         for field in FIELDS
     }

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from benchmarks.critical_paths.scan import States
 from loadshare.study.critical import Critical
 from loadshare.study.event import Event
 
@@ -18,13 +19,14 @@ SAME = 1e-11
 """Distance, over the largest value, at which two paths have the same event."""
 
 
-def compared(found: Critical, values: Array, seen: dict[str, Array]) -> tuple[list[str], list[str]]:
+def compared(found: Critical, values: Array, seen: States) -> tuple[list[str], list[str]]:
     """Return what events miss of a scan, and what they tell that it does not show.
 
     Samples in intervals that are named as not proved are left out; beyond each of them states are
     taken from the scan again.
     """
-    missed, invented = [], []
+    missed: list[str] = []
+    invented: list[str] = []
     edges = [found.start, *(v for u in found.unproved for v in (u.start, u.stop)), found.stop]
     for name, told in seen.items():
         events = [e for e in found.events if e.element == name]
@@ -40,7 +42,7 @@ def compared(found: Critical, values: Array, seen: dict[str, Array]) -> tuple[li
     return missed, invented
 
 
-def _disagreement(events: Sequence[Event], values: Array, told: Array) -> int | None:
+def _disagreement(events: Sequence[Event], values: Array, told: NDArray[np.str_]) -> int | None:
     """First sample whose state is not the one that events tell; None if all agree."""
     if not len(values):
         return None

@@ -26,6 +26,8 @@ from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
+States = dict[str, NDArray[np.str_]]
+"""States of elements at the values of a scan, by name."""
 BAND = 1e-8
 """Force over load, or radius over deflection, within which a state is not told by a scan."""
 BLOCK = 8192
@@ -38,7 +40,7 @@ FEW, ROUNDS = 8, 6
 """Samples searched at a time for others to begin at, and how many times."""
 
 
-def states(line: Line, values: Array, answers: Equilibria, certified: Array) -> dict[str, Array]:
+def states(line: Line, values: Array, answers: Equilibria, certified: NDArray[np.bool_]) -> States:
     """Tell the state of every element at every value, from forces and displacements alone.
 
     Returns
@@ -47,7 +49,7 @@ def states(line: Line, values: Array, answers: Equilibria, certified: Array) -> 
         Empty where a state is within round-off of another, or there is no certified answer.
     """
     names, push, length = answers.names, line.elements.force, line.elements.length
-    found: dict[str, Array] = {}
+    found: States = {}
     forces = {
         **dict(zip(names.flanks, answers.flank_force.T, strict=True)),
         **dict(zip(names.contacts, answers.ring_force.T, strict=True)),
@@ -161,14 +163,14 @@ def _thinned(rows: NDArray[np.intp], most: int) -> NDArray[np.intp]:
     return rows[:: max(1, -(-len(rows) // most))]
 
 
-def scanned(path: Path, line: Line, values: Array, engine: str) -> dict[str, Array]:
+def scanned(path: Path, line: Line, values: Array, engine: str) -> States:
     """Scan a path; states are empty where no certified answer is known."""
     groups = samples_of(path.case, _table(path, values))
     if len(groups) > 1:
         return _climbed(path, line, values, engine)
     samples = groups[0][1]
     machine = Scan(samples.train, engine)
-    parts: list[dict[str, Array]] = []
+    parts: list[States] = []
     for at_ in range(0, len(values), BLOCK):
         block = slice(at_, at_ + BLOCK)
         here = values[block]
@@ -184,9 +186,9 @@ def scanned(path: Path, line: Line, values: Array, engine: str) -> dict[str, Arr
     return {name: np.concatenate([p[name] for p in parts]) for name in parts[0]}
 
 
-def _climbed(path: Path, line: Line, values: Array, engine: str) -> dict[str, Array]:
+def _climbed(path: Path, line: Line, values: Array, engine: str) -> States:
     """States by the ladder from the hot path to the slowest way."""
-    told: dict[str, Array] = {}
+    told: States = {}
     table = _table(path, values)
     for block in solve_blocks(path.case, table, positions=[1], engine=engine, workers=1):
         rows = block.rows

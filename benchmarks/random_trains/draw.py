@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from benchmarks.random_trains.dice import Dice, metres, radians
@@ -120,12 +121,15 @@ class _Drawing:
             mesh |= self._law(kind, self.layout.radius[driver])
             if dice.chance(0.15) and "a" not in mesh.get("law", {}):
                 widest = 3.0 * DEFLECTION / self.layout.radius[driver]
-                mesh["gap"] = self._each(lambda w=widest: radians(dice.between(0.0, w)))
+                mesh["gap"] = self._each(partial(self._gap, widest))
             if self.turned_back or play.startswith("all") or (play == "some" and dice.chance(0.4)):
                 key = dice.pick(["backlash", "normal_backlash"])
                 mesh[key] = metres(alike if play == "all alike" else dice.pick(BACKLASHES))
             made[f"{driver}-{driven}"] = mesh
         return made
+
+    def _gap(self, widest: float) -> str:
+        return radians(self.dice.between(0.0, widest))
 
     def _law(self, kind: str, radius: float) -> dict[str, Any]:
         """How a mesh yields, at its driver."""

@@ -116,5 +116,5 @@ def _furthest(
         )  # fmt: skip
         if found.status == 3:
             return float("inf")
-        ends.append(-float(found.fun) if found.status == 0 else 0.0)
+        ends.append(0.0 if found.fun is None or found.status else -float(found.fun))
     return sum(ends)
