@@ -36,6 +36,12 @@ CASES = {
 }
 
 
+@pytest.fixture(autouse=True)
+def by_numpy(monkeypatch):
+    """The engine that tests put another in place of, whatever was compiled before."""
+    monkeypatch.setattr(ladder, "engine_at_hand", lambda _name, _count: vectorised.settle)
+
+
 def failing(elements, data, basis, code, rows, state, one_only):
     """An engine that finds no answer on any set."""
     return np.full(len(rows), places.FAILED, np.int8), np.repeat(code[None, :], len(rows), 0)
