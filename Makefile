@@ -57,7 +57,7 @@ docs-serve: $(VENV)/.dev ## serve the documentation while writing
 	$(BIN)/mkdocs serve
 
 cases: $(VENV)/.run ## write the generated cases again
-	$(BIN)/python -m loadshare.case.families cases
+	$(BIN)/python -m benchmarks.families cases
 
 bench: $(VENV)/.bench ## measure speed against accuracy (docs/evidence)
 	$(BIN)/python -m benchmarks.chart

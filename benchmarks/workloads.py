@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.case import Case, families, load_case
+from benchmarks import families
+from loadshare.case import Case, load_case
 from loadshare.errors import LoadshareError
 
 Array = NDArray[np.float64]

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 import loadshare as ls
-from loadshare.case import families
+from benchmarks import families
 from loadshare.certify import Certificate, certify
 from loadshare.certify.state import State
 from loadshare.scene import assemble

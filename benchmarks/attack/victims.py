@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import loadshare as ls
+from benchmarks import families
 from benchmarks.random_trains.draw import draw
 from benchmarks.random_trains.limit import TooLong, limited
 from benchmarks.reference import NoReference, reference
-from loadshare.case import Case, families
+from loadshare.case import Case
 from loadshare.results.claim import claim_of
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium

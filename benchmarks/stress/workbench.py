@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from loadshare.case import Case, families
+from benchmarks import families
+from loadshare.case import Case
 from loadshare.case.place import centres_of
 
 Number = float | int

@@ -12,9 +12,9 @@ import pytest
 from tests.support import CASES, coasting, lost_contact, round_ring, shipped
 
 import loadshare as ls
+from benchmarks import families
 from benchmarks.reference import NoReference, reference
 from benchmarks.reference.elimination import Contradiction, solve_sparse
-from loadshare.case import families
 from loadshare.certify import certify
 from loadshare.train import build_train
 

@@ -6,13 +6,13 @@ What is solvable is decided by two linear programmes (`stress.truth`), not by th
 import pytest
 
 import loadshare as ls
+from benchmarks import families
 from benchmarks.stress.families import FAMILIES
 from benchmarks.stress.problem import COUNT
 from benchmarks.stress.run import cell_of
 from benchmarks.stress.truth import truth_of
 from benchmarks.stress.verdict import Outcome, judge, ours
 from benchmarks.stress.workbench import star
-from loadshare.case import families
 from loadshare.certify import certify
 from loadshare.errors import Refused
 from loadshare.train import build_train

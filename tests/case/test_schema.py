@@ -1,8 +1,8 @@
 import jsonschema
 import pytest
 
+from benchmarks.families import SHIPPED, shipped_text, split_torque, star
 from loadshare.case import case_schema, load_case, starter_case
-from loadshare.case.families import SHIPPED, shipped_text, split_torque, star
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ from tests.physics.test_random_trains import PROFILE, split_torques, stars
 from tests.support import SHIPPED, answer, coasting, loaded, lost_contact, round_ring, shipped
 
 import loadshare as ls
-from loadshare.case import families
+from benchmarks import families
 from loadshare.certify import certify
 from loadshare.certify.certificate import TOLERANCE
 from loadshare.certify.many import RESIDUALS, Judge, Verdicts

@@ -13,7 +13,7 @@ import pytest
 from tests.support import answer, coasting, round_ring, shipped
 
 import loadshare as ls
-from loadshare.case import families
+from benchmarks import families
 from loadshare.certify import certify
 from loadshare.certify.many import RESIDUALS, Judge
 from loadshare.study.memory import stepped

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from tests.support import answer, coasting, lost_contact, round_ring, shipped
 
-from loadshare.case import families
+from benchmarks import families
 from loadshare.certify import Certificate, certify
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium

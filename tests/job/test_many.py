@@ -15,7 +15,7 @@ from tests.solver.hot.trains import VARIED, varied
 from tests.support import furthest, shipped
 
 import loadshare as ls
-from loadshare.case import families
+from benchmarks import families
 from loadshare.certify.certificate import TOLERANCE
 from loadshare.errors import CaseError
 from loadshare.job import many

@@ -17,7 +17,7 @@ import pytest
 from tests.support import driver_torques, loaded, shipped
 
 import loadshare as ls
-from loadshare.case import families
+from benchmarks import families
 from loadshare.train import build_train
 
 EXACT = 1e-9

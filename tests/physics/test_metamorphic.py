@@ -33,7 +33,7 @@ from tests.support import (
 )
 
 import loadshare as ls
-from loadshare.case import families
+from benchmarks import families
 from loadshare.certify import certify
 from loadshare.train import build_train
 from loadshare.train.gear import transverse_frame

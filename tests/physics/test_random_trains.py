@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from tests.support import answer, forces, furthest
 
 import loadshare as ls
-from loadshare.case import families
+from benchmarks import families
 from loadshare.certify import certify
 from loadshare.train import build_train
 

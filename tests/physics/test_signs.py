@@ -14,7 +14,7 @@ import pytest
 from tests.support import SHIPPED, answer, certified, potential, round_ring, shipped
 
 import loadshare as ls
-from loadshare.case import families
+from benchmarks import families
 from loadshare.results import Result
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium

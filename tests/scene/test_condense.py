@@ -3,7 +3,7 @@
 import numpy as np
 from tests.support import shipped
 
-from loadshare.case import families
+from benchmarks import families
 from loadshare.certify import certify
 from loadshare.scene import assemble
 from loadshare.scene.condense import condense, nothing_condensed

@@ -9,7 +9,7 @@ import pytest
 from tests.solver.hot.trains import VARIED, varied
 from tests.support import SHIPPED, shipped
 
-from loadshare.case import families
+from benchmarks import families
 from loadshare.job.machine import Machine
 from loadshare.scene import assemble
 from loadshare.scene.data import data_of

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from tests.support import answer, driver_torques, furthest, round_ring, shipped, with_backlash
 
-from loadshare.case import families
+from benchmarks import families
 from loadshare.scene import Plan, assemble
 from loadshare.scene.plan import Linearisation, Role, programme
 from loadshare.scene.scene import Scene

@@ -10,7 +10,7 @@ import pytest
 from tests.support import answer, driver_torques, furthest, loaded, shipped
 
 import loadshare as ls
-from loadshare.case import families
+from benchmarks import families
 from loadshare.certify import certify
 from loadshare.solver import Options
 from loadshare.train import build_train

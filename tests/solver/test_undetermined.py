@@ -15,7 +15,7 @@ from tests.physics.test_random_trains import PROFILE, scaled, split_torques, sta
 from tests.support import answer, coordinates
 
 import loadshare as ls
-from loadshare.case import families
+from benchmarks import families
 from loadshare.certify import certify
 from loadshare.certify.certificate import TOLERANCE
 from loadshare.errors import Refused

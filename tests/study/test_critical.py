@@ -7,11 +7,11 @@ import pytest
 from tests.support import coasting, lost_contact, round_ring, shipped
 
 import loadshare as ls
+from benchmarks import families
 from benchmarks.critical_paths.compare import compared
 from benchmarks.critical_paths.draw import random_path
 from benchmarks.critical_paths.judge import Outcome, followed, judged, shown
 from benchmarks.critical_paths.table import text
-from loadshare.case import families
 from loadshare.scene import assemble
 from loadshare.study.answers import certified
 from loadshare.study.branch import Units, read_set

@@ -12,7 +12,7 @@ import pytest
 from tests.support import shipped, with_backlash
 
 import loadshare as ls
-from loadshare.case import families
+from benchmarks import families
 from loadshare.train import build_train
 from loadshare.train.ring import Arc
 

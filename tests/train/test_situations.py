@@ -8,7 +8,7 @@ import pytest
 from tests.support import SHIPPED, round_ring, shipped
 
 import loadshare as ls
-from loadshare.case import families
+from benchmarks import families
 from loadshare.train import build_train
 from loadshare.train.law import PowerLaw
 from loadshare.train.ring import DrumRing

@@ -14,7 +14,7 @@ from tests.physics.test_random_trains import PROFILE
 from tests.solver.hot.trains import varied
 
 import loadshare as ls
-from loadshare.case import families
+from benchmarks import families
 from loadshare.certify.certificate import TOLERANCE
 from loadshare.job.ladder import HOT
 from loadshare.job.machine import Machine

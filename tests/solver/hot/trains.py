@@ -8,7 +8,7 @@ import numpy as np
 from tests.support import coasting, loaded, lost_contact, round_ring, shipped
 
 import loadshare as ls
-from loadshare.case import families
+from benchmarks import families
 
 ERRORS: dict[str, tuple[float, float]] = {
     "errors.6.installation[0] [um]": (-80.0, 80.0),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -58,13 +58,6 @@ class ActiveSet:
             if name == element:
                 return place.label
         return "closed" if element in self.closed else "open"
-
-    def switched(self, element: str, to: Place | None) -> ActiveSet:
-        """Return the set with one element in another state; None flips a contact."""
-        if to is None:
-            return replace(self, closed=self.closed ^ {element})
-        places = tuple((n, to if n == element else p) for n, p in self.places)
-        return replace(self, places=places)
 
     def changes(self, other: ActiveSet) -> tuple[str, ...]:
         """Names of the elements whose state differs."""
