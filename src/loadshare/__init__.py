@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from loadshare._version import __version__
 from loadshare.errors import CaseError, LoadshareError, Problem, Refused, ResultError
+from loadshare.pictures import drawn_by
 
 if TYPE_CHECKING:
     from loadshare.case import Case, load_case
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from loadshare.job import explain, solve
     from loadshare.job.many import solve_many
     from loadshare.job.search import search
+    from loadshare.report.plots import plot
     from loadshare.results import Result, load_result
     from loadshare.study.compare import compare
     from loadshare.study.critical import critical
@@ -42,6 +44,7 @@ _LAZY = {
     "load_case": "loadshare.case",
     "load_result": "loadshare.results",
     "march": "loadshare.study.march",
+    "plot": "loadshare.report.plots",
     "run_study": "loadshare.study.named",
     "search": "loadshare.job.search",
     "sensitivity": "loadshare.study.sensitivity",
@@ -68,6 +71,7 @@ __all__ = [
     "load_case",
     "load_result",
     "march",
+    "plot",
     "run_study",
     "search",
     "sensitivity",
@@ -83,3 +87,12 @@ def __getattr__(name: str) -> Any:
     if name in _LAZY:
         return getattr(import_module(_LAZY[name]), name)
     raise AttributeError(f"module 'loadshare' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    """List what is public, also of what is imported only when it is asked for."""
+    return __all__
+
+
+# Results and studies offer their pictures without knowing the room that draws them.
+drawn_by(lambda: __getattr__("plot"))

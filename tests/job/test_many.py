@@ -55,15 +55,15 @@ def test_shapes_labels_and_units():
         "position": 5,
         "mesh": 10,
         "gear": 3,
-        "axis": 2,
+        "component": 2,
         "contact": 8,
     }
     assert found.torque.dims == ("sample", "position", "mesh")
-    assert found.displacement.dims == ("sample", "position", "gear", "axis")
+    assert found.displacement.dims == ("sample", "position", "gear", "component")
     assert found.contact_force.dims == ("sample", "position", "contact")
     assert found.mesh.values.tolist() == list(case.meshes)
     assert found.gear.values.tolist() == ["1", "4", "5"]
-    assert found.axis.values.tolist() == ["x", "y"]
+    assert found.component.values.tolist() == ["x", "y"]
     assert found.position.values.tolist() == [1, 2, 3, 4, 5]
     assert found.sample.values.tolist() == [0, 1, 2]
     assert set(found.contact.values) == {
@@ -73,7 +73,7 @@ def test_shapes_labels_and_units():
     }
     units = {name: found[name].attrs["units"] for name in KEEP}
     assert units == {
-        "torque": "N*m",
+        "torque": "N·m",
         "share": "1",
         "pair_share": "1",
         "displacement": "m",

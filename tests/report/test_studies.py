@@ -25,7 +25,7 @@ def line() -> xr.Dataset:
         {
             "status": ("rings.4.float", ["certified"] * 4 + ["refused"]),
             "omega": (("rings.4.float", "stage"), share, {"units": "1", "long_name": "largest Ω"}),
-            "torque": (("rings.4.float", "position", "mesh"), torque, {"units": "N m"}),
+            "torque": (("rings.4.float", "position", "mesh"), torque, {"units": "N·m"}),
             "reaction": (
                 ("rings.4.float", "position", "float", "component"),
                 force,

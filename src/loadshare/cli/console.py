@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Protocol
 
@@ -24,29 +24,53 @@ def console(*, stderr: bool = False) -> Console:
     return Console(stderr=stderr, markup=False, emoji=False, highlight=False)
 
 
+def say(*told: object, style: str | None = None, whole: bool = False) -> None:
+    """Print an answer; `whole` leaves its lines to be broken by the terminal, as paths need."""
+    console().print(*told, style=style, soft_wrap=whole)
+
+
+def say_all(lines: Iterable[str], *, whole: bool = False) -> None:
+    """Print lines of an answer."""
+    for line in lines:
+        say(line, whole=whole)
+
+
 @contextmanager
-def progress(what: str, total: int) -> Iterator[Tick | None]:
+def progress(what: str, total: int | None, *, rated: bool = False) -> Iterator[Tick | None]:
     """Show a progress bar on a terminal; yield None, and show nothing, in a pipe or a log.
 
     Parameters
     ----------
     what : str
         What is counted, in front of the bar.
-    total : int
-        How many there are.
+    total : int or None
+        How many there are; None if that is not known beforehand.
+    rated : bool
+        Whether the bar tells rate and time left, for what comes by the thousands.
     """
     screen = console(stderr=True)
     if not screen.is_terminal:
         yield None
         return
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich import progress as bars
+    from rich.text import Text
 
+    class Rate(bars.ProgressColumn):
+        def render(self, task: bars.Task) -> Text:
+            speed = task.finished_speed or task.speed
+            return Text("" if speed is None else f"{speed:,.0f}/s")
+
+    left = (bars.TextColumn("left"), bars.TimeRemainingColumn())
     columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
+        bars.TextColumn("{task.description}"),
+        bars.BarColumn(),
+        bars.MofNCompleteColumn(),
+        *((Rate(), bars.TimeElapsedColumn(), *left) if rated else (bars.TimeElapsedColumn(),)),
     )
-    with Progress(*columns, console=screen, transient=True) as bar:
+    # Parts of what is rated come seconds apart: a short memory would show no rate between them.
+    memory = 300.0 if rated else 30.0
+    with bars.Progress(
+        *columns, console=screen, transient=True, speed_estimate_period=memory
+    ) as bar:
         task = bar.add_task(what, total=total)
         yield lambda done, total: bar.update(task, completed=done, total=total)

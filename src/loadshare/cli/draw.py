@@ -9,7 +9,7 @@ import typer
 
 from loadshare.cli.changes import read_changes
 from loadshare.cli.exits import UNUSABLE, counted, fail, problems_told, writing
-from loadshare.cli.options import output
+from loadshare.cli.options import CaseFile, changes, output
 from loadshare.errors import CaseError, LoadshareError, Problem
 
 if TYPE_CHECKING:
@@ -17,17 +17,16 @@ if TYPE_CHECKING:
 
 
 def draw(
-    case: Annotated[Path, typer.Argument(metavar="CASE", help="Case file.")],
+    case: CaseFile,
     file: Annotated[
         Path,
         output("-o", "--output", what="Drawing to write: .svg, .png, .pdf, .html or .json."),
     ] = Path("drawing.svg"),
     change: Annotated[
         list[str] | None,
-        typer.Option(
+        changes(
             "--set",
-            metavar="KEY=VALUE",
-            help="Change the case, as in gears.6.centre.angle='41 deg'; may be repeated. "
+            "Change the case, as in gears.6.centre.angle='41 deg'; may be repeated. "
             "No value removes the key.",
         ),
     ] = None,
@@ -36,9 +35,9 @@ def draw(
 
     A case that cannot be used is drawn as far as it can be read.
     """
-    changes = read_changes(change or ())
+    asked = read_changes(change or ())
     with problems_told():
-        figure, problems = _drawn(case, changes)
+        figure, problems = _drawn(case, asked)
     with writing(file):
         try:
             figure.save(file)

@@ -19,10 +19,7 @@ def write_text(path: Path, text: str) -> None:
     # Imported late: results bring numpy with them, which --help does not need.
     from loadshare.results.files import write_atomically
 
-    def write(file: Path) -> None:
-        file.write_text(text, encoding="utf-8")
-
-    write_atomically(path, write)
+    write_atomically(path, text)
 
 
 def write_document(path: Path, document: dict[str, Any]) -> None:

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from loadshare.cli.console import console, progress
+from loadshare.cli.console import progress, say
 from loadshare.cli.exits import REFUSED, fail, problems_told, writing
 from loadshare.cli.files import write_text
 from loadshare.cli.refusal import told
+from loadshare.cli.tables.table import show, table
 from loadshare.errors import Refused
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from loadshare.report.figure import Figure
     from loadshare.tooth.analysis.result import Ltca
     from loadshare.tooth.law.file import MeshLaw
@@ -66,16 +63,15 @@ def ltca(
     load = _torque(torque)
     with problems_told():
         asked = load_pair(pair).revised(torque=load, positions=positions, compliance=compliance)
-    screen = console()
-    _print_heading(screen, asked, pair)
+    _print_heading(asked, pair)
     try:
         with progress("positions", asked.analysis.positions) as tick:
             found = asked.analyse(tick)
     except Refused as refusal:
         fail([f"REFUSED  {line}" for line in told(refusal)], REFUSED)
     law = kept_law(asked, found)
-    _print_positions(screen, found, law)
-    _print_summary(screen, asked, found)
+    _print_positions(found, law)
+    _print_summary(asked, found)
     wrote = list(_written(folder or Path(asked.name), asked, found, law))
     typer.echo(f"Wrote {', '.join(file.name for file in wrote)} to {wrote[0].parent}")
 
@@ -95,31 +91,29 @@ def _torque(text: str | None) -> float | None:
         raise typer.BadParameter(f"{text!r} {said}", param_hint="--torque") from None
 
 
-def _print_heading(screen: Console, pair: PairFile, file: Path) -> None:
+def _print_heading(pair: PairFile, file: Path) -> None:
     from loadshare.tooth.pair.findings import findings
 
     geometry, chosen = pair.geometry, pair.analysis
-    screen.print(pair.title, style="bold")
-    screen.print(str(file), soft_wrap=True)
-    screen.print(
+    say(pair.title, style="bold")
+    say(str(file), whole=True)
+    say(
         f"T = {pair.torque:.7g} N·m on the driver; contact ratio {geometry.contact_ratio:.3f}, "
         f"overlap ratio {geometry.overlap_ratio:.3f}; {chosen.compliance}, "
         f"{chosen.points} points on a line"
     )
     for finding in findings(geometry):
-        screen.print(f"Note: {finding}", soft_wrap=True)
+        say(f"Note: {finding}", whole=True)
 
 
-def _print_positions(screen: Console, found: Ltca, law: MeshLaw) -> None:
+def _print_positions(found: Ltca, law: MeshLaw) -> None:
     """Print law and stiffness by position, in units that keep the figures short."""
-    from loadshare.cli.tables.table import show, table
     from loadshare.report.figures.ltca_cycle import stiffness_unit
     from loadshare.report.numbers import decimals, fixed
     from loadshare.tooth.analysis.tables import STIFFNESS_LOADS
 
-    made = table(("position", "phase", "a", "b", "c", "misfit", "unloaded lead"))
-    for k, phase in enumerate(found.phase):
-        made.add_row(
+    rows = (
+        (
             str(k + 1),
             fixed(phase, 3),
             fixed(1e6 * law.a[k].si, 2),
@@ -128,31 +122,36 @@ def _print_positions(screen: Console, found: Ltca, law: MeshLaw) -> None:
             f"{fixed(100 * law.misfit[k], 2)} %",
             fixed(1e6 * found.unloaded_error[k], 3),
         )
-    show(screen, "Law: a and lead [µrad], b [nrad/(N·m)], c [nrad/(N·m)^(2/3)]", made)
+        for k, phase in enumerate(found.phase)
+    )
+    made = table(("position", "phase", "a", "b", "c", "misfit", "unloaded lead"), rows)
+    show("Law: a and lead [µrad], b [nrad/(N·m)], c [nrad/(N·m)^(2/3)]", made)
     secants = [found.secant(part) for part in STIFFNESS_LOADS]
     columns = (*secants, found.increment(0.9, 1.0), found.tangent(1.0))
     unit = stiffness_unit(secants[0])
     places = decimals(unit.of(value) for values in columns for value in values)
     names = ["T", *(f"{part:g} T" for part in STIFFNESS_LOADS[1:])]
-    made = table(("position", *names, "0.9 T to T", "tangent at T"))
-    for k in range(len(found.phase)):
-        made.add_row(str(k + 1), *(fixed(unit.of(values[k]), places) for values in columns))
-    show(screen, f"Mesh stiffness [{unit.name} at the driver]", made)
+    stiffnesses = (
+        (str(k + 1), *(fixed(unit.of(values[k]), places) for values in columns))
+        for k in range(len(found.phase))
+    )
+    made = table(("position", *names, "0.9 T to T", "tangent at T"), stiffnesses)
+    show(f"Mesh stiffness [{unit.name} at the driver]", made)
 
 
-def _print_summary(screen: Console, pair: PairFile, found: Ltca) -> None:
+def _print_summary(pair: PairFile, found: Ltca) -> None:
     rated = found.secant(1.0)
     load = len(found.torque) - 1
-    screen.print()
-    screen.print(
+    say()
+    say(
         f"Stiffness at T: max/min {rated.max() / rated.min():.3f}, mean {rated.mean():.4g} "
         f"N·m/rad. Contact ratio under load {found.contact_ratio[load]:.2f}."
     )
     if found.law.bounded.any():
         where = ", ".join(str(k + 1) for k in range(len(rated)) if found.law.bounded[k])
-        screen.print(f"b or c is held at 0 at position {where}: the angles ask for a negative one.")
+        say(f"b or c is held at 0 at position {where}: the angles ask for a negative one.")
     if pair.offset:
-        screen.print(
+        say(
             f"The misalignment turns the driver by {1e6 * pair.offset:.3f} µrad as a whole; the "
             "law leaves that out."
         )
@@ -162,7 +161,7 @@ def _print_summary(screen: Console, pair: PairFile, found: Ltca) -> None:
             edges.setdefault(edge.edge, []).append(edge.position + 1)
     for name, positions in sorted(edges.items()):
         places = ", ".join(map(str, sorted(set(positions))))
-        screen.print(f"Load reaches the {name} at position {places}.")
+        say(f"Load reaches the {name} at position {places}.")
 
 
 def _written(folder: Path, pair: PairFile, found: Ltca, law: MeshLaw) -> Iterator[Path]:
@@ -201,9 +200,6 @@ def _figures(pair: PairFile, found: Ltca) -> Iterator[Figure]:
 
 
 def _csv(rows: Iterable[dict[str, Any]]) -> str:
-    rows = list(rows)
-    text = io.StringIO()
-    writer = csv.DictWriter(text, rows[0], lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return text.getvalue()
+    import pandas as pd
+
+    return pd.DataFrame(rows).to_csv(index=False, lineterminator="\n")

@@ -40,12 +40,18 @@ Tolerance = Annotated[
         help="Largest scaled residual of a certified answer, up to 1e-3.",
     ),
 ]
+CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file.")]
 CasePaths = Annotated[
     list[Path],
     typer.Argument(
         metavar="CASES", help="Case files, folders of them, or patterns.", show_default=False
     ),
 ]
+
+
+def changes(name: str, help_: str) -> object:
+    """Return the option for changes to a case."""
+    return typer.Option(name, metavar="KEY=VALUE", help=help_)
 
 
 def output(*names: str, what: str, callback: Callable[..., Any] | None = None) -> object:
@@ -64,3 +70,19 @@ def ending(*endings: str) -> Callable[[Path | None], Path | None]:
         return file
 
     return checked
+
+
+def keys_and_value(text: str, form: str, name: str) -> tuple[tuple[str, ...], str]:
+    """Split ``KEY=VALUE`` or ``KEY=KEY=VALUE`` at the equals signs outside of quotes.
+
+    Raises
+    ------
+    typer.BadParameter
+        If a key or the value is missing, naming the option and the form it has.
+    """
+    from loadshare.study.parameter import split_outside
+
+    *keys, value = split_outside(text, "=")
+    if not keys or not all(keys) or not value:
+        raise typer.BadParameter(f"{text!r} is not of the form {form}", param_hint=name)
+    return tuple(keys), value

@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
 from loadshare.cli.changes import read_changes
-from loadshare.cli.console import console, progress
+from loadshare.cli.console import progress, say
 from loadshare.cli.exits import REFUSED, fail, problems_told, writing
 from loadshare.cli.files import write_document, write_text
-from loadshare.cli.options import Method, Solver, Tolerance, output
+from loadshare.cli.options import CaseFile, Method, Solver, Tolerance, changes, output
 from loadshare.cli.refusal import refused_document, told
 from loadshare.errors import Refused
 
 if TYPE_CHECKING:
+    from loadshare.case import Case
     from loadshare.results import Result
 
 
 def run(
-    case: Annotated[Path, typer.Argument(metavar="CASE", help="Case file.")],
+    case: CaseFile,
     json: Annotated[Path | None, output("--json", what="Write the result as JSON.")] = None,
     netcdf: Annotated[Path | None, output("--netcdf", what="Write labelled arrays.")] = None,
     csv: Annotated[Path | None, output("--csv", what="Write torques and Ω as a table.")] = None,
@@ -51,81 +53,92 @@ def run(
     ] = False,
     change: Annotated[
         list[str] | None,
-        typer.Option(
+        changes(
             "--set",
-            metavar="KEY=VALUE",
-            help="Change the case, as in operating.torque='100 N*m'; may be repeated. "
+            "Change the case, as in operating.torque='100 N*m'; may be repeated. "
             "No value removes the key.",
         ),
     ] = None,
 ) -> None:
     """Solve a case and print load sharing, floats and certificate."""
     from loadshare.case import load_case
-    from loadshare.cli.tables import print_heading, print_result
-    from loadshare.job import solve
+    from loadshare.cli.tables.heading import print_heading
+    from loadshare.cli.tables.result import print_result
     from loadshare.train import build_train
 
-    changes = read_changes(change or ())
+    asked = read_changes(change or ())
     with problems_told():
         loaded = load_case(case)
-        if changes:
-            loaded = loaded.replace(changes)
+        loaded = loaded.replace(asked) if asked else loaded
         train = build_train(loaded)
     wanted = _wanted(position, train.count)
-    screen = console()
-    print_heading(screen, loaded, str(case), train.count, wanted, change or ())
-    refusal: Refused | None = None
-    result: Result | None
-    try:
-        with progress("positions", len(wanted)) as tick:
-            result = solve(
-                loaded,
-                solver=solver,
-                method=method,
-                reduce=not no_reduce,
-                tolerance=tolerance,
-                positions=wanted,
-                progress=tick,
-            )
-    except Refused as refused:
-        refusal, result = refused, refused.partial
+    print_heading(loaded, str(case), train.count, wanted, change or ())
+    how = _How(solver, method, not no_reduce, tolerance)
+    result, refusal = _solved(loaded, wanted, how)
     if result is not None:
-        print_result(screen, result, len(wanted))
-    if search and result is not None:
-        from loadshare.job.search import search as searched
-
-        there = [p.position for p in result.positions]
-        for index in there if position else there[:1]:
-            screen.print(f"Position {index}: {searched(loaded, index).told}", soft_wrap=True)
+        print_result(result, len(wanted))
+        if search:
+            there = [p.position for p in result.positions]
+            _print_search(loaded, there if position else there[:1])
     if explain:
-        from loadshare.cli.tables.explanation import print_explanation
-        from loadshare.job import explain as explained
+        _print_explanations(loaded, wanted if position else wanted[:1], how)
+    if refusal is not None:
+        _end_refused(refusal, loaded.name, json, (netcdf, csv))
+    assert result is not None
+    _write(json, result.to_json)
+    _write(netcdf, result.to_netcdf)
+    _write(csv, lambda file: write_text(file, result.to_frame().to_csv(index=False)))
 
-        for index in wanted if position else wanted[:1]:
-            try:
-                answer = explained(
-                    loaded,
-                    index,
-                    solver=solver,
-                    method=method,
-                    reduce=not no_reduce,
-                    tolerance=tolerance,
-                )
-            except Refused:
-                answer = None
-            print_explanation(screen, index, answer)
-    if refusal is None:
-        assert result is not None
-        _write(json, result.to_json)
-        _write(netcdf, result.to_netcdf)
-        _write(csv, lambda file: write_text(file, result.to_frame().to_csv(index=False)))
-        return
-    if json is not None:
-        with writing(json):
-            write_document(json, refused_document(refusal, loaded.name))
+
+@dataclass(frozen=True, slots=True)
+class _How:
+    """How a case is solved."""
+
+    solver: str
+    method: str
+    reduce: bool
+    tolerance: float
+
+
+def _solved(
+    case: Case, positions: Sequence[int], how: _How
+) -> tuple[Result | None, Refused | None]:
+    """Return what is certified of a case, and what was refused."""
+    from loadshare.job import solve
+
+    try:
+        with progress("positions", len(positions)) as tick:
+            return solve(case, positions=positions, progress=tick, **asdict(how)), None
+    except Refused as refusal:
+        return refusal.partial, refusal
+
+
+def _print_search(case: Case, positions: Sequence[int]) -> None:
+    from loadshare.job.search import search
+
+    for index in positions:
+        say(f"Position {index}: {search(case, index).told}", whole=True)
+
+
+def _print_explanations(case: Case, positions: Sequence[int], how: _How) -> None:
+    from loadshare.cli.tables.explanation import print_explanation
+    from loadshare.job import explain
+
+    for index in positions:
+        try:
+            answer = explain(case, index, **asdict(how))
+        except Refused:
+            answer = None
+        print_explanation(index, answer)
+
+
+def _end_refused(
+    refusal: Refused, case: str, json: Path | None, others: Sequence[Path | None]
+) -> NoReturn:
+    """Write the refusal as JSON, tell it, and which files were not written."""
+    _write(json, lambda file: write_document(file, refused_document(refusal, case)))
     lines = [f"REFUSED  {line}" for line in told(refusal)]
-    lines += [f"{file}: not written, for want of an answer" for file in (netcdf, csv) if file]
-    fail(lines, REFUSED)
+    fail([*lines, *(f"{f}: not written, for want of an answer" for f in others if f)], REFUSED)
 
 
 def _wanted(positions: list[int] | None, count: int) -> list[int]:

@@ -208,16 +208,16 @@ def solve_many(
     -------
     xarray.Dataset
         Over (sample, position): ``torque`` [N·m] (drive less coast), ``share`` and ``pair_share``
-        [-] over mesh; ``displacement`` [m] over gear and axis, for gears that can be displaced;
-        ``contact_force`` [N] of ring contacts; ``residual``, ``torque_bound`` (largest distance of
-        a torque from the exact one, over the largest torque), ``certified``, ``determined``,
-        ``displaced``, ``convex``, ``arc_curvature`` and ``rung``. ``displaced`` tells how large
-        displacements are for the geometry in which they were found, over the bound of a warning;
-        the attribute ``warned`` counts the equilibria above 1. ``convex`` tells where nothing that
-        is not convex carries, so that the answer is the only one; elsewhere ``arc_curvature`` [N/m]
-        is what ring arcs take from the stiffness across them, to be compared as `solve` does.
-        Samples without a certified answer, and those whose displacements are refused, are NaN;
-        their messages stand in the attribute ``refused``.
+        [-] over mesh; ``displacement`` [m] over gear and component, for gears that can be
+        displaced; ``contact_force`` [N] of ring contacts; ``residual``, ``torque_bound`` (largest
+        distance of a torque from the exact one, over the largest torque), ``certified``,
+        ``determined``, ``displaced``, ``convex``, ``arc_curvature`` and ``rung``. ``displaced``
+        tells how large displacements are for the geometry in which they were found, over the bound
+        of a warning; the attribute ``warned`` counts the equilibria above 1. ``convex`` tells where
+        nothing that is not convex carries, so that the answer is the only one; elsewhere
+        ``arc_curvature`` [N/m] is what ring arcs take from the stiffness across them, to be
+        compared as `solve` does. Samples without a certified answer, and those whose displacements
+        are refused, are NaN; their messages stand in the attribute ``refused``.
 
     Raises
     ------

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare._version import __version__
 from loadshare.case import Case
+from loadshare.results.dataset import COMPONENTS, VARIABLES, Variable
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.train import Stage
 
@@ -50,115 +52,93 @@ def shares(torque: Array, meshes: tuple[str, ...], stages: Iterable[Stage], pair
     return found
 
 
+EVERY = ("sample", "position")
+KEPT: dict[str, Variable] = {
+    **{name: VARIABLES[name] for name in ("torque", "share", "pair_share", "displacement")},
+    "contact_force": Variable(("contact",), "N", "force of a contact of a ring"),
+}
+"""Of each sample at each position, if it is asked for."""
+EACH: dict[str, tuple[str, object, str, str, str]] = {
+    "residual": ("residual", np.nan, "f8", "1", "largest scaled residual of the certificate"),
+    "torque_bound": (
+        *("bound", np.nan, "f8", "1"),
+        "largest distance of a torque from the exact one, over the largest torque",
+    ),
+    "certified": ("certified", False, "?", "1", "whether the answer is certified"),
+    "determined": ("determined", False, "?", "1", "whether every displacement is determined"),
+    "displaced": ("displaced", np.nan, "f8", "1", "displacements over the bound of a warning"),
+    "convex": ("convex", False, "?", "1", "whether nothing that is not convex carries"),
+    "arc_curvature": ("arc_curvature", np.nan, "f8", "N/m", "stiffness that arcs take across them"),
+    "rung": ("rung", "", "<U24", "1", "rung of the ladder that answered"),
+}
+"""Of each sample at each position: where a block has it, what stands there without an answer, type,
+unit and what it is."""
+
+
 class Table:
     """Variables of all samples, filled block by block."""
 
     def __init__(self, first: Block, count: int, keep: tuple[str, ...]) -> None:
-        names = first.equilibria[0].names
-        self.positions, self.keep, self.names = first.positions, keep, names
-        train = names.train
-        self.moving = [k for k, g in enumerate(train.gears.values()) if g.moves]
-        # From the displacements of all gears to those that can move, in their frames.
-        frames = np.zeros((len(train.gears), 3, len(self.moving), 2))
-        for column, k in enumerate(self.moving):
-            frames[k, :, column] = list(train.gears.values())[k].frame.T
-        self.frames = frames.reshape(3 * len(train.gears), -1)
-        shape = (count, len(first.positions))
-        sizes = {
-            "torque": (len(train.meshes),),
-            "share": (len(train.meshes),),
-            "pair_share": (len(train.meshes),),
-            "displacement": (len(self.moving), 2),
-            "contact_force": (len(names.contacts),),
+        self.names = first.equilibria[0].names
+        gears = self.names.train.gears
+        self.moving = [k for k, gear in enumerate(gears.values()) if gear.moves]
+        # From displacements of the gears that can move to their transverse frames.
+        self.frames = np.array([g.frame for g in gears.values() if g.moves]).reshape(-1, 2, 3)
+        self.coords: dict[str, list[Any]] = {
+            "sample": list(range(count)),
+            "position": list(first.positions),
+            "mesh": list(self.names.train.meshes),
+            "gear": [list(gears)[k] for k in self.moving],
+            "component": list(COMPONENTS),
+            "contact": list(self.names.contacts),
         }
-        self.values = {name: np.full((*shape, *sizes[name]), np.nan) for name in keep}
-        self.residual = np.full(shape, np.nan)
-        self.bound = np.full(shape, np.nan)
-        self.certified = np.zeros(shape, dtype=bool)
-        self.determined = np.zeros(shape, dtype=bool)
-        self.displaced, self.arc_curvature = np.full((2, *shape), np.nan)
-        self.convex = np.zeros(shape, dtype=bool)
-        self.rung = np.full(shape, "", dtype="<U24")
+        self.kept = {name: self._empty(np.nan, "f8", KEPT[name].dims) for name in keep}
+        self.each = {name: self._empty(none, kind) for name, (_, none, kind, *_) in EACH.items()}
         self.message: dict[str, str] = {}
+
+    def _empty(self, value: object, kind: str, dims: tuple[str, ...] = ()) -> np.ndarray:
+        return np.full([len(self.coords[d]) for d in (*EVERY, *dims)], value, dtype=kind)
 
     def write(self, block: Block) -> None:
         """Write a block in its place."""
         rows = block.rows
-        self.residual[rows] = block.residual
-        self.bound[rows] = block.bound
-        self.certified[rows] = block.certified
-        self.determined[rows] = block.determined
-        self.displaced[rows] = block.displaced
-        self.convex[rows] = block.convex
-        self.arc_curvature[rows] = block.arc_curvature
-        self.rung[rows] = block.rung
+        for name, (field, *_) in EACH.items():
+            self.each[name][rows] = getattr(block, field)
         for (row, index), why in block.message.items():
             self.message[f"sample {row}, position {index}"] = why
         place = slice(rows[0], rows[-1] + 1) if rows[-1] - rows[0] == len(rows) - 1 else rows
-        stages = self.names.train.stages
         for p, answers in enumerate(block.equilibria):
-            torque, meshes = mesh_torques(answers)
-            values = self.values
-            if "torque" in values:
-                values["torque"][place, p] = torque
-            for name, pairs in (("share", False), ("pair_share", True)):
-                if name in values:
-                    values[name][place, p] = shares(torque, meshes, stages, pairs=pairs)
-            if "displacement" in values:
-                flat = answers.displacement.reshape(len(rows), -1)
-                values["displacement"][place, p] = (flat @ self.frames).reshape(len(rows), -1, 2)
-            if "contact_force" in values:
-                values["contact_force"][place, p] = answers.ring_force
+            torque, _ = mesh_torques(answers)
+            for name, values in self.kept.items():
+                values[place, p] = self._read(name, answers, torque)
+
+    def _read(self, name: str, answers: Equilibria, torque: Array) -> Array:
+        """Return a variable of a block at one position."""
+        if name == "displacement":
+            moved = answers.displacement[:, self.moving]
+            return np.asarray(np.einsum("sgi,gci->sgc", moved, self.frames))
+        if name in ("share", "pair_share"):
+            train = self.names.train
+            return shares(torque, tuple(train.meshes), train.stages, pairs=name == "pair_share")
+        return torque if name == "torque" else answers.ring_force
 
     def dataset(self, case: Case, tolerance: float) -> xr.Dataset:
         """Return everything with labels."""
         import xarray as xr
 
-        from loadshare._version import __version__
-
-        axes = {
-            "torque": ("mesh",),
-            "share": ("mesh",),
-            "pair_share": ("mesh",),
-            "displacement": ("gear", "axis"),
-            "contact_force": ("contact",),
-        }
-        units = {"torque": "N*m", "displacement": "m", "contact_force": "N"}
-        every = ("sample", "position")
-        variables = {
-            name: ((*every, *axes[name]), self.values[name], {"units": units.get(name, "1")})
-            for name in self.keep
-        }
-        train = self.names.train
-        gears = list(train.gears)
-        coords = {
-            "sample": np.arange(len(self.residual)),
-            "position": list(self.positions),
-            "mesh": list(train.meshes),
-            "gear": [gears[k] for k in self.moving],
-            "axis": ["x", "y"],
-            "contact": list(self.names.contacts),
-        }
-        used = {axis for name in self.keep for axis in axes[name]} | set(every)
+        data = {name: KEPT[name].labelled(values, *EVERY) for name, values in self.kept.items()}
+        for name, (_, _, _, units, told) in EACH.items():
+            data[name] = EVERY, self.each[name], {"units": units, "long_name": told}
+        used = {dim for dims, *_ in data.values() for dim in dims}
         return xr.Dataset(
-            {
-                **variables,
-                "residual": (every, self.residual),
-                "torque_bound": (every, self.bound),
-                "certified": (every, self.certified),
-                "determined": (every, self.determined),
-                "displaced": (every, self.displaced),
-                "convex": (every, self.convex),
-                "arc_curvature": (every, self.arc_curvature, {"units": "N/m"}),
-                "rung": (every, self.rung),
-            },
-            coords={k: v for k, v in coords.items() if k in used},
+            data,
+            coords={dim: labels for dim, labels in self.coords.items() if dim in used},
             attrs={
                 "case": case.name,
                 "case_hash": case.hash,
-                "version": __version__,
+                "loadshare_version": __version__,
                 "tolerance": tolerance,
-                "warned": int((self.displaced > 1.0).sum()),
+                "warned": int((self.each["displaced"] > 1.0).sum()),
                 "refused": self.message,
             },
         )

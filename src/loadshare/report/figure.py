@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import json
+import re
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from loadshare.errors import LoadshareError
 from loadshare.report.palette import FAINT, INK, SOFT
-from loadshare.report.save import save_chart, svg_text
+from loadshare.results.files import write_atomically
 
 if TYPE_CHECKING:
     import altair as alt
+
+ENDINGS = (".png", ".svg", ".pdf", ".html", ".json")
+"""Of pictures on disk."""
+_CLIP = re.compile(r'(id="|url\(#)clip(\d+)("|\))')
 
 # The first that a machine has; vl-convert brings the last but one along.
 FONT = "Helvetica Neue, Helvetica, Arial, Liberation Sans, Roboto, sans-serif"
@@ -108,18 +115,58 @@ class Figure:
         OSError
             If the file cannot be written.
         """
-        return save_chart(self.spec, path, scale)
+        path = Path(path)
+        ending = path.suffix.lower()
+        if ending not in ENDINGS:
+            raise LoadshareError(
+                f"{path}: no picture can be written with the ending {path.suffix or '(none)'!r}. "
+                f"Allowed: {', '.join(ENDINGS)}"
+            )
+        content: str | bytes
+        if ending == ".svg":
+            content = self.to_svg()
+        elif ending == ".html":
+            # The page writer of vl-convert leaves texts of the specification unescaped.
+            from loadshare.report.page.offline import figure_page
+
+            title = self.spec.get("title", "")
+            content = figure_page(self.spec, title["text"] if isinstance(title, dict) else title)
+        elif ending == ".json":
+            content = json.dumps(self.spec, indent=1, ensure_ascii=False) + "\n"
+        else:
+            settings = {"scale": scale} if ending == ".png" else {}
+            content = bytes(self._converted(ending[1:], **settings))
+        write_atomically(path, content)
+        return path
 
     def to_svg(self, prefix: str = "") -> str:
-        """Return the picture as SVG text.
+        """Return the picture as SVG text, the same text for the same picture.
 
         Parameters
         ----------
         prefix : str
             Put before the names within it, for pictures that stand in one document.
         """
-        return svg_text(self.spec, prefix)
+        # The names of clipping paths go on from picture to picture of a process.
+        numbers: dict[str, int] = {}
+        return _CLIP.sub(
+            lambda m: f"{m[1]}{prefix}clip{numbers.setdefault(m[2], len(numbers) + 1)}{m[3]}",
+            str(self._converted("svg")),
+        )
+
+    def _converted(self, form: str, **settings: float) -> Any:
+        import vl_convert
+
+        convert = getattr(vl_convert, f"vegalite_to_{form}")
+        return convert(self.spec, vl_version=vega_lite_version(), **settings)
 
     def _repr_mimebundle_(self, *_: object, **__: object) -> dict[str, Any]:
         """Show the picture in a notebook, which draws SVG without any extension."""
         return {"image/svg+xml": self.to_svg()}
+
+
+def vega_lite_version() -> str:
+    """Version of Vega-Lite, such as "6.4", in which Altair writes its charts."""
+    import altair as alt
+
+    return ".".join(str(alt.SCHEMA_VERSION).removeprefix("v").split(".")[:2])

@@ -9,10 +9,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from loadshare.results import Result
+from loadshare.results import Result
 
 INK = "#1f2933"
 """Lines and words."""

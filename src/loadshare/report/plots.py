@@ -1,16 +1,20 @@
-"""The pictures of a result: `result.plot`."""
+"""The pictures of what was found: `loadshare.plot`, and `plot` of results and studies."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import singledispatch
+from typing import Any
 
+from loadshare.report.figure import Figure
+from loadshare.report.figures import branches, sweep, tolerance
+from loadshare.report.figures import floats as rests
+from loadshare.report.figures import law as laws
+from loadshare.report.figures import train as trains
+from loadshare.results import Result
+from loadshare.study.sweep import Sweep
+from loadshare.study.tolerance.result import Over, Tolerance
 from loadshare.train import build_train
-
-if TYPE_CHECKING:
-    from loadshare.report.figure import Figure
-    from loadshare.report.figures.share import Mean
-    from loadshare.results import Result
 
 
 @dataclass(frozen=True)
@@ -29,11 +33,9 @@ class Plots:
 
     def torque(self) -> Figure:
         """Torque on the driver of every mesh over the positions, one panel for each stage."""
-        from loadshare.report.figures.torque import torque
+        return branches.torque(self.result)
 
-        return torque(self.result)
-
-    def share(self, over: Mean = "stage") -> Figure:
+    def share(self, over: branches.Mean = "stage") -> Figure:
         """Load-sharing coefficient of every branch over the positions.
 
         Parameters
@@ -46,9 +48,7 @@ class Plots:
         LoadshareError
             If no loaded mesh is in a stage.
         """
-        from loadshare.report.figures.share import share
-
-        return share(self.result, over)
+        return branches.share(self.result, over)
 
     def floats(self) -> Figure:
         """Each float's centre in its region, enlarged and true to shape.
@@ -58,18 +58,50 @@ class Plots:
         LoadshareError
             If no gear floats.
         """
-        from loadshare.report.figures.floats import floats
-
-        return floats(self.result, build_train(self.result.case))
+        return rests.floats(self.result, build_train(self.result.case))
 
     def law(self) -> Figure:
         """Deformation of the meshes over torque, with the points at which they work."""
-        from loadshare.report.figures.law import law
-
-        return law(self.result, build_train(self.result.case))
+        return laws.law(self.result, build_train(self.result.case))
 
     def train(self) -> Figure:
         """Drawing of the train."""
-        from loadshare.report.figures.train import train
+        return trains.train(self.result.case)
 
-        return train(self.result.case)
+
+@singledispatch
+def plot(found: object, *settings: Any, **named: Any) -> Any:
+    """Draw what was found.
+
+    Parameters
+    ----------
+    found : Result, Sweep or Tolerance
+    *settings, **named
+        What to show: as for ``found.plot`` of a sweep or a tolerance study.
+
+    Returns
+    -------
+    Plots or Figure
+        The pictures of a result, each a method; the one picture of a study.
+
+    Raises
+    ------
+    TypeError
+        If there are no pictures of such a thing.
+    """
+    raise TypeError(f"there are no pictures of {type(found).__name__}, only of results and studies")
+
+
+@plot.register
+def _(found: Result) -> Plots:
+    return Plots(found)
+
+
+@plot.register
+def _(found: Sweep, *settings: Any, **named: Any) -> Figure:
+    return sweep.sweep(found.dataset, *settings, **named)
+
+
+@plot.register
+def _(found: Tolerance, stage: str = "system", over: Over = "stage") -> Figure:
+    return tolerance.tolerance(found.dataset.sel(over=over), stage)

@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from loadshare.report.numbers import significant
 from loadshare.report.units import engineering
-
-if TYPE_CHECKING:
-    from loadshare.results import Position
+from loadshare.results import Position
 
 DIGITS = 5
 """Significant digits of a range's ends."""

@@ -43,7 +43,7 @@ ROUND_OFF = 1e-12
 _LADDERS: dict[str, tuple[tuple[Unit, float], ...]] = {
     "m": ((Unit("nm", 1e9), 1e-8), (MICROMETRE, 1e-2), (MILLIMETRE, math.inf)),
     "N": ((Unit("N"), 1e4), (Unit("kN", 1e-3), math.inf)),
-    "N*m": ((Unit("N·m"), 1e5), (Unit("kN·m", 1e-3), math.inf)),
+    "N·m": ((Unit("N·m"), 1e5), (Unit("kN·m", 1e-3), math.inf)),
     "rad": ((MICRORADIAN, 1e-3), (Unit("mrad", 1e3), 1.0), (Unit("rad"), math.inf)),
     "1": ((NUMBER, math.inf),),
     "": ((NUMBER, math.inf),),
@@ -58,9 +58,9 @@ def engineering(values: Iterable[float], unit: str) -> Unit:
     values : iterable of float
         SI.
     unit : str
-        Their SI unit: "m", "N", "N*m" or "N m", "rad", "1". Any other is kept as it is.
+        Their SI unit: "m", "N", "N·m", "rad", "1". Any other is kept as it is.
     """
-    ladder = _LADDERS.get(unit.replace(" ", "*").replace("·", "*"))
+    ladder = _LADDERS.get(unit)
     if ladder is None:
         return Unit(unit)
     largest = max((abs(v) for v in values if math.isfinite(v)), default=0.0)

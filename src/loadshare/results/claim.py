@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
@@ -82,16 +83,16 @@ def claim_of(train: Train, found: Equilibrium) -> Claim:
     for name, gear in train.gears.items():
         if gear.support is not None:
             moved = gear.frame @ np.asarray(found.displacement[name])
-            force[name] = _pair(found.support_force.get(name, gear.support * moved))
+            force[name] = found.support_force.get(name, gear.support * moved)
     return Claim(
         rotation=_plain(phi),
-        displacement={g: _triple(p) for g, p in found.displacement.items()},
+        displacement=_tuples(found.displacement),
         flank_force=_plain(found.flank_force),
         ring_force=_plain(found.ring_force),
-        radial_reaction={n: _triple(f) for n, f in found.radial_reaction.items()},
+        radial_reaction=_tuples(found.radial_reaction),
         shaft_torque=torque,
-        support_force=force,
-        slip={g: _triple(s) for g, s in train.slip.items()} if train.slip else None,
+        support_force=_tuples(force),
+        slip=_tuples(train.slip) if train.slip else None,
     )
 
 
@@ -126,9 +127,5 @@ def _plain(figures: Mapping[str, float]) -> dict[str, float]:
     return {name: float(value) for name, value in figures.items()}
 
 
-def _pair(vector: np.ndarray) -> Pair:
-    return float(vector[0]), float(vector[1])
-
-
-def _triple(vector: np.ndarray) -> Triple:
-    return float(vector[0]), float(vector[1]), float(vector[2])
+def _tuples(vectors: Mapping[str, np.ndarray]) -> dict[str, Any]:
+    return {name: tuple(float(part) for part in vector) for name, vector in vectors.items()}

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,6 +20,104 @@ if TYPE_CHECKING:
 
 JUDGED_ARRAYS = ("residual", "torque_bound")
 """Figures of certificates, which are round-off themselves (see `differences.JUDGED`)."""
+COMPONENTS = ("x", "y")
+"""Of a displacement in the gear's transverse frame."""
+DETERMINED = (np.nan, np.nan)
+"""Ends of the range of what is determined."""
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A figure in labelled arrays: its dimensions, its unit, what it is, where it stands.
+
+    Attributes
+    ----------
+    dims : tuple of str
+        Beside the position. The first names elements.
+    units, long_name : str
+    read : callable
+        Value at a position for one name of the first dimension; None where there is none.
+    """
+
+    dims: tuple[str, ...]
+    units: str
+    long_name: str
+    read: Callable[[Position, str], object] = lambda position, name: None
+
+    def labelled(self, values: np.ndarray, *over: str) -> tuple[Any, ...]:
+        """Return values as xarray takes them, the dimensions `over` before the variable's own."""
+        attributes = {"units": self.units, "long_name": self.long_name}
+        return (*over, *self.dims), values, attributes
+
+
+VARIABLES = {
+    "torque": Variable(("mesh",), "N·m", "torque on the driver", lambda p, m: p.torque[m]),
+    "coast_torque": Variable(
+        ("mesh",), "N·m", "torque on the coast flank", lambda p, m: p.coast_torque[m]
+    ),
+    "share": Variable(
+        ("mesh",), "1", "load-sharing coefficient, stage mean", lambda p, m: p.share.get(m)
+    ),
+    "pair_share": Variable(
+        ("mesh",), "1", "load-sharing coefficient, group mean", lambda p, m: p.pair_share.get(m)
+    ),
+    "rotation": Variable(("gear",), "rad", "elastic rotation", lambda p, g: p.rotation[g]),
+    "displacement": Variable(
+        ("gear", "component"),
+        "m",
+        "displacement of the centre in the gear's transverse frame",
+        lambda p, g: p.displacement[g],
+    ),
+    "rotation_range": Variable(
+        ("gear", "end"),
+        "rad",
+        "least and largest rotation where forces leave it open",
+        lambda p, g: p.undetermined.get(f"gear {g} rotation", DETERMINED),
+    ),
+    "displacement_range": Variable(
+        ("gear", "component", "end"),
+        "m",
+        "least and largest displacement where forces leave it open",
+        lambda p, g: [p.undetermined.get(f"gear {g} {axis}", DETERMINED) for axis in COMPONENTS],
+    ),
+    "margin": Variable(
+        ("float",),
+        "m",
+        "distance to the nearest boundary of the float's region",
+        lambda p, g: p.floats[g].margin,
+    ),
+    "on_boundary": Variable(
+        ("float",),
+        "1",
+        "1 where the float rests on a boundary",
+        lambda p, g: p.floats[g].state == "on boundary",
+    ),
+    "reaction": Variable(
+        ("float", "component"),
+        "N",
+        "force of the ring on the float",
+        lambda p, g: p.floats[g].reaction,
+    ),
+    "torque_bound": Variable(
+        ("mesh",),
+        "N·m",
+        "largest distance of the torque from the exact equilibrium's",
+        lambda p, m: p.certificate.bound.torque.get(m),
+    ),
+    "residual": Variable(
+        ("figure",),
+        "1",
+        "scaled residual of the certificate",
+        lambda p, name: p.certificate.residuals[name].scaled,
+    ),
+    "validity": Variable(
+        ("measure",),
+        "1",
+        "size of the displacements for the geometry in which they were found",
+        lambda p, name: getattr(p.validity.measures.get(name), "value", None),
+    ),
+}
+"""Every variable of a result; samples and studies take theirs from here."""
 
 
 def dataset(result: Result) -> xr.Dataset:
@@ -32,119 +131,25 @@ def dataset(result: Result) -> xr.Dataset:
     """
     import xarray as xr
 
-    positions = result.positions
+    positions, stamp = result.positions, result.stamp
     first = positions[0]
-    meshes, gears = list(first.torque), list(first.rotation)
-    floats, residuals = list(first.floats), list(first.certificate.residuals)
-
-    def over(names: list[str], read: Callable[[Position], Mapping[str, object]]) -> np.ndarray:
-        """Array position × name; what a mapping lacks or leaves open becomes NaN."""
-        rows = [[read(p).get(n) for n in names] for p in positions]
-        return np.array([[np.nan if v is None else v for v in row] for row in rows], dtype=float)
-
-    def ranges(name: str) -> np.ndarray:
-        """Array position × gear × 2 of what is undetermined; NaN where it is determined."""
-        determined = (np.nan, np.nan)
-        rows = [[p.undetermined.get(name.format(g), determined) for g in gears] for p in positions]
-        return np.array(rows, dtype=float)
-
-    def variable(
-        dims: tuple[str, ...], values: np.ndarray, units: str, long_name: str
-    ) -> tuple[tuple[str, ...], np.ndarray, dict[str, str]]:
-        return dims, values, {"units": units, "long_name": long_name}
-
-    on_mesh, on_gear, on_float = ("position", "mesh"), ("position", "gear"), ("position", "float")
-    displacement = np.array([[p.displacement[g] for g in gears] for p in positions])
-    reaction = np.array([[p.floats[g].reaction for g in floats] for p in positions], dtype=float)
-    data = {
-        "torque": variable(
-            on_mesh, over(meshes, lambda p: p.torque), "N m", "torque on the driver"
-        ),
-        "coast_torque": variable(
-            on_mesh, over(meshes, lambda p: p.coast_torque), "N m", "torque on the coast flank"
-        ),
-        "share": variable(
-            on_mesh, over(meshes, lambda p: p.share), "1", "load-sharing coefficient, stage mean"
-        ),
-        "pair_share": variable(
-            on_mesh,
-            over(meshes, lambda p: p.pair_share),
-            "1",
-            "load-sharing coefficient, group mean",
-        ),
-        "rotation": variable(on_gear, over(gears, lambda p: p.rotation), "rad", "elastic rotation"),
-        "displacement": variable(
-            ("position", "gear", "component"),
-            displacement.reshape(len(positions), len(gears), 2),
-            "m",
-            "displacement of the centre in the gear's transverse frame",
-        ),
-        "rotation_range": variable(
-            (*on_gear, "end"),
-            ranges("gear {} rotation"),
-            "rad",
-            "least and largest rotation where forces leave it open",
-        ),
-        "displacement_range": variable(
-            ("position", "gear", "component", "end"),
-            np.stack([ranges(f"gear {{}} {axis}") for axis in "xy"], axis=2),
-            "m",
-            "least and largest displacement where forces leave it open",
-        ),
-        "margin": variable(
-            on_float,
-            over(floats, lambda p: {g: f.margin for g, f in p.floats.items()}),
-            "m",
-            "distance to the nearest boundary of the float's region",
-        ),
-        "on_boundary": variable(
-            on_float,
-            over(floats, lambda p: {g: f.state == "on boundary" for g, f in p.floats.items()}),
-            "1",
-            "1 where the float rests on a boundary",
-        ),
-        "reaction": variable(
-            ("position", "float", "component"),
-            reaction.reshape(len(positions), len(floats), 2),
-            "N",
-            "force of the ring on the float",
-        ),
-        "torque_bound": variable(
-            on_mesh,
-            over(meshes, lambda p: p.certificate.bound.torque),
-            "N m",
-            "largest distance of the torque from the exact equilibrium's",
-        ),
-        "residual": variable(
-            ("position", "figure"),
-            over(
-                residuals,
-                lambda p: {n: r.scaled for n, r in p.certificate.residuals.items()},
-            ),
-            "1",
-            "scaled residual of the certificate",
-        ),
+    names: dict[str, list[str]] = {
+        "mesh": list(first.torque),
+        "gear": list(first.rotation),
+        "component": list(COMPONENTS),
+        "end": ["least", "largest"],
+        "float": list(first.floats),
+        "figure": list(first.certificate.residuals),
+        "measure": [name for name, _, _ in result.validity],
     }
-    measures = [name for name, _, _ in result.validity]
-    data["validity"] = variable(
-        ("position", "measure"),
-        over(measures, lambda p: {n: m.value for n, m in p.validity.measures.items()}),
-        "1",
-        "size of the displacements for the geometry in which they were found",
-    )
-    stamp = result.stamp
+    data = {}
+    for name, variable in VARIABLES.items():
+        rows = [[variable.read(p, n) for n in names[variable.dims[0]]] for p in positions]
+        shape = [len(positions), *(len(names[dim]) for dim in variable.dims)]
+        data[name] = variable.labelled(np.array(rows, dtype=float).reshape(shape), "position")
     return xr.Dataset(
         data,
-        coords={
-            "position": [p.position for p in positions],
-            "mesh": meshes,
-            "gear": gears,
-            "component": ["x", "y"],
-            "end": ["least", "largest"],
-            "float": floats,
-            "figure": residuals,
-            "measure": measures,
-        },
+        coords={"position": [p.position for p in positions], **names},
         attrs={
             "title": stamp.title or stamp.case,
             "case": stamp.case,
@@ -193,19 +198,6 @@ def _alike(name: str, expected: xr.Variable, found: xr.Variable) -> bool:
 
 def frame(result: Result) -> pd.DataFrame:
     """Tabulate position by mesh: torque [N·m], coefficients, the position's worst residual."""
-    import pandas as pd
-
-    rows = [
-        {
-            "position": p.position,
-            "mesh": mesh,
-            "torque": torque,
-            "coast_torque": p.coast_torque[mesh],
-            "share": p.share.get(mesh),
-            "pair_share": p.pair_share.get(mesh),
-            "worst_residual": p.certificate.worst,
-        }
-        for p in result.positions
-        for mesh, torque in p.torque.items()
-    ]
-    return pd.DataFrame(rows).astype({"share": float, "pair_share": float})
+    arrays = result.dataset[["torque", "coast_torque", "share", "pair_share"]]
+    worst = [p.certificate.worst for p in result.positions]
+    return arrays.assign(worst_residual=("position", worst)).to_dataframe().reset_index()

@@ -23,22 +23,25 @@ DOCUMENT = "loadshare_result"
 """Attribute of a netCDF file that holds the whole result."""
 
 
-def write_atomically(path: Path, write: Callable[[Path], None]) -> None:
-    """Let `write` fill a temporary file beside `path`, then put it in place in one step.
+def write_atomically(path: Path, content: str | bytes | Callable[[Path], object]) -> None:
+    """Fill a temporary file beside `path`, then put it in place in one step.
 
     Parameters
     ----------
     path : Path
         Where the file shall stand; its folder is made.
-    write : callable
-        Writes to the path that it is given.
+    content : str, bytes or callable
+        What is written, or what writes to the path that it is given.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     os.close(handle)
     temporary = Path(name)
     try:
-        write(temporary)
+        if callable(content):
+            content(temporary)
+        else:
+            temporary.write_bytes(content.encode() if isinstance(content, str) else content)
         temporary.chmod(0o644)
         temporary.replace(path)
     finally:
@@ -50,22 +53,14 @@ def write_json(result: Result, path: str | Path | None = None) -> str:
     """Return the JSON text of a result, and write it to `path` if given."""
     text = json.dumps(to_document(result), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
     if path is not None:
-        write_atomically(Path(path), lambda file: _write_text(file, text))
+        write_atomically(Path(path), text)
     return text
-
-
-def _write_text(file: Path, text: str) -> None:
-    file.write_text(text, encoding="utf-8")
 
 
 def write_netcdf(result: Result, path: str | Path) -> None:
     """Write labelled arrays for any reader of netCDF, and the whole result as an attribute."""
     arrays = result.dataset.assign_attrs({DOCUMENT: write_json(result)})
-    write_atomically(Path(path), lambda file: _write_arrays(arrays, file))
-
-
-def _write_arrays(arrays: object, file: Path) -> None:
-    arrays.to_netcdf(file, engine="h5netcdf")  # type: ignore[attr-defined]
+    write_atomically(Path(path), lambda file: arrays.to_netcdf(file, engine="h5netcdf"))
 
 
 def load_result(path: str | Path) -> Result:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from loadshare.certify import Certificate, FloatState
 from loadshare.certify.uniqueness import TOLD, Uniqueness
 from loadshare.certify.validity import ALIKE, Measure, Validity
+from loadshare.pictures import picture
 from loadshare.results.claim import Claim, Pair
 from loadshare.train.equilibrium import Equilibrium
 
@@ -158,7 +159,16 @@ class Result:
     positions: tuple[Position, ...]
     omega: Mapping[str, float | None]
     pair_omega: Mapping[str, float | None]
-    case: Case = field(compare=False, repr=False)
+    case: Case = field(compare=False)
+
+    def __repr__(self) -> str:
+        """Tell what was solved, how good the answer is, and how load is shared."""
+        done, asked = len(self.positions), len(self.stamp.positions)
+        omega = ", ".join(f"{s} {'–' if v is None else f'{v:.4f}'}" for s, v in self.omega.items())
+        return (
+            f"Result of {self.stamp.case}: {done} of {asked} positions certified, "
+            f"worst residual {self.certificate.worst:.1e}\nlargest Ω: {omega}"
+        )
 
     @property
     def passed(self) -> bool:
@@ -231,10 +241,8 @@ class Result:
 
         Each returns a `Figure`; ``.save("floats.svg")`` writes it.
         """
-        # The one place where a room asks what stands above it: pictures are asked for by results.
-        from loadshare.report.plots import Plots
-
-        return Plots(self)
+        plots: Plots = picture(self)
+        return plots
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data, as the JSON file holds it."""

@@ -51,7 +51,7 @@ class Target:
     @property
     def unit(self) -> str:
         """SI unit."""
-        return "N*m" if self.quantity == "torque" else ""
+        return "N·m" if self.quantity == "torque" else ""
 
     @property
     def key(self) -> str:

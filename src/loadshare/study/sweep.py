@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from loadshare.case import Case
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.job import Progress, solve
+from loadshare.pictures import picture
 from loadshare.study.parameter import STUDY, Parameter, grid, named, read_parameter
 from loadshare.study.positions import loaded
 from loadshare.train import build_train
@@ -114,9 +115,8 @@ class Sweep:
         LoadshareError
             If there is no such variable, name or position.
         """
-        from loadshare.report.figures.sweep import sweep as drawn
-
-        return drawn(self.dataset, show, names=names, position=position, events=events)
+        drawn: Figure = picture(self, show, names=names, position=position, events=events)
+        return drawn
 
     def to_frame(self) -> pd.DataFrame:
         """Torques and coefficients as a table, one row per point, position and mesh."""
@@ -129,7 +129,7 @@ class Sweep:
         from loadshare.results.files import write_atomically
 
         arrays = self.dataset
-        write_atomically(FilePath(path), lambda file: _write_netcdf(arrays, file))
+        write_atomically(FilePath(path), lambda file: arrays.to_netcdf(file, engine="h5netcdf"))
 
     def to_csv(self, path: str | FilePath) -> None:
         """Write the table to a CSV file."""
@@ -137,10 +137,6 @@ class Sweep:
 
         table = self.to_frame()
         write_atomically(FilePath(path), lambda file: table.to_csv(file, index=False))
-
-
-def _write_netcdf(arrays: xr.Dataset, file: FilePath) -> None:
-    arrays.to_netcdf(file, engine="h5netcdf")
 
 
 def sweep(

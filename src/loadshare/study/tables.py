@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loadshare._version import __version__
+from loadshare.results.dataset import COMPONENTS, VARIABLES
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -158,10 +159,8 @@ def sensitivity_dataset(found: Sensitivity) -> xr.Dataset:
     on_stage = ("input", "side", "stage")
     per = "per SI unit of the input"
     figures = (
-        ("torque", on_mesh, "N m"),
-        ("share", on_mesh, "1"),
-        ("pair_share", on_mesh, "1"),
-        ("displacement", on_gear, "m"),
+        *((name, on_mesh, VARIABLES[name].units) for name in ("torque", "share", "pair_share")),
+        ("displacement", on_gear, VARIABLES["displacement"].units),
         ("omega", on_stage, "1"),
         ("pair_omega", on_stage, "1"),
     )
@@ -181,7 +180,7 @@ def sensitivity_dataset(found: Sensitivity) -> xr.Dataset:
             "side": list(SIDES),
             "mesh": meshes,
             "gear": gears,
-            "component": ["x", "y"],
+            "component": list(COMPONENTS),
             "stage": stages,
             "value": ("input", [item.value.number for item in found.inputs]),
             "unit": ("input", [item.value.unit for item in found.inputs]),

@@ -7,7 +7,7 @@ from rich.console import Console
 from tests.cli.conftest import on_a_screen_of
 from tests.support import CASES
 
-from loadshare.cli.study import tolerance as room
+from loadshare.cli import console as room
 
 PATHS = CASES / "two_path/clocking_error.toml"
 
@@ -50,7 +50,7 @@ def test_a_study_is_told_and_written(command, scattering, tmp_path):
         "normal mean 1.2, deviation 0.1 mrad",
         "P(Ω > 1.06)",
         "Shares of the variance of Ω of the system",
-        "Largest driver torque over positions [N*m]",
+        "Largest driver torque over positions [N·m]",
         "there may be a worse one",
         "Intervals in brackets: 95 %.",
     ):
@@ -112,7 +112,7 @@ def test_what_cannot_be_used_is_told(command, scattering, tmp_path):
 def test_the_bar_tells_rate_and_time_left(monkeypatch):
     screen = Console(file=io.StringIO(), force_terminal=True, width=120, color_system=None)
     monkeypatch.setattr(room, "console", lambda **_: screen)
-    with room.rated_progress("samples") as tick:
+    with room.progress("samples", None, rated=True) as tick:
         tick(4096, 40960)
         tick(8192, 40960)
     shown = screen.file.getvalue()

@@ -10,7 +10,7 @@ import typer
 from loadshare.cli.batch.names import SUMMARY, result_names
 from loadshare.cli.batch.summary import print_summary, summary_document
 from loadshare.cli.batch.work import GOOD, Outcome, Task
-from loadshare.cli.console import console, progress
+from loadshare.cli.console import progress
 from loadshare.cli.exits import INTERRUPTED, REFUSED, fail, writing
 from loadshare.cli.files import write_document
 from loadshare.cli.find import find_cases
@@ -70,7 +70,7 @@ def batch(
     summary = folder / f"{SUMMARY}.json"
     with writing(summary):
         write_document(summary, summary_document(ordered, settings, waiting))
-    print_summary(console(), ordered)
+    print_summary(ordered)
     if interrupted:
         told = f"Interrupted: {len(ordered)} of {len(tasks)} cases done."
         fail([told, "The same command goes on; what is certified is kept."], INTERRUPTED)

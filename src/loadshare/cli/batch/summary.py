@@ -5,18 +5,16 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import asdict
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from loadshare._version import __version__
 from loadshare.cli.batch.work import GOOD, Outcome
-
-if TYPE_CHECKING:
-    from rich.console import Console
+from loadshare.cli.console import say
 
 STYLES = {"certified": "green", "kept": "green"}
 
 
-def print_summary(console: Console, outcomes: Sequence[Outcome]) -> None:
+def print_summary(outcomes: Sequence[Outcome]) -> None:
     """Print one row per case, and below what went wrong."""
     from rich.text import Text
 
@@ -36,11 +34,11 @@ def print_summary(console: Console, outcomes: Sequence[Outcome]) -> None:
             NONE if done.worst is None else small(done.worst),
             f"{done.seconds:.2f}",
         )
-    show(console, "Cases", made)
+    show("Cases", made)
     for done in outcomes:
         for message in done.messages:
-            console.print(f"{done.name}: {done.outcome}: {message}", soft_wrap=True)
-    console.print(counts(outcomes))
+            say(f"{done.name}: {done.outcome}: {message}", whole=True)
+    say(counts(outcomes))
 
 
 def counts(outcomes: Sequence[Outcome]) -> str:

@@ -123,7 +123,7 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
 
 
 def _warnings(result: Result) -> tuple[str, ...]:
-    from loadshare.report.page.validity import advice
+    from loadshare.report.validity import advice
 
     told = advice(result)
     return (f"warning: {told}",) if told else ()

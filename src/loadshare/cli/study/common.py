@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -12,7 +12,7 @@ import typer
 from loadshare.cli.changes import read_changes
 from loadshare.cli.console import Tick, progress
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail, problems_told, writing
-from loadshare.cli.options import ending, output
+from loadshare.cli.options import changes, ending, output
 from loadshare.cli.refusal import told
 from loadshare.errors import Refused
 
@@ -22,16 +22,12 @@ if TYPE_CHECKING:
 
     from loadshare.case import Case
 
-CaseFile = Annotated[Path, typer.Argument(metavar="CASE", help="Case file.")]
 Positions = Annotated[
     list[int] | None,
     typer.Option("--position", metavar="K", help="Only this position, from 1; may be repeated."),
 ]
 Changes = Annotated[
-    list[str] | None,
-    typer.Option(
-        "--with", metavar="KEY=VALUE", help="Change the case beforehand; may be repeated."
-    ),
+    list[str] | None, changes("--with", "Change the case beforehand; may be repeated.")
 ]
 
 
@@ -48,23 +44,26 @@ FittedFile = Annotated[Path | None, _file("Write the fitted case to a .toml file
 
 @contextmanager
 def asked(
-    file: Path, changes: list[str] | None, what: str, total: int = 1
+    file: Path,
+    change: list[str] | None,
+    what: str,
+    total: int | None = 1,
+    *,
+    rated: bool = False,
 ) -> Iterator[tuple[Case, Tick | None]]:
     """Open the case of a study and a progress bar; what cannot be answered becomes a message.
 
     Parameters
     ----------
     file : Path
-    changes : list of str or None
+    change : list of str or None
         Of ``--with``.
-    what : str
-        What the bar counts.
-    total : int
-        How many there are, as far as known beforehand.
+    what, total, rated
+        Of the bar, as far as known beforehand.
     """
     with answered():
-        case = open_case(file, changes)
-        with progress(what, total) as tick:
+        case = open_case(file, change)
+        with progress(what, total, rated=rated) as tick:
             yield case, tick
 
 
@@ -88,7 +87,7 @@ def end(lines: list[str]) -> None:
         fail(lines, REFUSED)
 
 
-def open_case(file: Path, changes: list[str] | None) -> Case:
+def open_case(file: Path, change: list[str] | None) -> Case:
     """Return the case of a file, with what ``--with`` changes.
 
     Raises
@@ -99,23 +98,25 @@ def open_case(file: Path, changes: list[str] | None) -> Case:
     from loadshare.case import load_case
 
     case = load_case(file)
-    asked = read_changes(changes or ())
+    asked = read_changes(change or ())
     return case.replace(asked) if asked else case
 
 
 def write_table(
-    file: Path | None, frame: pd.DataFrame | None, dataset: xr.Dataset | None = None
+    file: Path | None,
+    frame: Callable[[], pd.DataFrame],
+    dataset: Callable[[], xr.Dataset] | None = None,
 ) -> None:
-    """Write what was found as a table or as labelled arrays, by the ending of the file."""
+    """Write what was found, if asked for, as a table or labelled arrays by the file's ending."""
     if file is None:
         return
     from loadshare.results.files import write_atomically
 
     def write(path: Path) -> None:
         if file.suffix == ".nc" and dataset is not None:
-            dataset.to_netcdf(path, engine="h5netcdf")
-        elif frame is not None:
-            frame.to_csv(path, index=False)
+            dataset().to_netcdf(path, engine="h5netcdf")
+        else:
+            frame().to_csv(path, index=False)
 
     with writing(file):
         write_atomically(file, write)

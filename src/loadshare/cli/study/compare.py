@@ -4,20 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from loadshare.cli.console import console
+from loadshare.cli.console import say
 from loadshare.cli.exits import counted
-from loadshare.cli.study.common import (
-    CaseFile,
-    Changes,
-    CsvFile,
-    asked,
-    write_table,
-)
+from loadshare.cli.options import CaseFile
+from loadshare.cli.study.common import Changes, CsvFile, asked, write_table
+from loadshare.cli.tables.table import show, table
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
-    from loadshare.study.compare import Comparison
+    from loadshare.study.compare import Comparison, Deviation
 
 
 def compare(case: CaseFile, file: CsvFile = None, change: Changes = None) -> None:
@@ -26,31 +20,28 @@ def compare(case: CaseFile, file: CsvFile = None, change: Changes = None) -> Non
 
     with asked(case, change, "positions") as (loaded, tick):
         found = compared(loaded, progress=tick)
-    show_comparison(console(), found)
-    if file is not None:
-        write_table(file, found.to_frame())
+    show_comparison(found)
+    write_table(file, found.to_frame)
 
 
-def show_comparison(screen: Console, found: Comparison) -> None:
+def show_comparison(found: Comparison) -> None:
     """Print every measured figure beside the computed one."""
-    from loadshare.cli.tables.table import show, table
+    words = ("measured", "of", "at")
+    heads = (*words, "figure", "±", "computed", "difference", "in ±")
+    show("Measured against computed", table(heads, map(_row, found.deviations), words))
+    say(f"χ² = {found.chi_square:.4g} over {counted(len(found.deviations), 'figure')}")
 
-    made = table(
-        ("measured", "of", "at", "figure", "±", "computed", "difference", "in ±"),
-        words=("measured", "of", "at"),
+
+def _row(d: Deviation) -> tuple[str, ...]:
+    target = d.target
+    unit = f" [{target.unit}]" if target.unit else ""
+    return (
+        target.measurement,
+        f"{target.quantity} {target.where}{unit}",
+        "all" if target.position is None else str(target.position),
+        f"{target.value:.6g}",
+        f"{target.uncertainty:.3g}",
+        f"{d.computed:.6g}",
+        f"{d.difference:+.3g}",
+        f"{d.deviations:+.2f}",
     )
-    for d in found.deviations:
-        target = d.target
-        unit = f" [{target.unit}]" if target.unit else ""
-        made.add_row(
-            target.measurement,
-            f"{target.quantity} {target.where}{unit}",
-            "all" if target.position is None else str(target.position),
-            f"{target.value:.6g}",
-            f"{target.uncertainty:.3g}",
-            f"{d.computed:.6g}",
-            f"{d.difference:+.3g}",
-            f"{d.deviations:+.2f}",
-        )
-    show(screen, "Measured against computed", made)
-    screen.print(f"χ² = {found.chi_square:.4g} over {counted(len(found.deviations), 'figure')}")

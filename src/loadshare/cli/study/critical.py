@@ -6,21 +6,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from loadshare.cli.console import console
+from loadshare.cli.console import say
 from loadshare.cli.exits import counted
-from loadshare.cli.study.common import (
-    CaseFile,
-    Changes,
-    CsvFile,
-    Positions,
-    asked,
-    end,
-    write_table,
-)
+from loadshare.cli.options import CaseFile
+from loadshare.cli.refusal import ranges
+from loadshare.cli.study.common import Changes, CsvFile, Positions, asked, end, write_table
+from loadshare.cli.tables.table import show, table
 
 if TYPE_CHECKING:
     import pandas as pd
-    from rich.console import Console
 
     from loadshare.study.critical import Critical
 
@@ -45,9 +39,8 @@ def critical(
 
     with asked(case, change, "positions") as (loaded, tick):
         found = found_along(loaded, key, start, stop, positions=position, progress=tick)
-    show_critical(console(), found)
-    if file is not None:
-        write_table(file, events_frame(found))
+    show_critical(found)
+    write_table(file, lambda: events_frame(found))
     end(unconfirmed(found))
 
 
@@ -76,33 +69,24 @@ def events_frame(found: Critical) -> pd.DataFrame:
     return pd.DataFrame([[getattr(e, c) for c in columns] for e in found.events], columns=columns)
 
 
-def show_critical(screen: Console, found: Critical) -> None:
+def show_critical(found: Critical) -> None:
     """Print every event, and the positions at which it is found alike."""
-    from loadshare.cli.refusal import ranges
-    from loadshare.cli.tables.table import show, table
-
     unit = f" [{found.parameter.unit}]" if found.parameter.unit else ""
     doubtful = not all(e.confirmed for e in found.events)
     alike: dict[tuple[str, ...], list[int]] = {}
     for e in found.events:
-        row = (
-            f"{e.value:.9g}",
-            e.element,
-            e.kind,
-            e.before,
-            e.after,
-            *(["yes" if e.confirmed else "NO"] if doubtful else []),
-        )
+        confirmed = ["yes" if e.confirmed else "NO"] if doubtful else []
+        row = (f"{e.value:.9g}", e.element, e.kind, e.before, e.after, *confirmed)
         alike.setdefault(row, []).append(e.position)
     words = ("element", "event", "below", "above", *(["confirmed"] if doubtful else []), "at")
-    made = table((f"{found.parameter.name}{unit}", *words), words=words)
+    ordered = sorted(alike.items(), key=lambda item: float(item[0][0]))
+    rows = ((*row, ranges(positions)) for row, positions in ordered)
+    made = table((f"{found.parameter.name}{unit}", *words), rows, words)
     made.columns[0].no_wrap = False
-    for shown, positions in sorted(alike.items(), key=lambda item: float(item[0][0])):
-        made.add_row(*shown, ranges(positions))
     title = f"Events from {found.start:g} to {found.stop:g}{unit}"
-    if not alike:
-        screen.print(f"\n{title}: none")
+    if alike:
+        show(title, made)
     else:
-        show(screen, title, made)
+        say(f"\n{title}: none")
     if not doubtful and not found.unproved:
-        screen.print("Proved between certified solves: there are no others.")
+        say("Proved between certified solves: there are no others.")

@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from loadshare.cli.console import console
+from loadshare.cli.console import say, say_all
 from loadshare.cli.exits import writing
 from loadshare.cli.files import write_text
-from loadshare.cli.study.common import CaseFile, Changes, FittedFile, asked
+from loadshare.cli.options import CaseFile, keys_and_value
+from loadshare.cli.study.common import Changes, FittedFile, asked
+from loadshare.cli.study.compare import show_comparison
+from loadshare.cli.tables.table import show, table
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from loadshare.study.fit import Fit
 
 
@@ -40,52 +41,49 @@ def fit(
 ) -> None:
     """Fit inputs of a case to what was measured."""
     from loadshare.study.fit import fit as fitted
-    from loadshare.study.parameter import split_outside
 
+    form = "KEY=LOW:HIGH"
     unknowns: dict[tuple[str, ...], list[str]] = {}
     for text in unknown:
-        *keys, bounds = split_outside(text, "=")
+        keys, bounds = keys_and_value(text, form, "--unknown")
         limits = bounds.split(":")
-        if not keys or not all(keys) or len(limits) != 2:
-            raise typer.BadParameter(
-                f"{text!r} is not of the form KEY=LOW:HIGH", param_hint="--unknown"
-            )
-        unknowns[tuple(keys)] = limits
+        if len(limits) != 2:
+            raise typer.BadParameter(f"{text!r} is not of the form {form}", param_hint="--unknown")
+        unknowns[keys] = limits
     with asked(case, change, "starting points", starts) as (loaded, tick):
         found = fitted(loaded, unknowns, starts=starts, seed=seed, progress=tick)
-    show_fit(console(), found)
+    show_fit(found)
     if file is not None:
         with writing(file):
             write_text(file, found.case.to_toml())
         typer.echo(f"Wrote {file}", err=True)
 
 
-def show_fit(screen: Console, found: Fit) -> None:
+def show_fit(found: Fit) -> None:
     """Print the fitted values, how sure they are, and what they give."""
-    from loadshare.cli.study.compare import show_comparison
-    from loadshare.cli.tables.table import show, table
-
-    made = table(("unknown", "unit", "start", "fitted", "±", "bounds"), words=("unknown", "unit"))
-    for u in found.unknowns:
-        spread = "not determined" if math.isinf(u.deviation) else f"{u.deviation:.3g}"
-        made.add_row(
+    rows = (
+        (
             u.parameter.name,
             u.parameter.unit,
             f"{u.start:.6g}",
             f"{u.value:.6g}",
-            spread,
+            "not determined" if math.isinf(u.deviation) else f"{u.deviation:.3g}",
             f"{u.low:g} … {u.high:g}",
         )
-    show(screen, "Fitted inputs", made)
+        for u in found.unknowns
+    )
+    heads = ("unknown", "unit", "start", "fitted", "±", "bounds")
+    show("Fitted inputs", table(heads, rows, words=("unknown", "unit")))
     if len(found.unknowns) > 1:
         names = [u.parameter.name for u in found.unknowns]
-        made = table(("correlation", *names), words=("correlation",))
-        for name, row in zip(names, found.correlation, strict=True):
-            made.add_row(name, *("–" if math.isnan(c) else f"{c:+.3f}" for c in row))
-        show(screen, "Correlations", made)
-    show_comparison(screen, found.comparison)
+        correlations = (
+            (name, *("–" if math.isnan(c) else f"{c:+.3f}" for c in row))
+            for name, row in zip(names, found.correlation, strict=True)
+        )
+        made = table(("correlation", *names), correlations, words=("correlation",))
+        show("Correlations", made)
+    show_comparison(found.comparison)
     if len(found.starts) > 1:
         told = ", ".join("failed" if math.isnan(chi) else f"{chi:.4g}" for chi in found.starts)
-        screen.print(f"χ² from each starting point: {told}")
-    for warning in found.warnings:
-        screen.print(f"WARNING  {warning}")
+        say(f"χ² from each starting point: {told}")
+    say_all(f"WARNING  {warning}" for warning in found.warnings)

@@ -7,18 +7,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from loadshare.cli.console import console
-from loadshare.cli.study.common import (
-    CaseFile,
-    Changes,
-    TableFile,
-    asked,
-    write_table,
-)
+from loadshare.cli.console import say
+from loadshare.cli.options import CaseFile
+from loadshare.cli.study.common import Changes, TableFile, asked, write_table
+from loadshare.cli.tables.table import show, table
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from loadshare.study.march import March
 
 
@@ -39,25 +33,24 @@ def march(
 
     with asked(case, change, "steps") as (loaded, tick):
         found = marched(loaded, gear=gear, revolutions=revolutions, steps=steps, progress=tick)
-    show_march(console(), found)
-    if file is not None:
-        write_table(file, found.result.to_frame(), found.dataset)
+    show_march(found)
+    write_table(file, found.result.to_frame, lambda: found.dataset)
 
 
-def show_march(screen: Console, found: March) -> None:
+def show_march(found: March) -> None:
     """Print load sharing over the march, and what every spline did."""
-    from loadshare.cli.tables import print_result
-    from loadshare.cli.tables.table import show, table
+    from loadshare.cli.tables.result import print_result
 
-    print_result(screen, found.result, len(found.slips))
+    print_result(found.result, len(found.slips))
     if not found.slips or not found.slips[0]:
-        screen.print("\nNo spline holds a gear: there is nothing to remember.")
+        say("\nNo spline holds a gear: there is nothing to remember.")
         return
-    made = table(("spline", "stages", "slip [um]", "dissipated [J]"), words=("spline", "stages"))
+    rows = []
     for gear in found.slips[0]:
         steps = [step[gear] for step in found.slips]
         stages = ", ".join(f"{s} {n}×" for s, n in Counter(s.stage for s in steps).most_common())
         sizes = [float((s.slip @ s.slip) ** 0.5) * 1e6 for s in steps]
         total = sum(s.dissipated for s in steps)
-        made.add_row(gear, stages, f"{min(sizes):.3f} … {max(sizes):.3f}", f"{total:.4g}")
-    show(screen, "Splines", made)
+        rows.append((gear, stages, f"{min(sizes):.3f} … {max(sizes):.3f}", f"{total:.4g}"))
+    heads = ("spline", "stages", "slip [µm]", "dissipated [J]")
+    show("Splines", table(heads, rows, words=heads[:2]))

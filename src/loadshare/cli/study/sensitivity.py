@@ -7,19 +7,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from loadshare.cli.console import console
-from loadshare.cli.study.common import (
-    CaseFile,
-    Changes,
-    Positions,
-    TableFile,
-    asked,
-    write_table,
-)
+from loadshare.cli.console import say, say_all
+from loadshare.cli.options import CaseFile
+from loadshare.cli.study.common import Changes, Positions, TableFile, asked, write_table
+from loadshare.cli.tables.table import show, table
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from loadshare.study.sensitivity import Input, Sensitivity
 
 SHOWN = 25
@@ -48,20 +41,20 @@ def sensitivity(
 
     with asked(case, change, "inputs") as (loaded, tick):
         found = differentiated(loaded, key or None, positions=position, progress=tick)
-    show_sensitivity(console(), found)
-    if file is not None:
-        arrays = found.dataset
-        write_table(file, arrays["torque"].to_dataframe().reset_index(), arrays)
+    show_sensitivity(found)
+    write_table(
+        file,
+        lambda: found.dataset["torque"].to_dataframe().reset_index(),
+        lambda: found.dataset,
+    )
 
 
-def show_sensitivity(screen: Console, found: Sensitivity) -> None:
+def show_sensitivity(found: Sensitivity) -> None:
     """Print what moves the system's Ω most, per unit of each input and over its whole value."""
-    from loadshare.cli.tables.table import show, table
-
     ordered = sorted(found.inputs, key=lambda item: -_whole(found, item))[:SHOWN]
     one_sided = {item.key for item in ordered if _apart(found, item)}
     sides = ("dΩ per unit", *(["falling"] if one_sided else []))
-    made = table(("input", "value", *sides, "dΩ over its value"), words=("input", "value"))
+    rows = []
     for item in ordered:
         falling, rising = (_figure(found, item, side) for side in SIDES)
         steepest = max((falling, rising), key=lambda figure: _size(figure[0]))
@@ -74,22 +67,21 @@ def show_sensitivity(screen: Console, found: Sensitivity) -> None:
         if one_sided and item.key not in one_sided:
             texts[1] = ""
         value = f"{item.value.number:.6g} {item.value.unit}".strip()
-        made.add_row(item.key, value, *texts)
-    show(screen, "Sensitivity of the system's Ω, by group mean", made)
-    screen.print("Every figure is good to one unit of its last digit.")
+        rows.append((item.key, value, *texts))
+    heads = ("input", "value", *sides, "dΩ over its value")
+    show("Sensitivity of the system's Ω, by group mean", table(heads, rows, words=heads[:2]))
+    say("Every figure is good to one unit of its last digit.")
     if len(found.inputs) > SHOWN:
-        screen.print(f"{len(found.inputs) - SHOWN} inputs that matter less are not shown.")
+        say(f"{len(found.inputs) - SHOWN} inputs that matter less are not shown.")
     if one_sided:
-        screen.print("Where a value stands under falling, the derivative differs to that side.")
-    for kink in found.kinks:
-        screen.print(
-            f"Position {kink.position} stands on the verge of another active set: "
-            f"{', '.join(kink.elements)}. Its derivatives hold to one side each."
-        )
-    for told in _remarks(found, {item.key for item in ordered}):
-        screen.print(told, soft_wrap=True)
-    for key, why in found.skipped:
-        screen.print(f"Left out: {key}: {why}.", soft_wrap=True)
+        say("Where a value stands under falling, the derivative differs to that side.")
+    say_all(
+        f"Position {kink.position} stands on the verge of another active set: "
+        f"{', '.join(kink.elements)}. Its derivatives hold to one side each."
+        for kink in found.kinks
+    )
+    say_all(_remarks(found, {item.key for item in ordered}), whole=True)
+    say_all((f"Left out: {key}: {why}." for key, why in found.skipped), whole=True)
 
 
 def _figure(found: Sensitivity, item: Input, side: str) -> tuple[float, float]:

@@ -3,15 +3,37 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
-from loadshare.cli.console import console, progress
-from loadshare.cli.study.common import CaseFile, Changes, answered, end, open_case
+from loadshare.cli.console import progress
+from loadshare.cli.options import CaseFile
+from loadshare.cli.study.common import Changes, answered, end, open_case
+from loadshare.cli.study.compare import show_comparison
+from loadshare.cli.study.critical import show_critical, unconfirmed
+from loadshare.cli.study.fit import show_fit
+from loadshare.cli.study.march import show_march
+from loadshare.cli.study.sensitivity import show_sensitivity
+from loadshare.cli.study.sweep import open_points, show_sweep
+from loadshare.cli.study.tolerance import refused_samples, show_tolerance
 
-if TYPE_CHECKING:
-    from rich.console import Console
+SHOWN: dict[str, Callable[[Any], None]] = {
+    "compare": show_comparison,
+    "critical": show_critical,
+    "fit": show_fit,
+    "march": show_march,
+    "sensitivity": show_sensitivity,
+    "sweep": show_sweep,
+    "tolerance": show_tolerance,
+}
+"""What prints each kind of study."""
+OPEN: dict[str, Callable[[Any], list[str]]] = {
+    "critical": unconfirmed,
+    "sweep": open_points,
+    "tolerance": refused_samples,
+}
+"""What tells the questions that a study could not answer."""
 
 
 def study(
@@ -22,7 +44,6 @@ def study(
     change: Changes = None,
 ) -> None:
     """Run a study that the case holds, [study.NAME]."""
-    from loadshare.cli.study.tolerance import rated_progress
     from loadshare.study.named import run_study
 
     with answered():
@@ -34,43 +55,8 @@ def study(
                 typer.echo("The case holds no study: add a table [study.NAME].")
             return
         kind = loaded.study[name].kind if name in loaded.study else ""
-        bar = rated_progress("samples") if kind == "tolerance" else progress(name, 1)
-        with bar as tick:
+        rated = kind == "tolerance"
+        with progress(*(("samples", None) if rated else (name, 1)), rated=rated) as tick:
             found = run_study(loaded, name, progress=tick)
-    _show(console(), kind, found)
-    end(_open(kind, found))
-
-
-def _open(kind: str, found: Any) -> list[str]:
-    """Return what a study could not answer."""
-    from loadshare.cli.study.critical import unconfirmed
-    from loadshare.cli.study.sweep import open_points
-    from loadshare.cli.study.tolerance import refused_samples
-
-    told: dict[str, Callable[[Any], list[str]]] = {
-        "critical": unconfirmed,
-        "sweep": open_points,
-        "tolerance": refused_samples,
-    }
-    return told[kind](found) if kind in told else []
-
-
-def _show(screen: Console, kind: str, found: Any) -> None:
-    from loadshare.cli.study.compare import show_comparison
-    from loadshare.cli.study.critical import show_critical
-    from loadshare.cli.study.fit import show_fit
-    from loadshare.cli.study.march import show_march
-    from loadshare.cli.study.sensitivity import show_sensitivity
-    from loadshare.cli.study.sweep import show_sweep
-    from loadshare.cli.study.tolerance import show_tolerance
-
-    shown: dict[str, Callable[[Console, Any], None]] = {
-        "compare": show_comparison,
-        "critical": show_critical,
-        "fit": show_fit,
-        "march": show_march,
-        "sensitivity": show_sensitivity,
-        "sweep": show_sweep,
-        "tolerance": show_tolerance,
-    }
-    shown[kind](screen, found)
+    SHOWN[kind](found)
+    end(OPEN[kind](found) if kind in OPEN else [])

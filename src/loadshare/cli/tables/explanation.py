@@ -4,42 +4,41 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rich.console import Console
 from rich.table import Table
 
+from loadshare.cli.console import say
 from loadshare.cli.exits import counted
 from loadshare.cli.tables.table import show, table
 from loadshare.job.ladder import Answer
-from loadshare.report.numbers import NONE, fixed, small
+from loadshare.report.numbers import fixed, small
 from loadshare.report.undetermined import range_told
 from loadshare.scene.plan import Role
 from loadshare.solver import Record
 
 
-def print_explanation(console: Console, index: int, answer: Answer | None) -> None:
+def print_explanation(index: int, answer: Answer | None) -> None:
     """Print everything that is known of how a position was solved.
 
     Parameters
     ----------
-    console : Console
     index : int
         1-based position.
     answer : Answer or None
         None if no rung gave a certified answer.
     """
-    console.print(f"\nHow position {index} was solved", style="bold")
+    say(f"\nHow position {index} was solved", style="bold")
     if answer is None:
-        console.print("It was not: no rung of the ladder gave a certified answer.")
+        say("It was not: no rung of the ladder gave a certified answer.")
         return
     record = answer.record
-    _print_facts(console, answer)
-    _print_in_play(console, answer)
+    _print_facts(answer)
+    _print_in_play(answer)
     if record.iterations:
-        _print_passes(console, record)
-    _print_removed(console, record)
+        _print_passes(record)
+    _print_removed(record)
 
 
-def _print_facts(console: Console, answer: Answer) -> None:
+def _print_facts(answer: Answer) -> None:
     record = answer.record
     passes, plans = counted(len(record.iterations), "iteration"), counted(record.rounds, "plan")
     if record.iterations:
@@ -64,48 +63,45 @@ def _print_facts(console: Console, answer: Answer) -> None:
     made = Table.grid(padding=(0, 2))
     for fact, told in facts.items():
         made.add_row(fact, told)
-    console.print(made)
+    say(made)
 
 
-def _print_in_play(console: Console, answer: Answer) -> None:
+def _print_in_play(answer: Answer) -> None:
     plan, found = answer.record.plan, answer.equilibrium
     forces: Mapping[str, float] = {**found.flank_force, **found.ring_force}
     rows = [name for name, role in plan.rows.items() if role is Role.IN_PLAY]
     radials = [name for name, role in plan.radials.items() if role is Role.IN_PLAY]
     if not rows and not radials:
-        console.print(
-            "\nNo inequality is left in play: the answer is one linear solve an iteration."
-        )
+        say("\nNo inequality is left in play: the answer is one linear solve an iteration.")
         return
-    made = table(("element", "force [N]"), words=("element",))
-    for name in rows:
-        made.add_row(name, fixed(forces[name], 3) if name in forces else NONE)
+    shown = {name: forces.get(name) for name in rows}
     for name in radials:
         reaction = found.radial_reaction[name]
-        made.add_row(name, fixed(float(reaction @ reaction) ** 0.5, 3))
-    show(console, "In play" if answer.record.iterations else "Acting", made)
+        shown[name] = float(reaction @ reaction) ** 0.5
+    acting = ((name, fixed(force, 3)) for name, force in shown.items())
+    title = "In play" if answer.record.iterations else "Acting"
+    show(title, table(("element", "force [N]"), acting, words=("element",)))
 
 
-def _print_passes(console: Console, record: Record) -> None:
-    made = table(
-        ("iteration", "programme", "solved by", "laws", "faces", "friction", "step"),
-        words=("programme", "solved by"),
+def _print_passes(record: Record) -> None:
+    heads = ("iteration", "programme", "solved by", "laws", "faces", "friction", "step")
+    rows = (
+        (
+            *(str(number), i.kind, i.via),
+            *(small(v) for v in (i.law, i.face, i.friction)),
+            f"{i.step:.3g}",
+        )
+        for number, i in enumerate(record.iterations, start=1)
     )
-    for number, done in enumerate(record.iterations, start=1):
-        misfits = [small(v) for v in (done.law, done.face, done.friction)]
-        made.add_row(str(number), done.kind, done.via, *misfits, f"{done.step:.3g}")
     show(
-        console,
         "Outer loop: misfit of laws and faces [deflections], of friction bounds [loads]",
-        made,
+        table(heads, rows, words=("programme", "solved by")),
     )
 
 
-def _print_removed(console: Console, record: Record) -> None:
+def _print_removed(record: Record) -> None:
     if not record.removed:
-        console.print("\nNothing was left out.")
+        say("\nNothing was left out.")
         return
-    made = table(("what", "why"), words=("what", "why"))
-    for what, why in record.removed:
-        made.add_row(what, why)
-    show(console, "Left out, and why that changes nothing", made)
+    heads = ("what", "why")
+    show("Left out, and why that changes nothing", table(heads, record.removed, words=heads))

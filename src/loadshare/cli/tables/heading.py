@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from rich.console import Console
-
 from loadshare.case import Case
+from loadshare.cli.console import say
 from loadshare.cli.exits import counted
 from loadshare.cli.refusal import ranges
+from loadshare.report.records import load_told
 
 
 def print_heading(
-    console: Console,
     case: Case,
     file: str,
     count: int,
@@ -23,7 +22,6 @@ def print_heading(
 
     Parameters
     ----------
-    console : Console
     case : Case
     file : str
         As the user named it.
@@ -34,23 +32,14 @@ def print_heading(
     changes : iterable of str
         Changes made from the command line.
     """
-    operating = case.operating
-    torques = operating.input_torque
-    low, high = min(torques), max(torques)
-    load = f"{high:.7g}" if low == high else f"{low:.7g} to {high:.7g}"
     solved = counted(count, "position")
     if len(wanted) < count:
         solved = f"{ranges(list(wanted))} of {solved}"
-    console.print(case.title or case.name, style="bold")
-    console.print(file, soft_wrap=True)
+    say(case.title or case.name, style="bold")
+    say(file, whole=True)
     for change in changes:
-        console.print(f"changed: {change}", soft_wrap=True)
-    console.print(
-        f"Input torque {load} N·m on gear {operating.input}, "
-        f"output gear {operating.output}; {solved}"
-    )
+        say(f"changed: {change}", whole=True)
+    say(f"{load_told(case)}; {solved}")
     turning = any(errors.eccentricity is not None for errors in case.errors.values())
-    if turning and case.march is None and count > 1 and operating.rotation == "neglected":
-        console.print(
-            "Gears stand still over the mesh cycle: eccentricities keep their first direction"
-        )
+    if turning and case.march is None and count > 1 and case.operating.rotation == "neglected":
+        say("Gears stand still over the mesh cycle: eccentricities keep their first direction")

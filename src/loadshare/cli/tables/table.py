@@ -2,24 +2,38 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
 
-from rich import box
-from rich.console import Console
-from rich.table import Table
+from loadshare.cli.console import console, say
+
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+    from rich.table import Table
+
+    from loadshare.report.records import Record
 
 
-def table(columns: Iterable[str], words: Iterable[str] = ()) -> Table:
-    """Return an empty table.
+def table(
+    columns: Iterable[str],
+    rows: Iterable[Iterable[RenderableType]] = (),
+    words: Iterable[str] = (),
+) -> Table:
+    """Return a table.
 
     Parameters
     ----------
     columns : iterable of str
         Headers.
+    rows : iterable of iterable of str
+        Cells.
     words : iterable of str
         Headers of the columns that hold words: set to the left and folded if need be. All others
         hold figures, which are set to the right and not broken as long as they fit.
     """
+    from rich import box
+    from rich.table import Table
+
     made = Table(
         box=box.SIMPLE_HEAD, show_edge=False, header_style="", pad_edge=False, collapse_padding=True
     )
@@ -29,17 +43,25 @@ def table(columns: Iterable[str], words: Iterable[str] = ()) -> Table:
             made.add_column(column, overflow="fold")
         else:
             made.add_column(column, justify="right", no_wrap=True, overflow="fold")
+    for row in rows:
+        made.add_row(*row)
     return made
 
 
-def show(console: Console, title: str, made: Table) -> None:
+def show(title: str, made: Table) -> None:
     """Print a table under its title."""
-    console.print()
-    console.print(title, style="bold")
-    console.print(made)
+    say()
+    say(title, style="bold")
+    say(made)
 
 
-def fits(console: Console, made: Table) -> bool:
+def fits(made: Table) -> bool:
     """Whether a table stands on the console without a column being squeezed."""
-    endless = console.options.update(max_width=10_000)
-    return console.measure(made, options=endless).maximum <= console.width
+    screen = console()
+    endless = screen.options.update(max_width=10_000)
+    return screen.measure(made, options=endless).maximum <= screen.width
+
+
+def texts(records: Iterable[Record], heads: Mapping[str, str], words: Iterable[str]) -> Table:
+    """Return a table of some fields of records, under these heads."""
+    return table(heads.values(), ([r[f].text for f in heads] for r in records), words)

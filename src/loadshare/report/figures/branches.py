@@ -8,21 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, Literal
 
-from loadshare.report.figures.marks import (
-    Drawing,
-    Row,
-    chart,
-    curves,
-    heading,
-    padded,
-)
+import altair as alt
+
+from loadshare.errors import LoadshareError
+from loadshare.report.figure import Figure
+from loadshare.report.figures import marks
+from loadshare.report.figures.marks import Drawing, Row, axis, chart, heading
+from loadshare.report.numbers import decimals, fixed
 from loadshare.report.palette import SOFT, Look, palette_of
-from loadshare.report.units import Unit
+from loadshare.report.units import Unit, engineering
+from loadshare.results import Result
 
-if TYPE_CHECKING:
-    from loadshare.results import Result
+Mean = Literal["stage", "group"]
 
 REST = "Not in a stage"
 """Title of the panel of meshes that belong to no stage."""
@@ -60,13 +59,76 @@ class Reading:
     from_zero: bool
 
 
-def branch_rows(result: Result, torque_unit: Unit) -> list[Row]:
-    """One row for each position and mesh: torque in `torque_unit` and both coefficients."""
-    return [
+def torque(result: Result) -> Figure:
+    """Torque on the driver of every mesh over the positions, one panel for each stage.
+
+    Parameters
+    ----------
+    result : Result
+
+    Returns
+    -------
+    Figure
+        Lines, or bars with their figures where nothing changes over the positions.
+    """
+    unit, rows = _rows(result)
+    torques = [row["torque"] for row in rows]
+    reading = Reading(
+        field="torque",
+        title=unit.title("torque on the driver"),
+        places=decimals(torques, significant=5),
+        least=1e-3 * max(map(abs, torques), default=0.0) or 1.0,
+        reference=None,
+        from_zero=True,
+    )
+    return _figure("torque", "Torque on every mesh", result, reading, unit, rows)
+
+
+def share(result: Result, over: Mean = "stage") -> Figure:
+    """Load-sharing coefficient Ω of every branch over the positions, one panel for each stage.
+
+    Parameters
+    ----------
+    result : Result
+    over : {"stage", "group"}
+        Mean to which the torque of a branch is compared: of its stage, or of its group, such as
+        the two idlers of one pinion.
+
+    Returns
+    -------
+    Figure
+        Lines about Ω = 1, or bars with their figures where nothing changes over the positions.
+
+    Raises
+    ------
+    LoadshareError
+        If the case has no stages, or no branch carries load.
+    ValueError
+        For another mean.
+    """
+    if over not in ("stage", "group"):
+        raise ValueError(f"over = {over!r}: allowed are 'stage' and 'group'")
+    field = {"stage": "share", "group": "pair"}[over]
+    unit, rows = _rows(result)
+    if not any(row[field] is not None for row in rows):
+        raise LoadshareError(
+            f"{result.stamp.case}: has no load-sharing coefficient to draw: no loaded mesh is in "
+            "a stage. Name the stages, as in [stages.I] meshes = [...]."
+        )
+    title = f"Ω, torque over the mean of its {over}"
+    reading = Reading(field, title, places=4, least=0.01, reference=1.0, from_zero=False)
+    title = f"Load sharing, over the mean of the {over}"
+    return _figure("share", title, result, reading, unit, rows)
+
+
+def _rows(result: Result) -> tuple[Unit, list[Row]]:
+    """Return the unit of the torques, and a row for each position and mesh."""
+    unit = engineering([t for p in result.positions for t in p.torque.values()], "N·m")
+    return unit, [
         {
             "mesh": mesh,
             "position": p.position,
-            "torque": torque_unit.of(torque),
+            "torque": unit.of(torque),
             "share": p.share.get(mesh),
             "pair": p.pair_share.get(mesh),
         }
@@ -85,31 +147,20 @@ def stages_of(result: Result) -> dict[str, tuple[str, ...]]:
     return panels | ({REST: rest} if rest else {})
 
 
-def branch_panels(
-    result: Result,
-    rows: Sequence[Row],
-    stages: Mapping[str, Sequence[str]],
-    reading: Reading,
-    torque_unit: Unit,
-) -> Drawing:
-    """Return one panel for each stage, side by side.
-
-    Parameters
-    ----------
-    result : Result
-    rows : sequence of dict
-        As `branch_rows` gives them.
-    stages : mapping of title to meshes
-    reading : Reading
-    torque_unit : Unit
-        Of the rows' torques.
-    """
-    import altair as alt
-
+def _figure(
+    name: str, title: str, result: Result, reading: Reading, unit: Unit, rows: Sequence[Row]
+) -> Figure:
+    """One panel for each stage, side by side; a mesh of no stage has no share."""
     palette = palette_of(result)
-    hover = _hover(torque_unit)
+    hover = marks.hover(
+        "mesh:N",
+        "position:Q",
+        ("torque:Q", unit.title("torque on the driver"), ".2f"),
+        ("share:Q", "Ω over stage mean", ".5f"),
+        ("pair:Q", "Ω over group mean", ".5f"),
+    )
     panels = []
-    for title, meshes in stages.items():
+    for stage, meshes in stages_of(result).items():
         own = [r for r in rows if r["mesh"] in meshes and r[reading.field] is not None]
         if not own:
             continue
@@ -119,18 +170,17 @@ def branch_panels(
             panel = _bars(first, looks, reading, hover)
         else:
             panel = _lines(own, looks, reading, hover)
-        panels.append(panel.properties(title=heading(title)))
-    return alt.concat(*panels, columns=2).resolve_scale(color="independent", shape="independent")
+        panels.append(panel.properties(title=heading(stage)))
+    told = [result.stamp.title or result.stamp.case, _same_everywhere(result, rows, reading.field)]
+    return marks.figure(name, marks.stages(panels), title, told)
 
 
-def same_everywhere(result: Result, rows: Sequence[Row], field: str) -> str:
+def _same_everywhere(result: Result, rows: Sequence[Row], field: str) -> str:
     """Words for a figure that is the same at several positions; empty otherwise."""
-    count = len(result.positions)
-    if count == 1:
-        return (
-            f"position {result.positions[0].position}" if result.positions[0].position > 1 else ""
-        )
-    return f"the same at all {count} positions" if _alike(rows, field) else ""
+    positions = [p.position for p in result.positions]
+    if len(positions) > 1:
+        return f"the same at all {len(positions)} positions" if _alike(rows, field) else ""
+    return f"position {positions[0]}" if positions[0] > 1 else ""
 
 
 def _alike(rows: Sequence[Row], field: str) -> bool:
@@ -142,94 +192,58 @@ def _alike(rows: Sequence[Row], field: str) -> bool:
     return all(max(v) - min(v) <= ALIKE * size for v in by_mesh.values())
 
 
-def _hover(unit: Unit) -> list[Any]:
-    import altair as alt
-
-    return [
-        alt.Tooltip("mesh:N", title="mesh"),
-        alt.Tooltip("position:Q", title="position"),
-        alt.Tooltip("torque:Q", title=unit.title("torque on the driver"), format=".2f"),
-        alt.Tooltip("share:Q", title="Ω over stage mean", format=".5f"),
-        alt.Tooltip("pair:Q", title="Ω over group mean", format=".5f"),
-    ]
-
-
 def _lines(
     rows: list[Row], looks: Mapping[str, Look], reading: Reading, hover: list[Any]
 ) -> Drawing:
-    import altair as alt
-
     values = [row[reading.field] for row in rows]
     if reading.reference is not None:
         values.append(reading.reference)
-    y = alt.Y(
-        f"{reading.field}:Q",
-        title=reading.title,
-        scale=alt.Scale(domain=padded(min(values), max(values), reading.least), nice=False),
-        axis=alt.Axis(tickCount=6),
-    )
-    x = alt.X(
-        "position:Q",
-        title="position",
-        axis=alt.Axis(tickMinStep=1, format="d", grid=False),
-        scale=alt.Scale(nice=False, zero=False, padding=12),
-    )
+    field, domain = f"{reading.field}:Q", marks.padded(min(values), max(values), reading.least)
+    y = axis(alt.Y, field, reading.title, domain, tickCount=6)
+    spaced = {"zero": False, "padding": 12}
+    x = axis(alt.X, "position:Q", "position", scale=spaced, tickMinStep=1, format="d", grid=False)
     layers: list[Any] = []
     if reading.reference is not None:
         layers.append(_reference_rule(reading, y=y))
-    layers += curves(rows, "mesh", looks, "mesh", x=x, y=y, tooltip=hover, width=1.6, size=46)
+    layers += marks.curves(rows, "mesh", looks, "mesh", x=x, y=y, tooltip=hover, width=1.6, size=46)
     return alt.layer(*layers).properties(width=WIDTH, height=190)
 
 
 def _bars(
     rows: list[Row], looks: Mapping[str, Look], reading: Reading, hover: list[Any]
 ) -> Drawing:
-    import altair as alt
-
     values = [row[reading.field] for row in rows]
     start = 0.0 if reading.from_zero else reading.reference or 0.0
     low, high = min(*values, start), max(*values, start)
-    domain = padded(low, high, reading.least, share=0.22)
+    domain = marks.padded(low, high, reading.least, share=0.22)
     if reading.from_zero:
         domain = [min(0.0, domain[0]) if low < 0.0 else 0.0, high * 1.25 if high > 0.0 else 1.0]
     names = [row["mesh"] for row in rows]
-    shown = [{**row, "start": start, "text": _text(row[reading.field], reading)} for row in rows]
-    x = alt.X(
-        f"{reading.field}:Q",
-        title=reading.title,
-        scale=alt.Scale(domain=domain, nice=False),
-        axis=alt.Axis(tickCount=5),
-    )
+    shown = [
+        {**row, "start": start, "text": fixed(row[reading.field], reading.places)} for row in rows
+    ]
+    x = axis(alt.X, f"{reading.field}:Q", reading.title, domain, tickCount=5)
     y = alt.Y("mesh:N", title=None, sort=names, axis=alt.Axis(domain=False, ticks=False))
     colours = alt.Color(
         "mesh:N",
         scale=alt.Scale(domain=names, range=[looks[name].colour for name in names]),
         legend=None,
     )
-    base = chart(shown).encode(y=y)
-    rule = _reference_rule(reading, x=x) if reading.reference is not None else None
-    bars = base.mark_bar(height=13).encode(x=x, x2="start:Q", color=colours, tooltip=hover)
+    bars = chart(shown).mark_bar(height=13)
+    layers = [bars.encode(y=y, x=x, x2="start:Q", color=colours, tooltip=hover)]
     # What is printed as the reference shall not stand on its other side by round-off.
     below = [round(row[reading.field], reading.places) < start for row in shown]
-    left = [row for row, is_below in zip(shown, below, strict=True) if is_below]
-    right = [row for row, is_below in zip(shown, below, strict=True) if not is_below]
-    labels = [
-        chart(part)
-        .mark_text(align=align, dx=dx, fontSize=10)
-        .encode(x=x, y=y, text="text:N", tooltip=hover)
-        for part, align, dx in ((left, "right", -5), (right, "left", 5))
-        if part
-    ]
-    return alt.layer(bars, *labels, *([rule] if rule else [])).properties(
-        width=WIDTH, height=ROW * len(rows)
-    )
+    for is_below, align, dx in ((True, "right", -5), (False, "left", 5)):
+        part = [row for row, its in zip(shown, below, strict=True) if its is is_below]
+        if part:
+            text = chart(part).mark_text(align=align, dx=dx, fontSize=10)
+            layers.append(text.encode(x=x, y=y, text="text:N", tooltip=hover))
+    if reading.reference is not None:
+        layers.append(_reference_rule(reading, x=x))
+    return alt.layer(*layers).properties(width=WIDTH, height=ROW * len(rows))
 
 
 def _reference_rule(reading: Reading, **channel: Any) -> Drawing:
     """Rule at the reference, in the channel of the values: an axis of its own would begin at 0."""
     rule = chart([{reading.field: reading.reference}]).mark_rule(color=SOFT, strokeWidth=1)
     return rule.encode(**channel)
-
-
-def _text(value: float, reading: Reading) -> str:
-    return f"{round(value, reading.places) + 0.0:.{reading.places}f}"

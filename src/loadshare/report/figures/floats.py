@@ -3,34 +3,24 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import altair as alt
+
+from loadshare.certify import Touch
 from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
+from loadshare.report.figures import marks
 from loadshare.report.figures.journey import Journey
 from loadshare.report.figures.labels import Labels
-from loadshare.report.figures.marks import (
-    Drawing,
-    Point,
-    Row,
-    arrow,
-    chart,
-    circle,
-    heading,
-    path_rows,
-)
+from loadshare.report.figures.marks import Drawing, Panel, Point, Row, circle, hover, path_rows
 from loadshare.report.figures.region import Region
 from loadshare.report.figures.rest import boundary_name, direction_name, places_told
 from loadshare.report.numbers import significant
 from loadshare.report.palette import FAINT, INK, SOFT, WARNING, Look, palette_of
 from loadshare.report.units import MICROMETRE, engineering
-
-if TYPE_CHECKING:
-    import altair as alt
-
-    from loadshare.certify import Touch
-    from loadshare.results import Result
-    from loadshare.train import Train
+from loadshare.results import Result
+from loadshare.train import Train
 
 SIDE = 284
 """Side of a panel [px]: 75 mm at 96 px an inch, for which the enlargement is told."""
@@ -62,8 +52,6 @@ def floats(result: Result, train: Train) -> Figure:
     LoadshareError
         If no gear of the case floats.
     """
-    import altair as alt
-
     gears = list(result.positions[0].floats)
     if not gears:
         raise LoadshareError(
@@ -80,40 +68,29 @@ def floats(result: Result, train: Train) -> Figure:
         "arrow: reaction of the ring on the gear where it is largest",
     ]
     grid = alt.concat(*panels, columns=3 if len(panels) != 4 else 2)
-    return Figure("floats", grid.properties(title=heading("Where the floats rest", told)))
+    return marks.figure("floats", grid, "Where the floats rest", told)
 
 
-class _Panel:
+class _Panel(Panel):
     """The picture of one float; everything it holds is in the panel's unit of length."""
 
     def __init__(self, journey: Journey, look: Look) -> None:
-        import altair as alt
-
         self.journey, self.look = journey, look
-        (cx, cy), half = journey.view
+        middle, half = journey.view
         self.unit = unit = engineering([half], "m")
         self.half = unit.of(half)
-        self.low = (unit.of(cx) - self.half, unit.of(cy) - self.half)
-        self.high = (unit.of(cx) + self.half, unit.of(cy) + self.half)
-        self.labels = Labels(self.low, self.high, SIDE / (2.0 * self.half))
-        self.places = self._here(journey.path)
+        low, high = (
+            (unit.of(middle[0]) + side, unit.of(middle[1]) + side)
+            for side in (-self.half, self.half)
+        )
         names = [direction_name(v) for v in journey.result.frames[journey.gear]]
-        axis = alt.Axis(tickCount=5)
-
-        def scale(k: int) -> alt.Scale:
-            return alt.Scale(domain=[self.low[k], self.high[k]], nice=False, zero=False)
-
-        self.x = alt.X(
-            "x:Q", scale=scale(0), axis=axis, title=unit.title(f"displacement along {names[0]}")
-        )
-        self.y = alt.Y(
-            "y:Q", scale=scale(1), axis=axis, title=unit.title(f"displacement along {names[1]}")
-        )
+        titles = [unit.title(f"displacement along {name}") for name in names]
+        super().__init__(low, high, titles, tickCount=5)
+        self.labels = Labels(low, high, SIDE / (2.0 * self.half))
+        self.places = self._here(journey.path)
 
     def chart(self, lines: int) -> Drawing:
         """Return the panel, its words filled up to so many lines: all plots begin at one height."""
-        import altair as alt
-
         self._feel()
         layers = [
             *self._region(),
@@ -131,11 +108,8 @@ class _Panel:
     def _here(self, points: list[Point]) -> list[Point]:
         return [(self.unit.of(x), self.unit.of(y)) for x, y in points]
 
-    def _line(self, rows: list[Row], field: str = "", tooltip: Any = None, **style: Any) -> Any:
-        line = chart(rows).mark_line(clip=True, **style).encode(x=self.x, y=self.y, order="order:Q")
-        if field:
-            line = line.encode(detail=f"{field}:N")
-        return line.encode(tooltip=tooltip) if tooltip else line
+    def _clipped(self, rows: list[Row], by: str = "", tooltip: Any = None, **style: Any) -> Drawing:
+        return self.line(rows, by, tooltip, clip=True, **style)
 
     def _feel(self) -> None:
         """Tell the labels what is drawn, before any is placed."""
@@ -148,8 +122,6 @@ class _Panel:
         self.labels.avoid(self._shaft())
 
     def _region(self) -> list[Any]:
-        import altair as alt
-
         region: Region | None = self.journey.region
         if region is None:
             return []
@@ -161,13 +133,11 @@ class _Panel:
         for boundary in region.boundaries:
             facts = _facts(boundary.name, touches.get(boundary.name))
             lines += path_rows(self._here(boundary.path), **facts)
-        hover = [
-            alt.Tooltip("boundary:N", title="boundary"),
-            alt.Tooltip("margin:Q", title="margin [µm]", format=".3f"),
-            alt.Tooltip("force:Q", title="force [N]", format=".2f"),
-        ]
-        area = self._line(outlines, "piece", filled=True, color=FAINT, stroke=FAINT)
-        return [area, self._line(lines, "boundary", hover, color=INK, strokeWidth=1.6)]
+        told = hover(
+            "boundary:N", ("margin:Q", "margin [µm]", ".3f"), ("force:Q", "force [N]", ".2f")
+        )
+        area = self._clipped(outlines, "piece", filled=True, color=FAINT, stroke=FAINT)
+        return [area, self._clipped(lines, "boundary", told, color=INK, strokeWidth=1.6)]
 
     def _circles(self) -> list[Any]:
         rows: list[Row] = []
@@ -176,7 +146,9 @@ class _Panel:
         if not rows:
             return []
         return [
-            self._line(rows, "circle", ["circle:N"], color=SOFT, strokeWidth=1.2, strokeDash=[5, 3])
+            self._clipped(
+                rows, "circle", ["circle:N"], color=SOFT, strokeWidth=1.2, strokeDash=[5, 3]
+            )
         ]
 
     def _origin(self) -> Any:
@@ -186,11 +158,9 @@ class _Panel:
             *path_rows([(-arm, 0.0), (arm, 0.0)], bar=1),
             *path_rows([(0.0, -arm), (0.0, arm)], bar=2),
         ]
-        return self._line(rows, "bar", color=SOFT, strokeWidth=1)
+        return self._clipped(rows, "bar", color=SOFT, strokeWidth=1)
 
     def _path(self) -> list[Any]:
-        import altair as alt
-
         journey = self.journey
         # Of points that fall together, the uppermost speaks for all of them.
         called = {n: places_told(numbers) for _, numbers in self._spots() for n in numbers}
@@ -210,22 +180,19 @@ class _Panel:
                 zip(self.places, journey.positions, journey.rests, strict=True)
             )
         ]
-        hover = [
-            alt.Tooltip("called:N", title="position"),
-            alt.Tooltip("x:Q", title=self.unit.title("x"), format=".3f"),
-            alt.Tooltip("y:Q", title=self.unit.title("y"), format=".3f"),
-            alt.Tooltip("rests:N", title="rests"),
-            alt.Tooltip("margin:Q", title="margin [µm]", format=".3f"),
-            alt.Tooltip("reaction:Q", title="reaction of the ring [N]", format=".2f"),
-            *([alt.Tooltip("spline:N", title="spline")] if journey.circles else []),
-        ]
-        look = self.look
-        points = chart(rows).mark_point(
-            filled=True, color=look.colour, shape=look.shape, size=55, opacity=1
+        told = hover(
+            ("called:N", "position"),
+            ("x:Q", self.unit.title("x"), ".3f"),
+            ("y:Q", self.unit.title("y"), ".3f"),
+            "rests:N",
+            ("margin:Q", "margin [µm]", ".3f"),
+            ("reaction:Q", "reaction of the ring [N]", ".2f"),
+            *(["spline:N"] if journey.circles else []),
         )
+        look = self.look
         return [
-            self._line(rows, color=look.colour, strokeWidth=1, opacity=0.6),
-            points.encode(x=self.x, y=self.y, tooltip=hover),
+            self._clipped(rows, color=look.colour, strokeWidth=1, opacity=0.6),
+            self.points(rows, told, filled=True, color=look.colour, shape=look.shape, size=55),
         ]
 
     def _shaft(self) -> list[Point]:
@@ -237,13 +204,13 @@ class _Panel:
         x, y = self.places[self.journey.hardest]
         length = 0.45 * self.half
         tip = (x + length * reaction[0] / size, y + length * reaction[1] / size)
-        return arrow((x, y), tip, 0.08 * self.half)
+        return marks.arrow((x, y), tip, 0.08 * self.half)
 
     def _reaction(self) -> list[Any]:
         shaft = self._shaft()
         if not shaft:
             return []
-        return [self._line(path_rows(shaft), color=WARNING, strokeWidth=2, strokeCap="round")]
+        return [self._clipped(path_rows(shaft), color=WARNING, strokeWidth=2, strokeCap="round")]
 
     def _names(self) -> list[Any]:
         """Words in the picture, the most telling first: they find the best places."""
@@ -277,12 +244,12 @@ class _Panel:
         """Places with the numbers of their positions, places that fall together as one."""
         spots: list[tuple[Point, list[int]]] = []
         for place, position in zip(self.places, self.journey.positions, strict=True):
-            for spot, numbers in spots:
-                if math.dist(spot, place) <= SAME * 2.0 * self.half:
-                    numbers.append(position.position)
-                    break
-            else:
-                spots.append((place, [position.position]))
+            near = (n for spot, n in spots if math.dist(spot, place) <= SAME * 2.0 * self.half)
+            numbers = next(near, None)
+            if numbers is None:
+                numbers = []
+                spots.append((place, numbers))
+            numbers.append(position.position)
         return spots
 
 

@@ -5,19 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
+from loadshare.certify import FloatState
 from loadshare.report.figures.marks import Point
 from loadshare.report.figures.region import Region, features, region
 from loadshare.report.figures.rest import rest_told, spline_told
 from loadshare.report.numbers import significant
 from loadshare.report.units import MICROMETRE
+from loadshare.results import Position, Result
+from loadshare.train import Train
 from loadshare.train.radial import spline_law
-
-if TYPE_CHECKING:
-    from loadshare.certify import FloatState
-    from loadshare.results import Position, Result
-    from loadshare.train import Train
 
 MILLIMETRES = 75.0
 """Width of a panel for which the enlargement is told [mm]."""

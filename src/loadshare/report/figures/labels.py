@@ -63,18 +63,11 @@ class Labels:
 
     def avoid(self, path: Sequence[Point]) -> None:
         """Keep labels off a path."""
-        points = [*path[:1]]
+        felt: list[Any] = [self._felt, *([path[:1]] if path else [])]
         for start, end in pairwise(path):
             count = max(1, min(MOST, round(math.dist(start, end) * self.pixels / STEP)))
-            points += [
-                (
-                    start[0] + k / count * (end[0] - start[0]),
-                    start[1] + k / count * (end[1] - start[1]),
-                )
-                for k in range(1, count + 1)
-            ]
-        if points:
-            self._felt = np.vstack([self._felt, points])
+            felt.append(np.linspace(start, end, count + 1)[1:])
+        self._felt = np.vstack(felt)
 
     def place(
         self,

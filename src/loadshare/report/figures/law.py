@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import altair as alt
 
 from loadshare.report.figure import Figure
+from loadshare.report.figures import marks
 from loadshare.report.figures.branches import stages_of
-from loadshare.report.figures.marks import Drawing, Row, channels, chart, heading
+from loadshare.report.figures.marks import Drawing, Row, channels, chart, heading, hover
 from loadshare.report.palette import SOFT, palette_of
 from loadshare.report.units import Unit, engineering
-
-if TYPE_CHECKING:
-    from loadshare.results import Result
-    from loadshare.train import Train
-    from loadshare.train.mesh import Mesh
+from loadshare.results import Result
+from loadshare.train import Train
+from loadshare.train.mesh import Mesh
 
 POINTS = 60
 """Points of a curve."""
@@ -36,7 +37,7 @@ def law(result: Result, train: Train) -> Figure:
         each law and meshing position, a point for each mesh and position.
     """
     working = list(_working(result, train))
-    torque_unit = engineering([row["torque"] for row in working], "N*m")
+    torque_unit = engineering([row["torque"] for row in working], "N·m")
     angle_unit = engineering([row["angle"] for row in working], "rad")
     palette = palette_of(result)
     panels = []
@@ -50,14 +51,11 @@ def law(result: Result, train: Train) -> Figure:
         looks = {mesh: palette.mesh(mesh) for mesh in meshes}
         panel = _panel(curves, shown, channels("mesh", looks, "mesh"), torque_unit, angle_unit)
         panels.append(panel.properties(title=heading(title)))
-    import altair as alt
-
-    grid = alt.concat(*panels, columns=2).resolve_scale(color="independent", shape="independent")
     told = [
         result.stamp.title or result.stamp.case,
         "grey: the law of a mesh at each meshing position; points: where it works",
     ]
-    return Figure("law", grid.properties(title=heading("How the meshes yield", told)))
+    return marks.figure("law", marks.stages(panels), "How the meshes yield", told)
 
 
 def _working(result: Result, train: Train) -> Iterator[Row]:
@@ -107,24 +105,19 @@ def _scaled(row: Row, torque: Unit, angle: Unit) -> Row:
 def _panel(
     curves: list[Row], points: list[Row], by_mesh: dict[str, Any], torque: Unit, angle: Unit
 ) -> Drawing:
-    import altair as alt
-
-    x = alt.X(
-        "torque:Q",
-        title=torque.title("torque on the driver"),
-        axis=alt.Axis(tickCount=6),
-    )
+    title = torque.title("torque on the driver")
+    x = alt.X("torque:Q", title=title, axis=alt.Axis(tickCount=6))
     y = alt.Y("angle:Q", title=angle.title("deformation at the driver"))
     lines = chart(curves).mark_line(color=SOFT, strokeWidth=1, opacity=0.7)
-    hover = [
-        alt.Tooltip("mesh:N", title="mesh"),
-        alt.Tooltip("position:Q", title="position"),
-        alt.Tooltip("cycle:Q", title="position in the mesh cycle"),
-        alt.Tooltip("torque:Q", title=torque.title("torque on the drive flank"), format=".2f"),
-        alt.Tooltip("angle:Q", title=angle.title("deformation"), format=".3f"),
-    ]
-    marks = chart(points).mark_point(filled=True, size=44, opacity=0.9)
+    told = hover(
+        "mesh:N",
+        "position:Q",
+        ("cycle:Q", "position in the mesh cycle"),
+        ("torque:Q", torque.title("torque on the drive flank"), ".2f"),
+        ("angle:Q", angle.title("deformation"), ".3f"),
+    )
+    working = chart(points).mark_point(filled=True, size=44, opacity=0.9)
     return alt.layer(
         lines.encode(x=x, y=y, detail="curve:N"),
-        marks.encode(x=x, y=y, color=by_mesh["color"], shape=by_mesh["shape"], tooltip=hover),
+        working.encode(x=x, y=y, **by_mesh, tooltip=told),
     ).properties(width=300, height=200)

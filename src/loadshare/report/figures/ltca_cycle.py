@@ -3,24 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
 
+import altair as alt
 import numpy as np
 
 from loadshare.report.figure import Figure
-from loadshare.report.figures.marks import (
-    Drawing,
-    Row,
-    curves,
-    heading,
-    padded,
-)
+from loadshare.report.figures import marks
+from loadshare.report.figures.marks import Drawing, Row, axis, curves, hover, padded
 from loadshare.report.numbers import significant
 from loadshare.report.palette import look
 from loadshare.report.units import MICRORADIAN, Unit
-
-if TYPE_CHECKING:
-    from loadshare.tooth.analysis.result import Ltca
+from loadshare.tooth.analysis.result import Ltca
 
 WIDTH, HEIGHT = 400, 240
 STIFFNESS_LOADS = (1.0, 0.95, 0.9)
@@ -55,7 +48,7 @@ def stiffness(found: Ltca, title: str) -> Figure:
         f"{significant(unit.of(rated.max()))} {unit.name}, max/min "
         f"{rated.max() / rated.min():.3f}",
     ]
-    return Figure("stiffness", panel.properties(title=heading("Mesh stiffness", said)))
+    return marks.figure("stiffness", panel, "Mesh stiffness", said)
 
 
 def stiffness_unit(values: np.ndarray) -> Unit:
@@ -78,8 +71,6 @@ def transmission_error(found: Ltca, title: str) -> Figure:
     Figure
         Lead of the driver on the left, its variation about its mean on the right.
     """
-    import altair as alt
-
     parts = found.torque / found.rated
     values = {_name(part): found.angle[:, np.argmin(np.abs(parts - part))] for part in ERROR_LOADS}
     values[UNLOADED] = found.unloaded_error
@@ -94,32 +85,23 @@ def transmission_error(found: Ltca, title: str) -> Figure:
         f"peak to peak {MICRORADIAN.of(np.ptp(found.unloaded_error)):.2f} µrad without load, "
         f"{MICRORADIAN.of(swing):.1f} µrad at T = {significant(found.rated)} N·m",
     ]
-    return Figure("transmission_error", both.properties(title=heading("Transmission error", said)))
+    return marks.figure("transmission_error", both, "Transmission error", said)
 
 
 def _panel(
     phase: np.ndarray, values: Mapping[str, np.ndarray], unit: Unit, what: str, by: str
 ) -> Drawing:
     """Lines over the cycle, by name."""
-    import altair as alt
-
     rows = list(_rows(phase, values, unit))
     looks = {name: look(k) for k, name in enumerate(values)}
     every = [row["y"] for row in rows]
     # What stays within round-off shall not fill the panel.
     least = max(1e-3 * max(map(abs, every)), 1e-6)
-    y = alt.Y(
-        "y:Q",
-        title=unit.title(what),
-        scale=alt.Scale(domain=padded(min(every), max(every), least), nice=False),
-    )
-    x = alt.X("x:Q", title="phase of the mesh cycle", scale=alt.Scale(domain=[0, 1], nice=False))
-    hover = [
-        alt.Tooltip("name:N", title=by),
-        alt.Tooltip("x:Q", title="phase", format=".3~f"),
-        alt.Tooltip("y:Q", title=unit.title(what), format=".5~g"),
-    ]
-    drawn = curves(rows, "name", looks, by, x=x, y=y, tooltip=hover)
+    title = unit.title(what)
+    y = axis(alt.Y, "y:Q", title, padded(min(every), max(every), least))
+    x = axis(alt.X, "x:Q", "phase of the mesh cycle", [0, 1])
+    told = hover(("name:N", by), ("x:Q", "phase", ".3~f"), ("y:Q", title, ".5~g"))
+    drawn = curves(rows, "name", looks, by, x=x, y=y, tooltip=told)
     return alt.layer(*drawn).properties(width=WIDTH, height=HEIGHT)
 
 

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
+import altair as alt
 import numpy as np
 
 from loadshare.report.figure import Figure
-from loadshare.report.figures.marks import Point, Row, chart, heading
+from loadshare.report.figures import marks
+from loadshare.report.figures.marks import Point, Row, axis, chart, heading, hover
 from loadshare.report.numbers import significant
 from loadshare.report.palette import FAINT, SOFT
 from loadshare.report.units import MILLIMETRE
-
-if TYPE_CHECKING:
-    from loadshare.tooth.analysis.result import LineLoad, Ltca
-    from loadshare.tooth.geometry.body import ToothBody
+from loadshare.tooth.analysis.result import LineLoad, Ltca
+from loadshare.tooth.geometry.body import ToothBody
 
 WIDTH, HEIGHT = 460, 230
 SHADES: Literal["tealblues"] = "tealblues"
@@ -74,8 +74,6 @@ def load_map(found: Ltca, planes: Sequence[Plane], title: str, part: float = 1.0
     Figure
         Every line where it stands at its position of the cycle; grey where it carries nothing.
     """
-    import altair as alt
-
     lines = _lines(found, part)
     rows = [row for number, line in lines for row in _ribbon(planes[0], number, line)]
     top = _top([line.per_length for _, line in lines], lines, 1e-3)
@@ -83,24 +81,20 @@ def load_map(found: Ltca, planes: Sequence[Plane], title: str, part: float = 1.0
     colour = alt.Color("value:Q", title=["load per length", "[N/mm]"], **_shades(top))
     bare = chart([row for row in rows if row["value"] == 0.0])
     loaded = chart([row for row in rows if row["value"] > 0.0])
-    hover = [
-        alt.Tooltip("position:Q", title="position"),
-        alt.Tooltip("pair:Q", title="pair of teeth"),
-        alt.Tooltip("value:Q", title="load [N/mm]", format=".4~g"),
-    ]
+    told = hover("position:Q", ("pair:Q", "pair of teeth"), ("value:Q", "load [N/mm]", ".4~g"))
     ends = {**where, "x2": "x2:Q", "y2": "y2:Q"}
     # Thin enough that the lines of neighbouring positions stand apart.
     thick = float(np.clip(0.6 * HEIGHT / max(len(lines), 1), 2.0, 6.0))
     panel = alt.layer(
         bare.mark_rule(strokeWidth=1, color=SOFT, opacity=0.5).encode(**ends),
-        loaded.mark_rule(strokeWidth=thick).encode(**ends, color=colour, tooltip=hover),
+        loaded.mark_rule(strokeWidth=thick).encode(**ends, color=colour, tooltip=told),
     ).properties(width=WIDTH, height=HEIGHT)
     said = [
         title,
         f"contact lines of {len(found.positions)} positions on the driver's flank at "
         f"{significant(part * found.rated)} N·m; {BELOW} {significant(top, 3)} N/mm",
     ]
-    return Figure("load_map", panel.properties(title=heading("Load on the flank", said)))
+    return marks.figure("load_map", panel, "Load on the flank", said)
 
 
 def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str, part: float = 1.0) -> Figure:
@@ -113,15 +107,9 @@ def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str, part: floa
     Figure
         One panel for each flank; the bands are as wide as Hertz makes them.
     """
-    import altair as alt
-
     lines = [(number, line) for number, line in _lines(found, part) if line.loaded]
     top = _top([line.pressure for _, line in lines], lines, 1e-6)
-    hover = [
-        alt.Tooltip("position:Q", title="position"),
-        alt.Tooltip("pair:Q", title="pair of teeth"),
-        alt.Tooltip("value:Q", title="pressure [MPa]", format=".4~g"),
-    ]
+    told = hover("position:Q", ("pair:Q", "pair of teeth"), ("value:Q", "pressure [MPa]", ".4~g"))
     panels = []
     for which, (name, plane) in enumerate(zip(("driver", "driven gear"), planes, strict=True)):
         rows = [row for number, line in lines for row in _band(plane, number, line, which)]
@@ -131,7 +119,7 @@ def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str, part: floa
             order="order:Q",
             detail="cell:N",
             color=alt.Color("value:Q", title=["pressure", "[MPa]"], **_shades(top)),
-            tooltip=hover,
+            tooltip=told,
         )
         panels.append(
             shown.properties(width=WIDTH, height=HEIGHT, title=heading(f"flank of the {name}"))
@@ -141,8 +129,7 @@ def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str, part: floa
         f"areas of contact at {len(found.positions)} positions and "
         f"{significant(part * found.rated)} N·m; {BELOW} {significant(top, 3)} MPa",
     ]
-    both = alt.vconcat(*panels)
-    return Figure("contact_pattern", both.properties(title=heading("Contact pattern", said)))
+    return marks.figure("contact_pattern", alt.vconcat(*panels), "Contact pattern", said)
 
 
 def _lines(found: Ltca, part: float) -> list[tuple[int, LineLoad]]:
@@ -153,23 +140,11 @@ def _lines(found: Ltca, part: float) -> list[tuple[int, LineLoad]]:
 
 def _axes(plane: Plane) -> dict[str, Any]:
     """Axes over the whole flank."""
-    import altair as alt
-
-    length, height = (MILLIMETRE.of(size) for size in plane.size)
-    grid = alt.Axis(grid=True, gridColor=FAINT)
+    sizes = [MILLIMETRE.of(size) for size in plane.size]
+    titles = ("along the tooth [mm]", "from the fillet to the tip [mm]")
     return {
-        "x": alt.X(
-            "x:Q",
-            title="along the tooth [mm]",
-            scale=alt.Scale(domain=[0.0, length], nice=False),
-            axis=grid,
-        ),
-        "y": alt.Y(
-            "y:Q",
-            title="from the fillet to the tip [mm]",
-            scale=alt.Scale(domain=[0.0, height], nice=False),
-            axis=grid,
-        ),
+        name: axis(channel, f"{name}:Q", title, [0.0, size], grid=True, gridColor=FAINT)
+        for name, channel, title, size in zip("xy", (alt.X, alt.Y), titles, sizes, strict=True)
     }
 
 
@@ -189,8 +164,6 @@ def _top(
 
 def _shades(top: float) -> dict[str, Any]:
     """Scale and legend of a shade from 0 to `top`; what is above has the darkest."""
-    import altair as alt
-
     return {
         "scale": alt.Scale(scheme=SHADES, domain=[0.0, top], nice=False, clamp=True),
         "legend": alt.Legend(type="gradient", gradientLength=160),
@@ -209,10 +182,7 @@ def _ribbon(plane: Plane, number: int, line: LineLoad) -> Iterator[Row]:
     edges = MILLIMETRE.factor * _edges(plane.at(line.line.driver_uw))
     for start, end, load in zip(edges, edges[1:], 1e-3 * line.per_length, strict=False):
         yield {
-            "x": _short(start[0]),
-            "y": _short(start[1]),
-            "x2": _short(end[0]),
-            "y2": _short(end[1]),
+            **dict(zip(("x", "y", "x2", "y2"), map(_short, (*start, *end)), strict=True)),
             "value": _short(load),
             "position": number,
             "pair": line.line.pair,

@@ -4,24 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from loadshare.report.palette import Look
+import altair as alt
 
-if TYPE_CHECKING:
-    import altair as alt
+from loadshare.report.figure import Figure
+from loadshare.report.palette import DASHES, SHAPES, Look
 
 # Altair's types differ from mark to mark and from call to call; its schema checks a chart when it
 # is turned into a specification.
 Drawing = Any
 Row = dict[str, Any]
 Point = tuple[float, float]
+Told = str | Sequence[str]
 
 
 def chart(rows: Sequence[Mapping[str, Any]]) -> Drawing:
     """Return a chart on plain rows."""
-    import altair as alt
-
     return alt.Chart(alt.InlineData(values=tuple(rows)))
 
 
@@ -41,8 +40,6 @@ def channels(field: str, looks: Mapping[str, Look], title: str) -> dict[str, Any
     dict
         Channels by name; a mark takes those that it knows.
     """
-    import altair as alt
-
     names = list(looks)
     legend = alt.Legend(title=title)
 
@@ -80,8 +77,6 @@ def dashed_lines(
 
 def distinct(looks: Mapping[str, Look]) -> list[Look]:
     """Looks in order, those that stood before given another dash and shape."""
-    from loadshare.report.palette import DASHES, SHAPES
-
     found: list[Look] = []
     for wanted in looks.values():
         use, number = wanted, 0
@@ -188,10 +183,99 @@ def padded(low: float, high: float, least: float, share: float = 0.08) -> list[f
     return [middle - half * (1 + 2 * share), middle + half * (1 + 2 * share)]
 
 
-def heading(title: str, subtitle: str | Sequence[str] = "") -> alt.TitleParams:
+def heading(title: str, subtitle: Told = "") -> alt.TitleParams:
     """Return the title of a picture or panel."""
-    import altair as alt
-
     lines = [subtitle] if isinstance(subtitle, str) else list(subtitle)
     lines = [line for line in lines if line]
     return alt.TitleParams(text=title, subtitle=lines) if lines else alt.TitleParams(text=title)
+
+
+def figure(name: str, drawing: Drawing, title: str, told: Told = "") -> Figure:
+    """Return a drawing as a figure under a title."""
+    return Figure(name, drawing.properties(title=heading(title, told)))
+
+
+def hover(*fields: str | tuple[str, ...]) -> list[alt.Tooltip]:
+    """Return what hovering tells: fields by their own names, or (field, title, format)."""
+    told = [(f, f.partition(":")[0]) if isinstance(f, str) else f for f in fields]
+    return [
+        alt.Tooltip(field, title=title, format=form[0] if form else alt.Undefined)
+        for field, title, *form in told
+    ]
+
+
+def axis(
+    channel: type[Any],
+    field: str,
+    title: str | None,
+    domain: Sequence[float] | None = None,
+    *,
+    scale: Mapping[str, Any] | None = None,
+    **look: Any,
+) -> Any:
+    """Return the channel of an axis that ends where its values do, not at round figures.
+
+    Parameters
+    ----------
+    channel : type
+        Such as ``alt.X``.
+    field : str
+    title : str or None
+    domain : sequence of float, optional
+        Ends of the axis.
+    scale : mapping, optional
+        Further settings of the scale.
+    **look
+        Of the axis.
+    """
+    ends = alt.Undefined if domain is None else list(domain)
+    drawn = {"axis": alt.Axis(**look)} if look else {}
+    return channel(
+        field, title=title, scale=alt.Scale(nice=False, domain=ends, **scale or {}), **drawn
+    )
+
+
+def stages(panels: Sequence[Drawing]) -> Drawing:
+    """Return the panels of stages beside one another, each with its own legend."""
+    grid = alt.concat(*panels, columns=2)
+    return grid.resolve_scale(color="independent", shape="independent")
+
+
+class Panel:
+    """A panel that is true to shape.
+
+    Parameters
+    ----------
+    low, high : (float, float)
+        Its corners.
+    titles : iterable of str
+        Of both axes.
+    **look
+        Of the axes.
+
+    Attributes
+    ----------
+    low, high : (float, float)
+    x, y : channel
+    """
+
+    def __init__(self, low: Point, high: Point, titles: Iterable[str], **look: Any) -> None:
+        self.low, self.high = low, high
+        self.x, self.y = (
+            axis(channel, f"{name}:Q", title, (a, b), scale={"zero": False}, **look)
+            for channel, name, title, a, b in zip(
+                (alt.X, alt.Y), "xy", titles, low, high, strict=True
+            )
+        )
+
+    def line(self, rows: Sequence[Row], by: str = "", tooltip: Any = None, **style: Any) -> Drawing:
+        """Return paths as a layer, one for each value of the field `by`."""
+        told = {"detail": f"{by}:N"} if by else {}
+        told |= {"tooltip": tooltip} if tooltip else {}
+        return chart(rows).mark_line(**style).encode(x=self.x, y=self.y, order="order:Q", **told)
+
+    def points(self, rows: Sequence[Row], tooltip: Any, **style: Any) -> Drawing:
+        """Return points as a layer."""
+        return (
+            chart(rows).mark_point(opacity=1, **style).encode(x=self.x, y=self.y, tooltip=tooltip)
+        )

@@ -5,13 +5,10 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
 
+from loadshare.certify import FloatState
 from loadshare.report.numbers import runs, significant
 from loadshare.report.units import engineering
-
-if TYPE_CHECKING:
-    from loadshare.certify import FloatState
 
 ALONG = 1e-9
 """How far a direction may be from an axis and still be called by its name."""

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import Any
 
+import altair as alt
+
 from loadshare.report.figures.marks import Drawing, Row, chart, rimmed
 from loadshare.report.palette import INK, SOFT, WARNING
 
@@ -35,8 +37,6 @@ def rules(
     words : bool
         Whether the words are written.
     """
-    import altair as alt
-
     ordered = sorted(rows, key=lambda row: row["x"])
     sides = _sides([row["x"] * pixels for row in ordered])
     sided = list(zip(ordered, sides, strict=True))

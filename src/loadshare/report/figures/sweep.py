@@ -8,18 +8,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import altair as alt
 import numpy as np
 
 from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
-from loadshare.report.figures.marks import (
-    Drawing,
-    Row,
-    chart,
-    curves,
-    heading,
-    padded,
-)
+from loadshare.report.figures import marks
+from loadshare.report.figures.marks import Drawing, Row, axis, chart, curves, heading, hover, padded
 from loadshare.report.figures.rules import rules
 from loadshare.report.palette import WARNING, Look, Palette, ends_from_names, look
 from loadshare.report.units import Unit, engineering
@@ -34,7 +29,7 @@ NAMED_BY = ("stage", "mesh", "float", "gear")
 WIDTH, HEIGHT = 460, 280
 MAP = 300
 """Side of a map [px]."""
-LEAST = {"m": 1e-9, "rad": 1e-9, "N": 1e-3, "N*m": 1e-3}
+LEAST = {"m": 1e-9, "rad": 1e-9, "N": 1e-3, "N·m": 1e-3}
 """Least range of an axis, SI: below it, round-off would look like a result."""
 SHARE = 1e-4
 """The same, over the largest value."""
@@ -85,13 +80,13 @@ def sweep(
             "dimensions of its variable status"
         )
     shown = _shown(data, parameters, show, names, position)
-    said = f"{shown.unit.title(shown.title)}"
+    said = shown.axis
     told = [str(data.attrs.get("title") or data.attrs.get("case", "")), _refused(data)]
-    made = _lines(data, shown, parameters[0], events) if len(parameters) == 1 else None
-    if made is None:
-        made = _maps(data, shown, parameters)
-    title = heading(f"{said[:1].upper()}{said[1:]}", told)
-    return Figure(f"sweep_{show}", made.properties(title=title))
+    if len(parameters) == 1:
+        drawing = _lines(data, shown, parameters[0], events)
+    else:
+        drawing = _maps(data, shown, parameters)
+    return marks.figure(f"sweep_{show}", drawing, f"{said[:1].upper()}{said[1:]}", told)
 
 
 @dataclass(frozen=True)
@@ -105,6 +100,11 @@ class _Shown:
     title: str
     looks: dict[str, Look]
     least: float
+
+    @property
+    def axis(self) -> str:
+        """Title of an axis of the values."""
+        return self.unit.title(self.title)
 
     def domain(self, share: float) -> list[float]:
         """Range of an axis, with a margin over the range of the values."""
@@ -154,7 +154,7 @@ def _shown(
     unit = engineering(values[np.isfinite(values)], si)
     wanted = [wanted[k] for k in keep]
     looks = _looks(data, by, wanted)
-    least = LEAST.get(si.replace(" ", "*"), 1e-6) * unit.factor
+    least = LEAST.get(si, 1e-6) * unit.factor
     return _Shown(wanted, by, values[keep] * unit.factor, unit, told, looks, least)
 
 
@@ -202,85 +202,63 @@ def _parameter(data: xr.Dataset, name: str) -> tuple[np.ndarray, str]:
 
 
 def _lines(data: xr.Dataset, shown: _Shown, name: str, events: Sequence[Event]) -> Drawing:
-    import altair as alt
-
     grid, title = _parameter(data, name)
     rows: list[Row] = [
         {"x": float(x), "y": float(y) if np.isfinite(y) else None, "name": line}
         for line, values in zip(shown.names, shown.values, strict=True)
         for x, y in zip(grid, values, strict=True)
     ]
-    y_axis = alt.Y(
-        "y:Q",
-        title=shown.unit.title(shown.title),
-        scale=alt.Scale(domain=shown.domain(0.08), nice=False),
-    )
-    x_axis = alt.X("x:Q", title=title, scale=alt.Scale(nice=False, zero=False))
-    hover = [
-        alt.Tooltip("name:N", title=shown.by),
-        alt.Tooltip("x:Q", title=title),
-        alt.Tooltip("y:Q", title=shown.unit.title(shown.title), format=".6~g"),
-    ]
-    layers = curves(rows, "name", shown.looks, shown.by, x=x_axis, y=y_axis, tooltip=hover)
+    y_axis = axis(alt.Y, "y:Q", shown.axis, shown.domain(0.08))
+    x_axis = axis(alt.X, "x:Q", title, scale={"zero": False})
+    told = hover(("name:N", shown.by), ("x:Q", title), ("y:Q", shown.axis, ".6~g"))
+    layers = curves(rows, "name", shown.looks, shown.by, x=x_axis, y=y_axis, tooltip=told)
     if events:
-        marks = [{"x": float(value), "text": text} for value, text in events]
-        ends = [*grid, *(mark["x"] for mark in marks)]
-        told = [alt.Tooltip("text:N", title="event"), alt.Tooltip("x:Q", title=title)]
-        layers += rules(marks, x_axis, WIDTH / ((max(ends) - min(ends)) or 1.0), tooltip=told)
+        marked = [{"x": float(value), "text": text} for value, text in events]
+        ends = [*grid, *(mark["x"] for mark in marked)]
+        told = hover(("text:N", "event"), ("x:Q", title))
+        layers += rules(marked, x_axis, WIDTH / ((max(ends) - min(ends)) or 1.0), tooltip=told)
     return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT)
 
 
 def _maps(data: xr.Dataset, shown: _Shown, parameters: list[str]) -> Drawing:
-    import altair as alt
-
     (xs, x_title), (ys, y_title) = (_parameter(data, name) for name in parameters)
     x_edges, y_edges = _edges(xs), _edges(ys)
     colour = alt.Color(
         "value:Q",
-        title=textwrap.wrap(shown.unit.title(shown.title), 36),
+        title=textwrap.wrap(shown.axis, 36),
         # Light to dark in one direction, so that it reads in grey.
         scale=alt.Scale(scheme="tealblues", domain=shown.domain(0.0), nice=False),
         legend=alt.Legend(titleLimit=240, gradientLength=200),
     )
-    x_scale = alt.Scale(domain=[float(x_edges.min()), float(x_edges.max())], nice=False)
-    y_scale = alt.Scale(domain=[float(y_edges.min()), float(y_edges.max())], nice=False)
+    places = {
+        name: axis(channel, f"{name}:Q", title, [float(e.min()), float(e.max())], grid=False)
+        for channel, name, title, e in (
+            (alt.X, "x", x_title, x_edges),
+            (alt.Y, "y", y_title, y_edges),
+        )
+    }
+    where = {**places, "x2": "x2:Q", "y2": "y2:Q"}
+    told = hover(("a:Q", x_title), ("b:Q", y_title), ("value:Q", shown.axis, ".6~g"))
     panels = []
     for name, values in zip(shown.names, shown.values, strict=True):
-        rows: list[Row] = [
-            {
-                "x": float(x_edges[i]),
-                "x2": float(x_edges[i + 1]),
-                "y": float(y_edges[j]),
-                "y2": float(y_edges[j + 1]),
-                "a": float(xs[i]),
-                "b": float(ys[j]),
-                "value": float(values[i, j]) if np.isfinite(values[i, j]) else None,
-            }
-            for i in range(len(xs))
-            for j in range(len(ys))
-        ]
-        certified = [row for row in rows if row["value"] is not None]
-        refused = [row for row in rows if row["value"] is None]
-        places = {
-            "x": alt.X("x:Q", title=x_title, scale=x_scale, axis=alt.Axis(grid=False)),
-            "y": alt.Y("y:Q", title=y_title, scale=y_scale, axis=alt.Axis(grid=False)),
-            "x2": "x2:Q",
-            "y2": "y2:Q",
-        }
-        hover = [
-            alt.Tooltip("a:Q", title=x_title),
-            alt.Tooltip("b:Q", title=y_title),
-            alt.Tooltip("value:Q", title=shown.unit.title(shown.title), format=".6~g"),
-        ]
+        certified: list[Row] = []
+        refused: list[Row] = []
+        for (i, j), value in np.ndenumerate(values):
+            sides = {"x": x_edges[i], "x2": x_edges[i + 1], "y": y_edges[j], "y2": y_edges[j + 1]}
+            cell = {k: float(v) for k, v in {**sides, "a": xs[i], "b": ys[j]}.items()}
+            if np.isfinite(value):
+                certified.append({**cell, "value": float(value)})
+            else:
+                refused.append({**cell, "value": None})
         # Each cell reaches under the next ones: seams would look like lines of the map.
         cells = chart(certified).mark_rect(x2Offset=0.5, y2Offset=-0.5)
-        layers: list[Any] = [cells.encode(**places, color=colour, tooltip=hover)]
+        layers: list[Any] = [cells.encode(**where, color=colour, tooltip=told)]
         if refused:
             crossed = chart(refused).mark_rect(fillOpacity=0, stroke=WARNING, strokeDash=[2, 2])
-            layers.append(crossed.encode(**places, tooltip=hover))
+            layers.append(crossed.encode(**where, tooltip=told))
         panel = alt.layer(*layers).properties(width=MAP, height=MAP)
-        told = name if name == "system" else f"{shown.by} {name}"
-        panels.append(panel.properties(title=heading(told[:1].upper() + told[1:])))
+        called = name if name == "system" else f"{shown.by} {name}"
+        panels.append(panel.properties(title=heading(called[:1].upper() + called[1:])))
     return alt.concat(*panels, columns=2)
 
 

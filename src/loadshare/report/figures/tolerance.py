@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import altair as alt
 import numpy as np
 
 from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
-from loadshare.report.figures.marks import Drawing, Row, chart, heading
+from loadshare.report.figures import marks as drawn
+from loadshare.report.figures.marks import Drawing, Row, axis, chart, heading, hover
 from loadshare.report.figures.rules import rules
 from loadshare.report.numbers import significant
 from loadshare.report.palette import COLOURS, INK
@@ -25,6 +28,8 @@ ROW = 22
 MOST = 20
 """Inputs that are shown; the others are told as a number."""
 BAR, TOTAL = COLOURS[0], COLOURS[1]
+SHARE, BELOW = "share of samples", "samples at or below"
+PERCENT = alt.Axis(format="~%", tickCount=4)
 
 
 def tolerance(data: xr.Dataset, stage: str = "system") -> Figure:
@@ -52,29 +57,26 @@ def tolerance(data: xr.Dataset, stage: str = "system") -> Figure:
     LoadshareError
         If the stage, or what is needed to draw, is not there.
     """
-    import altair as alt
-
     stages = [str(s) for s in data["stage"].values] if "stage" in data.coords else []
     if stage not in stages:
         raise LoadshareError(f"no stage {stage!r}. Allowed: {', '.join(stages) or 'none given'}")
     one = data.sel(stage=stage)
-    edges, counts = _histogram(one)
-    total = int(counts.sum())
     limit = one.attrs.get("limit")
-    marks = _marks(one, limit)
-    parts: list[Any] = [
-        alt.vconcat(_bars(edges, counts, marks), _cumulative(edges, counts, marks), spacing=14)
-    ]
+    found = _Distribution(*_histogram(one), _marks(one, limit))
+    parts: list[Any] = [alt.vconcat(found.bars(), found.cumulative(), spacing=14)]
     if "first_order" in one or "total_order" in one:
         parts.append(_inputs(one))
-    told = [str(one.attrs.get("title") or one.attrs.get("case", "")), f"{total:,} samples"]
+    told = [
+        str(one.attrs.get("title") or one.attrs.get("case", "")),
+        f"{int(found.counts.sum()):,} samples",
+    ]
     if "over" in one.coords:
         told.append(f"torque over the mean of its {one['over'].item()}")
     if limit is not None and "exceedance" in one:
         told.append(_exceedance(one, float(limit)))
     name = "the system" if stage == "system" else f"stage {stage}"
     grid = alt.hconcat(*parts, spacing=40)
-    return Figure("tolerance", grid.properties(title=heading(f"How Ω of {name} scatters", told)))
+    return drawn.figure("tolerance", grid, f"How Ω of {name} scatters", told)
 
 
 def _histogram(one: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
@@ -106,71 +108,58 @@ def _marks(one: xr.Dataset, limit: Any) -> list[Row]:
     return rows
 
 
-def _reach(edges: np.ndarray, marks: list[Row]) -> tuple[float, float]:
-    """Ends of the axis: all bins and all marks, with a margin."""
-    every = [float(edges[0]), float(edges[-1]), *(row["x"] for row in marks)]
-    room = 0.03 * (max(every) - min(every)) or LEAST
-    return min(every) - room, max(every) + room
+@dataclass(frozen=True)
+class _Distribution:
+    """Bins of Ω, and what is marked in them.
 
+    Attributes
+    ----------
+    edges, counts : ndarray, shape (bins + 1,) and (bins,)
+    marks : list of dict
+    """
 
-def _axis(edges: np.ndarray, marks: list[Row], title: str | None) -> Any:
-    import altair as alt
+    edges: np.ndarray
+    counts: np.ndarray
+    marks: list[Row]
 
-    domain = alt.Scale(domain=list(_reach(edges, marks)), nice=False, zero=False)
-    return alt.X("x:Q", title=title, scale=domain, axis=alt.Axis(tickCount=6, grid=False))
+    def panel(
+        self, bars: Drawing, title: str | None, y: Any, height: int, *, words: bool, **more: Any
+    ) -> Drawing:
+        """Return a panel over Ω with all bins and all marks, whose words stand in one panel."""
+        every = [float(self.edges[0]), float(self.edges[-1]), *(row["x"] for row in self.marks)]
+        room = 0.03 * (max(every) - min(every)) or LEAST
+        low, high = min(every) - room, max(every) + room
+        whole = {"zero": False}
+        x = axis(alt.X, "x:Q", title, [low, high], scale=whole, tickCount=6, grid=False)
+        told = hover(("text:N", "mark"), ("x:Q", "Ω", ".5f"))
+        marked = rules(self.marks, x, WIDTH / (high - low), tooltip=told, words=words)
+        layers = [bars.encode(x=x, y=y, **more), *marked]
+        return alt.layer(*layers).properties(width=WIDTH, height=height)
 
+    def bars(self) -> Drawing:
+        """Share of the samples in each bin."""
+        part = self.counts / self.counts.sum()
+        rows = [
+            {"x": float(a), "x2": float(b), "share": float(v), "count": float(c)}
+            for a, b, v, c in zip(self.edges[:-1], self.edges[1:], part, self.counts, strict=True)
+        ]
+        told = hover(("x:Q", "Ω from", ".5f"), ("x2:Q", "to", ".5f"), ("share:Q", SHARE, ".4%"))
+        bars = chart(rows).mark_rect(color=BAR, opacity=0.85, stroke="white", strokeWidth=0.3)
+        y = alt.Y("share:Q", title=SHARE, axis=PERCENT)
+        ends = {"x2": "x2:Q", "y2": alt.datum(0), "tooltip": told}
+        return self.panel(bars, None, y, HEIGHT, words=True, **ends)
 
-def _rules(edges: np.ndarray, marks: list[Row], x: Any, *, words: bool) -> list[Drawing]:
-    import altair as alt
-
-    low, high = _reach(edges, marks)
-    hover = [alt.Tooltip("text:N", title="mark"), alt.Tooltip("x:Q", title="Ω", format=".5f")]
-    return rules(marks, x, WIDTH / (high - low), tooltip=hover, words=words)
-
-
-def _bars(edges: np.ndarray, counts: np.ndarray, marks: list[Row]) -> Drawing:
-    import altair as alt
-
-    part = counts / counts.sum()
-    rows = [
-        {"x": float(a), "x2": float(b), "share": float(v), "count": float(c)}
-        for a, b, v, c in zip(edges[:-1], edges[1:], part, counts, strict=True)
-    ]
-    x = _axis(edges, marks, None)
-    hover = [
-        alt.Tooltip("x:Q", title="Ω from", format=".5f"),
-        alt.Tooltip("x2:Q", title="to", format=".5f"),
-        alt.Tooltip("share:Q", title="share of samples", format=".4%"),
-    ]
-    bars = chart(rows).mark_rect(color=BAR, opacity=0.85, stroke="white", strokeWidth=0.3)
-    y = alt.Y("share:Q", title="share of samples", axis=alt.Axis(format="~%", tickCount=4))
-    layers = [bars.encode(x=x, x2="x2:Q", y=y, y2=alt.datum(0), tooltip=hover)]
-    return alt.layer(*layers, *_rules(edges, marks, x, words=True)).properties(
-        width=WIDTH, height=HEIGHT
-    )
-
-
-def _cumulative(edges: np.ndarray, counts: np.ndarray, marks: list[Row]) -> Drawing:
-    import altair as alt
-
-    reached = np.concatenate([[0.0], np.cumsum(counts) / counts.sum()])
-    rows = [{"x": float(v), "p": float(p)} for v, p in zip(edges, reached, strict=True)]
-    x = _axis(edges, marks, "Ω")
-    hover = [
-        alt.Tooltip("x:Q", title="Ω", format=".5f"),
-        alt.Tooltip("p:Q", title="samples at or below", format=".4%"),
-    ]
-    y = alt.Y("p:Q", title="samples at or below", axis=alt.Axis(format="~%", tickCount=4))
-    line = chart(rows).mark_line(color=BAR, strokeWidth=1.8, point={"size": 12, "color": BAR})
-    layers = [line.encode(x=x, y=y, tooltip=hover)]
-    return alt.layer(*layers, *_rules(edges, marks, x, words=False)).properties(
-        width=WIDTH, height=HEIGHT // 2
-    )
+    def cumulative(self) -> Drawing:
+        """Share of the samples at or below each edge."""
+        reached = np.concatenate([[0.0], np.cumsum(self.counts) / self.counts.sum()])
+        rows = [{"x": float(v), "p": float(p)} for v, p in zip(self.edges, reached, strict=True)]
+        line = chart(rows).mark_line(color=BAR, strokeWidth=1.8, point={"size": 12, "color": BAR})
+        y = alt.Y("p:Q", title=BELOW, axis=PERCENT)
+        told = hover(("x:Q", "Ω", ".5f"), ("p:Q", BELOW, ".4%"))
+        return self.panel(line, "Ω", y, HEIGHT // 2, words=False, tooltip=told)
 
 
 def _inputs(one: xr.Dataset) -> Drawing:
-    import altair as alt
-
     orders = [n for n in ("first_order", "total_order") if n in one]
     key = one[orders[-1]]
     by_size = key.isel(input=np.argsort(-np.nan_to_num(key.values)))
@@ -180,33 +169,28 @@ def _inputs(one: xr.Dataset) -> Drawing:
     rows: list[Row] = []
     for order in orders:
         for name in shown:
-            row: Row = {"input": name, "order": called[order]}
-            row["index"] = float(one[order].sel(input=name))
-            for end in ("low", "high"):
-                if f"{order}_{end}" in one:
-                    row[end] = float(one[f"{order}_{end}"].sel(input=name))
-            rows.append(row)
+            of = one.sel(input=name)
+            ends = {e: float(of[f"{order}_{e}"]) for e in ("low", "high") if f"{order}_{e}" in one}
+            rows.append({"input": name, "order": called[order], "index": float(of[order]), **ends})
     domain = [called[order] for order in orders]
-    colours = [BAR, TOTAL][: len(domain)]
     y = alt.Y("input:N", sort=shown, title=None, axis=alt.Axis(domain=False, ticks=False))
-    offset = alt.YOffset("order:N", sort=domain)
-    base = chart(rows).encode(y=y, yOffset=offset)
-    hover = [
-        alt.Tooltip("input:N"),
-        alt.Tooltip("order:N", title="its part"),
-        alt.Tooltip("index:Q", title="share of the variance", format=".4f"),
-        *([alt.Tooltip("low:Q", format=".4f")] if "low" in rows[0] else []),
-        *([alt.Tooltip("high:Q", format=".4f")] if "high" in rows[0] else []),
-    ]
-    bars = base.mark_bar(height=ROW * 0.36).encode(
-        x=alt.X("index:Q", title="share of the variance of Ω", axis=alt.Axis(tickCount=5)),
-        color=alt.Color(
-            "order:N", scale=alt.Scale(domain=domain, range=colours), legend=alt.Legend(title=None)
-        ),
-        tooltip=hover,
+    base = chart(rows).encode(y=y, yOffset=alt.YOffset("order:N", sort=domain))
+    bounds = [end for end in ("low", "high") if end in rows[0]]
+    told = hover(
+        "input:N",
+        ("order:N", "its part"),
+        ("index:Q", "share of the variance", ".4f"),
+        *((f"{end}:Q", end, ".4f") for end in bounds),
     )
-    layers: list[Any] = [bars]
-    if "low" in rows[0] and "high" in rows[0]:
+    scale = alt.Scale(domain=domain, range=[BAR, TOTAL][: len(domain)])
+    layers: list[Any] = [
+        base.mark_bar(height=ROW * 0.36).encode(
+            x=alt.X("index:Q", title="share of the variance of Ω", axis=alt.Axis(tickCount=5)),
+            color=alt.Color("order:N", scale=scale, legend=alt.Legend(title=None)),
+            tooltip=told,
+        )
+    ]
+    if len(bounds) == 2:
         layers.append(base.mark_rule(color=INK).encode(x="low:Q", x2="high:Q"))
     left = len(names) - len(shown)
     title = heading("Where it comes from", f"and {left} inputs of less effect" if left else "")

@@ -4,21 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import altair as alt
 import numpy as np
 
+from loadshare.case import Case
+from loadshare.case.draft import Draft
 from loadshare.errors import CaseError, LoadshareError
 from loadshare.report.figure import Figure
+from loadshare.report.figures import marks
 from loadshare.report.figures.labels import Labels
 from loadshare.report.figures.layout import ELASTIC, FIXED, FLOATS, Body, Layout, Pair, layout_of
 from loadshare.report.figures.marks import (
     Drawing,
+    Panel,
     Point,
     Row,
     arrow,
-    chart,
     heading,
+    hover,
     path_rows,
 )
 from loadshare.report.figures.rest import direction_name
@@ -27,10 +32,6 @@ from loadshare.report.palette import INK, SOFT, WARNING, Palette
 from loadshare.report.units import MILLIMETRE
 from loadshare.train import build_train
 from loadshare.train.gear import Vector, transverse_frame
-
-if TYPE_CHECKING:
-    from loadshare.case import Case
-    from loadshare.case.draft import Draft
 
 WIDTH, HEIGHT = 620.0, 560.0
 """Room for a view [px]."""
@@ -42,6 +43,11 @@ SENSE = math.radians(75.0)
 """Extent of the arrow of a running sense."""
 HELD = {FIXED: "circle", ELASTIC: "diamond", FLOATS: "circle"}
 """Shapes of the centres, floating ones on top: they may be coaxial with others."""
+CENTRE_LINES: dict[str, dict[str, Any]] = {
+    "shaft": {"color": SOFT, "strokeWidth": 3, "opacity": 0.35},
+    "fits": {"color": SOFT, "strokeWidth": 0.9, "strokeDash": [10, 3, 2, 3]},
+    "misfit": {"color": WARNING, "strokeWidth": 3},
+}
 OUTSIDE = 1.07
 """Radius of an internal gear's bent arrow over its largest radius: inside it are the pinions."""
 
@@ -67,8 +73,6 @@ def train(case: Case | Draft) -> Figure:
     LoadshareError
         If no gear could be placed.
     """
-    import altair as alt
-
     layout = layout_of(case, _train_of(case))
     if not layout.bodies:
         raise LoadshareError("no gear has a centre that could be read, so nothing can be drawn")
@@ -89,8 +93,7 @@ def train(case: Case | Draft) -> Figure:
         "centres: filled on a bearing, diamond on an elastic bearing, ring floating",
         *(_misfit_told(pair) for pair in layout.pairs if not pair.fits),
     ]
-    grid = alt.vconcat(*panels).properties(title=heading("The train", told))
-    return Figure("train", grid)
+    return marks.figure("train", alt.vconcat(*panels), "The train", told)
 
 
 def _train_of(case: Case | Draft) -> Any:
@@ -127,7 +130,7 @@ def _misfit_told(pair: Pair) -> str:
     )
 
 
-class _View:
+class _View(Panel):
     """The train seen along one direction; lengths in millimetres."""
 
     def __init__(self, layout: Layout, palette: Palette, frame: Vector, *, plan: bool) -> None:
@@ -137,28 +140,22 @@ class _View:
         reach = np.vstack([self._flat_array(b.circle(self._radius(b))) for b in self.bodies])
         low, high = reach.min(axis=0), reach.max(axis=0)
         room = 0.04 * float(high[0] - low[0])
-        self.low = (float(low[0]) - room, float(low[1]) - room)
-        self.high = (float(high[0]) + room, float(high[1]) + room)
+        names = [MILLIMETRE.title(direction_name(v)) for v in frame]
+        low, high = ((float(x), float(y)) for x, y in (low - room, high + room))
+        super().__init__(low, high, names, grid=False, tickCount=6 if plan else 4)
 
     @property
     def scale(self) -> float:
         """Pixels per millimetre at which the view fits."""
-        wide, tall = (b - a for a, b in zip(self.low, self.high, strict=True))
+        wide, tall = self._extent
         return min(WIDTH / wide, HEIGHT / tall)
+
+    @property
+    def _extent(self) -> Point:
+        return self.high[0] - self.low[0], self.high[1] - self.low[1]
 
     def chart(self, scale: float) -> Drawing:
         """Return the view at so many pixels per millimetre."""
-        import altair as alt
-
-        first, second = (direction_name(v) for v in self.frame)
-        names = (MILLIMETRE.title(first), MILLIMETRE.title(second))
-        axis = alt.Axis(grid=False, tickCount=6 if self.plan else 4)
-
-        def channel(kind: Any, name: str, k: int) -> Any:
-            domain = alt.Scale(domain=[self.low[k], self.high[k]], nice=False, zero=False)
-            return kind(f"{name}:Q", scale=domain, axis=axis, title=names[k])
-
-        self.x, self.y = channel(alt.X, "x", 0), channel(alt.Y, "y", 1)
         self.labels = Labels(self.low, self.high, scale)
         layers = [
             *self._circles(),
@@ -169,7 +166,7 @@ class _View:
             # On top: what lies over a centre would keep the pointer from it.
             *self._centres(),
         ]
-        wide, tall = (b - a for a, b in zip(self.low, self.high, strict=True))
+        wide, tall = self._extent
         towards = direction_name(np.cross(self.frame[0], self.frame[1]))
         return alt.layer(*layers).properties(
             width=scale * wide, height=scale * tall, title=heading(f"Seen against {towards}")
@@ -191,20 +188,16 @@ class _View:
         """Whether a gear is seen as a circle, not from the side."""
         return abs(float(np.cross(self.frame[0], self.frame[1]) @ body.axis)) > 1.0 - 1e-6
 
-    def _line(self, rows: list[Row], *, by: str = "part", tooltip: Any = None, **style: Any) -> Any:
-        line = chart(rows).mark_line(**style)
-        line = line.encode(x=self.x, y=self.y, order="order:Q", detail=f"{by}:N")
-        return line.encode(tooltip=tooltip) if tooltip else line
-
     def _circles(self) -> list[Any]:
-        import altair as alt
-
-        hover = alt.Tooltip("circle:N", title="circle")
         layers: list[Any] = []
         for body in self.bodies:
-            colour = self.palette.gear(body.name).colour
+            stroke = {"stroke": self.palette.gear(body.name).colour, "strokeWidth": 1.3}
+            area = {"filled": True, "fillOpacity": 0.05, "fill": stroke["stroke"]}
             full, dashed = self._radii(body)
-            for radii, style in ((full, {}), (dashed, {"strokeDash": [4, 3]})):
+            for radii, style in (
+                (full, area if body.kind != "internal" else {}),
+                (dashed, {"strokeDash": [4, 3]}),
+            ):
                 rows: list[Row] = []
                 for what, radius in radii.items():
                     points = self._flat(body.circle(radius))
@@ -212,19 +205,8 @@ class _View:
                     rows += path_rows(points, circle=told)
                     self.labels.avoid(points)
                 if rows:
-                    area = {"filled": True, "fillOpacity": 0.05, "fill": colour}
-                    fill = area if radii is full and body.kind != "internal" else {}
-                    layers.append(
-                        self._line(
-                            rows,
-                            by="circle",
-                            tooltip=hover,
-                            stroke=colour,
-                            strokeWidth=1.3,
-                            **style,
-                            **fill,
-                        )
-                    )
+                    (tip,) = hover("circle:N")
+                    layers.append(self.line(rows, "circle", tip, **stroke, **style))
         return layers
 
     def _radii(self, body: Body) -> tuple[dict[str, float], dict[str, float]]:
@@ -243,40 +225,35 @@ class _View:
 
     def _lines(self) -> list[Any]:
         """Centre lines, shafts between gears that are not coaxial, axes of crossed gears."""
-        import altair as alt
-
-        good: list[Row] = []
-        bad: list[Row] = []
+        rows: dict[str, list[Row]] = {"shaft": [], "fits": [], "misfit": []}
+        for first, second in self.layout.shafts:
+            rows["shaft"] += path_rows(self._between(first, second), part=f"{first} {second}")
         for pair in self.layout.pairs:
-            ends = [self.layout.bodies[name].centre for name in (pair.driver, pair.driven)]
-            points = self._flat(np.array(ends))
+            points = self._between(pair.driver, pair.driven)
             facts = {
                 "mesh": pair.name,
                 "angle": math.degrees(pair.angle),
                 "distance": MILLIMETRE.of(pair.distance),
                 "needed": MILLIMETRE.of(pair.needed),
             }
-            (good if pair.fits else bad).extend(path_rows(points, part=pair.name, **facts))
+            kind = "fits" if pair.fits else "misfit"
+            rows[kind] += path_rows(points, part=pair.name, **facts)
             self.labels.avoid(points)
-        hover = [
-            alt.Tooltip("mesh:N", title="mesh"),
-            alt.Tooltip("angle:Q", title="pressure angle [deg]", format=".4f"),
-            alt.Tooltip("distance:Q", title="distance [mm]", format=".4f"),
-            alt.Tooltip("needed:Q", title="distance needed [mm]", format=".4f"),
+        told = hover(
+            "mesh:N",
+            ("angle:Q", "pressure angle [deg]", ".4f"),
+            ("distance:Q", "distance [mm]", ".4f"),
+            ("needed:Q", "distance needed [mm]", ".4f"),
+        )
+        return [
+            self.line(own, "part", None if kind == "shaft" else told, **CENTRE_LINES[kind])
+            for kind, own in rows.items()
+            if own
         ]
-        shafts: list[Row] = []
-        for first, second in self.layout.shafts:
-            ends = [self.layout.bodies[name].centre for name in (first, second)]
-            shafts += path_rows(self._flat(np.array(ends)), part=f"{first} {second}")
-        layers = [self._line(shafts, color=SOFT, strokeWidth=3, opacity=0.35)] if shafts else []
-        if good:
-            dashes = [10, 3, 2, 3]
-            layers.append(
-                self._line(good, tooltip=hover, color=SOFT, strokeWidth=0.9, strokeDash=dashes)
-            )
-        if bad:
-            layers.append(self._line(bad, tooltip=hover, color=WARNING, strokeWidth=3))
-        return layers
+
+    def _between(self, first: str, second: str) -> list[Point]:
+        """Path from one gear's centre to another's."""
+        return self._flat(np.array([self.layout.bodies[n].centre for n in (first, second)]))
 
     def _actions(self) -> list[Any]:
         """Lines of action between their points of contact with the base circles."""
@@ -298,7 +275,7 @@ class _View:
             shaft = arrow(tail, tip, head)
             rows += path_rows(shaft, part=pair.name)
             self.labels.avoid(shaft)
-        return [self._line(rows, color=INK, strokeWidth=1.5)] if rows else []
+        return [self.line(rows, "part", color=INK, strokeWidth=1.5)] if rows else []
 
     def _senses(self) -> list[Any]:
         layers: list[Any] = []
@@ -314,46 +291,36 @@ class _View:
             shown = [*points, *arrow(points[-9], points[-1], head)[1:]]
             self.labels.avoid(shown)
             colour = self.palette.gear(body.name).colour
-            layers.append(self._line(path_rows(shown, part=1), color=colour, strokeWidth=1.8))
+            layers.append(
+                self.line(path_rows(shown, part=1), "part", color=colour, strokeWidth=1.8)
+            )
         return layers
 
     def _centres(self) -> list[Any]:
-        import altair as alt
-
+        told = hover("gear:N", "kind:N", ("centre:N", "centre [mm]"), "turns:N", "held:N")
         layers: list[Any] = []
         for held, shape in HELD.items():
-            rows = []
-            for body in self.bodies:
-                if body.held == held:
-                    (x, y), *_ = self._flat(body.centre)
-                    centre = ", ".join(f"{MILLIMETRE.of(v):.4f}" for v in body.centre)
-                    turns = {1: "counter-clockwise", -1: "clockwise", 0: "unknown"}[body.sense]
-                    rows.append(
-                        {
-                            "x": x,
-                            "y": y,
-                            "gear": body.name,
-                            "kind": f"{body.kind} {body.role}".strip(),
-                            "centre": centre,
-                            "turns": f"{turns} against {direction_name(body.axis)}",
-                            "held": held,
-                        }
-                    )
+            rows = [self._centre(body) for body in self.bodies if body.held == held]
             if rows:
-                hover = [
-                    alt.Tooltip("gear:N"),
-                    alt.Tooltip("kind:N"),
-                    alt.Tooltip("centre:N", title="centre [mm]"),
-                    alt.Tooltip("turns:N"),
-                    alt.Tooltip("held:N"),
-                ]
                 # A floating centre is a ring; white inside, so that hovering finds it.
-                fill = "white" if held == FLOATS else INK
-                points = chart(rows).mark_point(
-                    shape=shape, size=60, fill=fill, stroke=INK, strokeWidth=1.4, opacity=1
+                style = {"fill": "white" if held == FLOATS else INK, "stroke": INK}
+                layers.append(
+                    self.points(rows, told, shape=shape, size=60, strokeWidth=1.4, **style)
                 )
-                layers.append(points.encode(x=self.x, y=self.y, tooltip=hover))
         return layers
+
+    def _centre(self, body: Body) -> Row:
+        ((x, y),) = self._flat(body.centre)
+        turns = {1: "counter-clockwise", -1: "clockwise", 0: "unknown"}[body.sense]
+        return {
+            "x": x,
+            "y": y,
+            "gear": body.name,
+            "kind": f"{body.kind} {body.role}".strip(),
+            "centre": ", ".join(f"{MILLIMETRE.of(v):.4f}" for v in body.centre),
+            "turns": f"{turns} against {direction_name(body.axis)}",
+            "held": body.held,
+        }
 
     def _names(self) -> list[Any]:
         for body in self.bodies[::-1]:

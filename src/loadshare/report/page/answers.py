@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
+from loadshare.report import records
 from loadshare.report.figures.rest import places_told, rest_told
-from loadshare.report.numbers import NONE, decimals, fixed, micrometres, omega, small
-from loadshare.report.page.table import Cell, Table, columns
-from loadshare.report.reached import reached
+from loadshare.report.numbers import NONE, fixed, small
+from loadshare.report.table import Cell, Table, chosen, columns
 from loadshare.report.undetermined import undetermined_told
-from loadshare.results import Position, Result
+from loadshare.report.validity import advice
+from loadshare.results import Result
 
 FOLDED = 24
 """Rows from which a table is shown only when asked for."""
@@ -18,50 +18,22 @@ FOLDED = 24
 
 def omega_table(result: Result) -> Table:
     """Largest Ω of every stage and of the system, and where it is reached."""
-    stage = [(p.position, p.share) for p in result.positions]
-    pair = [(p.position, p.pair_share) for p in result.positions]
-    rows = [
-        [
-            Cell(name),
-            Cell(reached(stage, result.stages.get(name, ())) or NONE),
-            Cell(reached(pair, result.stages.get(name, ())) or NONE),
-            Cell(omega(value), value),
-            Cell(omega(result.pair_omega[name]), result.pair_omega[name]),
-        ]
-        for name, value in result.omega.items()
-    ]
     words = ("stage", "reached at", "reached at, group mean")
+    rows = chosen(records.omegas(result), "stage, stage at, group at, over stage, over group")
     return Table(
         "Load-sharing coefficient Ω, largest over branches and positions",
         columns(words, ("Ω over stage mean", "Ω over group mean")),
-        rows,
+        [[cell if cell.text else Cell(NONE) for cell in row] for row in rows],
     )
-
-
-def alike(result: Result) -> bool:
-    """Whether every mesh carries the same at all positions, as far as it is printed."""
-    return all(len(set(texts)) == 1 for texts in _torque_texts(result).values())
 
 
 def torque_table(result: Result) -> Table:
     """Torque of every mesh, summed up over the positions, and its largest Ω."""
-    places = _places(result)
-    level = alike(result)
-    rows = []
-    for mesh in result.positions[0].torque:
-        torques = [p.torque[mesh] for p in result.positions]
-        mean = math.fsum(torques) / len(torques)
-        summary = (mean,) if level else (min(torques), mean, max(torques))
-        rows.append(
-            [
-                Cell(mesh),
-                Cell(_stages(result, mesh) or NONE),
-                *(Cell(fixed(v, places), v) for v in summary),
-                *_largest([p.share.get(mesh) for p in result.positions]),
-                *_largest([p.pair_share.get(mesh) for p in result.positions]),
-            ]
-        )
-    torque = ("torque [N·m]",) if level else ("least [N·m]", "mean [N·m]", "most [N·m]")
+    level = records.alike(result)
+    torques = ("torque",) if level else ("least", "mean", "most")
+    fields = ", ".join(("mesh", "stage", *torques, "Ω stage", "Ω pair"))
+    rows = chosen(records.torques(result, "alike" if level else "summed"), fields)
+    rows = [[cell if cell.text else Cell(NONE) for cell in row] for row in rows]
     notes = []
     if level and len(result.positions) > 1:
         notes.append("The same at all positions.")
@@ -71,36 +43,22 @@ def torque_table(result: Result) -> Table:
         notes.append(f"{NONE}: not in a stage, or without load.")
     if not result.positions[0].floats:
         notes += _undetermined(result)
+    figures = (*(f"{t} [N·m]" for t in torques), "Ω over stage mean", "Ω over group mean")
     return Table(
-        "Torque on the driver of every mesh",
-        columns(("mesh", "stage"), (*torque, "Ω over stage mean", "Ω over group mean")),
-        rows,
-        notes,
+        "Torque on the driver of every mesh", columns(("mesh", "stage"), figures), rows, notes
     )
-
-
-def _places(result: Result) -> int:
-    return decimals(t for p in result.positions for t in p.torque.values())
-
-
-def _torque_texts(result: Result) -> dict[str, list[str]]:
-    """Torques of every mesh as they are printed."""
-    places = _places(result)
-    meshes = result.positions[0].torque
-    return {mesh: [fixed(p.torque[mesh], places) for p in result.positions] for mesh in meshes}
 
 
 def position_table(result: Result) -> Table:
     """Torque and coefficients of every mesh at every position."""
-    places = _places(result)
+    places = records.torque_places(result)
     rows = [
         [
             Cell(mesh),
             Cell(str(p.position), p.position),
             Cell(fixed(torque, places), torque),
             Cell(fixed(p.coast_torque[mesh], places), p.coast_torque[mesh]),
-            *_largest([p.share.get(mesh)]),
-            *_largest([p.pair_share.get(mesh)]),
+            *(records.largest([shares.get(mesh)]) for shares in (p.share, p.pair_share)),
         ]
         for p in result.positions
         for mesh, torque in p.torque.items()
@@ -111,31 +69,25 @@ def position_table(result: Result) -> Table:
 
 def float_table(result: Result) -> Table:
     """Where every float rests; positions at which nothing differs stand in one row."""
-    forces = [math.hypot(*f.reaction) for p in result.positions for f in p.floats.values()]
-    places = decimals(forces)
+    places = records.reaction_places(result.positions)
     rows = []
     for gear in result.positions[0].floats:
-        alike: dict[tuple[str, ...], list[Position]] = {}
+        alike: dict[tuple[str, ...], list[tuple[int, records.Record]]] = {}
         for p in result.positions:
-            alike.setdefault(_rest(p, gear, places), []).append(p)
-        for (rests, *texts, spline), where in alike.items():
-            numbers = [p.position for p in where]
-            rest = where[0].floats[gear]
-            x, y = where[0].displacement[gear]
-            values = (x, y, rest.margin, math.hypot(*rest.reaction))
-            rows.append(
-                [
-                    Cell(gear),
-                    Cell(rests),
-                    Cell(spline),
-                    Cell(places_told(numbers), numbers[0]),
-                    *(Cell(t, v) for t, v in zip(texts, values, strict=True)),
-                ]
-            )
-    figures = ("position", "x [µm]", "y [µm]", "margin [µm]", "reaction [N]")
+            here = records.rest(p, gear, places)
+            (rests, *_) = rest_told([p.floats[gear]], [p.position])
+            texts = (rests, *(cell.text for cell in here.values()))
+            alike.setdefault(texts, []).append((p.position, here))
+        for (rests, *_), where in alike.items():
+            numbers = [position for position, _ in where]
+            ((_, *figures),) = chosen([where[0][1]], "spline, x, y, margin, reaction")
+            spline = where[0][1]["spline"]
+            at = Cell(places_told(numbers), numbers[0])
+            rows.append([Cell(gear), Cell(rests), spline, at, *figures])
+    heads = ("position", "x [µm]", "y [µm]", "margin [µm]", "reaction [N]")
     return Table(
         "Floating gears",
-        columns(("gear", "rests", "spline"), figures),
+        columns(("gear", "rests", "spline"), heads),
         rows,
         _undetermined(result),
         folded=len(rows) > FOLDED,
@@ -150,27 +102,28 @@ def _undetermined(result: Result) -> list[str]:
     )
 
 
+def validity_table(result: Result) -> Table:
+    """Largest figures of the displacements over the positions, and their bounds."""
+    told = advice(result)
+    notes = [
+        "Lines of action and stops are taken where they stand before anything moves; this is how "
+        "far that holds.",
+        *([f"Warning: {told}"] if told else []),
+    ]
+    return Table(
+        "Displacements: the largest, and the bounds of the geometry",
+        columns(("figure", "where"), ("value", "warning above", "refused from", "position")),
+        chosen(records.measures(result), "figure, where, value, warning, refusal, position"),
+        notes,
+    )
+
+
 def certificate_table(result: Result) -> Table:
     """Worst value of every residual over the positions."""
-    rows = []
-    for name in result.positions[0].certificate.residuals:
-        worst = max(result.positions, key=lambda p: p.certificate.residuals[name].scaled)
-        residual = worst.certificate.residuals[name]
-        nowhere = residual.scaled == 0.0
-        rows.append(
-            [
-                Cell(name.replace("_", " ")),
-                Cell(NONE if nowhere else residual.where or NONE),
-                Cell(residual.unit),
-                Cell(small(residual.value), residual.value),
-                Cell(small(residual.scaled), residual.scaled),
-                Cell(NONE if nowhere else str(worst.position), worst.position),
-            ]
-        )
     return Table(
         "Certificate: the worst residuals",
         columns(("figure", "where", "unit"), ("value", "scaled", "position")),
-        rows,
+        chosen(records.residuals(result), "figure, where, unit, value, scaled, position"),
         [
             "Recomputed from the answer and the physics alone; a scaled residual is a part of the "
             f"case's load or deflection. Allowed: {result.stamp.tolerance:.0e}.",
@@ -201,25 +154,3 @@ def _passes(iterations: Sequence[int]) -> str:
         return ""
     count = str(low) if low == high else f"{low} to {high}"
     return f" with {count} pass" + ("" if count == "1" else "es")
-
-
-def _rest(position: Position, gear: str, places: int) -> tuple[str, ...]:
-    rest = position.floats[gear]
-    x, y = position.displacement[gear]
-    return (
-        rest_told([rest], [position.position])[0],
-        micrometres(x),
-        micrometres(y),
-        micrometres(rest.margin),
-        fixed(math.hypot(*rest.reaction), places),
-        rest.spline or NONE,
-    )
-
-
-def _stages(result: Result, mesh: str) -> str:
-    return ", ".join(stage for stage, meshes in result.stages.items() if mesh in meshes)
-
-
-def _largest(shares: Sequence[float | None]) -> list[Cell]:
-    value = max((s for s in shares if s is not None), default=None)
-    return [Cell(omega(value), value)]

@@ -11,13 +11,13 @@ from loadshare.case import Case, load_case
 from loadshare.case.reader import load_draft
 from loadshare.errors import CaseError, LoadshareError, Refused
 from loadshare.job import Progress, solve
+from loadshare.report import records
 from loadshare.report.figure import Figure
 from loadshare.report.figures.train import train as draw
 from loadshare.report.numbers import NONE, omega, small
 from loadshare.report.page import answers
 from loadshare.report.page.inputs import input_tables
-from loadshare.report.page.table import Cell, Table, columns
-from loadshare.report.page.validity import validity_table
+from loadshare.report.table import Cell, Table, columns
 from loadshare.results import Result
 
 CERTIFIED, PARTLY, REFUSED, UNUSABLE = "certified", "partly refused", "refused", "cannot be used"
@@ -61,13 +61,7 @@ class Chapter:
     @property
     def load(self) -> str:
         """Load and positions in a sentence."""
-        if self.case is None:
-            return ""
-        operating = self.case.operating
-        torques = operating.input_torque
-        low, high = min(torques), max(torques)
-        load = f"{high:.7g}" if low == high else f"{low:.7g} to {high:.7g}"
-        return f"Input torque {load} N·m on gear {operating.input}, output gear {operating.output}."
+        return f"{records.load_told(self.case)}." if self.case else ""
 
     @property
     def commands(self) -> list[str]:
@@ -184,11 +178,11 @@ def _tables(result: Result) -> Iterator[Table]:
     if result.stages:
         yield answers.omega_table(result)
     yield answers.torque_table(result)
-    if not answers.alike(result):
+    if not records.alike(result):
         yield answers.position_table(result)
     if result.positions[0].floats:
         yield answers.float_table(result)
-    yield validity_table(result)
+    yield answers.validity_table(result)
     yield answers.certificate_table(result)
 
 

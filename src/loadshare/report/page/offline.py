@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from loadshare.report.save import Spec, vega_lite_version
+from loadshare.report.figure import vega_lite_version
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -47,6 +47,6 @@ def render(template: str, **values: Any) -> str:
     return templates().get_template(template).render(scripts=scripts(), **values)
 
 
-def figure_page(spec: Spec, title: str) -> str:
+def figure_page(spec: dict[str, Any], title: str) -> str:
     """Return a page that shows one figure with hover read-out."""
     return render("figure.html", title=title, spec=spec)

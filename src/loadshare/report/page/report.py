@@ -74,12 +74,7 @@ def write_report(cases: Iterable[Case | str | Path], path: str | Path) -> list[C
 
 def save_report(chapters: Iterable[Chapter], path: str | Path) -> None:
     """Write the page of some chapters, whole or not at all."""
-    text = report_page(chapters)
-
-    def write(file: Path) -> None:
-        file.write_text(text, encoding="utf-8")
-
-    write_atomically(Path(path), write)
+    write_atomically(Path(path), report_page(chapters))
 
 
 def versions() -> dict[str, str]:

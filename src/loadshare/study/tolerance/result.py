@@ -11,6 +11,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
+from loadshare.pictures import picture
 from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.indices import Share
 from loadshare.study.tolerance.inputs import Inputs
@@ -163,9 +164,8 @@ class Tolerance:
         over : {"stage", "group"}
             Over whose mean torque Ω is.
         """
-        from loadshare.report.figures.tolerance import tolerance
-
-        return tolerance(self.dataset.sel(over=over), stage)
+        drawn: Figure = picture(self, stage, over)
+        return drawn
 
 
 def remove_with(found: Tolerance, path: Path) -> None:

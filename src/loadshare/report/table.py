@@ -1,8 +1,8 @@
-"""Tables of a page, as plain data."""
+"""Tables as plain data."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 
@@ -68,3 +68,8 @@ class Table:
 def columns(words: Iterable[str], figures: Iterable[str]) -> list[Column]:
     """Columns of words, then columns of figures."""
     return [*(Column(t) for t in words), *(Column(t, figures=True) for t in figures)]
+
+
+def chosen(records: Iterable[Mapping[str, Cell]], fields: str) -> list[list[Cell]]:
+    """Return rows of some fields of records, named with commas between them."""
+    return [[record[field.strip()] for field in fields.split(",")] for record in records]

@@ -1,0 +1,156 @@
+"""What a result tells, row by row: the page and the screen choose their columns from it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from loadshare.case import Case
+from loadshare.certify.validity import TOLD
+from loadshare.report.numbers import NONE, decimals, fixed, micrometres, omega, significant, small
+from loadshare.report.table import Cell
+from loadshare.results import Position, Result
+
+Record = dict[str, Cell]
+Shares = Sequence[tuple[int, Mapping[str, float | None]]]
+
+
+def load_told(case: Case) -> str:
+    """Load of a case, and where it enters and leaves, in words."""
+    operating = case.operating
+    low, high = min(operating.input_torque), max(operating.input_torque)
+    load = f"{high:.7g}" if low == high else f"{low:.7g} to {high:.7g}"
+    return f"Input torque {load} N·m on gear {operating.input}, output gear {operating.output}"
+
+
+def omegas(result: Result) -> Iterator[Record]:
+    """Largest Ω of every stage and of the system over both means, and where it is reached."""
+    for stage, value in result.omega.items():
+        meshes = result.stages.get(stage, ())
+        group = result.pair_omega[stage]
+        yield {
+            "stage": Cell(stage),
+            "over stage": Cell(omega(value), value),
+            "stage at": Cell(reached([(p.position, p.share) for p in result.positions], meshes)),
+            "over group": Cell(omega(group), group),
+            "group at": Cell(
+                reached([(p.position, p.pair_share) for p in result.positions], meshes)
+            ),
+        }
+
+
+def reached(shares: Shares, meshes: Sequence[str]) -> str:
+    """Return the branch, and the position if it matters, at which Ω is largest.
+
+    Parameters
+    ----------
+    shares : sequence of (position, mapping of mesh to float or None)
+    meshes : sequence of str
+        Of the stage; none for the whole system, of which nothing is told.
+    """
+    found = [(s[m], m, k) for k, s in shares for m in meshes]
+    known = [(v, m, k) for v, m, k in found if v is not None]
+    if not known:
+        return "" if not meshes else NONE
+    largest, mesh, position = max(known, key=lambda f: f[0])
+    top = [(m, k) for v, m, k in known if omega(v) == omega(largest)]
+    if len(top) == len(found):
+        return "all alike"
+    if sum(m == mesh for m, _ in top) == len(shares):
+        return mesh
+    return f"{mesh}, position {position}"
+
+
+def torque_places(result: Result) -> int:
+    """Decimals with which torques are printed."""
+    return decimals(t for p in result.positions for t in p.torque.values())
+
+
+def alike(result: Result) -> bool:
+    """Whether every mesh carries the same at all positions, as far as it is printed."""
+    places = torque_places(result)
+    texts = [[fixed(t, places) for t in p.torque.values()] for p in result.positions]
+    return all(text == texts[0] for text in texts)
+
+
+def torques(result: Result, columns: str) -> Iterator[Record]:
+    """Torque of every mesh and its largest Ω over the positions.
+
+    Parameters
+    ----------
+    result : Result
+    columns : {"alike", "each", "summed"}
+        One torque; one at each position; least, mean and most of them.
+    """
+    places = torque_places(result)
+    for mesh in result.positions[0].torque:
+        every = [p.torque[mesh] for p in result.positions]
+        mean = math.fsum(every) / len(every)
+        if columns == "each":
+            values = {f"at {p.position}": p.torque[mesh] for p in result.positions}
+        elif columns == "alike":
+            values = {"torque": mean}
+        else:
+            values = {"least": min(every), "mean": mean, "most": max(every)}
+        yield {
+            "stage": Cell(", ".join(s for s, meshes in result.stages.items() if mesh in meshes)),
+            "mesh": Cell(mesh),
+            **{name: Cell(fixed(value, places), value) for name, value in values.items()},
+            "Ω stage": largest(p.share.get(mesh) for p in result.positions),
+            "Ω pair": largest(p.pair_share.get(mesh) for p in result.positions),
+        }
+
+
+def largest(shares: Iterable[float | None]) -> Cell:
+    """Largest Ω of those that are known."""
+    value = max((s for s in shares if s is not None), default=None)
+    return Cell(omega(value), value)
+
+
+def reaction_places(positions: Sequence[Position]) -> int:
+    """Decimals with which reactions of rings are printed."""
+    return decimals(math.hypot(*f.reaction) for p in positions for f in p.floats.values())
+
+
+def rest(position: Position, gear: str, places: int) -> Record:
+    """Where a float is, what bounds it and what its ring carries, to so many decimals [N]."""
+    found = position.floats[gear]
+    x, y = position.displacement[gear]
+    reaction = math.hypot(*found.reaction)
+    return {
+        "x": Cell(micrometres(x), x),
+        "y": Cell(micrometres(y), y),
+        "margin": Cell(micrometres(found.margin), found.margin),
+        "reaction": Cell(fixed(reaction, places), reaction),
+        "spline": Cell(found.spline or NONE),
+    }
+
+
+def measures(result: Result) -> Iterator[Record]:
+    """Largest figures of the displacements over the positions, and their bounds."""
+    for name, measure, position in result.validity:
+        nowhere = measure.value == 0.0
+        bounds = {"warning": measure.warning, "refusal": measure.refusal}
+        yield {
+            "figure": Cell(TOLD[name]),
+            "value": Cell(small(measure.value), measure.value),
+            **{k: Cell(NONE if b is None else significant(b, 3), b) for k, b in bounds.items()},
+            "where": Cell(NONE if nowhere else measure.where),
+            "position": Cell(NONE if nowhere else str(position), position),
+        }
+
+
+def residuals(result: Result) -> Iterator[Record]:
+    """Worst value of every residual over the positions."""
+    for name in result.positions[0].certificate.residuals:
+        worst = max(result.positions, key=lambda p: p.certificate.residuals[name].scaled)
+        residual = worst.certificate.residuals[name]
+        nowhere = residual.scaled == 0.0
+        yield {
+            "figure": Cell(name.replace("_", " ")),
+            "value": Cell(small(residual.value), residual.value),
+            "unit": Cell(residual.unit),
+            "scaled": Cell(small(residual.scaled), residual.scaled),
+            "where": Cell(NONE if nowhere else residual.where or NONE),
+            "position": Cell(NONE if nowhere else str(worst.position), worst.position),
+        }
