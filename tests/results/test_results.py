@@ -115,3 +115,24 @@ def test_an_unloaded_train_has_no_coefficients(tmp_path):
 def test_the_worst_certificate_speaks_for_the_result(result):
     assert result.passed
     assert result.certificate.worst == max(p.certificate.worst for p in result.positions) <= 1e-9
+
+
+def test_a_result_prints_on_a_few_lines(result):
+    text = repr(result)
+    assert len(text.splitlines()) == 2
+    count = len(result.positions)
+    assert f"{result.stamp.case}: {count} of {count} positions certified" in text
+    assert all(f"{omega:.4f}" in text for omega in result.omega.values() if omega is not None)
+
+
+def test_samples_have_the_names_and_units_of_results():
+    case = shipped("fgfbstts/limit_ring")
+    alone = ls.solve(case, positions=[1]).dataset
+    many = ls.solve_many(case, {"rings.4.float [um]": [8.24, 4.0]}, positions=[1])
+    for name in ("torque", "share", "pair_share", "displacement"):
+        assert many[name].dims[1:] == alone[name].dims
+        assert many[name].attrs == alone[name].attrs
+        here = many[name].isel(sample=0)
+        there = alone[name].sel({dim: here[dim].values for dim in here.dims})
+        np.testing.assert_allclose(here, there, rtol=1e-9, atol=1e-15)
+    assert all(v.attrs["units"] and v.attrs["long_name"] for v in many.data_vars.values())

@@ -6,6 +6,8 @@ import json
 from pathlib import Path
 from typing import Any
 
+from loadshare.cli.exits import writing
+
 
 def write_text(path: Path, text: str) -> None:
     """Write a text file, whole or not at all.
@@ -20,6 +22,12 @@ def write_text(path: Path, text: str) -> None:
     from loadshare.results.files import write_atomically
 
     write_atomically(path, text)
+
+
+def save_text(path: Path, text: str) -> None:
+    """Write a text file that was asked for; one that cannot be written becomes a message."""
+    with writing(path):
+        write_text(path, text)
 
 
 def write_document(path: Path, document: dict[str, Any]) -> None:

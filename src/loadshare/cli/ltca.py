@@ -10,7 +10,7 @@ import typer
 
 from loadshare.cli.console import progress, say
 from loadshare.cli.exits import REFUSED, fail, problems_told, writing
-from loadshare.cli.files import write_text
+from loadshare.cli.files import save_text
 from loadshare.cli.refusal import told
 from loadshare.cli.tables.table import show, table
 from loadshare.errors import Refused
@@ -176,8 +176,7 @@ def _written(folder: Path, pair: PairFile, found: Ltca, law: MeshLaw) -> Iterato
     }
     for name, text in texts.items():
         file = folder / name
-        with writing(file):
-            write_text(file, text)
+        save_text(file, text)
         yield file
     for figure in _figures(pair, found):
         for ending in PICTURES:

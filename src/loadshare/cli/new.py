@@ -8,8 +8,8 @@ from typing import Annotated
 
 import typer
 
-from loadshare.cli.exits import UNUSABLE, fail, writing
-from loadshare.cli.files import write_text
+from loadshare.cli.exits import UNUSABLE, fail
+from loadshare.cli.files import save_text
 from loadshare.cli.options import output
 
 
@@ -31,6 +31,5 @@ def new(
     target = file or Path(name).with_name(f"{title}.toml")
     if target.exists() and not force:
         fail([f"{target}: exists already; --force overwrites it"], UNUSABLE)
-    with writing(target):
-        write_text(target, starter_case(title))
+    save_text(target, starter_case(title))
     typer.echo(f"Wrote {target}. Solve it with: loadshare run {quote(str(target))}")

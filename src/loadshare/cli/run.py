@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, NoReturn
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
@@ -73,7 +72,7 @@ def run(
         train = build_train(loaded)
     wanted = _wanted(position, train.count)
     print_heading(loaded, str(case), train.count, wanted, change or ())
-    how = _How(solver, method, not no_reduce, tolerance)
+    how = {"solver": solver, "method": method, "reduce": not no_reduce, "tolerance": tolerance}
     result, refusal = _solved(loaded, wanted, how)
     if result is not None:
         print_result(result, len(wanted))
@@ -90,25 +89,15 @@ def run(
     _write(csv, lambda file: write_text(file, result.to_frame().to_csv(index=False)))
 
 
-@dataclass(frozen=True, slots=True)
-class _How:
-    """How a case is solved."""
-
-    solver: str
-    method: str
-    reduce: bool
-    tolerance: float
-
-
 def _solved(
-    case: Case, positions: Sequence[int], how: _How
+    case: Case, positions: Sequence[int], how: dict[str, Any]
 ) -> tuple[Result | None, Refused | None]:
     """Return what is certified of a case, and what was refused."""
     from loadshare.job import solve
 
     try:
         with progress("positions", len(positions)) as tick:
-            return solve(case, positions=positions, progress=tick, **asdict(how)), None
+            return solve(case, positions=positions, progress=tick, **how), None
     except Refused as refusal:
         return refusal.partial, refusal
 
@@ -120,13 +109,13 @@ def _print_search(case: Case, positions: Sequence[int]) -> None:
         say(f"Position {index}: {search(case, index).told}", whole=True)
 
 
-def _print_explanations(case: Case, positions: Sequence[int], how: _How) -> None:
+def _print_explanations(case: Case, positions: Sequence[int], how: dict[str, Any]) -> None:
     from loadshare.cli.tables.explanation import print_explanation
     from loadshare.job import explain
 
     for index in positions:
         try:
-            answer = explain(case, index, **asdict(how))
+            answer = explain(case, index, **how)
         except Refused:
             answer = None
         print_explanation(index, answer)

@@ -8,8 +8,7 @@ from typing import Annotated
 
 import typer
 
-from loadshare.cli.exits import writing
-from loadshare.cli.files import write_text
+from loadshare.cli.files import save_text
 from loadshare.cli.options import output
 
 
@@ -25,6 +24,5 @@ def schema(
     if file is None:
         typer.echo(text)
         return
-    with writing(file):
-        write_text(file, text + "\n")
+    save_text(file, text + "\n")
     typer.echo(f"Wrote {file}", err=True)

@@ -92,11 +92,15 @@ def load_result(path: str | Path) -> Result:
             return read_document(path.read_text(encoding="utf-8"), str(path))[0]
         return _read_netcdf(path)
     except OSError as error:
-        why = (error.strerror or str(error)).lower()
-        raise ResultError([Problem(str(path), "", "", f"cannot be read: {why}")]) from error
+        why = f"cannot be read: {(error.strerror or str(error)).lower()}"
+        raise _unread(path, why) from error
     except UnicodeDecodeError as error:
         why = f"holds no result of loadshare: it is not UTF-8 text at byte {error.start}"
-        raise ResultError([Problem(str(path), "", "", why)]) from error
+        raise _unread(path, why) from error
+
+
+def _unread(path: Path, why: str = "holds no result of loadshare") -> ResultError:
+    return ResultError([Problem(str(path), "", "", why)])
 
 
 def _read_netcdf(path: Path) -> Result:
@@ -110,10 +114,10 @@ def _read_netcdf(path: Path) -> Result:
         raise
     except (OSError, ValueError, KeyError, TypeError, RuntimeError) as error:
         why = "holds no result of loadshare: it is not a netCDF file"
-        raise ResultError([Problem(str(path), "", "", why)]) from error
+        raise _unread(path, why) from error
     text = arrays.attrs.pop(DOCUMENT, None)
     if not isinstance(text, str):
-        raise ResultError([Problem(str(path), "", "", "holds no result of loadshare")])
+        raise _unread(path)
     result = read_document(text, f"{path}: {DOCUMENT}")[0]
     problems = [Problem(str(path), *told) for told in array_differences(result.dataset, arrays)]
     if problems:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from loadshare.cli.console import say, say_all
-from loadshare.cli.exits import writing
-from loadshare.cli.files import write_text
+from loadshare.cli.files import save_text
 from loadshare.cli.options import CaseFile, keys_and_value
 from loadshare.cli.study.common import Changes, FittedFile, asked
 from loadshare.cli.study.compare import show_comparison
@@ -54,8 +53,7 @@ def fit(
         found = fitted(loaded, unknowns, starts=starts, seed=seed, progress=tick)
     show_fit(found)
     if file is not None:
-        with writing(file):
-            write_text(file, found.case.to_toml())
+        save_text(file, found.case.to_toml())
         typer.echo(f"Wrote {file}", err=True)
 
 

@@ -46,9 +46,8 @@ class Reading:
     least : float
         Least width of the axis: what is smaller shall not look large.
     reference : float or None
-        Value that the branches would have if they shared evenly.
-    from_zero : bool
-        Whether bars start at 0 rather than at the reference.
+        Value that the branches would have if they shared evenly, at which bars start; without one
+        they start at 0.
     """
 
     field: str
@@ -56,7 +55,6 @@ class Reading:
     places: int
     least: float
     reference: float | None
-    from_zero: bool
 
 
 def torque(result: Result) -> Figure:
@@ -79,7 +77,6 @@ def torque(result: Result) -> Figure:
         places=decimals(torques, significant=5),
         least=1e-3 * max(map(abs, torques), default=0.0) or 1.0,
         reference=None,
-        from_zero=True,
     )
     return _figure("torque", "Torque on every mesh", result, reading, unit, rows)
 
@@ -116,7 +113,7 @@ def share(result: Result, over: Mean = "stage") -> Figure:
             "a stage. Name the stages, as in [stages.I] meshes = [...]."
         )
     title = f"Ω, torque over the mean of its {over}"
-    reading = Reading(field, title, places=4, least=0.01, reference=1.0, from_zero=False)
+    reading = Reading(field, title, places=4, least=0.01, reference=1.0)
     title = f"Load sharing, over the mean of the {over}"
     return _figure("share", title, result, reading, unit, rows)
 
@@ -213,10 +210,10 @@ def _bars(
     rows: list[Row], looks: Mapping[str, Look], reading: Reading, hover: list[Any]
 ) -> Drawing:
     values = [row[reading.field] for row in rows]
-    start = 0.0 if reading.from_zero else reading.reference or 0.0
+    start = reading.reference or 0.0
     low, high = min(*values, start), max(*values, start)
     domain = marks.padded(low, high, reading.least, share=0.22)
-    if reading.from_zero:
+    if reading.reference is None:
         domain = [min(0.0, domain[0]) if low < 0.0 else 0.0, high * 1.25 if high > 0.0 else 1.0]
     names = [row["mesh"] for row in rows]
     shown = [

@@ -89,6 +89,11 @@ class Pair:
     needed: float
 
     @property
+    def radii(self) -> dict[str, float]:
+        """Pitch radii by gear [m], the driver's first."""
+        return dict(zip((self.driver, self.driven), self.pitch_radii, strict=True))
+
+    @property
     def fits(self) -> bool:
         """Whether the gears stand where their radii need them, by the rule that checks a case."""
         return abs(self.distance - self.needed) * math.cos(self.angle) <= TOLERANCE * self.distance

@@ -180,7 +180,7 @@ class _View(Panel):
 
     def _radius(self, body: Body) -> float:
         """Largest radius that is drawn of a gear [m]."""
-        pitch = [r for pair in self.layout.pairs for r in _radii_of(pair, body.name)]
+        pitch = [p.radii[body.name] for p in self.layout.pairs if body.name in p.radii]
         largest = max([body.base_radius, *body.rims, *pitch])
         return OUTSIDE * largest if body.kind == "internal" else largest
 
@@ -216,11 +216,10 @@ class _View(Panel):
             acting = {"acting radius": body.base_radius}
             return (rims, acting) if rims else (acting, {})
         found: dict[str, float] = {}
-        for pair in self.layout.pairs:
-            for radius in _radii_of(pair, body.name):
-                same = any(math.isclose(radius, known, rel_tol=1e-6) for known in found.values())
-                if not same:
-                    found[f"pitch circle with {_other(pair, body.name)}"] = radius
+        for radii in (p.radii for p in self.layout.pairs if body.name in p.radii):
+            radius = radii.pop(body.name)
+            if not any(math.isclose(radius, known, rel_tol=1e-6) for known in found.values()):
+                found[f"pitch circle with {next(iter(radii))}"] = radius
         return found, {"base circle": body.base_radius}
 
     def _lines(self) -> list[Any]:
@@ -323,12 +322,10 @@ class _View(Panel):
         }
 
     def _names(self) -> list[Any]:
-        for body in self.bodies[::-1]:
-            (place, *_) = self._flat(body.centre)
-            self.labels.avoid([place])
         spots: dict[Point, list[str]] = {}
         for name, body in self.layout.bodies.items():
-            (place, *_) = self._flat(body.centre)
+            (place,) = self._flat(body.centre)
+            self.labels.avoid([place])
             # Coaxial gears share one label; a case may give their centres rounded.
             key = next((k for k in spots if math.dist(k, place) < SAME / self.labels.pixels), place)
             spots.setdefault(key, []).append(f"{name} ({body.role})" if body.role else name)
@@ -345,13 +342,3 @@ class _View(Panel):
                     self.labels.place(f"{significant(abs(apart), 3)} mm {more}", [place])
             layers += self.labels.layers(self.x, self.y, WARNING, fontWeight="bold")
         return layers
-
-
-def _radii_of(pair: Pair, gear: str) -> list[float]:
-    """Pitch radius of a gear in a mesh [m], if it is one of its gears."""
-    ends = (pair.driver, pair.driven)
-    return [radius for end, radius in zip(ends, pair.pitch_radii, strict=True) if end == gear]
-
-
-def _other(pair: Pair, gear: str) -> str:
-    return pair.driven if pair.driver == gear else pair.driver

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from loadshare.case import Case, load_case
@@ -42,8 +42,8 @@ class Chapter:
     result : Result or None
         Of the certified positions.
     drawing : Figure or None
-    figures : list of Figure
-    tables, inputs : list of Table
+    figures : sequence of Figure
+    tables, inputs : sequence of Table
     """
 
     file: str
@@ -54,9 +54,9 @@ class Chapter:
     case: Case | None
     result: Result | None
     drawing: Figure | None
-    figures: list[Figure] = field(default_factory=list)
-    tables: list[Table] = field(default_factory=list)
-    inputs: list[Table] = field(default_factory=list)
+    figures: Sequence[Figure] = ()
+    tables: Sequence[Table] = ()
+    inputs: Sequence[Table] = ()
 
     @property
     def load(self) -> str:
@@ -122,9 +122,9 @@ def chapter(case: Case, file: str = "", progress: Progress | None = None) -> Cha
         case=case,
         result=result,
         drawing=draw(case),
-        figures=list(_figures(result)) if result else [],
-        tables=list(_tables(result)) if result else [],
-        inputs=list(input_tables(case)),
+        figures=tuple(_figures(result)) if result else (),
+        tables=tuple(_tables(result)) if result else (),
+        inputs=tuple(input_tables(case)),
     )
 
 
@@ -188,23 +188,18 @@ def _tables(result: Result) -> Iterator[Table]:
 
 def overview(chapters: list[Chapter]) -> Table:
     """Table of all cases of a page."""
-
-    def figure(value: float | None) -> Cell:
-        return Cell(omega(value), value)
-
     rows = []
     for number, one in enumerate(chapters, start=1):
-        result = one.result
+        means = (one.result.omega, one.result.pair_omega) if one.result else ()
+        shares = [mean["system"] for mean in means] or [None, None]
+        worst = one.result.certificate.worst if one.result else None
         rows.append(
             [
                 Cell(f"{number}", number),
                 Cell(one.title, link=f"#case-{number}"),
                 Cell(one.outcome),
-                figure(result.omega["system"] if result else None),
-                figure(result.pair_omega["system"] if result else None),
-                Cell(small(result.certificate.worst), result.certificate.worst)
-                if result
-                else Cell(NONE),
+                *(Cell(omega(share), share) for share in shares),
+                Cell(NONE if worst is None else small(worst), worst),
             ]
         )
     figures = ("Ω over stage mean", "Ω over group mean", "worst residual")
