@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -58,21 +59,42 @@ KEPT: dict[str, Variable] = {
     "contact_force": Variable(("contact",), "N", "force of a contact of a ring"),
 }
 """Of each sample at each position, if it is asked for."""
-EACH: dict[str, tuple[str, object, str, str, str]] = {
-    "residual": ("residual", np.nan, "f8", "1", "largest scaled residual of the certificate"),
-    "torque_bound": (
-        *("bound", np.nan, "f8", "1"),
-        "largest distance of a torque from the exact one, over the largest torque",
+
+
+@dataclass(frozen=True, slots=True)
+class Each:
+    """A variable of each sample at each position.
+
+    Attributes
+    ----------
+    field : str
+        Of a block.
+    none : object
+        What stands where there is no answer.
+    long_name, units : str
+    type_ : str
+        As NumPy names it.
+    """
+
+    field: str
+    none: object
+    long_name: str
+    units: str = "1"
+    type_: str | None = None
+
+
+EACH = {
+    "residual": Each("residual", np.nan, "largest scaled residual of the certificate"),
+    "torque_bound": Each(
+        "bound", np.nan, "largest distance of a torque from the exact one, over the largest torque"
     ),
-    "certified": ("certified", False, "?", "1", "whether the answer is certified"),
-    "determined": ("determined", False, "?", "1", "whether every displacement is determined"),
-    "displaced": ("displaced", np.nan, "f8", "1", "displacements over the bound of a warning"),
-    "convex": ("convex", False, "?", "1", "whether nothing that is not convex carries"),
-    "arc_curvature": ("arc_curvature", np.nan, "f8", "N/m", "stiffness that arcs take across them"),
-    "rung": ("rung", "", "<U24", "1", "rung of the ladder that answered"),
+    "certified": Each("certified", False, "whether the answer is certified"),
+    "determined": Each("determined", False, "whether every displacement is determined"),
+    "displaced": Each("displaced", np.nan, "displacements over the bound of a warning"),
+    "convex": Each("convex", False, "whether nothing that is not convex carries"),
+    "arc_curvature": Each("arc_curvature", np.nan, "stiffness that arcs take across them", "N/m"),
+    "rung": Each("rung", "", "rung of the ladder that answered", type_="<U24"),
 }
-"""Of each sample at each position: where a block has it, what stands there without an answer, type,
-unit and what it is."""
 
 
 class Table:
@@ -92,18 +114,18 @@ class Table:
             "component": list(COMPONENTS),
             "contact": list(self.names.contacts),
         }
-        self.kept = {name: self._empty(np.nan, "f8", KEPT[name].dims) for name in keep}
-        self.each = {name: self._empty(none, kind) for name, (_, none, kind, *_) in EACH.items()}
+        self.kept = {name: self._empty(np.nan, KEPT[name].dims) for name in keep}
+        self.each = {name: self._empty(e.none, (), e.type_) for name, e in EACH.items()}
         self.message: dict[str, str] = {}
 
-    def _empty(self, value: object, kind: str, dims: tuple[str, ...] = ()) -> np.ndarray:
-        return np.full([len(self.coords[d]) for d in (*EVERY, *dims)], value, dtype=kind)
+    def _empty(self, value: Any, dims: tuple[str, ...], type_: str | None = None) -> np.ndarray:
+        return np.full([len(self.coords[d]) for d in (*EVERY, *dims)], value, dtype=type_)
 
     def write(self, block: Block) -> None:
         """Write a block in its place."""
         rows = block.rows
-        for name, (field, *_) in EACH.items():
-            self.each[name][rows] = getattr(block, field)
+        for name, each in EACH.items():
+            self.each[name][rows] = getattr(block, each.field)
         for (row, index), why in block.message.items():
             self.message[f"sample {row}, position {index}"] = why
         place = slice(rows[0], rows[-1] + 1) if rows[-1] - rows[0] == len(rows) - 1 else rows
@@ -127,8 +149,9 @@ class Table:
         import xarray as xr
 
         data = {name: KEPT[name].labelled(values, *EVERY) for name, values in self.kept.items()}
-        for name, (_, _, _, units, told) in EACH.items():
-            data[name] = EVERY, self.each[name], {"units": units, "long_name": told}
+        for name, each in EACH.items():
+            attributes = {"units": each.units, "long_name": each.long_name}
+            data[name] = EVERY, self.each[name], attributes
         used = {dim for dims, *_ in data.values() for dim in dims}
         return xr.Dataset(
             data,

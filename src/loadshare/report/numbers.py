@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from itertools import groupby
 
 NONE = "–"
 """What stands where there is no figure."""
@@ -41,12 +42,9 @@ def small(value: float) -> str:
 
 def runs(numbers: Iterable[int], to: str = "–") -> list[str]:
     """Return whole numbers in short, rising and each once: ``1–3`` and ``7``."""
-    found: list[list[int]] = []
-    for number in sorted(set(numbers)):
-        if found and number == found[-1][-1] + 1:
-            found[-1].append(number)
-        else:
-            found.append([number])
+    # Numbers that follow one another are as far from their places in the row.
+    placed = groupby(enumerate(sorted(set(numbers))), key=lambda item: item[1] - item[0])
+    found = [[number for _, number in run] for _, run in placed]
     return [f"{run[0]}{to}{run[-1]}" if len(run) > 1 else f"{run[0]}" for run in found]
 
 

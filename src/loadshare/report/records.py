@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Literal
 
 from loadshare.case import Case
 from loadshare.certify.validity import TOLD
@@ -73,7 +74,7 @@ def alike(result: Result) -> bool:
     return all(text == texts[0] for text in texts)
 
 
-def torques(result: Result, columns: str) -> Iterator[Record]:
+def torques(result: Result, columns: Literal["alike", "each", "summed"]) -> Iterator[Record]:
     """Torque of every mesh and its largest Ω over the positions.
 
     Parameters

@@ -70,6 +70,6 @@ def columns(words: Iterable[str], figures: Iterable[str]) -> list[Column]:
     return [*(Column(t) for t in words), *(Column(t, figures=True) for t in figures)]
 
 
-def chosen(records: Iterable[Mapping[str, Cell]], fields: str) -> list[list[Cell]]:
-    """Return rows of some fields of records, named with commas between them."""
-    return [[record[field.strip()] for field in fields.split(",")] for record in records]
+def chosen(records: Iterable[Mapping[str, Cell]], *fields: str) -> list[list[Cell]]:
+    """Return rows of some fields of records."""
+    return [[record[field] for field in fields] for record in records]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from rich.table import Table
 
 from loadshare.cli.console import say_all
@@ -31,7 +33,7 @@ def print_sharing(result: Result) -> None:
     say_all([*notes, *_coast(result)])
 
 
-def _table(result: Result, columns: str) -> Table:
+def _table(result: Result, columns: Literal["alike", "each", "summed"]) -> Table:
     rows = list(records.torques(result, columns))
     return texts(rows, {field: field for field in rows[0]}, words=("stage", "mesh"))
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import groupby
 
 import numpy as np
 
@@ -201,10 +202,5 @@ def _row(discs: list[_Disc], across: float, window: float) -> _Row | None:
 
 def _runs(rows: list[_Row | None]) -> list[list[_Row]]:
     """Consecutive admissible rows."""
-    runs: list[list[_Row]] = [[]]
-    for row in rows:
-        if row is not None:
-            runs[-1].append(row)
-        elif runs[-1]:
-            runs.append([])
-    return [run for run in runs if run]
+    whole = groupby(rows, key=lambda row: row is not None)
+    return [[row for row in run if row is not None] for there, run in whole if there]

@@ -19,7 +19,9 @@ FOLDED = 24
 def omega_table(result: Result) -> Table:
     """Largest Ω of every stage and of the system, and where it is reached."""
     words = ("stage", "reached at", "reached at, group mean")
-    rows = chosen(records.omegas(result), "stage, stage at, group at, over stage, over group")
+    rows = chosen(
+        records.omegas(result), "stage", "stage at", "group at", "over stage", "over group"
+    )
     return Table(
         "Load-sharing coefficient Ω, largest over branches and positions",
         columns(words, ("Ω over stage mean", "Ω over group mean")),
@@ -31,8 +33,8 @@ def torque_table(result: Result) -> Table:
     """Torque of every mesh, summed up over the positions, and its largest Ω."""
     level = records.alike(result)
     torques = ("torque",) if level else ("least", "mean", "most")
-    fields = ", ".join(("mesh", "stage", *torques, "Ω stage", "Ω pair"))
-    rows = chosen(records.torques(result, "alike" if level else "summed"), fields)
+    fields = ("mesh", "stage", *torques, "Ω stage", "Ω pair")
+    rows = chosen(records.torques(result, "alike" if level else "summed"), *fields)
     rows = [[cell if cell.text else Cell(NONE) for cell in row] for row in rows]
     notes = []
     if level and len(result.positions) > 1:
@@ -80,7 +82,7 @@ def float_table(result: Result) -> Table:
             alike.setdefault(texts, []).append((p.position, here))
         for (rests, *_), where in alike.items():
             numbers = [position for position, _ in where]
-            ((_, *figures),) = chosen([where[0][1]], "spline, x, y, margin, reaction")
+            (figures,) = chosen([where[0][1]], "x", "y", "margin", "reaction")
             spline = where[0][1]["spline"]
             at = Cell(places_told(numbers), numbers[0])
             rows.append([Cell(gear), Cell(rests), spline, at, *figures])
@@ -113,7 +115,9 @@ def validity_table(result: Result) -> Table:
     return Table(
         "Displacements: the largest, and the bounds of the geometry",
         columns(("figure", "where"), ("value", "warning above", "refused from", "position")),
-        chosen(records.measures(result), "figure, where, value, warning, refusal, position"),
+        chosen(
+            records.measures(result), "figure", "where", "value", "warning", "refusal", "position"
+        ),
         notes,
     )
 
@@ -123,7 +127,7 @@ def certificate_table(result: Result) -> Table:
     return Table(
         "Certificate: the worst residuals",
         columns(("figure", "where", "unit"), ("value", "scaled", "position")),
-        chosen(records.residuals(result), "figure, where, unit, value, scaled, position"),
+        chosen(records.residuals(result), "figure", "where", "unit", "value", "scaled", "position"),
         [
             "Recomputed from the answer and the physics alone; a scaled residual is a part of the "
             f"case's load or deflection. Allowed: {result.stamp.tolerance:.0e}.",
