@@ -9,9 +9,8 @@ import pytest
 import loadshare as ls
 from benchmarks.reference import reference
 from loadshare.certify.bound import bound_of
-from loadshare.job.ladder import climb
 from loadshare.job.machine import Machine, engine_named
-from loadshare.solver import Options
+from loadshare.study.memory import stepped
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium
 
@@ -125,18 +124,36 @@ def test_bound_on_friction_covers_what_follows(friction: float) -> None:
     assert 0.0 < math.hypot(*apart) <= bound_of(train, claim).force["spline a"]
 
 
-@pytest.mark.parametrize("friction", [0.02, 0.3])
-@pytest.mark.parametrize("slip", [(0.0, -8e-6, 0.0), (3e-6, 5e-6, 0.0)])
+@pytest.mark.parametrize("friction", [0.02, 0.05, 0.1, 0.3])
+@pytest.mark.parametrize("slip", [(0.0, 0.0, 0.0), (0.0, -8e-6, 0.0), (3e-6, 5e-6, 0.0)])
 @pytest.mark.parametrize("off", [1e-9, 1e-7])
 def test_room_of_a_slip_that_is_remembered_shrinks_with_the_torque(
     friction: float, slip: tuple[float, ...], off: float
 ) -> None:
     """With memory, against an answer that is itself known to its bound."""
+    _assert_bounds_hold(friction, slip, off)
+
+
+@pytest.mark.parametrize("more", [-1e-5, -1e-8, -1e-10, -1e-12, 0.0, 1e-12, 1e-10, 1e-8])
+@pytest.mark.parametrize("off", [-1e-7, -1e-9, 1e-9, 1e-7])
+def test_room_that_the_torque_all_but_closes(more: float, off: float) -> None:
+    """Friction needs all of the clearance, next to all, or a little more than all."""
+    held = solved(two_shafts(0.3))
+    spline = two_shafts(1.0).splines["a"]
+    needed = spline.bending_stiffness * spline.clearance
+    train = two_shafts(1.0)
+    friction = needed / spline.bound(train.transmitted("a", held.flank_force))
+    _assert_bounds_hold(friction * (1.0 + more), (0.0, 0.0, 0.0), off)
+
+
+def _assert_bounds_hold(friction: float, slip: tuple[float, ...], off: float) -> None:
+    """Assert that the bound of an answer for another load covers how far it is off."""
     before = {"a": np.array(slip)}
     train = two_shafts(friction).remembering(before)
     other = two_shafts(friction, f"{1000.0 * (1.0 + off)!r} N*m").remembering(before)
-    right, claim = (climb(t, 1, Options(), 1e-9).equilibrium for t in (train, other))
+    right, claim = (stepped(t, 1).equilibrium for t in (train, other))
     known, bound = bound_of(train, right), bound_of(train, claim)
+    assert known.relative <= 1e-9
     for name, mesh in train.meshes.items():
         flank, radius = mesh.flank_name(True), mesh.radii[0]
         error = abs(claim.flank_force[flank] - right.flank_force[flank]) * radius

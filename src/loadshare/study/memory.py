@@ -1,13 +1,15 @@
-"""One step with memory, certified: by the general programme, or with some splines held fast.
+"""One step with memory, certified: by the general programme, or with slips or bounds held fast.
 
 A spline whose slip stood at the end of its clearance and does not change is held by friction and by
 the stop at once. How they share its force is then open, and an active set with both is singular.
 There the slip is taken out of the programme, the force that holds it is found, and it is split so
-that the stop takes no more than friction leaves. The certificate judges it by the full law.
+that the stop takes no more than friction leaves. Where friction follows the torque, steps with
+given bounds lead to those that belong to the torques. The certificate judges it by the full law.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations, islice
@@ -25,9 +27,10 @@ from loadshare.scene.elements import elements_of
 from loadshare.scene.plan import Plan
 from loadshare.scene.scene import Array, Scene
 from loadshare.solver import Options, Record, solve_scene
+from loadshare.solver.findings import Work
 from loadshare.solver.hot.proximal import search
 from loadshare.solver.outer import Settled
-from loadshare.solver.position import equilibrium_of, of_least_norm
+from loadshare.solver.position import Known, equilibrium_of, of_least_norm
 from loadshare.study.answers import BACKEND, certified
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
@@ -37,6 +40,11 @@ from loadshare.train.train import Spline, Train
 
 NEGLIGIBLE = 1e-10
 """Friction, over the load, that an answer without it is in balance with, as far as certified."""
+QUICK = 200
+"""Newton steps in which a step with friction that follows the torque is mostly found at once."""
+PASSES, SETTLED, SINGULAR = 40, 1e-14, 1e-3
+"""Passes in which friction follows the torque, friction over its bound under all of the torque that
+may be missing at the end, and the part of a step that a step must explain."""
 TURNS, HALVINGS = 40, 60
 """Turns between slips and displacements, and halvings of an angle, to round-off."""
 ROUND_OFF = 1e-15
@@ -63,11 +71,13 @@ def stepped(train: Train, index: int) -> Answer:
     assert train.slip is not None
     # A slip that stood at the end of its clearance mostly stays there.
     ends = [g for g, s in train.splines.items() if _at_end(s, train.slip[g])]
+    follows = any(s.friction_force is None for s in train.splines.values())
     for gears in (*_subsets(ends), ()):
-        answer = _held(train, index, gears, islice(rungs(BACKEND), 1))
+        steps = QUICK if follows else math.inf
+        answer = _held(train, index, gears, islice(rungs(BACKEND), 1), steps)
         if answer is not None:
             return answer
-    for other in (_all_but_free, _searched, _in_turn):
+    for other in (_followed, _all_but_free, _searched, _in_turn):
         answer = other(train, index)
         if answer is not None:
             return answer
@@ -79,6 +89,55 @@ def stepped(train: Train, index: int) -> Answer:
             if answer is not None:
                 return answer
         raise refusal from None
+
+
+def _followed(train: Train, index: int) -> Answer | None:
+    r"""Return a certified answer where friction follows the torque, by way of fixed bounds.
+
+    With bounds F that are given the step is convex and its torques T are unique, so they depend on
+    F continuously. They do not grow with it either: what sticks does not ask for the bound. So
+    :math:`F = \tau \lvert T(F)\rvert/r` has a solution (Brouwer), which Broyden's method finds.
+    """
+    gears = [g for g, s in train.splines.items() if s.friction_force is None]
+    if not gears:
+        return None
+    rate = np.array([train.splines[g].friction_per_torque for g in gears])
+    drive = float(np.abs(situation_of(train, index).torque).max(initial=0.0))
+    bounds, inverse = np.zeros(len(gears)), np.eye(len(gears))
+    before: tuple[Array, Array] | None = None
+    for _ in range(PASSES):
+        try:
+            answer = stepped(_bounded(train, dict(zip(gears, bounds.tolist(), strict=True))), index)
+        except Refused:
+            return None
+        found = answer.equilibrium
+        torque = [train.transmitted(g, found.flank_force) for g in gears]
+        off = rate * np.abs(torque) - bounds
+        if float(np.abs(off).max()) <= SETTLED * float(rate.max()) * drive:
+            break
+        if before is not None:
+            inverse = _broyden(inverse, bounds - before[0], off - before[1])
+        before = bounds, off
+        bounds = np.maximum(bounds + inverse @ off, 0.0)
+    certificate = certify(train, found, TOLERANCE)
+    if not certificate.passed:
+        return None
+    return Answer(train, found, certificate, answer.record, f"{answer.rung}, friction followed")
+
+
+def _bounded(train: Train, bounds: Mapping[str, float]) -> Train:
+    """Return the train with some friction bounds [N] fixed."""
+    fixed = {g: replace(train.splines[g], friction_force=b) for g, b in bounds.items()}
+    return replace(train, splines={**train.splines, **fixed})
+
+
+def _broyden(inverse: Array, step: Array, change: Array) -> Array:
+    """Inverse of −Jacobian that also turns a change of what is off into the step that made it."""
+    moved = -inverse @ change
+    along = float(step @ moved)
+    if abs(along) <= SINGULAR * float(step @ step):
+        return inverse
+    return np.asarray(inverse + np.outer(step - moved, step @ inverse) / along)
 
 
 def _searched(train: Train, index: int) -> Answer | None:
@@ -237,7 +296,11 @@ def _at_end(spline: Spline, slip: Vector) -> bool:
 
 
 def _held(
-    train: Train, index: int, gears: tuple[str, ...], tries: Iterable[tuple[str, Options]]
+    train: Train,
+    index: int,
+    gears: tuple[str, ...],
+    tries: Iterable[tuple[str, Options]],
+    steps: float = math.inf,
 ) -> Answer | None:
     """Return a certified answer with the slip of some splines held, if there is one."""
     scene = assemble(train, index)
@@ -245,7 +308,7 @@ def _held(
         scene = _without_slip(scene, gears, _before(train))
     for rung, options in tries:
         try:
-            found, record = solve_scene(scene, options)
+            found, record = solve_scene(scene, options, Known(work=Work(steps)))
         except Refused:
             continue
         split = _split(train, found, gears, _before(train))

@@ -3,12 +3,14 @@
 Where the slip of a spline with memory stands at the end of its clearance and does not change, how
 friction and stop share its force is open. Together they hold it as friction alone would whose bound
 is larger: the force stays within both as long as it changes by less than friction has left beside
-the stop. Source: formulation, sections 5 and 16.
+the stop. Where friction follows a torque, the room does too: how far it may open is allowed for up
+to a small error of that torque, which the bound then has to prove. Source: formulation, sections 5
+and 16.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,34 +19,61 @@ from loadshare.certify.bound.claim import EPS, Claim
 
 Array = NDArray[np.float64]
 
-SLIGHT = 1e-10
-"""Force by which a spline may give way, in loads of the claim, and still stand still."""
-
-UNCHANGED, AT_END = 1e-4, 1e-6
-"""Change of a slip, and distance from the end, over the slip, that are a solver's.
+STILL = ((1e-10, 1e-4), (1e-10, 0.0), (2e-9, 1e-4))
+"""Force by which a spline may give way in what room it has, in loads of the claim, and change of a
+slip, over the slip, and still stand still, as they are tried in turn.
 
 What they leave of the law is bounded."""
+AT_END, NEXT_TO = 1e-6, 1e-12
+"""Distance of a slip from the end of its room, over the slip and the displacement, that is a
+solver's."""
+TURNED = 1e-11
+"""Error of a torque over a spline, in torques of the claim, for which its room is made wider.
+
+That much is hardly ever asked for: friction mostly needs its clearance by more than this."""
 
 
-def with_held_slips(claim: Claim, scale: Array) -> tuple[Claim, NDArray[np.intp]]:
-    """The claims with the force of every such stop carried by its friction.
+@dataclass(frozen=True, eq=False)
+class Held:
+    """Claims with their held slips.
+
+    Attributes
+    ----------
+    claim : Claim
+        With the force of every such stop carried by its friction.
+    shared : ndarray of int
+        Columns of which only the sum is determined.
+    turned : ndarray, shape (S, splines)
+        Errors of the torques over splines [N·m] for which this holds.
+    """
+
+    claim: Claim
+    shared: NDArray[np.intp]
+    turned: Array
+
+    def denied(self, force: Array) -> NDArray[np.bool_]:
+        """Whether torques may change more, (S,), by errors (S, m) of the forces."""
+        columns = self.claim.columns
+        turned = force[:, columns.flanks] @ np.abs(columns.moments).T
+        return np.asarray((turned > self.turned).any(axis=1))
+
+
+def with_held_slips(claim: Claim, scale: Array, still: tuple[float, float]) -> Held:
+    """Hold the slips that friction and the end of the clearance hold at once.
 
     Parameters
     ----------
     claim : Claim
     scale : ndarray, shape (S,)
         Load of the claims [N].
-
-    Returns
-    -------
-    claim : Claim
-    columns : ndarray of int
-        Columns of which only the sum is determined.
+    still : (float, float)
+        One of `STILL`.
     """
+    slight, unchanged = still
     train, columns = claim.columns.train, claim.columns
-    none = np.zeros(0, dtype=np.intp)
+    turned = np.full((claim.count, len(train.splines)), np.inf)
     if train.slip is None:
-        return claim, none
+        return Held(claim, np.zeros(0, dtype=np.intp), turned)
     rounds, splines = len(train.rounds), len(train.splines)
     reactions = claim.answers.radial_reaction.copy()
     limits = claim.graphs[:, :, 2:4].copy()
@@ -57,43 +86,63 @@ def with_held_slips(claim: Claim, scale: Array) -> tuple[Claim, NDArray[np.intp]
         at = columns.radials.start + 2 * friction
         slipped = np.abs(claim.lengths[0].value[:, at : at + 2]).max(axis=1)
         both = reactions[:, friction] + reactions[:, stop]
-        if _gives_way(claim, k, stop, reach) <= SLIGHT * float(scale.min()):
+        stiffness, rate = claim.situations.spline[:, k, 0], _rate(claim, k)
+        arm = float(np.abs(columns.moments[k]).max(initial=0.0))
+        least = TURNED * scale * arm
+        gives = arm * stiffness * (claim.graphs[:, stop, 3] + reach)
+        room, torque = _widest(claim, k, stop, rate, np.maximum(least, gives))
+        if float((stiffness * (room + reach)).max()) <= slight * float(scale.min()):
             # It stands still, up to what room it has.
             limits[:, friction, 0], limits[:, stop, 1] = np.inf, np.inf
-            slack[at : at + 2] = float(claim.graphs[:, stop, 3].max()) + reach
+            slack[at : at + 2] = float(room.max()) + reach
+            turned[:, k] = torque
             reactions[:, friction], reactions[:, stop] = both, 0.0
             shared += _columns(claim, friction, stop)
             continue
         place = np.abs(claim.answers.displacement[:, columns.order[gear]]).max(axis=1)
-        held = (slipped <= UNCHANGED * reach + EPS * place) & (reach > 0.0)
+        held = (slipped <= unchanged * reach + EPS * place) & (reach > 0.0)
         room = limits[:, stop, 1] - reach
-        held &= room <= AT_END * reach
+        held &= room <= AT_END * reach + NEXT_TO * place
         if not held.any():
             continue
         outward = before / reach
         inward = -(both @ outward)
         beside = np.linalg.norm(both + inward[:, None] * outward, axis=1)
         size = np.linalg.norm(both, axis=1)
-        left = limits[:, friction, 0] - np.where(inward > 0.0, beside, size)
+        left = limits[:, friction, 0] - np.where(inward > 0.0, beside, size) - rate * least
         held &= left > 0.0
         reactions[held, friction], reactions[held, stop] = both[held], 0.0
         limits[held, friction, 0], limits[held, stop, 1] = size[held] + left[held], np.inf
         if held.any():
             # As far as the end is from there, it may have slipped.
+            room = room + rate * least / stiffness
             slack[at : at + 2] = max(float(room[held].max()), 0.0)
+            turned[held & (rate > 0.0), k] = least[held & (rate > 0.0)]
             shared += _columns(claim, friction, stop)
-    if not shared:
-        return claim, none
-    answers = replace(claim.answers, radial_reaction=reactions)
-    return replace(claim, answers=answers, limits=limits, slack=slack), np.array(shared)
+    if shared:
+        answers = replace(claim.answers, radial_reaction=reactions)
+        claim = replace(claim, answers=answers, limits=limits, slack=slack)
+    return Held(claim, np.array(shared, dtype=np.intp), turned)
 
 
-def _gives_way(claim: Claim, spline: int, stop: int, before: float) -> float:
-    """Force by which a spline may give way in what clearance friction leaves it [N]."""
-    stiffness, fixed = (claim.situations.spline[:, spline, j] for j in (0, 3))
-    if np.isnan(fixed).any():
-        return np.inf
-    return float((stiffness * (claim.graphs[:, stop, 3] + before)).max())
+def _rate(claim: Claim, spline: int) -> Array:
+    """Friction per torque of a spline [1/m], (S or 1,); 0 where it is fixed."""
+    fixed, rate = (claim.situations.spline[:, spline, j] for j in (3, 4))
+    return np.where(np.isnan(fixed), np.abs(rate), 0.0)
+
+
+def _widest(claim: Claim, spline: int, stop: int, rate: Array, least: Array) -> tuple[Array, Array]:
+    """Most room that friction leaves a spline, (S,) [m], up to some error of its torque [N·m].
+
+    Where friction follows the torque, less torque leaves more room.
+    """
+    stiffness, clearance = (claim.situations.spline[:, spline, j] for j in (0, 2))
+    bound = claim.graphs[:, stop - len(claim.columns.train.splines), 2]
+    follows, per_torque = rate > 0.0, np.where(rate > 0.0, rate, 1.0)
+    over = (bound * (1.0 - EPS) - stiffness * clearance) / per_torque
+    wider = np.maximum(least - over, 0.0) * per_torque / stiffness
+    room = np.where(follows, wider, claim.graphs[:, stop, 3])
+    return room, np.where(follows, np.maximum(over, least), np.inf)
 
 
 def _columns(claim: Claim, *radials: int) -> list[int]:

@@ -1,0 +1,74 @@
+"""Marches with friction that follows the torque: with every room, and as long as torques decide it.
+
+Source: formulation, section 5. From no slip the law with memory is the one without; a torque that
+nothing shares makes friction what it is when it is given.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.certify.test_bound_following import two_shafts
+
+from loadshare.certify.state import State
+from loadshare.study.answers import certified
+from loadshare.study.memory import stepped
+from loadshare.train import Train
+
+LOADS = (1000.0, 1400.0, 700.0, 701.0, 1300.0)
+"""Input torque of every step [N·m]."""
+
+
+def with_splines(load: float, friction: float, rooms: dict[str, float]) -> Train:
+    """Two shafts whose gears float, with rooms [m] beside the friction of 400 N·m each."""
+    train = two_shafts(friction, f"{load!r} N*m")
+    (spline,) = train.splines.values()
+    needs = spline.bound(400.0) / spline.bending_stiffness
+    splines = {g: replace(spline, gear=g, clearance=max(needs + r, 0.0)) for g, r in rooms.items()}
+    gears = {
+        g: train.gears["a"].support if g in rooms else v.support for g, v in train.gears.items()
+    }
+    moving = {n: replace(g, support=gears[n]) for n, g in train.gears.items()}
+    return replace(train, gears=moving, splines=splines)
+
+
+ROOMS = [
+    {"a": -1.0},
+    {"a": 0.0},
+    {"a": 1e-6},
+    {"a": 2e-5},
+    {"a": -1.0, "b": -1.0},
+    {"a": 0.0, "b": 3e-5},
+    {"a": 1e-6, "b": -1.0, "b2": 5e-6},
+]
+
+
+@pytest.mark.parametrize("rooms", ROOMS)
+@pytest.mark.parametrize("friction", [0.002, 0.05, 0.3])
+def test_from_no_slip_the_law_is_the_one_without_memory(friction, rooms):
+    train = with_splines(1000.0, friction, rooms)
+    alone = certified(train, 1).equilibrium
+    answer = stepped(train.remembering({g: np.zeros(3) for g in rooms}), 1)
+    assert answer.certificate.passed
+    for flank, force in answer.equilibrium.flank_force.items():
+        assert force == pytest.approx(alone.flank_force[flank], abs=1e-5)
+
+
+@pytest.mark.parametrize("rooms", ROOMS)
+@pytest.mark.parametrize("friction", [0.002, 0.05, 0.3])
+def test_every_step_is_within_what_its_own_torque_allows(friction, rooms):
+    before = {g: np.zeros(3) for g in rooms}
+    for load in LOADS:
+        train = with_splines(load, friction, rooms).remembering(before)
+        answer = stepped(train, 1)
+        assert answer.certificate.passed
+        state, found = State(train, answer.equilibrium), answer.equilibrium
+        for gear, spline in train.splines.items():
+            bound = spline.bound(state.transmitted(gear))
+            room = max(spline.clearance - bound / spline.bending_stiffness, 0.0)
+            slip, held = state.slip(spline), found.radial_reaction[spline.name]
+            assert np.linalg.norm(slip) <= room + 1e-12
+            assert np.linalg.norm(held) <= bound * (1.0 + 1e-9) + 1e-5
+            if (way := np.linalg.norm(slip - before[gear])) > 1e-10:
+                assert held == pytest.approx(-bound / way * (slip - before[gear]), abs=1e-3)
+            before[gear] = slip
