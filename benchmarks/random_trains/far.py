@@ -13,7 +13,7 @@ from loadshare.train import Train
 from loadshare.train.gear import Vector
 
 FAR = 1e-2
-"""Displacement, over the smallest base radius, from which on small displacements are none."""
+"""Displacement or compression, over the smallest base radius, from which on neither is small."""
 NEGLECTED = 0.99
 """Approach that linear geometry misses, over the deflection, from which on it tells nothing; what
 refuses from 1 on has an estimate of it."""
@@ -34,8 +34,20 @@ def is_far(train: Train, index: int, exact: Reference) -> bool:
     exact : Reference
     """
     smallest = min(g.base_radius for g in train.gears.values())
-    furthest = max((abs(float(v)) for p in exact.displacement.values() for v in p), default=0.0)
-    return furthest > FAR * smallest or neglected(train, index, exact) >= NEGLECTED
+    furthest = [abs(float(v)) for p in exact.displacement.values() for v in p]
+    furthest += compressions(train, index, exact)
+    far = max(furthest, default=0.0) > FAR * smallest
+    return far or neglected(train, index, exact) >= NEGLECTED
+
+
+def compressions(train: Train, index: int, exact: Reference) -> list[float]:
+    """Compression of every flank [m]."""
+    at = train.situation(index).mesh_position
+    return [
+        mesh.law(at[name]).compression(max(exact.force[mesh.flank_name(drive)], 0.0))
+        for name, mesh in train.meshes.items()
+        for drive in mesh.flanks
+    ]
 
 
 def is_far_before(train: Train, index: int) -> bool:

@@ -29,6 +29,11 @@ def test_only_flanks_with_a_force_are_far(number: int, far: bool) -> None:
     assert is_far(train, 1, reference(train, 1)) == far
 
 
+def test_teeth_that_are_compressed_by_more_than_their_height_are_far() -> None:
+    train = build_train(draw(1, 363))
+    assert is_far(train, 1, reference(train, 1))
+
+
 def test_part_of_the_load_may_be_too_much_already() -> None:
     """Soft rings give way, and the input rolls along an arc; of another train nothing moves far."""
     assert is_far_before(build_train(draw(1, 1292)), 1)

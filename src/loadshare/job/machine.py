@@ -262,10 +262,11 @@ class Machine:
             self.elements, data, state, engine, code, only=~found.solved if found else None
         )
         found = found.completed(more) if found else more
-        if (starts or beside is not None) and not found.solved.all():
-            # A beginning that leads nowhere: once more from rest.
+        begun = bool(starts) or beside is not None or engine is not vectorised.settle
+        if begun and not found.solved.all():
+            # A beginning that leads nowhere, or steps that do: once more from rest, with NumPy's.
             rest, only = at_rest(self.elements, data), ~found.solved
-            more = exchange(self.elements, data, rest, engine, only=only)
+            more = exchange(self.elements, data, rest, vectorised.settle, only=only)
             state, found = state.completed(rest, only & more.solved), found.completed(more)
         if not starts and found.solved.all():
             self._last = self._as_start(data, state, found)
