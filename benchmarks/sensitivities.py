@@ -30,7 +30,7 @@ from benchmarks.machine_facts import facts
 from benchmarks.random_trains.draw import draw
 from benchmarks.reference import NoReference, reference
 from benchmarks.stress.families import FAMILIES
-from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify.tolerance import TOLERANCE
 from loadshare.job.machine import Machine
 from loadshare.solver.hot import vectorised
 from loadshare.study.answers import certified

@@ -7,11 +7,11 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+from tests.certify.oracle import State
 
 import loadshare as ls
 from benchmarks import families
 from loadshare.certify import Certificate, certify
-from loadshare.certify.state import State
 from loadshare.scene import assemble
 from loadshare.solver import Options, Record, solve_scene
 from loadshare.train import Train, build_train

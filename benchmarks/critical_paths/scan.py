@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.critical_paths.draw import Path
+from loadshare.certify import Judge
 from loadshare.certify.bound import Bounds
-from loadshare.certify.certificate import TOLERANCE
-from loadshare.certify.many import Judge
+from loadshare.certify.tolerance import TOLERANCE
 from loadshare.job.machine import Machine, engine_named
 from loadshare.job.many import solve_blocks
 from loadshare.scene.data import Data

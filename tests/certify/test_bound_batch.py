@@ -14,10 +14,10 @@ from tests.certify.test_many import CLAIMS, WAYS, claims, positions, scales_of, 
 from tests.support import shipped
 
 from loadshare import compilation
+from loadshare.certify import Judge
 from loadshare.certify.bound import Columns, bounds
 from loadshare.certify.bound import compiled as kernel
 from loadshare.certify.bound.batch import is_covered, relative_bounds
-from loadshare.certify.many import Judge
 from loadshare.train import build_train
 from loadshare.train.equilibria import Equilibria
 

@@ -22,9 +22,9 @@ from tests.certify.test_many import (
 )
 from tests.support import shipped
 
-from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify import RESIDUALS, Judge
 from loadshare.certify.compiled import judge_all
-from loadshare.certify.many import RESIDUALS, Judge
+from loadshare.certify.tolerance import TOLERANCE
 from loadshare.train import build_train
 from loadshare.train.situations import Situations
 
@@ -124,9 +124,9 @@ def test_arrays_of_any_kind_are_judged_by_the_same_code():
         return copy
 
     for lay in (strided, np.asfortranarray, read_only):
-        laid = Judge(train).judge(situations, answers.laid(lay), compiled=True)
-        np.testing.assert_array_equal(laid.residuals, expected.residuals)
-    single = answers.laid(lambda array: array.astype(np.float32))
+        other = Judge(train).judge(situations, answers.mapped(lay), compiled=True)
+        np.testing.assert_array_equal(other.residuals, expected.residuals)
+    single = answers.mapped(lambda array: array.astype(np.float32))
     assert not Judge(train).judge(situations, single, compiled=True).passed.any()
     assert len(judge_all.signatures) == 1
 
@@ -140,7 +140,7 @@ def test_no_answer_at_all():
 
 
 def test_numba_is_imported_only_when_asked_for():
-    assert "numba" not in modules_after("import loadshare.certify.many")
+    assert "numba" not in modules_after("import loadshare.certify")
 
 
 def test_a_contact_that_pulls():

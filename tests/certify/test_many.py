@@ -1,9 +1,9 @@
-"""The certificate of many answers gives the figures of the single one, on right and wrong answers,
-with NumPy and compiled.
+"""The certificate gives the figures of its oracle, on right and wrong answers: of one answer and of
+many, with NumPy and compiled.
 
-Source: formulation, section 8. `Judge` and `certify` share the train's laws but sum up in another
-order, so that they differ by round-off: 1e-9 of a figure, or 1e-12 of the case where a figure is
-the small difference of large ones.
+Source: formulation, section 8. The oracle takes the train's laws and goes element by element, so
+that they differ by round-off: 1e-9 of a figure, or 1e-12 of the case where a figure is the small
+difference of large ones.
 """
 
 from dataclasses import fields, replace
@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
+from tests.certify import oracle
 from tests.physics.test_random_trains import PROFILE, split_torques, stars
 from tests.support import SHIPPED, answer, coasting, loaded, lost_contact, round_ring, shipped
 
 import loadshare as ls
 from benchmarks import families
-from loadshare.certify import certify
-from loadshare.certify.certificate import TOLERANCE
-from loadshare.certify.many import RESIDUALS, Judge, Verdicts
+from loadshare.certify import RESIDUALS, Judge, Residual, Verdicts, certify
+from loadshare.certify.tolerance import TOLERANCE
 from loadshare.train import Train, build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations, situation_of, stack
@@ -113,12 +113,6 @@ def scales_of(train: Train, load: float, deflection: float) -> dict[str, float]:
     }
 
 
-def figures(train: Train, index: int, found: Equilibria, row: int) -> np.ndarray:
-    """The single certificate's scaled residuals of an answer."""
-    single = certify(train, found.one(row, index))
-    return np.array([single.residuals[name].scaled for name in RESIDUALS])
-
-
 def alike(train: Train, situations: Situations, found: Equilibria) -> Verdicts:
     """Verdicts of NumPy; the compiled ones must be the same."""
     judge = Judge(train)
@@ -131,11 +125,30 @@ def alike(train: Train, situations: Situations, found: Equilibria) -> Verdicts:
 
 
 def agree(train: Train, indices: list[int], situations: Situations, found: Equilibria) -> None:
+    """Certificates of one and of many have the oracle's figures; the same answers pass."""
     many = alike(train, situations, found)
-    single = np.array([figures(train, k, found, row) for row, k in enumerate(indices)])
-    np.testing.assert_allclose(many.residuals, single, rtol=RELATIVE, atol=ABSOLUTE)
-    passed = [certify(train, found.one(row, k)).passed for row, k in enumerate(indices)]
-    assert many.passed.tolist() == passed
+    for row, index in enumerate(indices):
+        claimed = found.one(row, index)
+        expected, single = oracle.judged(train, claimed), certify(train, claimed)
+        due = [expected[name].scaled for name in RESIDUALS]
+        np.testing.assert_allclose(many.residuals[row], due, rtol=RELATIVE, atol=ABSOLUTE)
+        assert single.residuals.keys() == expected.keys()
+        for name, residual in single.residuals.items():
+            told(residual, expected[name])
+        assert many.passed[row] == single.passed
+
+
+def told(residual: Residual, expected: oracle.Figures) -> None:
+    """A single residual has the oracle's figure, and names an element that shows it."""
+    assert residual.unit == expected.unit
+    scale = expected.scale
+    near = {"rel": RELATIVE, "abs": ABSOLUTE * scale}
+    assert residual.value == pytest.approx(expected.worst, **near)
+    assert residual.scaled == pytest.approx(expected.scaled, rel=RELATIVE, abs=ABSOLUTE)
+    if residual.where:
+        assert expected.elements[residual.where] == pytest.approx(residual.value, **near)
+    else:
+        assert residual.value == 0.0
 
 
 def positions(train: Train) -> list[int]:

@@ -14,8 +14,7 @@ from tests.support import answer, coasting, round_ring, shipped
 
 import loadshare as ls
 from benchmarks import families
-from loadshare.certify import certify
-from loadshare.certify.many import RESIDUALS, Judge
+from loadshare.certify import RESIDUALS, Judge, certify
 from loadshare.study.memory import stepped
 from loadshare.train import Train, build_train
 from loadshare.train.equilibria import Equilibria

@@ -14,8 +14,7 @@ import pytest
 from tests.support import answer, loaded, shipped
 
 import loadshare as ls
-from loadshare.certify import certify
-from loadshare.certify.many import Judge
+from loadshare.certify import Judge, certify
 from loadshare.certify.validity import (
     COMPRESSED,
     HEIGHT,

@@ -8,13 +8,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.certify.oracle import State
 from tests.support import answer, disagreement, furthest, lost_contact, round_ring, shipped
 
 import loadshare as ls
 from benchmarks.random_trains.draw import draw
 from loadshare.certify import certify
-from loadshare.certify.certificate import TOLERANCE
-from loadshare.certify.state import State, turned
+from loadshare.certify.residuals import turned
+from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import Refused
 from loadshare.job import ladder
 from loadshare.job.ladder import HOT, SEARCHED, STEPS, climb, climb_all, hot_answers, rungs

@@ -16,7 +16,7 @@ from tests.support import furthest, shipped
 
 import loadshare as ls
 from benchmarks import families
-from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import CaseError
 from loadshare.job import many
 from loadshare.job.ladder import HOT

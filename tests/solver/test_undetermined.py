@@ -17,7 +17,7 @@ from tests.support import answer, coordinates
 import loadshare as ls
 from benchmarks import families
 from loadshare.certify import certify
-from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import Refused
 from loadshare.job.ladder import hot_answers
 from loadshare.job.machine import Machine

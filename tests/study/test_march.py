@@ -8,9 +8,9 @@ from tests.support import CASES, shipped
 
 import loadshare as ls
 from loadshare.certify import certify
-from loadshare.certify.state import State
 from loadshare.study.memory import stepped
 from loadshare.train import build_train
+from loadshare.train.memory import slip_of
 
 TURN = {"march": {"gear": "4", "revolutions": 1.0, "steps": 8}}
 
@@ -124,8 +124,7 @@ def test_the_certificate_refuses_a_forgotten_slip():
     train = build_train(floating()).remembering({g: np.zeros(3) for g in "45"})
     answer = stepped(train, 2)
     assert answer.certificate.passed
-    state = State(train, answer.equilibrium)
-    slip = {g: state.slip(s) for g, s in train.splines.items()}
+    slip = {g: slip_of(s, answer.equilibrium) for g, s in train.splines.items()}
     moved = train.remembering({g: s + np.array([1e-6, -2e-6, 0.0]) for g, s in slip.items()})
     judged = certify(moved, answer.equilibrium)
     assert "cone_membership" in judged.failing

@@ -8,9 +8,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.certify.oracle import State
 from tests.certify.test_bound_following import two_shafts
 
-from loadshare.certify.state import State
 from loadshare.study.answers import certified
 from loadshare.study.memory import stepped
 from loadshare.train import Train

@@ -2,5 +2,17 @@
 
 from loadshare.certify.certificate import Certificate, Residual, certify
 from loadshare.certify.floats import FloatState, Touch
+from loadshare.certify.judge import Judge
+from loadshare.certify.residuals import RESIDUALS
+from loadshare.certify.verdicts import Verdicts
 
-__all__ = ["Certificate", "FloatState", "Residual", "Touch", "certify"]
+__all__ = [
+    "RESIDUALS",
+    "Certificate",
+    "FloatState",
+    "Judge",
+    "Residual",
+    "Touch",
+    "Verdicts",
+    "certify",
+]

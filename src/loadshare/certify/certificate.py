@@ -9,21 +9,23 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property
 from typing import TypeVar
 
-from loadshare.certify import residuals
-from loadshare.certify.bound import Bound, bound_of
-from loadshare.certify.floats import FloatState, float_states
-from loadshare.certify.state import State
-from loadshare.certify.tolerance import checked_tolerance
-from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.train import Train
+import numpy as np
 
-TOLERANCE = 1e-9
-"""Largest scaled residual of a certified answer."""
-BAND = 1e-9
-"""Band in which a margin counts as none, in deflections of the case."""
+from loadshare.certify.bound import Bound
+from loadshare.certify.bound.one import bound_of_one
+from loadshare.certify.floats import FloatState, float_states
+from loadshare.certify.mechanics import mechanics_of
+from loadshare.certify.pulls import fault_of
+from loadshare.certify.residuals import FIGURES, RESIDUALS, scales, worst_of_one
+from loadshare.certify.state import State
+from loadshare.certify.tolerance import BAND, TOLERANCE, checked_tolerance
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.situations import situation_of
+from loadshare.train.train import Train
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,19 +132,15 @@ def certify_later(train: Train, answer: Equilibrium, tolerance: float, bound: Bo
         As it was found with the many others.
     """
     # The batch's scales may differ in the last digit, and a result that is loaded again would.
-    state = State(train, answer)
+    single = _Single(train, answer)
     return Certificate(
-        residuals=_Later(partial(_residuals, state)),
-        floats=_Later(partial(_floats, state)),
+        residuals=_Later(single.residuals),
+        floats=_Later(single.floats),
         tolerance=tolerance,
-        load=state.force_scale,
-        deflection=state.length_scale,
+        load=single.scale["N"],
+        deflection=single.scale["m"],
         bound=bound,
     )
-
-
-def _floats(state: State) -> Mapping[str, FloatState]:
-    return {} if state.fault else float_states(state, BAND)
 
 
 def certify(
@@ -172,47 +170,45 @@ def certify(
         If the tolerance is no tolerance.
     """
     tolerance = checked_tolerance(tolerance)
-    state = State(train, answer)
-    load, deflection = _scales(state)
+    single = _Single(train, answer)
     return Certificate(
-        residuals=_residuals(state),
-        floats=_floats(state),
+        residuals=single.residuals(),
+        floats=single.floats(),
         tolerance=tolerance,
-        load=load,
-        deflection=deflection,
-        bound=Bound.none(train) if state.fault else bound_of(train, answer, rigorous),
+        load=single.scale["N"],
+        deflection=single.scale["m"],
+        bound=single.bound(rigorous),
     )
 
 
-def _scales(state: State) -> tuple[float, float]:
-    """Load [N] and deflection [m]."""
-    return (1.0, 1.0) if state.fault else (state.force_scale, state.length_scale)
+class _Single:
+    """An answer as a batch of one."""
 
+    def __init__(self, train: Train, answer: Equilibrium) -> None:
+        self.train, self.undetermined = train, answer.undetermined
+        self.situation = situation_of(train, answer.index)
+        with np.errstate(all="ignore"):
+            self.claimed = Equilibria.of(train, answer)
+            self.state = State(mechanics_of(train), self.situation, self.claimed)
+            self.fault = fault_of(self.state)
+        self.scale = dict.fromkeys("NmJ", 1.0)
+        if not self.fault:
+            self.scale = {unit: float(size[0]) for unit, size in scales(self.state).items()}
 
-def _residuals(state: State) -> Mapping[str, Residual]:
-    load, deflection = _scales(state)
-    work = load * deflection
-    judged: dict[str, tuple[Callable[[], tuple[float, str]], str, float]] = {
-        "force_balance": (lambda: residuals.force_balance(state), "N", load),
-        "moment_balance": (lambda: residuals.moment_balance(state), "N", load),
-        "penetration": (lambda: residuals.penetration(state), "m", deflection),
-        "complementarity": (lambda: residuals.complementarity(state), "J", work),
-        "deformation_law": (
-            lambda: residuals.deformation_law(state, BAND * load),
-            "m",
-            deflection,
-        ),
-        "cone_membership": (
-            lambda: residuals.cone_membership(state, BAND * deflection),
-            "N",
-            load,
-        ),
-        "energy_gap": (lambda: residuals.energy_gap(state), "J", work),
-    }
+    def residuals(self) -> Mapping[str, Residual]:
+        with np.errstate(all="ignore"):
+            return {name: self._residual(name) for name in RESIDUALS}
 
-    def figure(judge: Callable[[], tuple[float, str]], unit: str, scale: float) -> Residual:
-        value, where = (math.inf, state.fault) if state.fault else judge()
-        ratio = value / scale
+    def _residual(self, name: str) -> Residual:
+        figures, unit = FIGURES[name]
+        value, where = (math.inf, self.fault) if self.fault else worst_of_one(figures(self.state))
+        ratio = value / self.scale[unit]
         return Residual(value, unit, math.inf if math.isnan(ratio) else ratio, where)
 
-    return {name: figure(*how) for name, how in judged.items()}
+    def floats(self) -> Mapping[str, FloatState]:
+        return {} if self.fault else float_states(self.state, self.undetermined, BAND)
+
+    def bound(self, rigorous: bool) -> Bound:
+        if self.fault:
+            return Bound.none(self.train)
+        return bound_of_one(self.train, self.situation, self.claimed, rigorous)

@@ -1,9 +1,10 @@
-"""The certificate of one answer after another, compiled with Numba: the figures of `many`.
+"""The certificate of one answer after another, compiled with Numba: the figures of `residuals`.
 
-It follows `many` step by step, with numbers in place of columns, from the same matrices of the
-train. `of` is the `Mechanics` of the train, `here` the situations, `claim` the answers, of which
-number `s` lies on the bench, and `sheet` what is found on the way. The compiled code is kept on
-disk, so that only the first use of a new version waits for it; it holds no lock of the interpreter.
+It follows `state` and `residuals` step by step, with numbers in place of arrays, from the same
+mechanics of the train. `of` are the train's `Arguments`, `here` the situations, `claim` the
+answers, of which number `s` is at hand, and `scratch` what is found on the way. The compiled code
+is kept on disk, so that only the first use of a new version waits for it; it holds no lock of the
+interpreter.
 
 All of it stands in this one file, because Numba looks at no other to tell whether what is kept is
 still valid: a law changed in a file of its own would go on being judged by the old one. It shares
@@ -33,26 +34,26 @@ inlined = compilation.within(forceinline=True, **_how)
 
 
 @compiled
-def judge_all(of, here, claim, sheet, residuals, loads, deflections):  # type: ignore[no-untyped-def]
-    """Judge all answers; see `mechanics.judged`."""
+def judge_all(of, here, claim, scratch, residuals, loads, deflections):  # type: ignore[no-untyped-def]
+    """Judge all answers; see `arguments.judged`."""
     for s in range(len(claim.rotation)):
         load = _load(of, here, claim, s)
-        gap = _flanks(of, here, claim, s, sheet)
-        deflection = _deflection(here, claim, s, sheet)
-        more, fault = _ring_contacts(of, here, claim, s, sheet)
-        gap += more
-        fault |= _pulls(of, here, claim, s, sheet)
-        _moves(of, claim, s, sheet)
-        _moments(of, here, claim, s, sheet)
+        gap, sizes = _flanks(of, here, claim, s, scratch)
+        deflection = _deflection(here, claim, s, scratch)
+        more, larger, fault = _ring_contacts(of, here, claim, s, scratch)
+        gap, sizes = gap + more, sizes + larger
+        fault |= _pulls(of, here, claim, s, scratch)
+        _moves(of, claim, s, scratch)
+        _moments(of, here, claim, s, scratch)
         work = load * deflection
         figures = (
-            _force_balance(of, claim, s, sheet) / load,
-            _moment_balance(of, sheet) / load,
-            _penetration(sheet) / deflection,
-            _complementarity(claim, s, sheet) / work,
-            _deformation_law(of, here, claim, s, sheet, of.band * load) / deflection,
-            _cone_membership(of, here, claim, s, sheet, of.band * deflection) / load,
-            _energy_gap(of, here, claim, s, sheet, gap) / work,
+            _force_balance(of, claim, s, scratch) / load,
+            _moment_balance(of, scratch) / load,
+            _penetration(scratch) / deflection,
+            _complementarity(claim, s, scratch) / work,
+            _deformation_law(of, here, claim, s, scratch, of.band * load) / deflection,
+            _cone_membership(of, here, claim, s, scratch, of.band * deflection) / load,
+            _energy_gap(of, here, claim, s, scratch, gap, sizes) / work,
         )
         bad = fault or not _finite(claim, s)
         for figure in figures:
@@ -91,14 +92,17 @@ def _load(of, here, claim, s):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _flanks(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
-    """Overlaps, pushes and moments of flanks; returns their part of the energy gap [J]."""
+def _flanks(of, here, claim, s, scratch):  # type: ignore[no-untyped-def]
+    """Overlaps, pushes and moments of flanks.
+
+    Returns their part of the energy gap and of the sizes of its terms [J].
+    """
     phi, moved, offset = claim.rotation, claim.displacement, here.offset
     r, rg, rj = _row(offset, s), _row(here.gap, s), _row(here.backlash, s)
     rb, rc, rt = _row(here.bending, s), _row(here.hertz, s), _row(here.table, s)
-    sheet.push[:] = 0.0
-    sheet.moment[:] = 0.0
-    gap = 0.0
+    scratch.push[:] = 0.0
+    scratch.moment[:] = 0.0
+    gap, sizes = 0.0, 0.0
     for e in range(len(of.driver)):
         i, j, m = of.driver[e], of.driven[e], of.mesh[e]
         at_rest = -here.gap[rg, m] if of.is_drive[e] else -here.backlash[rj, m]
@@ -108,10 +112,10 @@ def _flanks(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
             n = of.pushing[e, k]
             at_rest += n * (offset[r, i, k] - offset[r, j, k])
             approach += n * (moved[s, i, k] - moved[s, j, k])
-            sheet.push[i, k] -= n * force
-            sheet.push[j, k] += n * force
-        sheet.moment[i] += of.moment[e, 0] * force
-        sheet.moment[j] += of.moment[e, 1] * force
+            scratch.push[i, k] -= n * force
+            scratch.push[j, k] += n * force
+        scratch.moment[i] += of.moment[e, 0] * force
+        scratch.moment[j] += of.moment[e, 1] * force
         approach += at_rest
         compression = 0.0
         if force > 0.0 or approach > 0.0:
@@ -121,10 +125,12 @@ def _flanks(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
                 found = _by_power(here.bending[rb, m], here.hertz[rc, m], force, approach)
             compression = found[0]
             gap += found[1]
+            sizes += found[1]
         gap -= force * at_rest
-        sheet.at_rest[e], sheet.compression[e] = at_rest, compression
-        sheet.overlap[e] = approach - compression
-    return gap
+        sizes += abs(force * at_rest)
+        scratch.at_rest[e], scratch.compression[e] = at_rest, compression
+        scratch.overlap[e] = approach - compression
+    return gap, sizes
 
 
 @inlined
@@ -203,12 +209,12 @@ def _area(forces, compressions, force):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _deflection(here, claim, s, sheet):  # type: ignore[no-untyped-def]
+def _deflection(here, claim, s, scratch):  # type: ignore[no-untyped-def]
     """Deflection of the case [m] (see `State`)."""
     lengths, shifts = 0.0, 0.0
     for e in range(claim.flank_force.shape[1]):
         if claim.flank_force[s, e] > 0.0:
-            lengths = _worse(lengths, max(sheet.compression[e], abs(sheet.at_rest[e])))
+            lengths = _worse(lengths, max(scratch.compression[e], abs(scratch.at_rest[e])))
     r = _row(here.offset, s)
     for g in range(here.offset.shape[1]):
         x, y, z = here.offset[r, g, 0], here.offset[r, g, 1], here.offset[r, g, 2]
@@ -218,16 +224,17 @@ def _deflection(here, claim, s, sheet):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _ring_contacts(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
+def _ring_contacts(of, here, claim, s, scratch):  # type: ignore[no-untyped-def]
     """Overlaps and pushes of stops, then arcs.
 
-    Returns their part of the energy gap [J], and whether a gear stands beyond its neighbour.
+    Returns their part of the energy gap and of the sizes of its terms [J], and whether a gear
+    stands beyond its neighbour.
     """
     moved, forces = claim.displacement, claim.ring_force
     drums = len(of.drum)
     rh, ra = _row(here.stop, s), _row(here.arc_shift, s)
     rc, rw = _row(here.arc_clearance, s), _row(here.wall, s)
-    gap, fault = 0.0, False
+    stored, worked, sizes, fault = 0.0, 0.0, 0.0, False
     for d in range(drums):
         g, wall = of.drum[d, 0], here.wall[rw, d]
         across = 0.0
@@ -237,8 +244,10 @@ def _ring_contacts(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
             stop, arc = 2 * d + side, 2 * (drums + d) + side
             sign, limit = 1.0 - 2.0 * side, here.stop[rh, d, side]
             approach, force = sign * across - limit, forces[s, stop]
-            sheet.ring_overlap[stop] = approach - wall * max(force, 0.0)
-            gap += _wall_energy(wall, force, approach) + force * limit
+            scratch.ring_overlap[stop] = approach - wall * max(force, 0.0)
+            stored += _wall_energy(wall, force, approach)
+            worked -= force * limit
+            sizes += abs(force * limit)
 
             neighbour = of.drum[d, 1 + side]
             grown, size, rolled, ahead = 0.0, 0.0, 0.0, 0.0
@@ -254,15 +263,18 @@ def _ring_contacts(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
             size = np.sqrt(size)
             force = forces[s, arc]
             margin = grown / (size + of.distance[d, side]) + here.arc_clearance[rc, d, side]
-            sheet.ring_overlap[arc] = -margin - wall * max(force, 0.0)
-            gap += _wall_energy(wall, force, -margin) - force * (rolled / size - margin)
+            scratch.ring_overlap[arc] = -margin - wall * max(force, 0.0)
+            stored += _wall_energy(wall, force, -margin)
+            work = force * (rolled / size - margin)
+            worked += work
+            sizes += abs(work)
             push = force / size
             for k in range(3):
                 relative = moved[s, g, k] - moved[s, neighbour, k]
                 way = of.nominal[d, side, k] + here.arc_shift[ra, d, side, k] + relative
-                sheet.push[g, k] += push * way - sign * forces[s, stop] * of.across[d, k]
-                sheet.push[neighbour, k] -= push * way
-    return gap, fault
+                scratch.push[g, k] += push * way - sign * forces[s, stop] * of.across[d, k]
+                scratch.push[neighbour, k] -= push * way
+    return stored - worked, stored + sizes, fault
 
 
 @inlined
@@ -274,16 +286,16 @@ def _wall_energy(wall, force, approach):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _pulls(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
+def _pulls(of, here, claim, s, scratch):  # type: ignore[no-untyped-def]
     """Radial elements: offsets, laws, reactions; returns whether a law has no meaning."""
     rr, rk, rs = _row(here.round_radius, s), _row(here.round_stiffness, s), _row(here.spline, s)
     fault = False
     for q in range(len(of.pull_gear)):
         g = of.pull_gear[q]
         for k in range(3):
-            sheet.pull_offset[q, k] = claim.displacement[s, g, k] - of.pull_centre[q, k]
-            sheet.push[g, k] += claim.radial_reaction[s, q, k]
-        law = sheet.pull_law[q]
+            scratch.pull_offset[q, k] = claim.displacement[s, g, k] - of.pull_centre[q, k]
+            scratch.push[g, k] += claim.radial_reaction[s, q, k]
+        law = scratch.pull_law[q]
         if q < of.rounds:
             law[0], law[1], law[2] = 0.0, 0.0, 0.0
             law[3], law[4] = here.round_radius[rr, q], here.round_stiffness[rk, q]
@@ -291,7 +303,7 @@ def _pulls(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
         numbers = here.spline[rs, q - of.rounds]
         stiffness, given, reach, bound = numbers[0], numbers[1], numbers[2], numbers[3]
         if np.isnan(bound):
-            bound = numbers[4] * abs(sheet.moment[g])
+            bound = numbers[4] * abs(scratch.moment[g])
         stick = bound / stiffness
         if np.isnan(given):
             stick = np.inf if reach < stick else stick
@@ -303,7 +315,7 @@ def _pulls(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _moves(of, claim, s, sheet):  # type: ignore[no-untyped-def]
+def _moves(of, claim, s, scratch):  # type: ignore[no-untyped-def]
     """Displacements in the frames of the gears that can be displaced."""
     for g in range(len(of.radius)):
         if of.is_moving[g]:
@@ -311,23 +323,23 @@ def _moves(of, claim, s, sheet):  # type: ignore[no-untyped-def]
                 along = 0.0
                 for k in range(3):
                     along += of.frame[g, a, k] * claim.displacement[s, g, k]
-                sheet.moved[g, a] = along
+                scratch.moved[g, a] = along
 
 
 @inlined
-def _moments(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
+def _moments(of, here, claim, s, scratch):  # type: ignore[no-untyped-def]
     """Add the load and the torques of elastic shafts to the moments of flanks."""
     r = _row(here.torque, s)
     for g in range(len(of.radius)):
-        sheet.moment[g] += here.torque[r, g]
+        scratch.moment[g] += here.torque[r, g]
     for w in range(len(of.shaft)):
         if of.is_elastic[w]:
-            sheet.moment[of.shaft[w, 0]] -= claim.shaft_torque[s, w]
-            sheet.moment[of.shaft[w, 1]] += claim.shaft_torque[s, w]
+            scratch.moment[of.shaft[w, 0]] -= claim.shaft_torque[s, w]
+            scratch.moment[of.shaft[w, 1]] += claim.shaft_torque[s, w]
 
 
 @inlined
-def _force_balance(of, claim, s, sheet):  # type: ignore[no-untyped-def]
+def _force_balance(of, claim, s, scratch):  # type: ignore[no-untyped-def]
     worst = 0.0
     for g in range(len(of.radius)):
         if of.is_moving[g]:
@@ -335,7 +347,7 @@ def _force_balance(of, claim, s, sheet):  # type: ignore[no-untyped-def]
             for a in range(2):
                 balance = -claim.support_force[s, g, a]
                 for k in range(3):
-                    balance += of.frame[g, a, k] * sheet.push[g, k]
+                    balance += of.frame[g, a, k] * scratch.push[g, k]
                 square += balance * balance
             worst = _worse(worst, square)
     return np.sqrt(worst)
@@ -349,11 +361,11 @@ def _wind_up(of, here, claim, s, w):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _moment_balance(of, sheet):  # type: ignore[no-untyped-def]
-    total = sheet.group_moment
+def _moment_balance(of, scratch):  # type: ignore[no-untyped-def]
+    total = scratch.group_moment
     total[:] = 0.0
     for g in range(len(of.radius)):
-        total[of.group[g]] += sheet.moment[g]
+        total[of.group[g]] += scratch.moment[g]
     worst = 0.0
     for k in range(len(total)):
         worst = _worse(worst, abs(total[k]) / of.group_radius[k])
@@ -361,37 +373,37 @@ def _moment_balance(of, sheet):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _penetration(sheet):  # type: ignore[no-untyped-def]
+def _penetration(scratch):  # type: ignore[no-untyped-def]
     worst = 0.0
-    for e in range(len(sheet.overlap)):
-        worst = _worse(worst, sheet.overlap[e])
-    for c in range(len(sheet.ring_overlap)):
-        worst = _worse(worst, sheet.ring_overlap[c])
-    for q in range(len(sheet.pull_law)):
-        if np.isinf(sheet.pull_law[q, 4]):
-            worst = _worse(worst, _size(sheet.pull_offset[q]) - sheet.pull_law[q, 3])
+    for e in range(len(scratch.overlap)):
+        worst = _worse(worst, scratch.overlap[e])
+    for c in range(len(scratch.ring_overlap)):
+        worst = _worse(worst, scratch.ring_overlap[c])
+    for q in range(len(scratch.pull_law)):
+        if np.isinf(scratch.pull_law[q, 4]):
+            worst = _worse(worst, _size(scratch.pull_offset[q]) - scratch.pull_law[q, 3])
     return worst
 
 
 @inlined
-def _complementarity(claim, s, sheet):  # type: ignore[no-untyped-def]
+def _complementarity(claim, s, scratch):  # type: ignore[no-untyped-def]
     worst = 0.0
-    for e in range(len(sheet.overlap)):
-        worst = max(worst, -claim.flank_force[s, e] * sheet.overlap[e])
-    for c in range(len(sheet.ring_overlap)):
-        worst = max(worst, -claim.ring_force[s, c] * sheet.ring_overlap[c])
+    for e in range(len(scratch.overlap)):
+        worst = max(worst, -claim.flank_force[s, e] * scratch.overlap[e])
+    for c in range(len(scratch.ring_overlap)):
+        worst = max(worst, -claim.ring_force[s, c] * scratch.ring_overlap[c])
     return worst
 
 
 @inlined
-def _deformation_law(of, here, claim, s, sheet, band):  # type: ignore[no-untyped-def]
+def _deformation_law(of, here, claim, s, scratch, band):  # type: ignore[no-untyped-def]
     worst = 0.0
-    for e in range(len(sheet.overlap)):
+    for e in range(len(scratch.overlap)):
         if claim.flank_force[s, e] > band:
-            worst = max(worst, abs(sheet.overlap[e]))
-    for c in range(len(sheet.ring_overlap)):
+            worst = max(worst, abs(scratch.overlap[e]))
+    for c in range(len(scratch.ring_overlap)):
         if claim.ring_force[s, c] > band:
-            worst = max(worst, abs(sheet.ring_overlap[c]))
+            worst = max(worst, abs(scratch.ring_overlap[c]))
     moved, rt, rk = claim.displacement, _row(here.torsion, s), _row(here.support, s)
     for w in range(len(of.shaft)):
         off = _wind_up(of, here, claim, s, w)
@@ -408,7 +420,7 @@ def _deformation_law(of, here, claim, s, sheet, band):  # type: ignore[no-untype
         for a in range(2):
             stiffness = here.support[rk, g, a]
             if stiffness > 0.0:
-                off = sheet.moved[g, a] - claim.support_force[s, g, a] / stiffness
+                off = scratch.moved[g, a] - claim.support_force[s, g, a] / stiffness
                 lag += off * off
         lifted = of.axis[g, 0] * x + of.axis[g, 1] * y + of.axis[g, 2] * z
         square = _worse(_worse(square, lag), lifted * lifted)
@@ -417,11 +429,11 @@ def _deformation_law(of, here, claim, s, sheet, band):  # type: ignore[no-untype
 
 
 @inlined
-def _cone_membership(of, here, claim, s, sheet, band):  # type: ignore[no-untyped-def]
+def _cone_membership(of, here, claim, s, scratch, band):  # type: ignore[no-untyped-def]
     worst = 0.0
-    for e in range(len(sheet.overlap)):
+    for e in range(len(scratch.overlap)):
         worst = max(worst, -claim.flank_force[s, e])
-    for c in range(len(sheet.ring_overlap)):
+    for c in range(len(scratch.ring_overlap)):
         worst = max(worst, -claim.ring_force[s, c])
     r = _row(here.support, s)
     square = 0.0
@@ -435,16 +447,18 @@ def _cone_membership(of, here, claim, s, sheet, band):  # type: ignore[no-untype
     worst = _worse(worst, np.sqrt(square))
     for d in range(len(of.drum)):
         if of.is_squeezed[d]:
-            worst = _worse(worst, _squeeze(of, here, claim, s, sheet, d, band))
-    for q in range(len(sheet.pull_law)):
-        excess = _excess(sheet.pull_law[q], sheet.pull_offset[q], claim.radial_reaction[s, q], band)
+            worst = _worse(worst, _squeeze(of, here, claim, s, scratch, d, band))
+    for q in range(len(scratch.pull_law)):
+        excess = _excess(
+            scratch.pull_law[q], scratch.pull_offset[q], claim.radial_reaction[s, q], band
+        )
         worst = _worse(worst, excess)
     return worst
 
 
 @inlined
-def _squeeze(of, here, claim, s, sheet, d, band):  # type: ignore[no-untyped-def]
-    """What the squeeze of a drum's opposed arcs leaves open [N] (see `State.squeezes`)."""
+def _squeeze(of, here, claim, s, scratch, d, band):  # type: ignore[no-untyped-def]
+    """What the squeeze of a drum's opposed arcs leaves open [N] (see `residuals`)."""
     first = 2 * len(of.drum) + 2 * d
     squeeze = min(claim.ring_force[s, first], claim.ring_force[s, first + 1])
     if squeeze <= 0.0:
@@ -462,7 +476,7 @@ def _squeeze(of, here, claim, s, sheet, d, band):  # type: ignore[no-untyped-def
     distance = min(of.distance[d, 0], of.distance[d, 1])
     known = band
     if wedge * distance > 8.0 * band:
-        overlap = sheet.ring_overlap
+        overlap = scratch.ring_overlap
         known = max(abs(overlap[first]), abs(overlap[first + 1]))
         known += np.finfo(np.float64).eps * _size(claim.displacement[s, of.drum[d, 0]])
     across = 2.0 * known / distance
@@ -487,34 +501,46 @@ def _excess(law, offset, reaction, band):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _energy_gap(of, here, claim, s, sheet, gap):  # type: ignore[no-untyped-def]
-    """What loads, shafts, bearings and radial elements add to the gap of the contacts [J]."""
+def _energy_gap(of, here, claim, s, scratch, gap, sizes):  # type: ignore[no-untyped-def]
+    """The gap of the contacts with what loads, shafts, bearings and radial elements add [J].
+
+    Less what is rounding of the terms.
+    """
     rt, rk, rs = _row(here.torque, s), _row(here.torsion, s), _row(here.support, s)
+    stored = 0.0
     for g in range(len(of.radius)):
-        gap -= here.torque[rt, g] * claim.rotation[s, g]
+        work = here.torque[rt, g] * claim.rotation[s, g]
+        gap -= work
+        sizes += abs(work)
         if of.is_moving[g]:
             for a in range(2):
                 stiffness = here.support[rs, g, a]
-                gap += 0.5 * stiffness * sheet.moved[g, a] ** 2
+                stored += 0.5 * stiffness * scratch.moved[g, a] ** 2
                 if stiffness > 0.0:
-                    gap += 0.5 * claim.support_force[s, g, a] ** 2 / stiffness
+                    stored += 0.5 * claim.support_force[s, g, a] ** 2 / stiffness
     for w in range(len(of.shaft)):
         torque = claim.shaft_torque[s, w]
         if of.is_elastic[w]:
             stiffness, wind = here.torsion[rk, w], _wind_up(of, here, claim, s, w)
-            gap += 0.5 * stiffness * wind**2 + 0.5 * torque**2 / stiffness
+            stored += 0.5 * stiffness * wind**2 + 0.5 * torque**2 / stiffness
         else:
             torque = 0.0
             for g in range(len(of.radius)):
-                torque += of.beyond[w, g] * sheet.moment[g]
-        gap += torque * here.clocking[_row(here.clocking, s), w]
-    for q in range(len(sheet.pull_law)):
+                torque += of.beyond[w, g] * scratch.moment[g]
+        work = torque * here.clocking[_row(here.clocking, s), w]
+        gap += work
+        sizes += abs(work)
+    for q in range(len(scratch.pull_law)):
         reaction = claim.radial_reaction[s, q]
-        gap += _energy(sheet.pull_law[q], _size(sheet.pull_offset[q]))
-        gap += _complementary(sheet.pull_law[q], _size(reaction))
+        stored += _energy(scratch.pull_law[q], _size(scratch.pull_offset[q]))
+        stored += _complementary(scratch.pull_law[q], _size(reaction))
+        work = 0.0
         for k in range(3):
-            gap -= reaction[k] * of.pull_centre[q, k]
-    return abs(gap)
+            work += reaction[k] * of.pull_centre[q, k]
+        gap -= work
+        sizes += abs(work)
+    left = abs(gap + stored) - of.rounded * (sizes + stored)
+    return left if not left < 0.0 else 0.0
 
 
 @inlined

@@ -1,184 +1,254 @@
-"""What a train, a position and an answer bring to the compiled certificate, as tuples of arrays."""
+"""The mechanics of a train, written down once for all answers."""
 
 from __future__ import annotations
 
-from collections import namedtuple
-from typing import TYPE_CHECKING, NamedTuple
+import math
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.certify.certificate import BAND
-from loadshare.train.equilibria import CLAIMED, Equilibria
-from loadshare.train.radial import ROUNDING
-from loadshare.train.situations import VARYING, Situations
-
-if TYPE_CHECKING:
-    from loadshare.certify.many.judge import Judge
+from loadshare.certify.rigid import rigid_shafts
+from loadshare.train.equilibria import Names
+from loadshare.train.ring import transverse
+from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
-Numbers = NDArray[np.uintp]
-Flags = NDArray[np.bool_]
+Numbers = NDArray[np.intp]
+
+KEPT = 64
+"""Trains of which the mechanics are kept: more than the positions of a march judged in turn."""
 
 
-class Mechanics(NamedTuple):
-    """What is the same for all answers: who touches whom, and how.
+class Mechanics:
+    """Who touches whom in a train, and how.
 
-    e flanks, g gears, w shafts, d drums, r round rings, n splines; radial elements are the round
-    rings, then the splines. Bands stand here so that compiled code never keeps an old one.
-    """
-
-    driver: Numbers  # (e,)
-    driven: Numbers  # (e,)
-    mesh: Numbers  # (e,)
-    is_drive: Flags  # (e,)
-    is_tabled: Flags  # (e,)
-    turning: Array  # (e, 2): approach per rotation of driver and driven gear [m]
-    pushing: Array  # (e, 3): approach per relative displacement
-    moment: Array  # (e, 2): on driver and driven gear per force [m]
-    radius: Array  # (g,)
-    frame: Array  # (g, 2, 3)
-    axis: Array  # (g, 3)
-    is_moving: Flags  # (g,)
-    group: Numbers  # (g,): gears joined by rigid shafts have one number
-    group_radius: Array  # (groups,): largest base radius; infinite where the output is held
-    output: int
-    shaft: Numbers  # (w, 2): first and second gear
-    is_elastic: Flags  # (w,)
-    beyond: Array  # (w, g): torque of a rigid shaft per moment on the gears beyond it
-    drum: Numbers  # (d, 3): gear, neighbours
-    across: Array  # (d, 3)
-    nominal: Array  # (d, 2, 3)
-    distance: Array  # (d, 2): length of it
-    is_squeezed: Flags  # (d,): whether nothing gives way between its arcs
-    pull_gear: Numbers  # (r + n,)
-    pull_centre: Array  # (r + n, 3)
-    rounds: int
-    band: float
-    rounding: float
-
-
-Here = namedtuple("Here", VARYING)  # type: ignore[misc]
-"""What a position brings, one row or one per answer: the arrays of `Situations`."""
-Claim = namedtuple("Claim", CLAIMED)  # type: ignore[misc]
-"""What is claimed: the arrays of `Equilibria`."""
-
-
-class Sheet(NamedTuple):
-    """Figures of the answer on the bench, overwritten by the next."""
-
-    at_rest: Array  # (e,): approach that remains when nothing turns or moves
-    compression: Array  # (e,): at the claimed force
-    overlap: Array  # (e,): approach less compression
-    ring_overlap: Array  # (4 d,)
-    pull_offset: Array  # (r + n, 3)
-    pull_law: Array  # (r + n, 5)
-    moved: Array  # (g, 2): displacement in the gear's frame
-    push: Array  # (g, 3): sum of all forces but the bearing's
-    moment: Array  # (g,): of flanks; in the end of the load and elastic shafts too
-    group_moment: Array  # (groups,)
-
-
-def mechanics(judge: Judge) -> Mechanics:
-    """Return the mechanics that a judge has written down, as compiled code reads them."""
-    train, order = judge.train, judge.order
-    gears = list(train.gears.values())
-    driver = np.array([order[m.driver] for _, m, _ in judge.flanks], dtype=np.uintp)
-    driven = np.array([order[m.driven] for _, m, _ in judge.flanks], dtype=np.uintp)
-    each = np.arange(len(driver))
-    group = np.zeros(len(gears), dtype=np.uintp)
-    for number, members in enumerate(judge.groups):
-        group[members] = number
-    held = group[order[train.output]]
-    tabled = np.zeros(len(driver), dtype=np.bool_)
-    tabled[[e for e, _ in judge.tabled]] = True
-    shafts = list(train.shafts.values())
-    nominal = np.array(judge.nominal).reshape(-1, 2, 3)
-    pulled = [order[r.gear] for r in train.rounds] + [order[g] for g in train.splines]
-    centre = np.zeros((len(pulled), 3))
-    for q, ring in enumerate(train.rounds):
-        centre[q] = ring.offset
-    return Mechanics(
-        driver=driver,
-        driven=driven,
-        mesh=judge.mesh_of.astype(np.uintp),
-        is_drive=judge.is_drive,
-        is_tabled=tabled,
-        turning=np.stack([judge.turning[driver, each], judge.turning[driven, each]], axis=1),
-        pushing=np.ascontiguousarray(judge.pushing[driver, :, each]).reshape(-1, 3),
-        moment=np.stack([judge.moment[each, driver], judge.moment[each, driven]], axis=1),
-        radius=judge.radius,
-        frame=np.array([g.frame for g in gears]).reshape(-1, 2, 3),
-        axis=np.array([g.axis for g in gears]).reshape(-1, 3),
-        is_moving=np.array([g.moves for g in gears], dtype=np.bool_),
-        group=group,
-        group_radius=np.array(
-            [np.inf if k == held else judge.radius[g].max() for k, g in enumerate(judge.groups)]
-        ),
-        output=order[train.output],
-        shaft=np.array([(order[w.first], order[w.second]) for w in shafts], np.uintp).reshape(
-            -1, 2
-        ),
-        is_elastic=np.array([np.isfinite(w.stiffness) for w in shafts], dtype=np.bool_),
-        beyond=judge.beyond,
-        drum=np.array(
-            [[order[g] for g in (r.gear, *r.neighbours)] for r in train.drums], np.uintp
-        ).reshape(-1, 3),
-        across=np.array([r.across for r in train.drums]).reshape(-1, 3),
-        nominal=nominal,
-        distance=np.sqrt((nominal**2).sum(axis=2)),
-        is_squeezed=np.array([judge.squeezed(r) for r in train.drums], dtype=np.bool_),
-        pull_gear=np.array(pulled, dtype=np.uintp),
-        pull_centre=centre,
-        rounds=len(train.rounds),
-        band=BAND,
-        rounding=ROUNDING,
-    )
-
-
-def judged(
-    of: Mechanics, situations: Situations, answers: Equilibria
-) -> tuple[Array, Array, Array]:
-    """Judge S claimed equilibria with compiled code.
+    Contacts are all flanks, then of every drum its two arcs, its upper and its lower stop. Radial
+    elements are the splines, with memory their stops, and the round rings.
 
     Parameters
     ----------
-    of : Mechanics
-    situations : Situations
-    answers : Equilibria
+    train : Train
 
-    Returns
-    -------
-    residuals : ndarray, shape (S, 7)
-    load, deflection : ndarray, shape (S,)
-        As in `Verdicts`.
+    Attributes
+    ----------
+    order : dict of gear to int
+    radius : ndarray, shape (gears,)
+        Base radii [m].
+    flanks : list of (Mesh, bool)
+        Mesh, drive or coast flank.
+    mesh_of, is_drive : ndarray, shape (flanks,)
+        Number of the mesh; whether it is its drive flank.
+    turning : ndarray, shape (flanks, gears)
+        Approach per rotation [m].
+    pushing : ndarray, shape (flanks, 3 gears)
+        Approach per displacement; a flank's force on a gear is the negative of it.
+    moment : ndarray, shape (gears, flanks)
+        Moment per force [m].
+    tabled : list of int
+        Flanks with a tabulated law.
+    groups : list of list of int
+        Gears that turn as one.
+    beyond : ndarray, shape (shafts, gears)
+        Torque of every rigid shaft per moment on the gears beyond it (see `RigidShafts`).
+    shaft : ndarray, shape (shafts, 2)
+        Its first and its second gear.
+    elastic : ndarray of int
+        Shafts that yield.
+    moving : ndarray of int
+        Gears that can be displaced.
+    frames : ndarray, shape (moving, 2, 3)
+        Their transverse frames.
+    drum : ndarray, shape (drums,)
+        Gear of every drum.
+    neighbours : ndarray, shape (drums, 2)
+    across : ndarray, shape (drums, 3)
+    nominal : ndarray, shape (drums, 2, 3)
+        Way to the gear's nominal centre from each neighbour's, across the gear's axis [m].
+    distance : ndarray, shape (drums, 2)
+        Length of it [m].
+    squeezed : ndarray of int
+        Drums between whose arcs nothing gives way.
+    pulled : ndarray, shape (radials,)
+        Gear of every radial element.
+    pulls : tuple of str
+        Names of the radial elements.
+    claimed : ndarray, shape (radials,)
+        Place of each among the claimed reactions.
     """
-    from loadshare.certify.compiled import judge_all
 
-    here = Here(*(_plain(getattr(situations, name)) for name in VARYING))
-    claim = Claim(*(_plain(array) for array in answers.arrays))
-    count = len(answers.rotation)
-    found = np.empty((count, 7)), np.empty(count), np.empty(count)
-    judge_all(of, here, claim, _sheet(of), *found)
-    return found
+    def __init__(self, train: Train) -> None:
+        self.train = train
+        gears = list(train.gears.values())
+        self.order = {g.name: k for k, g in enumerate(gears)}
+        self.radius = np.array([g.base_radius for g in gears])
+        self.moving = np.flatnonzero([g.moves for g in gears])
+        self.frames = np.array([g.frame for g in gears if g.moves]).reshape(-1, 2, 3)
+        self._put_flanks()
+        self._put_shafts()
+        self._put_drums()
+        self._put_radials()
+
+    def _put_flanks(self) -> None:
+        train, order, count = self.train, self.order, len(self.order)
+        meshes = list(train.meshes.values())
+        self.flanks = [(m, d) for m in meshes for d in m.flanks]
+        self.mesh_of = np.array([k for k, m in enumerate(meshes) for _ in m.flanks], dtype=np.intp)
+        self.is_drive = np.array([d for _, d in self.flanks], dtype=bool)
+        self.tabled = [e for e, (m, _) in enumerate(self.flanks) if hasattr(m.laws[0], "forces")]
+        width = len(self.flanks)
+        self.turning, pushing = np.zeros((width, count)), np.zeros((width, count, 3))
+        self.moment = np.zeros((count, width))
+        for e, (mesh, drive) in enumerate(self.flanks):
+            driver, driven = order[mesh.driver], order[mesh.driven]
+            on_driver, on_driven, normal = mesh.direction(drive)
+            self.turning[e, driver] += on_driver
+            self.turning[e, driven] += on_driven
+            pushing[e, driver] += normal
+            pushing[e, driven] -= normal
+            along = 1.0 if drive else -1.0
+            self.moment[driver, e] -= along * mesh.radii[0]
+            self.moment[driven, e] += along * mesh.radii[1]
+        self.pushing = pushing.reshape(width, 3 * count)
+
+    def _put_shafts(self) -> None:
+        train, order = self.train, self.order
+        rigid, shafts = rigid_shafts(train), list(train.shafts.values())
+        self.groups = [[order[g] for g in group] for group in rigid.groups]
+        self.shaft = _pairs([(order[s.first], order[s.second]) for s in shafts])
+        self.elastic = np.flatnonzero([not math.isinf(s.stiffness) for s in shafts])
+        self.beyond = np.zeros((len(shafts), len(order)))
+        for w, shaft in enumerate(shafts):
+            for gear, sign in rigid.beyond.get(shaft.name, {}).items():
+                self.beyond[w, order[gear]] = sign
+
+    def _put_drums(self) -> None:
+        train, order, drums = self.train, self.order, self.train.drums
+        self.drum = np.array([order[r.gear] for r in drums], dtype=np.intp)
+        self.neighbours = _pairs([[order[n] for n in r.neighbours] for r in drums])
+        self.across = np.array([r.across for r in drums]).reshape(-1, 3)
+        apart = [[_apart(train, r.gear, n) for n in r.neighbours] for r in drums]
+        self.nominal = np.array(apart).reshape(-1, 2, 3)
+        self.distance = np.sqrt((self.nominal**2).sum(axis=2))
+        self.squeezed = np.flatnonzero(
+            [
+                math.isinf(r.stiffness) and not any(train.gears[n].moves for n in r.neighbours)
+                for r in drums
+            ]
+        )
+
+    def _put_radials(self) -> None:
+        named = Names(self.train).radials
+        rounds = len(self.train.rounds)
+        self.claimed = np.array([*range(rounds, len(named)), *range(rounds)], dtype=np.intp)
+        self.pulls = tuple(named[k][0] for k in self.claimed)
+        self.pulled = np.array([self.order[named[k][1]] for k in self.claimed], dtype=np.intp)
+
+    @cached_property
+    def bearing_pushing(self) -> Array:
+        """Approach of flanks per displacement in the frames, shape (2 moving, flanks)."""
+        pushing = self.pushing.reshape(-1, len(self.order), 3)[:, self.moving]
+        along = np.einsum("mak,emk->mae", self.frames, pushing)
+        return np.ascontiguousarray(along.reshape(2 * len(self.moving), -1))
+
+    @cached_property
+    def shaft_moment(self) -> Array:
+        """Moment on gears per torque of the shafts that yield, shape (gears, shafts)."""
+        moment = np.zeros((len(self.order), len(self.shaft)))
+        for w in self.elastic:
+            moment[self.shaft[w, 0], w] -= 1.0
+            moment[self.shaft[w, 1], w] += 1.0
+        return moment
+
+    @cached_property
+    def group_moment(self) -> Array:
+        """Force at a group's largest base radius per moment [1/m], (turning groups, gears)."""
+        found = np.zeros((len(self.turning_groups), len(self.order)))
+        for k, group in enumerate(self.turning_groups):
+            found[k, group] = 1.0 / self.radius[group].max()
+        return found
+
+    @cached_property
+    def turning_groups(self) -> list[list[int]]:
+        """Groups without the held output."""
+        held = self.order[self.train.output]
+        return [group for group in self.groups if held not in group]
+
+    @cached_property
+    def lift(self) -> Array:
+        """What its bearing forbids of a gear's displacement, shape (gears, 3, 3)."""
+        found = np.broadcast_to(np.eye(3), (len(self.order), 3, 3)).copy()
+        found[self.moving] -= np.einsum("mak,mal->mkl", self.frames, self.frames)
+        return found
+
+    @cached_property
+    def spline_moment(self) -> Array:
+        """Torque that each spline's gear takes over it per flank force [m], (splines, flanks)."""
+        return -self.moment[[self.order[g] for g in self.train.splines]]
+
+    @cached_property
+    def centres(self) -> Array:
+        """Centres of the radial elements [m], shape (radials, 3)."""
+        found = np.zeros((len(self.pulls), 3))
+        for q, ring in enumerate(self.train.rounds, len(self.pulls) - len(self.train.rounds)):
+            found[q] = ring.offset
+        if self.train.slip is not None:
+            found[: len(self.train.splines)] = [self.train.slip[g] for g in self.train.splines]
+        return found
+
+    @cached_property
+    def contacts(self) -> tuple[str, ...]:
+        """Names of all contacts."""
+        flanks = (m.flank_name(d) for m, d in self.flanks)
+        drums = self.train.drums
+        return (
+            *flanks,
+            *(n for r in drums for n in (*map(r.arc_name, r.neighbours), *r.stop_names)),
+        )
+
+    @cached_property
+    def gears(self) -> tuple[str, ...]:
+        """Names of all gears."""
+        return tuple(self.order)
+
+    @cached_property
+    def bearings(self) -> tuple[str, ...]:
+        """Gears that can be displaced."""
+        return tuple(self.gears[g] for g in self.moving)
+
+    @cached_property
+    def bearing_names(self) -> tuple[str, ...]:
+        """Names of their bearings."""
+        return tuple(f"bearing {g}" for g in self.bearings)
+
+    @cached_property
+    def gear_names(self) -> tuple[str, ...]:
+        """Names of the gears as elements."""
+        return tuple(f"gear {g}" for g in self.order)
+
+    @cached_property
+    def turning_gears(self) -> tuple[str, ...]:
+        """First gear of every group that turns."""
+        return tuple(self.gears[group[0]] for group in self.turning_groups)
+
+    @cached_property
+    def squeezed_names(self) -> tuple[str, ...]:
+        """Names of both arcs of the drums between whose arcs nothing gives way."""
+        drums = self.train.drums
+        return tuple(f"ring {drums[d].gear}: arcs" for d in self.squeezed)
 
 
-def _plain(array: Array) -> Array:
-    """Return an array of the one kind that code is compiled for."""
-    return np.require(array, np.float64, ["C", "W"])
+@lru_cache(maxsize=KEPT)
+def mechanics_of(train: Train) -> Mechanics:
+    """Return the mechanics of a train, written down once."""
+    return Mechanics(train)
 
 
-def _sheet(of: Mechanics) -> Sheet:
-    flanks, gears, pulls = len(of.driver), len(of.radius), len(of.pull_gear)
-    return Sheet(
-        at_rest=np.empty(flanks),
-        compression=np.empty(flanks),
-        overlap=np.empty(flanks),
-        ring_overlap=np.empty(4 * len(of.drum)),
-        pull_offset=np.empty((pulls, 3)),
-        pull_law=np.empty((pulls, 5)),
-        moved=np.empty((gears, 2)),
-        push=np.empty((gears, 3)),
-        moment=np.empty(gears),
-        group_moment=np.empty(len(of.group_radius)),
-    )
+def _pairs(values: list[object]) -> Numbers:
+    return np.array(values, dtype=np.intp).reshape(-1, 2)
+
+
+def _apart(train: Train, gear: str, neighbour: str) -> Array:
+    """Way from a neighbour's nominal centre, across the gear's axis (3,) [m]."""
+    here = train.gears[gear]
+    return transverse(here.centre - train.gears[neighbour].centre, here.axis)

@@ -1,161 +1,242 @@
-"""The residuals of a claimed equilibrium (formulation, section 8), each the train's worst."""
+"""The residuals of claimed equilibria (formulation, section 8), element by element.
+
+Each is told in blocks: figures, one row an element and one column a claim, and the names of their
+elements. The worst of them counts; where it stands is looked up for single claims only.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from functools import reduce
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
-from loadshare.certify.state import State
+from loadshare.certify.graphs import complementary, energy, interval, strength
+from loadshare.certify.state import State, size
+from loadshare.certify.tolerance import BAND
 
-ROUNDED = 16.0 * float(np.finfo(float).eps)
+Array = NDArray[np.float64]
+Blocks = list[tuple[Array, tuple[str, ...]]]
+Scalars = TypeVar("Scalars", float, Array)
+
+EPS = float(np.finfo(float).eps)
+"""Round-off of a length, relative to it."""
+ROUNDED = 16.0 * EPS
 """Rounding of energies, relative to the sum of their sizes."""
 
 
-def force_balance(state: State) -> tuple[float, str]:
-    """Largest unbalanced force [N] on a gear that can be displaced, and the gear."""
-    train = state.train
-    total = {name: -force @ train.gears[name].frame for name, _, _, force in state.bearings()}
-    for push in state.pushes:
-        for gear, sign in ((push.pushed, 1.0), (push.pushing, -1.0)):
-            if gear in total:
-                total[gear] = total[gear] + sign * push.force * push.normal
-    for pull in state.pulls:
-        total[pull.gear] = total[pull.gear] + pull.reaction
-    return _worst({g: float(np.linalg.norm(train.gears[g].frame @ f)) for g, f in total.items()})
+def force_balance(state: State) -> Blocks:
+    """Unbalanced force [N] on gears that can be displaced."""
+    of = state.of
+    if not len(of.moving):
+        return []
+    balance = -(of.bearing_pushing @ state.claim.flank_force).reshape(-1, 2, state.count)
+    balance -= state.support[1]
+    if len(of.drum) or of.pulls:
+        pushed = np.zeros((len(of.order), 3, state.count))
+        for gear, force in zip(of.pulled, state.reaction if of.pulls else (), strict=True):
+            pushed[gear] += force
+        for d, gear in enumerate(of.drum):
+            pushed[gear] += state.stop_push[d]
+            for push, neighbour in zip(state.arc_push[d], of.neighbours[d], strict=True):
+                pushed[gear] += push
+                pushed[neighbour] -= push
+        balance += of.frames @ pushed[of.moving]
+    return [(size(balance), of.bearings)]
 
 
-def moment_balance(state: State) -> tuple[float, str]:
-    """Largest unbalanced moment over base radius [N] on gears that turn as one, and one of them."""
-    train = state.train
-    unbalanced = {}
-    for group in state.rigid.groups:
-        if train.output not in group:
-            radius = max(train.gears[g].base_radius for g in group)
-            unbalanced[group[0]] = abs(math.fsum(state.moment[g] for g in group)) / radius
-    return _worst(unbalanced)
+def moment_balance(state: State) -> Blocks:
+    """Unbalanced moment over the largest base radius [N] of gears that turn as one."""
+    of = state.of
+    return [(np.abs(of.group_moment @ state.moment), of.turning_gears)]
 
 
-def penetration(state: State) -> tuple[float, str]:
-    """Deepest overlap [m] that a force of the claimed size does not explain, and the contact."""
-    overlaps = {}
-    for push in state.pushes:
-        overlaps[push.name] = push.approach - push.law.compression(max(push.force, 0.0))
-    for pull in state.pulls:
-        overlaps[pull.name] = float(np.linalg.norm(pull.offset)) - pull.law.reach
-    return _worst(overlaps)
+def penetration(state: State) -> Blocks:
+    """Overlap [m] that a force of the claimed size does not explain."""
+    blocks = [(state.overlap, state.of.contacts)]
+    if state.of.pulls:
+        beyond = np.where(np.isinf(state.graph.last), state.radius - state.graph.reach, 0.0)
+        blocks.append((beyond, state.of.pulls))
+    return blocks
 
 
-def complementarity(state: State) -> tuple[float, str]:
-    """Largest work [J] of a force over an open gap, and the contact."""
-    return _worst(
-        {
-            p.name: p.force * (p.law.compression(max(p.force, 0.0)) - p.approach)
-            for p in state.pushes
-        }
-    )
+def complementarity(state: State) -> Blocks:
+    """Work [J] of a force over an open gap."""
+    return [(-state.force * state.overlap, state.of.contacts)]
 
 
-def deformation_law(state: State, band: float) -> tuple[float, str]:
-    """Largest misfit [m] of a compressed contact, shaft or bearing with its law, and the element.
+def deformation_law(state: State) -> Blocks:
+    """Misfit [m] of a compressed contact, a shaft or a bearing with its law.
 
-    Parameters
-    ----------
-    state : State
-    band : float
-        Force [N] below which a contact counts as open; complementarity judges it then.
+    A contact with less force than the band counts as open; complementarity judges it then.
     """
-    misfits = {
-        p.name: abs(p.approach - p.law.compression(p.force)) for p in state.pushes if p.force > band
-    }
-    for name, wind, torque in state.winds():
-        shaft = state.train.shafts[name]
-        lag = abs(wind - torque / shaft.stiffness)
-        misfits[name] = lag * state.train.gears[shaft.first].base_radius
-    for name, moved, stiffness, force in state.bearings():
+    of = state.of
+    misfit = np.where(state.force > BAND * state.load, np.abs(state.overlap), 0.0)
+    blocks = [(misfit, of.contacts)]
+    if len(of.shaft):
+        lag = np.abs(state.wind - state.torque / state.here.torsion)
+        blocks.append((lag * of.radius[of.shaft[:, :1]], tuple(of.train.shafts)))
+    if len(of.moving):
+        stiffness, force = state.support
         held = stiffness > 0.0
-        off = (moved - force / np.where(held, stiffness, 1.0))[held]
-        misfits[f"bearing {name}"] = float(np.linalg.norm(off))
-    for name, gear in state.train.gears.items():
-        allowed = np.zeros(3)
-        if gear.support is not None:
-            allowed = (gear.frame @ state.moved(name)) @ gear.frame
-        misfits[f"gear {name}"] = float(np.linalg.norm(state.moved(name) - allowed))
-    output = state.train.output
-    turned = state.answer.rotation[output] * state.train.gears[output].base_radius
-    misfits[f"gear {output} rotation"] = abs(turned)
-    return _worst(misfits)
+        lag = np.where(held, state.moved - force / np.where(held, stiffness, 1.0), 0.0)
+        blocks.append((size(lag), of.bearing_names))
+    blocks.append((size(of.lift @ state.claim.displacement), of.gear_names))
+    output = of.order[of.train.output]
+    turned_to = np.abs(state.claim.rotation[output]) * of.radius[output]
+    blocks.append((turned_to[None], (f"gear {of.train.output} rotation",)))
+    return blocks
 
 
-def cone_membership(state: State, band: float) -> tuple[float, str]:
-    """Largest excess [N] of a force over what its contact or graph admits, and the element.
+def cone_membership(state: State) -> Blocks:
+    """Excess [N] of a force over what its contact or graph admits.
+
+    Within a band about its radius, a graph's corner admits its whole step.
+    """
+    of, band = state.of, BAND * state.deflection
+    blocks = [(-state.force, of.contacts)]
+    if len(of.moving):
+        stiffness, force = state.support
+        blocks.append((size(np.where(stiffness > 0.0, 0.0, force)), of.bearing_names))
+    if len(of.squeezed):
+        blocks.append((_squeezes(state, band), of.squeezed_names))
+    if of.pulls:
+        blocks.append((_beside_graphs(state, band), of.pulls))
+    return blocks
+
+
+def _beside_graphs(state: State, band: Array) -> Array:
+    """Excess [N] of the reactions of radial elements over what their graphs admit."""
+    radius, reaction = state.radius, state.reaction
+    force = size(reaction)
+    low, high = interval(state.graph, radius, band)
+    outward = state.offset / np.where(radius > 0.0, radius, 1.0)[:, None]
+    leaning = -(reaction * outward).sum(axis=1)
+    out = radius > band
+    along = np.where(out, leaning, force)
+    sideways = size(reaction + leaning[:, None] * outward) - force * band / radius
+    excess = np.maximum(low - along, along - high)
+    return np.asarray(np.maximum(excess, np.where(out, sideways, 0.0)))
+
+
+def _squeezes(state: State, band: Array) -> Array:
+    """Force [N] across the two rigid arcs of a ring that a squeeze between them leaves open.
+
+    A centre in touch with both, up to a length, lies anywhere within y across them, where
+    ε y + y²/2a is that length and ε the angle of the wedge; the directions of the two forces are
+    known no better than y/a. The length is what the two arcs overlap or stand open; where the
+    narrowest place of the wedge, ε²a/8 past its mouth, overlaps by less than the band [m], it is
+    the band: through there a float would roll away that a large squeeze seems to hold. Neighbours
+    that give way follow the float instead.
+    """
+    of = state.of
+    drums = of.squeezed
+    start = of.nominal[drums][..., None] + state.here.arc_shift[drums]
+    wedge = size((start / size(start, axis=2)[:, :, None]).sum(axis=1))
+    distance = of.distance[drums].min(axis=1)[:, None]
+    squeeze = state.ring_force[drums, :2].min(axis=1)
+    gaps = state.approach[len(of.flanks) :].reshape(-1, 4, state.count)[drums, :2]
+    apart = np.abs(gaps).max(axis=1) + EPS * size(state.claim.displacement[of.drum[drums]])
+    known = np.where(wedge**2 * distance > 8.0 * band, apart, band)
+    return np.asarray(squeeze * turned(wedge, known, distance))
+
+
+def turned(wedge: Scalars, band: Scalars, distance: Scalars) -> Scalars:
+    """Angle [rad] within which a band [m] leaves the direction between two arcs (`_squeezes`).
 
     Parameters
     ----------
-    state : State
-    band : float
-        Radius [m] within which a graph's corner admits its whole step.
+    wedge : float or ndarray
+        ε [rad].
+    band : float or ndarray
+        [m].
+    distance : float or ndarray
+        a [m].
     """
-    excess = {p.name: -p.force for p in state.pushes}
-    for name, _, stiffness, force in state.bearings():
-        excess[f"bearing {name}"] = float(np.linalg.norm(force[stiffness == 0.0]))
-    excess |= state.squeezes(band)
-    for pull in state.pulls:
-        radius = float(np.linalg.norm(pull.offset))
-        size = float(np.linalg.norm(pull.reaction))
-        low, high = pull.law.interval(radius, band)
-        along = size
-        sideways = 0.0
-        if radius > band:
-            outward = pull.offset / radius
-            along = -float(pull.reaction @ outward)
-            sideways = float(np.linalg.norm(pull.reaction + along * outward))
-            sideways -= size * band / radius
-        excess[pull.name] = max(low - along, along - high, sideways)
-    return _worst(excess)
+    across = 2.0 * band / distance
+    return across / (wedge + (wedge * wedge + across) ** 0.5)  # type: ignore[no-any-return]
 
 
-def energy_gap(state: State) -> tuple[float, str]:
-    """Potential less complementary energy [J], beyond rounding: zero at an equilibrium.
+def energy_gap(state: State) -> Blocks:
+    """Potential and complementary energy less the work [J], beyond rounding: none at equilibrium.
 
     Bearings and rings may hold far more energy against one another than the load brings in.
     """
-    primal, dual = [], []
-    for gear, torque in state.situation.torque.items():
-        primal.append(-torque * state.answer.rotation[gear])
-    for push in state.pushes:
-        primal.append(push.law.energy(push.approach))
-        dual += [-push.law.complementary(max(push.force, 0.0)), push.force * push.at_rest]
-    for name, wind, torque in state.winds():
-        shaft = state.train.shafts[name]
-        if not math.isinf(shaft.stiffness):
-            primal.append(0.5 * shaft.stiffness * wind**2)
-        dual += [-0.5 * torque**2 / shaft.stiffness, -torque * shaft.clocking]
-    for _, moved, stiffness, force in state.bearings():
-        primal.append(0.5 * float(stiffness @ moved**2))
+    of, here, claim = state.of, state.here, state.claim
+    stored = [state.primal, state.dual]
+    work = [here.torque * claim.rotation, state.force * state.at_rest]
+    if len(of.shaft):
+        torsion = here.torsion[of.elastic]
+        stored.append(0.5 * torsion * state.wind[of.elastic] ** 2)
+        stored.append(0.5 * claim.shaft_torque[of.elastic] ** 2 / torsion)
+        work.append(-state.torque * here.clocking)
+    if len(of.moving):
+        stiffness, force = state.support
         held = stiffness > 0.0
-        dual.append(-0.5 * float((force[held] ** 2 / stiffness[held]).sum()))
-    for spline in state.train.splines.values() if state.train.slip is not None else ():
-        bent = float(np.linalg.norm(state.bending(spline)))
-        energy = 0.5 * spline.bending_stiffness * bent**2
-        primal.append(energy)
-        dual.append(-energy)
-    for pull in state.pulls:
+        dual = np.where(held, force**2 / np.where(held, stiffness, 1.0), 0.0)
+        stored.append(0.5 * (stiffness * state.moved**2 + dual).sum(axis=1))
+    if of.pulls:
         # What exceeds a graph's strength is for cone membership to judge.
-        size = min(float(np.linalg.norm(pull.reaction)), pull.law.strength)
-        primal.append(pull.law.energy(float(np.linalg.norm(pull.offset))))
-        dual += [-pull.law.complementary(size), float(pull.reaction @ pull.centre)]
-    rounding = ROUNDED * math.fsum(map(abs, (*primal, *dual)))
-    gap = abs(math.fsum(primal) - math.fsum(dual))
-    return max(gap - rounding, 0.0), "the whole train"
+        force = np.minimum(size(state.reaction), strength(state.graph))
+        stored.append(energy(state.graph, state.radius))
+        stored.append(complementary(state.graph, force))
+        work.append((state.reaction * of.centres[..., None]).sum(axis=1))
+    if of.train.slip is not None:
+        stored.append(here.spline[:, 0] * (state.bend**2).sum(axis=1))
+    held_in = sum(part.sum(axis=0) for part in stored)
+    gap = np.abs(held_in - sum(part.sum(axis=0) for part in work))
+    sizes = held_in + sum(np.abs(part).sum(axis=0) for part in work)
+    return [(np.maximum(gap - ROUNDED * sizes, 0.0)[None], ("the whole train",))]
 
 
-def _worst(values: dict[str, float]) -> tuple[float, str]:
-    """Largest value, not below zero, and where it stands; not-a-number is the worst of all."""
+FIGURES: dict[str, tuple[Callable[[State], Blocks], str]] = {
+    "force_balance": (force_balance, "N"),
+    "moment_balance": (moment_balance, "N"),
+    "penetration": (penetration, "m"),
+    "complementarity": (complementarity, "J"),
+    "deformation_law": (deformation_law, "m"),
+    "cone_membership": (cone_membership, "N"),
+    "energy_gap": (energy_gap, "J"),
+}
+"""How every residual is found, and its unit."""
+RESIDUALS = tuple(FIGURES)
+"""Names of the residuals, in order."""
+
+
+def scales(state: State) -> dict[str, Array]:
+    """Scale of every unit, shape (S,)."""
+    return {"N": state.load, "m": state.deflection, "J": state.load * state.deflection}
+
+
+def scaled_residuals(state: State) -> Array:
+    """All residuals (S, 7), in the order of `RESIDUALS`; infinite where none can be judged."""
+    scale = scales(state)
+    figures = np.stack([_worst(of(state)) / scale[unit] for of, unit in FIGURES.values()])
+    bad = state.faulty | np.isnan(figures).any(axis=0)
+    return np.where(bad, np.inf, figures).T
+
+
+def _worst(blocks: Blocks) -> Array:
+    """Largest figure of every claim (S or 1,), not below zero; not-a-number is worst of all."""
+    largest = (figures.max(axis=0, initial=0.0) for figures, _ in blocks)
+    return reduce(np.maximum, largest, np.zeros(1))
+
+
+def worst_of_one(blocks: Blocks) -> tuple[float, str]:
+    """Return the largest figure of a single claim, not below zero, and the element that shows it.
+
+    Not-a-number is the worst of all.
+    """
     worst, where = 0.0, ""
-    for name, value in values.items():
-        if math.isnan(value):
-            return math.inf, name
-        if value > worst:
-            worst, where = value, name
+    for figures, names in blocks:
+        if len(names):
+            at = int(figures[:, 0].argmax())
+            value = float(figures[at, 0])
+            if math.isnan(value):
+                return math.inf, names[at]
+            if value > worst:
+                worst, where = value, names[at]
     return worst, where

@@ -1,4 +1,4 @@
-"""The answer seen as mechanics: approaches, margins and forces, computed body by body.
+"""Claims seen as mechanics: approaches, forces and graphs of every element, body by body.
 
 Nothing here knows of programmes or rows. Forces are vectors that act on centres, moments are force
 times base radius, and each contact is judged at the displaced position.
@@ -6,358 +6,295 @@ times base radius, and each contact is judged at the displaced position.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.certify.rigid import RigidShafts, rigid_shafts
-from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.gear import Vector
-from loadshare.train.law import RIGID, Law, PowerLaw
-from loadshare.train.memory import SlipFriction, SlipStop
-from loadshare.train.radial import RadialLaw, round_ring_law
-from loadshare.train.ring import Arc
-from loadshare.train.train import Situation, Spline, Train
+from loadshare.certify.graphs import Graph
+from loadshare.certify.laws import area, interpolated, strain_energy
+from loadshare.certify.mechanics import Mechanics
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.radial import ROUNDING
+from loadshare.train.situations import Situations
 
-EPS = float(np.finfo(float).eps)
-"""Round-off of a length, relative to it."""
-Scalars = TypeVar("Scalars", float, NDArray[np.float64])
+Array = NDArray[np.float64]
 
 
-def turned(wedge: Scalars, band: Scalars, distance: float) -> Scalars:
-    """Angle [rad] within which a band [m] leaves the direction between two arcs (see `squeezes`).
+class State:
+    """S claims at the positions where they stand.
+
+    The samples are the last axis of every array, next to one another in memory: sums and largest
+    values over a few elements then run along the samples, which is several times faster. Elements
+    stand in the order of `Mechanics`.
 
     Parameters
     ----------
-    wedge : float or ndarray
-        ε [rad].
-    band : float or ndarray
-        [m].
-    distance : float
-        a [m].
-    """
-    across = 2.0 * band / distance
-    return across / (wedge + (wedge * wedge + across) ** 0.5)  # type: ignore[no-any-return]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Push:
-    """A unilateral contact at the answer.
+    mechanics : Mechanics
+    situations : Situations
+    answers : Equilibria
 
     Attributes
     ----------
-    name : str
-    gear : str or None
-        The gear whose float it limits, for a ring's contact.
-    force : float
-        [N], as claimed.
-    approach : float
-        [m], positive when compressed.
-    at_rest : float
-        Approach [m] that remains when all coordinates of its tangent plane are zero (minus the
-        gap).
-    law : Law
-    normal : ndarray, shape (3,)
-        Direction of the force on the pushed gear.
-    pushed, pushing : str or None
-        Gears that receive +F n and −F n; None is the housing.
+    of : Mechanics
+    here : Situations
+    claim : Equilibria
+    count : int
+        S.
+    force, approach, at_rest, compression : ndarray, shape (contacts, S)
+        Claimed force [N], approach, what remains of it when all coordinates of its tangent plane
+        are zero, compression at the claimed force [m].
+    primal, dual : ndarray, shape (contacts, S)
+        Strain energy at the approach, complementary energy at the force [J].
+    way : ndarray, shape (drums, 2, 3, S)
+        From each neighbour's centre to the limited gear's [m].
+    ring_force : ndarray, shape (drums, 4, S)
+        Of both arcs and both stops [N].
+    bend : ndarray, shape (splines, 3, S)
+        p − s of splines with memory, whose slip s is what the bending of their shafts leaves of
+        the displacement p [m].
+    offset, reaction : ndarray, shape (radials, 3, S)
+        Way from a radial element's centre [m], its force on the gear [N].
+    graph : Graph
+        Of the radial elements.
+    moment : ndarray, shape (gears, S)
+        Of the load, flanks and elastic shafts on each gear [N·m].
+    load, deflection : ndarray, shape (S,)
+        Scales [N], [m].
+    beyond : ndarray of bool, shape (drums, 2, S)
+        Whether a gear stands beyond the neighbour on whose ring its own rolls: there the arc's
+        inequality holds, and no gear can be.
+    lawless : ndarray of bool, shape (splines, S)
+        Whether a spline has no law.
     """
 
-    name: str
-    gear: str | None
-    force: float
-    approach: float
-    at_rest: float
-    law: Law
-    normal: Vector
-    pushed: str | None
-    pushing: str | None
+    @np.errstate(all="ignore")
+    def __init__(self, mechanics: Mechanics, situations: Situations, answers: Equilibria) -> None:
+        self.of = mechanics
+        self.here, self.claim = situations.mapped(_samples_last), answers.mapped(_samples_last)
+        self.count = len(answers.rotation)
+        self.force = self.claim.flank_force
+        self._put_flanks()
+        self._put_scales()
+        self.moment = self._moments()
+        self.beyond = np.zeros((0, 2, self.count), dtype=bool)
+        self.ring_force = np.zeros((0, 4, self.count))
+        if len(mechanics.drum):
+            self._put_drums()
+        self.lawless = np.zeros((0, self.count), dtype=bool)
+        if mechanics.pulls:
+            self._put_radials()
 
+    def _put_flanks(self) -> None:
+        of, here, claim = self.of, self.here, self.claim
+        gap = np.where(of.is_drive[:, None], here.gap[of.mesh_of], here.backlash[of.mesh_of])
+        offset, moved = (v.reshape(-1, v.shape[-1]) for v in (here.offset, claim.displacement))
+        self.at_rest = of.pushing @ offset - gap
+        self.approach = of.turning @ claim.rotation
+        self.approach += of.pushing @ moved
+        self.approach += self.at_rest
+        b, c = here.bending[of.mesh_of], here.hertz[of.mesh_of]
+        positive = np.maximum(self.force, 0.0)
+        root = np.zeros_like(positive)
+        if c.any():
+            np.cbrt(positive, out=root, where=positive > 0.0)
+        square = root * root
+        self.compression = b * positive + c * square
+        self.dual = 0.5 * b * positive**2 + 0.6 * c * (square * square * root)
+        self.primal = strain_energy(b, c, self.approach, root)
+        for e in of.tabled:
+            self._tabulate(e, positive[e])
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Pull:
-    """A radial element at the answer.
-
-    Attributes
-    ----------
-    name, gear : str
-    law : RadialLaw
-    offset : ndarray, shape (3,)
-        Displacement of the gear's centre from the element's [m].
-    centre : ndarray, shape (3,)
-        The element's centre [m].
-    reaction : ndarray, shape (3,)
-        Force on the gear [N], as claimed.
-    is_ring : bool
-    """
-
-    name: str
-    gear: str
-    law: RadialLaw
-    offset: Vector
-    centre: Vector
-    reaction: Vector
-    is_ring: bool
-
-
-@dataclass(frozen=True)
-class State:
-    """A train, a position and an answer to be judged."""
-
-    train: Train
-    answer: Equilibrium
-
-    @cached_property
-    def situation(self) -> Situation:
-        """What the position brings."""
-        return self.train.situation(self.answer.index)
-
-    def moved(self, gear: str) -> Vector:
-        """Displacement p (3,) [m]."""
-        return np.asarray(self.answer.displacement[gear])
-
-    @cached_property
-    def pushes(self) -> tuple[Push, ...]:
-        """All unilateral contacts: flanks, arcs, stops."""
-        return (*self._flanks(), *self._ring_contacts())
-
-    def _flanks(self) -> Iterator[Push]:
-        phi, offset = self.answer.rotation, self.situation.offset
-        for mesh in self.train.meshes.values():
-            errors = offset[mesh.driver] - offset[mesh.driven]
-            relative = self.moved(mesh.driver) - self.moved(mesh.driven) + errors
-            turned = (phi[mesh.driver], phi[mesh.driven])
-            position = self.situation.mesh_position[mesh.name]
-            for drive in mesh.flanks:
-                name = mesh.flank_name(drive)
-                yield Push(
-                    name=name,
-                    gear=None,
-                    force=self.answer.flank_force[name],
-                    approach=mesh.approach(drive, position, turned, relative),
-                    at_rest=mesh.approach(drive, position, (0.0, 0.0), errors),
-                    law=mesh.law(position),
-                    normal=mesh.direction(drive)[2],
-                    pushed=mesh.driven,
-                    pushing=mesh.driver,
-                )
-
-    def _ring_contacts(self) -> Iterator[Push]:
-        for ring in self.train.drums:
-            law = RIGID if math.isinf(ring.stiffness) else PowerLaw(1.0 / ring.stiffness)
-            for side, neighbour in enumerate(ring.neighbours):
-                arc = self.train.arc(ring, side, self.situation)
-                relative = self.moved(ring.gear) - self.moved(neighbour)
-                normal, margin = arc.normal(relative), arc.margin(relative)
-                name = ring.arc_name(neighbour)
-                yield Push(
-                    name=name,
-                    gear=ring.gear,
-                    force=self.answer.ring_force[name],
-                    approach=-margin,
-                    at_rest=float(normal @ relative) - margin,
-                    law=law,
-                    normal=normal,
-                    pushed=ring.gear,
-                    pushing=neighbour,
-                )
-            across = float(ring.across @ self.moved(ring.gear))
-            for name, sign, limit in zip(
-                ring.stop_names, (1.0, -1.0), (ring.up, ring.down), strict=True
-            ):
-                yield Push(
-                    name=name,
-                    gear=ring.gear,
-                    force=self.answer.ring_force[name],
-                    approach=sign * across - limit,
-                    at_rest=-limit,
-                    law=law,
-                    normal=-sign * ring.across,
-                    pushed=ring.gear,
-                    pushing=None,
-                )
-
-    def _arcs(self) -> Iterator[tuple[str, Arc, Vector]]:
-        """Every exclusion arc: its name, itself, and the relative displacement of its gears [m]."""
-        for ring in self.train.drums:
-            for side, neighbour in enumerate(ring.neighbours):
-                arc = self.train.arc(ring, side, self.situation)
-                yield ring.arc_name(neighbour), arc, self.moved(ring.gear) - self.moved(neighbour)
-
-    def squeezes(self, band: float) -> dict[str, float]:
-        """Force [N] across the two rigid arcs of a ring that a squeeze between them leaves open.
-
-        A centre in touch with both, up to a length, lies anywhere within y across them, where
-        ε y + y²/2a is that length and ε the angle of the wedge; the directions of the two forces
-        are known no better than y/a. The length is what the two arcs overlap or stand open; where
-        the narrowest place of the wedge, ε²a/8 past its mouth, overlaps by less than the band [m],
-        it is the band: through there a float would roll away that a large squeeze seems to hold.
-        Neighbours that give way follow the float instead.
-        """
-        forces = self.answer.ring_force
-        found = {}
-        for ring in self.train.drums:
-            gives_way = any(self.train.gears[n].moves for n in ring.neighbours)
-            if gives_way or not math.isinf(ring.stiffness):
-                continue
-            arcs = [self.train.arc(ring, side, self.situation) for side in (0, 1)]
-            wedge = float(np.linalg.norm(sum(a.normal(np.zeros(3)) for a in arcs)))
-            squeeze = min(forces[ring.arc_name(n)] for n in ring.neighbours)
-            distance = min(a.distance for a in arcs)
-            moved = self.moved(ring.gear)
-            apart = max(abs(a.margin(moved)) for a in arcs) + EPS * float(np.linalg.norm(moved))
-            known = apart if wedge**2 * distance > 8.0 * band else band
-            found[f"ring {ring.gear}: arcs"] = squeeze * turned(wedge, known, distance)
-        return found
-
-    @cached_property
-    def pulls(self) -> tuple[Pull, ...]:
-        """All radial elements: splines and round rings."""
-        found = []
-        before = self.train.slip
-        for gear, spline in self.train.splines.items():
-            if before is not None:
-                found += self._slipping(spline, np.asarray(before[gear]))
-                continue
-            law = spline.law(self.transmitted(gear))
-            reaction = np.asarray(self.answer.radial_reaction[spline.name])
-            moved = self.moved(gear)
-            found.append(Pull(spline.name, gear, law, moved, np.zeros(3), reaction, False))
-        for ring in self.train.rounds:
-            law = round_ring_law(ring.radius, ring.stiffness)
-            reaction = np.asarray(self.answer.radial_reaction[ring.name])
-            offset = self.moved(ring.gear) - ring.offset
-            found.append(Pull(ring.name, ring.gear, law, offset, ring.offset, reaction, True))
-        return tuple(found)
-
-    def _slipping(self, spline: Spline, before: Vector) -> list[Pull]:
-        """Friction and clearance of a spline that remembers its slip."""
-        gear, torque = spline.gear, self.transmitted(spline.gear)
-        slip = self.slip(spline)
-        friction, stop = (
-            np.asarray(self.answer.radial_reaction[name])
-            for name in (spline.name, spline.stop_name)
+    def _tabulate(self, e: int, force: Array) -> None:
+        """Compression and energies of a tabulated flank."""
+        forces, compressions = (
+            np.broadcast_to(t, (len(t), self.count)) for t in self.here.table[self.of.mesh_of[e]]
         )
-        resisted, room = SlipFriction(spline).law(torque), SlipStop(spline).law(torque)
-        return [
-            Pull(spline.name, gear, resisted, slip - before, before, friction, False),
-            Pull(spline.stop_name, gear, room, slip, np.zeros(3), stop, False),
-        ]
+        self.compression[e] = interpolated(forces, compressions, force)
+        self.dual[e] = area(forces, compressions, force)
+        approach = np.maximum(self.approach[e], 0.0)
+        true = np.where(approach > 0.0, interpolated(compressions, forces, approach), 0.0)
+        self.primal[e] = true * approach - area(forces, compressions, true)
 
-    def slip(self, spline: Spline) -> Vector:
-        """Slip s (3,) [m] of a spline with memory: what the bending of its shaft leaves of p."""
-        return np.asarray(self.moved(spline.gear) - self.bending(spline))
+    def _put_scales(self) -> None:
+        """Load: the largest flank force or external push; 1 N when nothing acts.
 
-    def bending(self, spline: Spline) -> Vector:
-        """Bending p − s (3,) [m] of a spline's shaft under its claimed force, with memory."""
-        names = (spline.name, spline.stop_name)
-        force = sum(np.asarray(self.answer.radial_reaction[name]) for name in names)
-        return np.asarray(-force / spline.bending_stiffness)
-
-    def winds(self) -> Iterator[tuple[str, float, float]]:
-        """Every shaft with its wind-up φ_a − φ_b − clocking [rad] and its torque [N·m].
-
-        The torque of a rigid shaft is nobody's claim: it is what balances the gears beyond it.
+        Deflection: the largest compression, gap taken up, or error; 1 µm when none. Reactions of
+        rigid limits and displacements do not count: any preload of two opposite stops would be in
+        balance and would hide what is not, and a free displacement could be claimed as large as one
+        likes.
         """
-        phi, claimed = self.answer.rotation, self.answer.shaft_torque
-        for name, shaft in self.train.shafts.items():
-            wind = phi[shaft.first] - phi[shaft.second] - shaft.clocking
-            if math.isinf(shaft.stiffness):
-                beyond = self.rigid.beyond[name].items()
-                yield name, wind, math.fsum(sign * self.moment[g] for g, sign in beyond)
-            else:
-                yield name, wind, claimed.get(name, shaft.stiffness * wind)
+        pushed = (np.abs(self.here.torque) / self.of.radius[:, None]).max(axis=0, initial=0.0)
+        load = np.maximum(np.abs(self.force).max(axis=0, initial=0.0), pushed)
+        self.load = np.where(load == 0.0, 1.0, load)
+        lengths = np.maximum(self.compression, np.abs(self.at_rest))
+        closed = np.where(self.force > 0.0, lengths, 0.0).max(axis=0, initial=0.0)
+        shifts = size(self.here.offset).max(axis=0, initial=0.0)
+        deflection = np.maximum(closed, shifts)
+        self.deflection = np.where(deflection == 0.0, 1e-6, deflection)
 
-    @cached_property
-    def rigid(self) -> RigidShafts:
-        """The rigid shafts, and what lies beyond each."""
-        return rigid_shafts(self.train)
+    def _moments(self) -> Array:
+        of, claim = self.of, self.claim
+        moment = of.moment @ self.force
+        moment += self.here.torque
+        if len(of.elastic):
+            moment += of.shaft_moment @ claim.shaft_torque
+        return np.asarray(moment)
 
-    @cached_property
-    def moment(self) -> dict[str, float]:
-        """Moment [N·m] on every gear of the load, its flanks and elastic shafts."""
-        train, answer = self.train, self.answer
-        moment = {g: self.situation.torque.get(g, 0.0) for g in train.gears}
-        for mesh in train.meshes.values():
-            for drive in mesh.flanks:
-                force = answer.flank_force[mesh.flank_name(drive)]
-                along = 1.0 if drive else -1.0
-                moment[mesh.driver] -= along * mesh.radii[0] * force
-                moment[mesh.driven] += along * mesh.radii[1] * force
-        for name, shaft in train.shafts.items():
-            if not math.isinf(shaft.stiffness):
-                wind = answer.rotation[shaft.first] - answer.rotation[shaft.second]
-                torque = answer.shaft_torque.get(name, shaft.stiffness * (wind - shaft.clocking))
-                moment[shaft.first] -= torque
-                moment[shaft.second] += torque
-        return moment
+    def _put_drums(self) -> None:
+        of, here, moved = self.of, self.here, self.claim.displacement
+        nominal, stops = of.nominal[..., None], 2 * len(of.drum)
+        relative = moved[of.drum][:, None] - moved[of.neighbours]
+        apart = here.arc_shift + relative
+        self.way = nominal + apart
+        self.beyond = ~((self.way * nominal).sum(axis=2) > 0.0)
+        length = size(self.way, axis=2)
+        # Free of cancellation where nothing moves far.
+        grown = ((nominal + self.way) * apart).sum(axis=2) / (length + of.distance[..., None])
+        rolled = (self.way * relative).sum(axis=2) / length
+        across = (of.across[..., None] * moved[of.drum]).sum(axis=1)
+        approach, at_rest, force = (np.empty((len(of.drum), 4, self.count)) for _ in range(3))
+        approach[:, :2] = -(grown + here.arc_clearance)
+        at_rest[:, :2] = rolled + approach[:, :2]
+        at_rest[:, 2:] = -here.stop
+        approach[:, 2] = across
+        approach[:, 3] = -across
+        approach[:, 2:] -= here.stop
+        force[:, :2] = self.claim.ring_force[stops:].reshape(-1, 2, self.count)
+        force[:, 2:] = self.claim.ring_force[:stops].reshape(-1, 2, self.count)
+        self.ring_force = force
+        wall = here.wall[:, None]
+        compression = wall * np.maximum(force, 0.0)
+        yields = (wall > 0.0) & (approach > 0.0)
+        primal = np.where(yields, 0.5 * approach**2 / np.where(yields, wall, 1.0), 0.0)
+        dual = 0.5 * compression * force
+        self.at_rest = np.broadcast_to(self.at_rest, self.force.shape)
+        self.force, self.approach, self.at_rest, self.compression, self.primal, self.dual = (
+            np.concatenate([flanks, rings.reshape(-1, self.count)])
+            for flanks, rings in (
+                (self.force, force),
+                (self.approach, approach),
+                (self.at_rest, at_rest),
+                (self.compression, compression),
+                (self.primal, primal),
+                (self.dual, dual),
+            )
+        )
 
-    def bearings(self) -> Iterator[tuple[str, Vector, Vector, Vector]]:
-        """Every gear that can be displaced: p [m], stiffness [N/m] and bearing force [N], (2,)."""
-        for name, gear in self.train.gears.items():
-            if gear.support is not None:
-                moved = gear.frame @ self.moved(name)
-                force = self.answer.support_force.get(name, gear.support * moved)
-                yield name, moved, gear.support, np.asarray(force)
+    def _put_radials(self) -> None:
+        of, here, claim = self.of, self.here, self.claim
+        splines, rounds = len(of.train.splines), len(of.train.rounds)
+        self.reaction = claim.radial_reaction[of.claimed]
+        place = claim.displacement[of.pulled]
+        zero = np.zeros((rounds, 1))
+        graphs = [Graph(zero, zero, zero, here.round_radius, here.round_stiffness)]
+        if splines:
+            graphs = [*self._spline_graphs(), *graphs]
+        if of.train.slip is not None:
+            pushed = self.reaction[:splines] + self.reaction[splines : 2 * splines]
+            self.bend = -pushed / here.spline[:, :1]
+            place[: 2 * splines] -= np.concatenate([self.bend, self.bend])
+        self.offset = place - of.centres[..., None]
+        self.graph = Graph(
+            *(
+                np.concatenate([np.broadcast_to(v, (len(v), self.count)) for v in parts])
+                for parts in zip(*graphs, strict=True)
+            )
+        )
 
-    def transmitted(self, gear: str) -> float:
-        """Torque [N·m] that a gear takes over its shaft or spline."""
-        return self.train.transmitted(gear, self.answer.flank_force)
+    def _spline_graphs(self) -> list[Graph]:
+        """Graphs of splines; with memory those of friction and of the stop at the end of the slip.
 
-    @cached_property
-    def finite(self) -> bool:
-        """Whether every claimed figure is a number."""
-        a = self.answer
-        figures = [*a.rotation.values(), *a.flank_force.values(), *a.ring_force.values()]
-        figures += a.shaft_torque.values()
-        vectors = [
-            *a.displacement.values(),
-            *a.radial_reaction.values(),
-            *a.support_force.values(),
-        ]
-        return bool(np.isfinite(figures).all() and all(np.isfinite(v).all() for v in vectors))
-
-    @cached_property
-    def fault(self) -> str:
-        """Why the claim cannot be judged, else empty.
-
-        A figure is not a number, a spline has no law, or a gear stands beyond the neighbour on
-        whose ring its own rolls: there the arc's inequality holds, and no gear can be.
+        With memory there is no step where a spline starts to slip.
         """
-        if not self.finite:
-            return "a figure that is not a number"
-        try:
-            _ = self.pulls
-        except ValueError as error:
-            return str(error)
-        beyond = [name for name, arc, relative in self._arcs() if arc.beyond(relative)]
-        return f"a place beyond the neighbour, {', '.join(beyond)}" if beyond else ""
+        stiffness, given, reach, fixed, per_torque = self.here.spline.swapaxes(0, 1)
+        bound = np.where(np.isnan(fixed), per_torque * np.abs(self.transmitted), fixed)
+        continuous = bound / stiffness
+        free = np.isnan(given)
+        stick = np.where(free, continuous, np.minimum(given, continuous))
+        self.lawless = stiffness * given > bound * (1.0 + ROUNDING)
+        self.lawless |= ~free & (reach < stick)
+        if self.of.train.slip is None:
+            stick = np.where((reach < stick) & free, np.inf, stick)
+            return [Graph(stiffness, stick, bound, reach, stiffness)]
+        self.lawless |= stiffness * given < bound * (1.0 - ROUNDING)
+        zero, endless = np.zeros_like(bound), np.full_like(bound, np.inf)
+        room = np.maximum(reach - continuous, 0.0)
+        return [Graph(zero, zero, bound, endless, endless), Graph(zero, zero, zero, room, endless)]
 
     @cached_property
-    def force_scale(self) -> float:
-        """Load of the case [N]: largest flank force or external push; 1 N when nothing acts.
-
-        Reactions of rigid limits do not count: any preload of two opposite stops would be in
-        balance and would hide what is not.
-        """
-        gears = self.train.gears
-        forces = [abs(f) for f in self.answer.flank_force.values()]
-        forces += [abs(t) / gears[g].base_radius for g, t in self.situation.torque.items()]
-        return max(forces, default=0.0) or 1.0
+    def transmitted(self) -> Array:
+        """Torque that each spline's gear takes over it [N·m], shape (splines, S)."""
+        return np.asarray(self.of.spline_moment @ self.claim.flank_force)
 
     @cached_property
-    def length_scale(self) -> float:
-        """Deflection of the case [m]: largest compression, gap taken up, or error; 1 µm when none.
+    def overlap(self) -> Array:
+        """Approach less compression [m], shape (contacts, S)."""
+        return np.asarray(self.approach - self.compression)
 
-        Displacements do not count: a free one could be claimed as large as one likes.
+    @cached_property
+    def radius(self) -> Array:
+        """Size of the offset of every radial element [m], shape (radials, S)."""
+        return size(self.offset)
+
+    @cached_property
+    def arc_push(self) -> Array:
+        """Force of every arc on its drum's gear [N], shape (drums, 2, 3, S)."""
+        force = self.ring_force[:, :2]
+        return np.asarray(self.way * (force / size(self.way, axis=2))[:, :, None])
+
+    @cached_property
+    def stop_push(self) -> Array:
+        """Force of both stops on every drum's gear [N], shape (drums, 3, S)."""
+        pressed = self.ring_force[:, 3] - self.ring_force[:, 2]
+        return np.asarray(self.of.across[..., None] * pressed[:, None])
+
+    @cached_property
+    def wind(self) -> Array:
+        """Wind-up φ_first − φ_second − clocking [rad], shape (shafts, S)."""
+        ends = self.claim.rotation[self.of.shaft]
+        return np.asarray(ends[:, 0] - ends[:, 1] - self.here.clocking)
+
+    @cached_property
+    def torque(self) -> Array:
+        """Torque of every shaft [N·m], shape (shafts, S).
+
+        That of a rigid one is nobody's claim: it is what balances the gears beyond it.
         """
-        closed = [p for p in self._flanks() if p.force > 0.0]
-        lengths = [p.law.compression(p.force) for p in closed]
-        lengths += [abs(p.at_rest) for p in closed]
-        lengths += [float(np.linalg.norm(c)) for c in self.situation.offset.values()]
-        return max(lengths, default=0.0) or 1e-6
+        found = self.of.beyond @ self.moment
+        found[self.of.elastic] = self.claim.shaft_torque[self.of.elastic]
+        return np.asarray(found)
+
+    @cached_property
+    def moved(self) -> Array:
+        """Displacements in the frames of the gears that can be displaced [m], (moving, 2, S)."""
+        return np.asarray(self.of.frames @ self.claim.displacement[self.of.moving])
+
+    @cached_property
+    def support(self) -> tuple[Array, Array]:
+        """Stiffness of the bearings that can yield [N/m], their force [N], (moving, 2, S or 1)."""
+        moving = self.of.moving
+        return self.here.support[moving], self.claim.support_force[moving]
+
+    @cached_property
+    def faulty(self) -> NDArray[np.bool_]:
+        """Whether a claim cannot be judged, shape (S,).
+
+        A figure is not a number, a spline has no law, or a gear stands beyond its neighbour.
+        """
+        bad = self.lawless.any(axis=0) | self.beyond.any(axis=(0, 1))
+        for claimed in self.claim.arrays:
+            bad = bad | ~np.isfinite(claimed.reshape(-1, self.count).sum(axis=0))
+        return np.asarray(bad)
+
+
+def size(vectors: Array, axis: int = 1) -> Array:
+    """Lengths of vectors along an axis."""
+    return np.asarray(np.sqrt((vectors**2).sum(axis=axis)))
+
+
+_AXES = {dimensions: (*range(1, dimensions), 0) for dimensions in range(1, 6)}
+
+
+def _samples_last(array: Array) -> Array:
+    return np.ascontiguousarray(array.transpose(_AXES[array.ndim]))

@@ -5,6 +5,10 @@ from __future__ import annotations
 import math
 from numbers import Real
 
+TOLERANCE = 1e-9
+"""Largest scaled residual of a certified answer."""
+BAND = 1e-9
+"""Band in which a margin counts as none, in deflections of the case."""
 LARGEST = 1e-3
 """Largest tolerance: an answer that misses by more than a thousandth is not certified, it is
 guessed, and Ω is read to three digits behind the point."""

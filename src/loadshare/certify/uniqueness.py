@@ -23,17 +23,20 @@ times larger. Contacts that touch without force count as open, which is on the s
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.certify.state import Pull, Push, State
+from loadshare.certify.bound.one import columns_of
+from loadshare.certify.mechanics import mechanics_of
+from loadshare.certify.pulls import Pull, pulls_of
+from loadshare.certify.state import State
+from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.law import Law, TableLaw
 from loadshare.train.radial import Piece
+from loadshare.train.situations import situation_of
 from loadshare.train.train import Spline, Train
 
 Array = NDArray[np.float64]
@@ -100,8 +103,8 @@ def uniqueness(train: Train, answer: Equilibrium) -> Uniqueness:
     following = [s for s in train.splines.values() if _follows(s)]
     if not train.drums and not following:
         return Uniqueness("convex", 0.0, "")
-    state = State(train, answer)
-    system = _System(state)
+    here = situation_of(train, answer.index)
+    system = _System(State(mechanics_of(train), here, Equilibria.of(train, answer)))
     if not system.bent:
         return Uniqueness("least energy", 0.0, "")
     curvature = system.curvature()
@@ -119,53 +122,40 @@ def _follows(spline: Spline) -> bool:
 class _System:
     """Stiffness K, what takes from it M, and the rows of rigid contacts, at an answer.
 
-    Coordinates are arcs on the base circles [m] and displacements in the gears' frames [m].
+    Coordinates and rows are those of the bound's `Columns`.
     """
 
     def __init__(self, state: State) -> None:
         self.state = state
-        train = state.train
-        turning = [g for g in train.gears if g != train.output]
-        moving = [g for g in train.gears.values() if g.moves]
-        self.turn_at = {g: k for k, g in enumerate(turning)}
-        self.move_at = {g.name: len(turning) + 2 * k for k, g in enumerate(moving)}
-        self.size = len(turning) + 2 * len(moving)
-        self.load = CARRIES * state.force_scale
-        self.near = CARRIES * state.length_scale
-        self.stiffness = np.zeros((self.size, self.size))
-        self.taken = np.zeros((self.size, self.size))
+        train = state.of.train
+        self.columns = columns_of(train)
+        self.rows = self.columns.matrix.high
+        size = len(self.columns.coordinates)
+        self.load = CARRIES * float(state.load[0])
+        self.near = CARRIES * float(state.deflection[0])
+        self.stiffness = np.zeros((size, size))
+        self.taken = np.zeros((size, size))
         self.rigid: list[Array] = []
-        self.torque_slope = {g: np.zeros(self.size) for g in train.splines}
+        self.pulls = pulls_of(state)
 
     @cached_property
     def bent(self) -> tuple[str, ...]:
         """Elements that are not convex and carry."""
-        arcs = [p.name for p in self._carrying_ring_contacts() if p.pushing is not None]
-        return (*arcs, *(p.name for p in self.state.pulls if self._follows(p)))
+        of = self.state.of
+        carrying = np.argwhere(self.state.ring_force[:, :2, 0] > self.load).tolist()
+        arcs = [of.contacts[len(of.flanks) + 4 * d + k] for d, k in carrying]
+        return (*arcs, *(p.name for p in self.pulls if self._follows(p)))
 
     def _assemble(self) -> None:
         self._flanks()
-        self._ring_contacts()
+        self._drums()
         self._springs()
-        train = self.state.train
-        for pull in self.state.pulls:
+        train = self.state.of.train
+        for pull in self.pulls:
             if pull.is_ring or train.slip is None:
                 self._pull(pull)
-        if train.slip is not None:
-            self._remembering()
-
-    def _turned(self, gear: str, per_angle: float) -> Array:
-        row = np.zeros(self.size)
-        if gear in self.turn_at:
-            row[self.turn_at[gear]] = per_angle / self.state.train.gears[gear].base_radius
-        return row
-
-    def _moved(self, gear: str, way: Array) -> Array:
-        row = np.zeros(self.size)
-        if gear in self.move_at:
-            at = self.move_at[gear]
-            row[at : at + 2] = self.state.train.gears[gear].frame @ way
-        return row
+        for k, spline in enumerate(train.splines.values() if train.slip is not None else ()):
+            self._remembering(k, spline, self.pulls[k])
 
     def _hold(self, row: Array, stiffness: float) -> None:
         if math.isinf(stiffness):
@@ -173,112 +163,104 @@ class _System:
         else:
             self.stiffness += stiffness * np.outer(row, row)
 
+    def _pair(self, first: int) -> Array:
+        """Rows of both components of an element's vector."""
+        return self.rows[first : first + 2]
+
+    def _slope(self, contact: int) -> float:
+        """Least slope [N/m] to any other compression of a loaded contact; infinite if rigid."""
+        force, compression = (v[contact, 0] for v in (self.state.force, self.state.compression))
+        return float(force / compression) if compression > 0.0 else math.inf
+
     def _flanks(self) -> None:
-        train, forces = self.state.train, self.state.answer.flank_force
-        laws = {p.name: p for p in self.state.pushes}
-        for mesh in train.meshes.values():
-            for drive in mesh.flanks:
-                name = mesh.flank_name(drive)
-                if forces[name] <= self.load:
+        state, of = self.state, self.state.of
+        self.torque_slope = np.zeros((len(of.train.splines), self.rows.shape[1]))
+        for e in np.flatnonzero(state.claim.flank_force[:, 0] > self.load).tolist():
+            slope = self._slope(e)
+            if e in of.tabled:
+                forces, compressions = np.diff(state.here.table[of.mesh_of[e], :, :, 0])
+                slope = float(np.nanmin(forces / compressions))
+            self._hold(self.rows[e], slope)
+            if math.isfinite(slope):
+                self.torque_slope += slope * np.outer(self.columns.moments[:, e], self.rows[e])
+
+    def _drums(self) -> None:
+        state, train = self.state, self.state.of.train
+        for d, ring in enumerate(train.drums):
+            frame, first = train.gears[ring.gear].frame, len(state.of.flanks) + 4 * d
+            for k in np.flatnonzero(state.ring_force[d, :, 0] > self.load).tolist():
+                slope = self._slope(first + k)
+                if k >= 2:
+                    self._hold(self.rows[self.columns.stops.start + 2 * d + k - 2], slope)
                     continue
-                on_driver, on_driven, n = mesh.direction(drive)
-                row = self._turned(mesh.driver, on_driver) + self._turned(mesh.driven, on_driven)
-                row += self._moved(mesh.driver, n) - self._moved(mesh.driven, n)
-                stiffness = least_slope(laws[name].law, forces[name])
-                self._hold(row, stiffness)
-                for gear, slope in self.torque_slope.items():
-                    lever = {mesh.driver: on_driver, mesh.driven: on_driven}.get(gear, 0.0)
-                    if lever and math.isfinite(stiffness):
-                        slope += lever * stiffness * row
-
-    def _ring_contacts(self) -> None:
-        for push in self._carrying_ring_contacts():
-            assert push.pushed is not None
-            row = self._moved(push.pushed, push.normal)
-            if push.pushing is None:
-                self._hold(row, least_slope(push.law, push.force))
-                continue
-            self._hold(row - self._moved(push.pushing, push.normal),
-                       least_slope(push.law, push.force))  # fmt: skip
-            beside = np.cross(self.state.train.gears[push.pushed].axis, push.normal)
-            across = self._moved(push.pushed, beside) - self._moved(push.pushing, beside)
-            self.taken += push.force / self._distance(push) * np.outer(across, across)
-
-    def _carrying_ring_contacts(self) -> Iterator[Push]:
-        return (p for p in self.state.pushes if p.gear is not None and p.force > self.load)
-
-    def _distance(self, push: Push) -> float:
-        """|d| of an arc [m] at the answer."""
-        assert push.pushed is not None
-        assert push.pushing is not None
-        (ring,) = (r for r in self.state.train.drums if r.gear == push.pushed)
-        side = ring.neighbours.index(push.pushing)
-        arc = self.state.train.arc(ring, side, self.state.situation)
-        way = arc.start + self.state.moved(push.pushed) - self.state.moved(push.pushing)
-        return float(np.linalg.norm(way))
+                pair = self._pair(self.columns.arcs.start + 2 * (2 * d + k))
+                way = state.way[d, k, :, 0]
+                distance = float(np.linalg.norm(way))
+                along, across = _along_and_across(frame @ way / distance)
+                self._hold(along @ pair, slope)
+                row = across @ pair
+                self.taken += state.ring_force[d, k, 0] / distance * np.outer(row, row)
 
     def _springs(self) -> None:
-        for shaft in self.state.train.shafts.values():
-            row = self._turned(shaft.first, 1.0) - self._turned(shaft.second, 1.0)
-            scale = float(np.linalg.norm(row))
-            if scale > 0.0:
-                rigid = math.isinf(shaft.stiffness)
-                self._hold(row / scale if rigid else row, shaft.stiffness)
-        for name, _, held, _ in self.state.bearings():
-            at = self.move_at[name]
-            self.stiffness[[at, at + 1], [at, at + 1]] += held
+        state, columns = self.state, self.columns
+        torsion = state.here.torsion[columns.elastic_shafts, 0] / columns.shaft_arms**2
+        held = state.here.support[columns.moving, :, 0].ravel()
+        for some, stiffness in ((columns.shafts, torsion), (columns.bearings, held)):
+            rows = self.rows[some]
+            self.stiffness += rows.T @ (stiffness[:, None] * rows)
 
     def _follows(self, pull: Pull) -> bool:
         """Whether the force of a radial element follows the torque where it stands."""
-        spline = self.state.train.splines.get(pull.gear)
+        spline = self.state.of.train.splines.get(pull.gear)
         if pull.is_ring or spline is None or pull.name != spline.name or not _follows(spline):
             return False
-        radius, force = float(np.linalg.norm(pull.offset)), float(np.linalg.norm(pull.reaction))
-        if radius <= self.near:
+        if pull.radius <= self.near:
             return False
-        if self.state.train.slip is not None:
+        if self.state.of.train.slip is not None:
             return True
-        return _piece(pull, radius, force, self.near, self.load)[0].name != "stick"
+        return _piece(pull, self.near, self.load)[0].name != "stick"
 
     def _pull(self, pull: Pull) -> None:
         """A radial element: the slope of its piece along, force over radius across."""
-        frame = self.state.train.gears[pull.gear].frame
-        radius, force = float(np.linalg.norm(pull.offset)), float(np.linalg.norm(pull.reaction))
-        piece, at_stop = _piece(pull, radius, force, self.near, self.load)
+        train = self.state.of.train
+        pair = self._pair(self._radial(pull))
+        radius, force = pull.radius, pull.force
+        piece, at_stop = _piece(pull, self.near, self.load)
+        held = math.inf if at_stop else piece.stiffness
         if radius <= self.near:
-            held = math.inf if at_stop else piece.stiffness
-            for way in frame:
-                self._hold(self._moved(pull.gear, way), held)
+            for row in pair:
+                self._hold(row, held)
             return
-        outward = pull.offset / radius
-        beside = np.cross(self.state.train.gears[pull.gear].axis, outward)
-        along = self._moved(pull.gear, outward)
-        self._hold(along, math.inf if at_stop else piece.stiffness)
-        self._hold(self._moved(pull.gear, beside), force / radius)
+        outward, beside = _along_and_across(train.gears[pull.gear].frame @ pull.offset / radius)
+        along = outward @ pair
+        self._hold(along, held)
+        self._hold(beside @ pair, force / radius)
         if not self._follows(pull):
             return
-        spline = self.state.train.splines[pull.gear]
-        torque = self.state.transmitted(pull.gear)
-        follow = math.copysign(spline.friction_per_torque, torque) * self.torque_slope[pull.gear]
+        k = list(train.splines).index(pull.gear)
+        torque = float(self.state.transmitted[k, 0])
+        per_torque = train.splines[pull.gear].friction_per_torque
+        follow = math.copysign(per_torque, torque) * self.torque_slope[k]
         coupling = np.outer(along, follow)
         self.taken -= 0.5 * (coupling + coupling.T)
 
-    def _remembering(self) -> None:
-        """Splines with memory: held by their shaft where the slip is, and by nothing elsewhere."""
-        for pull in self.state.pulls:
-            spline = self.state.train.splines.get(pull.gear)
-            if pull.is_ring or spline is None or pull.name != spline.name:
-                continue
-            if float(np.linalg.norm(pull.offset)) <= self.near:
-                for way in self.state.train.gears[pull.gear].frame:
-                    self._hold(self._moved(pull.gear, way), spline.bending_stiffness)
+    def _radial(self, pull: Pull) -> int:
+        """First of the two columns of a radial element."""
+        return int(self.columns.radials.start + 2 * self.state.of.claimed[pull.number])
+
+    def _remembering(self, k: int, spline: Spline, friction: Pull) -> None:
+        """A spline with memory: held by its shaft where the slip is, and by nothing elsewhere."""
+        if friction.radius <= self.near:
+            self.rigid += list(self._pair(self._radial(friction)))
+            for row in self._pair(self.columns.bends.start + 2 * k):
+                self._hold(row, spline.bending_stiffness)
 
     def curvature(self) -> float:
         """Largest κ of M z = κ K z on the moves that rigid contacts leave, at least 0."""
-        if self.state.train.slip is not None and any(map(self._follows, self.state.pulls)):
+        if self.state.of.train.slip is not None and any(map(self._follows, self.pulls)):
             return math.inf
         self._assemble()
-        free = np.eye(self.size)
+        free = np.eye(len(self.stiffness))
         if self.rigid:
             rows = np.array([r / (np.linalg.norm(r) or 1.0) for r in self.rigid])
             _, sizes, basis = np.linalg.svd(rows)
@@ -295,17 +277,14 @@ class _System:
         return largest if largest > NOTHING else 0.0
 
 
-def least_slope(law: Law, force: float) -> float:
-    """Least slope [N/m] from a loaded contact to any other compression of it; infinite if rigid."""
-    if isinstance(law, TableLaw):
-        return float(np.min(np.diff(law.forces) / np.diff(law.compressions)))
-    compression = law.compression(force)
-    return force / compression if compression > 0.0 else math.inf
+def _along_and_across(along: Array) -> tuple[Array, Array]:
+    """A unit vector of a plane, and the one across it."""
+    return along, np.array([-along[1], along[0]])
 
 
-def _piece(pull: Pull, radius: float, force: float, near: float, load: float) -> tuple[Piece, bool]:
+def _piece(pull: Pull, near: float, load: float) -> tuple[Piece, bool]:
     """The piece of a graph on which it stands, and whether it leans on a rigid stop."""
-    law = pull.law
+    law, radius, force = pull.law, pull.radius, pull.force
     at_stop = math.isfinite(law.reach) and radius >= law.reach - near
     at_stop = at_stop and force > law.pieces[-1].end_force + load
     here = law.pieces[0]

@@ -32,10 +32,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.certify.mechanics import mechanics_of
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.mesh import Mesh
-from loadshare.train.ring import transverse
 from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Train
 
@@ -149,35 +149,21 @@ class Measuring:
 
     def __init__(self, train: Train) -> None:
         self.train = train
-        order = {g: k for k, g in enumerate(train.gears)}
-        meshes = list(train.meshes.values())
-        self.flanks = [(m, d) for m in meshes for d in m.flanks]
-        self.mesh_of = np.array([meshes.index(m) for m, _ in self.flanks], dtype=int)
-        self.is_drive = np.array([d for _, d in self.flanks], dtype=bool)
-        gears, width = len(order), len(self.flanks)
-        self.turning = np.zeros((width, gears))
-        along, across = np.zeros((2, width, gears, 3))
-        normals = np.array([m.direction(d)[2] for m, d in self.flanks]).reshape(-1, 3)
-        axes = np.array([_axis(train, m) for m, _ in self.flanks]).reshape(-1, 3)
-        beside = np.cross(axes, normals)
-        for e, (mesh, drive) in enumerate(self.flanks):
-            driver, driven = order[mesh.driver], order[mesh.driven]
-            self.turning[e, driver], self.turning[e, driven], _ = mesh.direction(drive)
-            for matrix, way in ((along, normals[e]), (across, beside[e])):
-                matrix[e, driver] += way
-                matrix[e, driven] -= way
-        self.along, self.across = along.reshape(width, -1), across.reshape(width, -1)
-        geometry = np.array([_geometry(train, m) for m in meshes]).reshape(-1, 3)[self.mesh_of]
+        self.of = of = mechanics_of(train)
+        order, meshes = of.order, list(train.meshes.values())
+        normals = np.array([m.direction(d)[2] for m, d in of.flanks]).reshape(-1, 3)
+        axes = np.array([_axis(train, m) for m, _ in of.flanks]).reshape(-1, 3)
+        across = np.zeros((len(of.flanks), len(order), 3))
+        for e, way in enumerate(np.cross(axes, normals)):
+            mesh, _ = of.flanks[e]
+            across[e, order[mesh.driver]] += way
+            across[e, order[mesh.driven]] -= way
+        self.across = across.reshape(len(of.flanks), -1)
+        geometry = np.array([_geometry(train, m) for m in meshes]).reshape(-1, 3)[of.mesh_of]
         self.line, angle, self.height = geometry.T[:, :, None]
         self.vanishing = float(np.tan(0.5 * angle).min(initial=math.inf))
-        self.radius = np.array([g.base_radius for g in train.gears.values()])
         held = {train.output, *(g for s in train.shafts.values() for g in (s.first, s.second))}
         self.turnable = [k for g, k in order.items() if g not in held]
-        self.arms = [
-            (order[r.gear], order[n], _distance(train, r.gear, n), r)
-            for r in train.drums
-            for n in r.neighbours
-        ]
 
     @property
     def bounds(self) -> dict[str, tuple[float, float]]:
@@ -187,9 +173,9 @@ class Measuring:
             "line_of_action": (min(TURNED, self.vanishing), self.vanishing),
             "approach": (NEGLECTED, MEANINGLESS),
         }
-        if self.arms:
+        if len(self.of.drum):
             bounds["ring"] = (TURNED, self.vanishing)
-        return bounds if self.flanks else {}
+        return bounds if self.of.flanks else {}
 
     def bounded(
         self, situations: Situations, answers: Equilibria, deflection: Array
@@ -209,17 +195,18 @@ class Measuring:
         dict of str to ndarray, shape (elements, S)
             Elements are flanks, or arcs of drums.
         """
-        if not self.flanks:
+        of = self.of
+        if not of.flanks:
             return {}
         # Samples lie next to one another: sums and largest values then run along them.
         shifts = np.ascontiguousarray(
             (answers.displacement + situations.offset).reshape(len(answers.rotation), -1).T
         )
         gap = np.where(
-            self.is_drive, situations.gap[:, self.mesh_of], situations.backlash[:, self.mesh_of]
+            of.is_drive, situations.gap[:, of.mesh_of], situations.backlash[:, of.mesh_of]
         )
-        compression = self.turning @ answers.rotation.T
-        compression += self.along @ shifts
+        compression = of.turning @ answers.rotation.T
+        compression += of.pushing @ shifts
         compression -= gap.T
         turned = np.abs((self.across / self.line) @ shifts)
         neglected = 0.5 * self.line * turned * turned
@@ -232,7 +219,7 @@ class Measuring:
             "line_of_action": turned,
             "approach": np.maximum(-room, 0.0) / deflection,
         }
-        if self.arms:
+        if len(of.drum):
             found["ring"] = self._arms(answers)
         return found
 
@@ -245,7 +232,7 @@ class Measuring:
         torque = np.broadcast_to(situations.torque, answers.rotation.shape)[rows]
         found = here = room[:, rows]
         for gear in self.turnable:
-            closing, opening = self.turning[:, gear] > 0.0, self.turning[:, gear] < 0.0
+            closing, opening = self.of.turning[:, gear] > 0.0, self.of.turning[:, gear] < 0.0
             both = closing | opening
             play = here[closing].min(axis=0, initial=np.inf)
             play = play + here[opening].min(axis=0, initial=np.inf)
@@ -254,13 +241,10 @@ class Measuring:
         return found
 
     def _arms(self, answers: Equilibria) -> Array:
-        moved = answers.displacement
-        return np.array(
-            [
-                np.sqrt(((moved[:, g] - moved[:, n]) ** 2).sum(axis=1)) / a
-                for g, n, a, _ in self.arms
-            ]
-        )
+        moved, of = answers.displacement, self.of
+        away = moved[:, of.drum, None] - moved[:, of.neighbours]
+        turned = np.sqrt((away**2).sum(axis=3)) / of.distance
+        return np.asarray(turned.reshape(len(moved), -1).T)
 
     def worst(self, situations: Situations, answers: Equilibria, deflection: Array) -> Array:
         """Return how far S answers go to a warning: the largest figure over its bound, (S,)."""
@@ -284,23 +268,23 @@ class Measuring:
 
     def _where(self, name: str, element: int) -> str:
         if name == "ring":
-            return f"ring {self.arms[element][3].gear}"
-        return f"mesh {self.flanks[element][0].name}"
+            return f"ring {self.train.drums[element // 2].gear}"
+        return f"mesh {self.of.flanks[element][0].name}"
 
     def one(
         self, situation: Situations, answers: Equilibria, deflection: float
     ) -> dict[str, Measure]:
         """Return all figures of a single answer."""
         names = list(self.train.gears)
-        moved = np.sqrt((answers.displacement[0] ** 2).sum(axis=1)) / self.radius
+        moved = np.sqrt((answers.displacement[0] ** 2).sum(axis=1)) / self.of.radius
         turned = np.abs(answers.rotation[0])
         found = {
             "centre": Measure(float(moved.max()), f"gear {names[_first(moved)]}"),
             "rotation": Measure(float(turned.max()), f"gear {names[_first(turned)]}"),
         }
         shifts = (answers.displacement + situation.offset).reshape(-1)
-        size = np.hypot(self.along @ shifts, self.across @ shifts)
-        backlash = situation.backlash[0, self.mesh_of]
+        size = np.hypot(self.of.pushing @ shifts, self.across @ shifts)
+        backlash = situation.backlash[0, self.of.mesh_of]
         some = np.flatnonzero(np.isfinite(backlash) & (backlash > 0.0))
         if len(some):
             share = size[some] / backlash[some]
@@ -321,10 +305,8 @@ def validity(train: Train, answer: Equilibrium, deflection: float) -> Validity:
     deflection : float
         Of the case [m], as its certificate has it.
     """
-    answers = Equilibria.empty(train, 1)
-    answers.put(0, answer)
     here = situation_of(train, answer.index)
-    return Validity(measuring(train).one(here, answers, deflection))
+    return Validity(measuring(train).one(here, Equilibria.of(train, answer), deflection))
 
 
 @lru_cache(maxsize=16)
@@ -342,13 +324,6 @@ def _axis(train: Train, mesh: Mesh) -> Array:
     """Axis of the plane in which the line of action lies: the pinion's, for a face gear."""
     driver, driven = train.gears[mesh.driver], train.gears[mesh.driven]
     return (driven if driver.kind == "face" else driver).axis
-
-
-def _distance(train: Train, gear: str, neighbour: str) -> float:
-    """Distance of two gears across the first one's axis [m]."""
-    here = train.gears[gear]
-    apart = transverse(here.centre - train.gears[neighbour].centre, here.axis)
-    return math.sqrt(float(apart @ apart))
 
 
 def _geometry(train: Train, mesh: Mesh) -> tuple[float, float, float]:

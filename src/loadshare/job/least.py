@@ -56,7 +56,7 @@ def least_places(
     moved = [row for row in rows if least[row].displacement is not claimed[row].displacement]
     if not moved:
         return least, {}
-    placed = found.equilibria.laid(lambda array: array[moved])
+    placed = found.equilibria.take(np.array(moved))
     for k, row in enumerate(moved):
         placed.put(k, least[row])
     verdicts = machine.judge.judge(situations.take(np.array(moved)), placed, tolerance)

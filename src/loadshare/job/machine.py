@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare import compilation
-from loadshare.certify.many import Judge, Verdicts
+from loadshare.certify import Judge, Verdicts
 from loadshare.certify.validity import Measuring, measuring
 from loadshare.scene import assemble
 from loadshare.scene.data import Data, data_of

@@ -19,9 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from loadshare.case import Case, load_case
-from loadshare.certify.certificate import TOLERANCE
-from loadshare.certify.many.nonconvex import arc_curvature, is_convex
-from loadshare.certify.tolerance import checked_tolerance
+from loadshare.certify.nonconvex import arc_curvature, is_convex
+from loadshare.certify.tolerance import TOLERANCE, checked_tolerance
 from loadshare.errors import CaseError, Refused
 from loadshare.job.ladder import HOT, SEARCHED, STEPS, climb
 from loadshare.job.least import least_places

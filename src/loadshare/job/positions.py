@@ -11,8 +11,7 @@ from typing import Protocol
 
 from loadshare._version import __version__
 from loadshare.case import Case, load_case
-from loadshare.certify.certificate import TOLERANCE
-from loadshare.certify.tolerance import checked_tolerance
+from loadshare.certify.tolerance import TOLERANCE, checked_tolerance
 from loadshare.errors import Refused
 from loadshare.job.ladder import AUTO, HOT, SEARCHED, Answer, climb_all, displaced, left_out
 from loadshare.job.machine import Machine

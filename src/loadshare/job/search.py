@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from loadshare.case import Case
-from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import Refused
 from loadshare.job.ladder import Answer, climb_all
 from loadshare.job.machine import Machine

@@ -18,7 +18,6 @@ from loadshare.case.keys import Path, dotted
 from loadshare.case.origin import Origin
 from loadshare.case.words import as_given
 from loadshare.certify import certify
-from loadshare.certify.state import State
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.certify.validity import refusal_told
 from loadshare.errors import CaseError, Problem, ResultError
@@ -31,6 +30,7 @@ from loadshare.scene import assemble
 from loadshare.solver.position import of_least_norm
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Range
+from loadshare.train.memory import slip_of
 
 AGAIN = "Solve the case again: loadshare run CASE.toml --json FILE."
 
@@ -271,8 +271,7 @@ def _forgotten(train: Train, positions: Iterable[Position]) -> Iterator[Wrong]:
             if off > ROUND_OFF * size + DIGITS * float(np.abs(after[gear]).max()):
                 told = "is not the slip at the end of the step before"
                 yield (*path, gear), as_given(list(slip)), told, as_given(after[gear].tolist())
-        state = State(p.claim.train(train), p.equilibrium)
-        after = {gear: state.slip(spline) for gear, spline in train.splines.items()}
+        after = {gear: slip_of(spline, p.equilibrium) for gear, spline in train.splines.items()}
 
 
 def _loosened(positions: Iterable[Position], train: Train) -> Iterator[Wrong]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import Refused
 from loadshare.job.ladder import Answer, climb, climb_all, displaced
 from loadshare.job.machine import Machine

@@ -15,8 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loadshare.case import Case
-from loadshare.certify.certificate import TOLERANCE
-from loadshare.certify.state import State
+from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import CaseError, Refused
 from loadshare.job import Progress
 from loadshare.job.ladder import Answer
@@ -27,6 +26,7 @@ from loadshare.study.memory import stepped
 from loadshare.study.positions import loaded
 from loadshare.train import Train, build_train
 from loadshare.train.gear import Vector
+from loadshare.train.memory import slip_of
 from loadshare.train.train import Spline
 
 if TYPE_CHECKING:
@@ -158,9 +158,8 @@ def _marched(case: Case, train: Train, progress: Progress | None) -> March:
             if answers:
                 refusal.partial = result_of(case, train, answers, BACKEND, TOLERANCE, steps)
             raise
-        state = State(remembering, answer.equilibrium)
-        after = {g: _slipped(state, s, before[g]) for g, s in train.splines.items()}
-        slips.append({g: _slip(state, answer, g, before[g], after[g]) for g in after})
+        after = {g: _slipped(answer, s, before[g]) for g, s in train.splines.items()}
+        slips.append({g: _slip(answer, g, before[g], after[g]) for g in after})
         answers.append(answer)
         before = after
         if progress is not None:
@@ -175,15 +174,16 @@ def _marched(case: Case, train: Train, progress: Progress | None) -> March:
     )
 
 
-def _slipped(state: State, spline: Spline, before: Vector) -> Vector:
+def _slipped(answer: Answer, spline: Spline, before: Vector) -> Vector:
     """Slip at the end of a step; what differs by round-off from the one before has not changed."""
-    after = state.slip(spline)
-    round_off = UNCHANGED * state.length_scale
+    after = slip_of(spline, answer.equilibrium)
+    round_off = UNCHANGED * answer.certificate.deflection
     return before if float(np.linalg.norm(after - before)) <= round_off else after
 
 
-def _slip(state: State, answer: Answer, gear: str, before: Vector, after: Vector) -> Slip:
-    spline = state.train.splines[gear]
+def _slip(answer: Answer, gear: str, before: Vector, after: Vector) -> Slip:
+    train = answer.train
+    spline = train.splines[gear]
     friction = np.asarray(answer.equilibrium.radial_reaction[spline.name])
     stage = answer.certificate.floats[gear].spline or ""
     if stage == "stick" and after is not before:
@@ -191,8 +191,8 @@ def _slip(state: State, answer: Answer, gear: str, before: Vector, after: Vector
         stage = "slip"
     work = max(float(-friction @ (after - before)), 0.0)
     return Slip(
-        slip=state.train.gears[gear].frame @ after,
+        slip=train.gears[gear].frame @ after,
         stage=stage,
-        friction=spline.bound(state.transmitted(gear)),
+        friction=spline.bound(train.transmitted(gear, answer.equilibrium.flank_force)),
         dissipated=work,
     )

@@ -17,8 +17,7 @@ from itertools import combinations, islice
 import numpy as np
 
 from loadshare.certify import certify
-from loadshare.certify.certificate import TOLERANCE
-from loadshare.certify.state import State
+from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import Refused
 from loadshare.job.ladder import SEARCHED, Answer, rungs
 from loadshare.scene import assemble
@@ -34,7 +33,7 @@ from loadshare.solver.position import Known, equilibrium_of, of_least_norm
 from loadshare.study.answers import BACKEND, certified
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
-from loadshare.train.memory import SlipStop
+from loadshare.train.memory import SlipStop, slip_of
 from loadshare.train.situations import situation_of
 from loadshare.train.train import Spline, Train
 
@@ -197,18 +196,16 @@ def _all_but_free(train: Train, index: int) -> Answer | None:
         answer = certified(replace(train, splines=free), index)
     except Refused:
         return None
-    state, reactions = State(answer.train, answer.equilibrium), {}
+    found, reactions = answer.equilibrium, {}
     for gear, spline in train.splines.items():
-        stop = state.answer.radial_reaction[spline.stop_name]
-        way = state.slip(free[gear]) - _before(train)[gear]
+        stop = found.radial_reaction[spline.stop_name]
+        way = slip_of(free[gear], found) - _before(train)[gear]
         far = float(np.linalg.norm(way)) or 1.0
         friction = -spline.bound(0.0) / far * way
         pushes = float(np.linalg.norm(stop)) > spline.bound(0.0)
         reactions[spline.stop_name] = stop - friction if pushes else np.zeros(3)
         reactions[spline.name] = friction
-    equilibrium = replace(
-        answer.equilibrium, radial_reaction={**answer.equilibrium.radial_reaction, **reactions}
-    )
+    equilibrium = replace(found, radial_reaction={**found.radial_reaction, **reactions})
     certificate = certify(train, equilibrium, TOLERANCE)
     if not certificate.passed:
         return None

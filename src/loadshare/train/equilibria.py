@@ -94,17 +94,17 @@ class Equilibria:
         """All of them, in the order above."""
         return tuple(getattr(self, name) for name in CLAIMED)
 
-    def laid(self, lay: Callable[[Array], Array]) -> Equilibria:
-        """Return the same answers, their arrays laid out anew."""
-        return Equilibria(self.names, *(lay(array) for array in self.arrays))
+    def mapped(self, function: Callable[[Array], Array]) -> Equilibria:
+        """Return the answers with a function applied to each of their arrays."""
+        return Equilibria(self.names, *map(function, self.arrays))
 
     def part(self, samples: slice) -> Equilibria:
         """Return some of the samples, as a view."""
-        return self.laid(lambda array: array[samples])
+        return self.mapped(lambda array: array[samples])
 
     def take(self, samples: NDArray[np.intp]) -> Equilibria:
         """Return some of the samples, as a copy."""
-        return self.laid(lambda array: array[samples])
+        return self.mapped(lambda array: array[samples])
 
     def one(self, sample: int, index: int) -> Equilibrium:
         """Return a sample as an equilibrium of position `index`."""
@@ -156,6 +156,13 @@ class Equilibria:
             room(len(train.shafts)),
             room(gears, 2),
         )
+
+    @classmethod
+    def of(cls, train: Train, answer: Equilibrium) -> Equilibria:
+        """Return an equilibrium as the only sample."""
+        alone = cls.empty(train, 1)
+        alone.put(0, answer)
+        return alone
 
     def forget(self, sample: int) -> None:
         """Let a sample be not a number throughout."""

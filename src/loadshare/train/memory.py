@@ -15,9 +15,13 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from loadshare.train.gear import Vector
 from loadshare.train.radial import ROUNDING, Piece, RadialLaw
 
 if TYPE_CHECKING:
+    from loadshare.train.equilibrium import Equilibrium
     from loadshare.train.train import Spline
 
 
@@ -73,3 +77,10 @@ class SlipStop(_Part):
         spline = self.spline
         room = spline.clearance - spline.bound(torque) / spline.bending_stiffness
         return RadialLaw((Piece(0.0, 0.0, max(room, 0.0), "slip"),))
+
+
+def slip_of(spline: Spline, answer: Equilibrium) -> Vector:
+    """Slip s (3,) [m] of a spline with memory: what the bending of its shaft leaves of p."""
+    forces = (answer.radial_reaction[name] for name in (spline.name, spline.stop_name))
+    bending = -sum(map(np.asarray, forces)) / spline.bending_stiffness
+    return np.asarray(answer.displacement[spline.gear] - bending)

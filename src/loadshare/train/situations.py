@@ -94,10 +94,10 @@ class Situations:
         count = len(np.arange(self.count)[rows])
         return replace(self, count=count, **chosen)
 
-    def laid(self, lay: Callable[[Array], Array]) -> Situations:
-        """Return the same situations, those arrays laid out anew that vary."""
-        varying: dict[str, Any] = {n: lay(a) for n, a in self._arrays().items() if len(a) > 1}
-        return replace(self, **varying)
+    def mapped(self, function: Callable[[Array], Array]) -> Situations:
+        """Return the situations with a function applied to each array but that of positions."""
+        arrays: dict[str, Any] = {name: function(getattr(self, name)) for name in VARYING}
+        return replace(self, **arrays)
 
     def _arrays(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in ("index", *VARYING)}

@@ -15,7 +15,7 @@ from tests.solver.hot.trains import VARIED, varied
 from tests.support import SHIPPED, shipped
 
 import loadshare as ls
-from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify.tolerance import TOLERANCE
 from loadshare.job.machine import FEW, Answers, Machine, engine_named
 from loadshare.solver.hot import compiled, lanes, vectorised
 from loadshare.solver.hot import places as at

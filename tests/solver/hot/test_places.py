@@ -15,7 +15,7 @@ from tests.solver.hot.trains import varied
 
 import loadshare as ls
 from benchmarks import families
-from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify.tolerance import TOLERANCE
 from loadshare.job.ladder import HOT
 from loadshare.job.machine import Machine
 from loadshare.scene.data import data_of

@@ -48,7 +48,7 @@ class Claim:
 
     def take(self, rows: NDArray[np.intp]) -> Claim:
         """Return some of the claims."""
-        answers = self.answers.laid(lambda array: array[rows])
+        answers = self.answers.take(rows)
         here = self.situations
         here = here.take(rows) if here.count > 1 else here
         limits = None if self.limits is None else self.limits[rows]

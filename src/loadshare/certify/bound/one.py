@@ -13,7 +13,7 @@ from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.judge import Bounds, bounds
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.situations import situation_of
+from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Train
 
 KEPT = 64
@@ -99,9 +99,15 @@ def bound_of(train: Train, answer: Equilibrium, rigorous: bool = False) -> Bound
     rigorous : bool
         See `bounds`.
     """
-    claimed = Equilibria.empty(train, 1)
-    claimed.put(0, answer)
+    return bound_of_one(
+        train, situation_of(train, answer.index), Equilibria.of(train, answer), rigorous
+    )
+
+
+def bound_of_one(
+    train: Train, situation: Situations, claimed: Equilibria, rigorous: bool = False
+) -> Bound:
+    """Bound the error of one claim that stands alone in its arrays."""
     if not all(np.isfinite(array).all() for array in claimed.arrays):
         return Bound.none(train)
-    here = situation_of(train, answer.index)
-    return Bound.of(bounds(columns_of(train), here, claimed, rigorous), 0)
+    return Bound.of(bounds(columns_of(train), situation, claimed, rigorous), 0)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from loadshare.case import Case
 from loadshare.case.keys import parse
-from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import CaseError, Refused
 from loadshare.job.machine import Answers, Machine
 from loadshare.scene import assemble

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from loadshare.case import Case, Study
-from loadshare.certify.certificate import TOLERANCE
+from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.machine import ENGINES, FEW

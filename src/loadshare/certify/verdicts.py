@@ -13,16 +13,6 @@ from loadshare.certify.bound import Bounds
 
 Array = NDArray[np.float64]
 
-RESIDUALS = (
-    "force_balance",
-    "moment_balance",
-    "penetration",
-    "complementarity",
-    "deformation_law",
-    "cone_membership",
-    "energy_gap",
-)
-
 
 @dataclass(frozen=True, eq=False)
 class Verdicts:
@@ -31,7 +21,7 @@ class Verdicts:
     Attributes
     ----------
     residuals : ndarray, shape (S, 7)
-        Scaled, in the order of `RESIDUALS`; infinite where an answer cannot be judged.
+        Scaled, in the order of `residuals.RESIDUALS`; infinite where an answer cannot be judged.
     tolerance : float
     load, deflection : ndarray, shape (S,)
         Scales [N], [m].

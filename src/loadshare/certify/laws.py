@@ -21,9 +21,9 @@ def strain_energy(b: Array, c: Array, approach: Array, root: Array) -> Array:
 
     Parameters
     ----------
-    b, c : ndarray, shape (S or 1, flanks)
+    b, c : ndarray, shape (flanks, S or 1)
         [m/N], [m/N^(2/3)].
-    approach, root : ndarray, shape (S, flanks)
+    approach, root : ndarray, shape (flanks, S)
         [m], [N^(1/3)].
     """
     pressed = np.maximum(approach, 0.0)
@@ -57,26 +57,26 @@ def _root(b: Array, c: Array, compression: Array) -> Array:
 
 
 def interpolated(axis: Array, values: Array, at: Array) -> Array:
-    """Values of tables (S, points) at `at` (S,), straight beyond the last point."""
-    last = (~np.isnan(axis)).sum(axis=1) - 2
-    k = np.clip((axis <= at[:, None]).sum(axis=1) - 1, 0, last)[:, None]
+    """Values of tables (points, S) at `at` (S,), straight beyond the last point."""
+    last = (~np.isnan(axis)).sum(axis=0) - 2
+    k = np.clip((axis <= at).sum(axis=0) - 1, 0, last)[None]
     x0, x1, y0, y1 = (
-        np.take_along_axis(a, k + step, 1)[:, 0] for a in (axis, values) for step in (0, 1)
+        np.take_along_axis(a, k + step, 0)[0] for a in (axis, values) for step in (0, 1)
     )
     return np.asarray(y0 + (y1 - y0) / (x1 - x0) * (at - x0))
 
 
 def area(forces: Array, compressions: Array, force: Array) -> Array:
-    """∫δ dF of tables (S, points) up to `force` (S,)."""
+    """∫δ dF of tables (points, S) up to `force` (S,)."""
     total = np.zeros(len(force))
-    points = (~np.isnan(forces)).sum(axis=1)
-    for k in range(forces.shape[1] - 1):
+    points = (~np.isnan(forces)).sum(axis=0)
+    for k in range(len(forces) - 1):
         inside = k + 1 < points
-        start = forces[:, k]
-        end = np.where(k + 2 < points, forces[:, k + 1], np.inf)
+        start = forces[k]
+        end = np.where(k + 2 < points, forces[k + 1], np.inf)
         upper = np.minimum(force, end)
-        low = compressions[:, k]
-        slope = (compressions[:, k + 1] - low) / (forces[:, k + 1] - start)
+        low = compressions[k]
+        slope = (compressions[k + 1] - low) / (forces[k + 1] - start)
         width = np.where(inside, np.maximum(upper - start, 0.0), 0.0)
         part = width * (low + 0.5 * slope * width)
         total += np.where(inside & (width > 0.0), part, 0.0)

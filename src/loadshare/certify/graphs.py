@@ -1,7 +1,7 @@
-"""Graphs of radial elements (formulation, section 5), for many samples.
+"""Graphs of radial elements (formulation, section 5).
 
-Where `train.radial` has a chain of pieces, a graph has five figures here, so that all samples are
-judged by the same few lines.
+Where `train.radial` has a chain of pieces, a graph has five figures here, so that all elements of
+all samples are judged by the same few lines.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ Array = NDArray[np.float64]
 
 
 class Graph(NamedTuple):
-    """Force over radius of S samples: a rise, a level, and a rise or a stop.
+    """Force over radius of Q elements in S samples: a rise, a level, and a rise or a stop.
 
     Attributes
     ----------
-    first : ndarray, shape (S,)
+    first : ndarray, shape (Q, S)
         Slope of the first rise [N/m].
-    stick : ndarray, shape (S,)
+    stick : ndarray, shape (Q, S)
         Radius where it ends [m]; infinite where it goes on for ever.
-    bound : ndarray, shape (S,)
+    bound : ndarray, shape (Q, S)
         Force of the level [N].
-    reach : ndarray, shape (S,)
+    reach : ndarray, shape (Q, S)
         Radius where the level ends [m].
-    last : ndarray, shape (S,)
+    last : ndarray, shape (Q, S)
         Slope from there on [N/m]; infinite for a rigid stop.
     """
 
@@ -39,25 +39,21 @@ class Graph(NamedTuple):
 
 
 def interval(graph: Graph, radius: Array, band: Array) -> tuple[Array, Array]:
-    """Forces [N] that a graph admits within the band [m] about a radius [m]."""
+    """Forces [N] that graphs admit within the band [m] about radii [m]."""
     first, stick, bound, reach, last = graph
-    low, high = np.full(len(radius), np.inf), np.zeros(len(radius))
-    level_end = np.maximum(reach, np.where(np.isinf(stick), 0.0, stick))
+    throughout = np.isinf(stick)
+    low, high = np.full(radius.shape, np.inf), np.zeros(radius.shape)
+    level_end = np.maximum(reach, np.where(throughout, 0.0, stick))
+    inner, outer = radius - band, radius + band
     pieces = (
-        (np.zeros(len(radius)), stick, np.zeros(len(radius)), first, stick > 0.0),
-        (stick, level_end, bound, np.zeros(len(radius)), (level_end > stick)),
-        (
-            level_end,
-            np.full(len(radius), np.inf),
-            bound,
-            last,
-            np.isfinite(last) & ~np.isinf(stick),
-        ),
+        (0.0, stick, 0.0, first, stick > 0.0),
+        (stick, level_end, bound, 0.0, level_end > stick),
+        (level_end, np.inf, bound, last, np.isfinite(last) & ~throughout),
     )
     for begin, end, force, slope, there in pieces:
-        on = there & (radius >= begin - band) & (radius <= end + band)
+        on = there & (outer >= begin) & (inner <= end)
         rising = np.where(slope > 0.0, slope, 0.0)
-        least, most = (np.clip(radius + side, begin, end) - begin for side in (-band, band))
+        least, most = (np.clip(place, begin, end) - begin for place in (inner, outer))
         low = np.where(on, np.minimum(low, force + rising * least), low)
         high = np.where(on, np.maximum(high, force + rising * most), high)
     low = np.where(radius <= band, 0.0, low)
@@ -67,8 +63,13 @@ def interval(graph: Graph, radius: Array, band: Array) -> tuple[Array, Array]:
     return low, high
 
 
+def strength(graph: Graph) -> Array:
+    """Largest force [N] that graphs admit: finite only where they end in a level."""
+    return np.where(np.isinf(graph.reach) & np.isinf(graph.last), graph.bound, np.inf)
+
+
 def energy(graph: Graph, radius: Array) -> Array:
-    """Strain energy [J] of a graph at a radius [m]."""
+    """Strain energy [J] of graphs at radii [m]."""
     first, stick, bound, reach, last = graph
     rise = np.minimum(radius, stick)
     throughout = np.isinf(stick)
@@ -80,7 +81,7 @@ def energy(graph: Graph, radius: Array) -> Array:
 
 
 def complementary(graph: Graph, force: Array) -> Array:
-    """Conjugate energy [J] of a graph at a force [N]."""
+    """Conjugate energy [J] of graphs at forces [N]."""
     first, stick, bound, reach, last = graph
     throughout = np.isinf(stick)
     has_rise = first > 0.0

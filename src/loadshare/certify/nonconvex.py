@@ -1,0 +1,54 @@
+"""What is not convex in many answers: the cheap part of `certify.uniqueness`.
+
+Where nothing of it carries, an answer is the only one of least energy. Elsewhere F/a of the arcs is
+what they take from the stiffness across them; how large that is in parts of the stiffness is found
+for single answers.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.certify.mechanics import mechanics_of
+from loadshare.certify.uniqueness import CARRIES
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.situations import Situations
+from loadshare.train.train import Train
+
+Array = NDArray[np.float64]
+
+
+def _arc_forces(train: Train, answers: Equilibria) -> Array:
+    """Forces of the arcs of every drum [N], shape (S, drums, 2)."""
+    drums = len(train.drums)
+    return answers.ring_force[:, 2 * drums :].reshape(len(answers.rotation), drums, 2)
+
+
+def arc_curvature(train: Train, answers: Equilibria) -> Array:
+    """Stiffness [N/m] that arcs take across them, Σ F/a of the drum where it is largest, (S,)."""
+    taken = np.maximum(_arc_forces(train, answers), 0.0) / mechanics_of(train).distance
+    return np.asarray(taken.sum(axis=2).max(axis=1, initial=0.0))
+
+
+def is_convex(train: Train, situations: Situations, answers: Equilibria, load: Array) -> Array:
+    """Whether nothing that is not convex carries, (S,) of bool.
+
+    Parameters
+    ----------
+    train : Train
+    situations : Situations
+    answers : Equilibria
+        S of them.
+    load : ndarray, shape (S,)
+        Of each case [N].
+    """
+    band = CARRIES * load
+    convex = _arc_forces(train, answers).max(axis=(1, 2), initial=0.0) <= band
+    torque = answers.flank_force @ mechanics_of(train).spline_moment.T
+    fixed, per_torque = situations.spline[:, :, 3], situations.spline[:, :, 4]
+    first = len(train.rounds)
+    reaction = answers.radial_reaction[:, first : first + len(train.splines)]
+    slips = np.sqrt((reaction**2).sum(axis=2)) >= per_torque * np.abs(torque) - band[:, None]
+    follows = np.isnan(fixed) & (per_torque > 0.0)
+    return np.asarray(convex & ~(follows & slips).any(axis=1))

@@ -1,0 +1,103 @@
+"""Radial elements of a single claim with their laws, and why a claim cannot be judged."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.certify.state import State
+from loadshare.train.memory import SlipFriction, SlipStop
+from loadshare.train.radial import RadialLaw, round_ring_law
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pull:
+    """A radial element.
+
+    Attributes
+    ----------
+    name, gear : str
+    number : int
+        Among the radial elements of `Mechanics`.
+    law : RadialLaw
+    offset : ndarray, shape (3,)
+        Displacement of the gear's centre from the element's [m].
+    reaction : ndarray, shape (3,)
+        Force on the gear [N], as claimed.
+    is_ring : bool
+    """
+
+    name: str
+    gear: str
+    number: int
+    law: RadialLaw
+    offset: Array
+    reaction: Array
+    is_ring: bool
+
+    @property
+    def radius(self) -> float:
+        """Size of the offset [m]."""
+        return float(np.linalg.norm(self.offset))
+
+    @property
+    def force(self) -> float:
+        """Size of the reaction [N]."""
+        return float(np.linalg.norm(self.reaction))
+
+
+def pulls_of(state: State) -> tuple[Pull, ...]:
+    """Return the radial elements of the first claim.
+
+    Raises
+    ------
+    ValueError
+        If a spline has no law at the torque that it transmits; the message names the numbers.
+    """
+    train, of = state.of.train, state.of
+    laws = [*_spline_laws(state), *(round_ring_law(r.radius, r.stiffness) for r in train.rounds)]
+    rings = len(laws) - len(train.rounds)
+    return tuple(
+        Pull(name, of.gears[of.pulled[q]], q, law, state.offset[q, :, 0], state.reaction[q, :, 0],
+             q >= rings)
+        for q, (name, law) in enumerate(zip(of.pulls, laws, strict=True))
+    )  # fmt: skip
+
+
+def _spline_laws(state: State) -> list[RadialLaw]:
+    """Laws of splines; with memory of friction, and then of the stops."""
+    train = state.of.train
+    if not train.splines:
+        return []
+    torques = state.transmitted[:, 0].tolist()
+    splines = list(zip(train.splines.values(), torques, strict=True))
+    if train.slip is None:
+        return [s.law(torque) for s, torque in splines]
+    return [part(s).law(torque) for part in (SlipFriction, SlipStop) for s, torque in splines]
+
+
+def fault_of(state: State) -> str:
+    """Why the first claim cannot be judged, else empty.
+
+    A figure is not a number, a spline has no law, or a gear stands beyond the neighbour on whose
+    ring its own rolls: there the arc's inequality holds, and no gear can be.
+    """
+    if not state.faulty[0]:
+        return ""
+    if not all(np.isfinite(claimed[..., 0]).all() for claimed in state.claim.arrays):
+        return "a figure that is not a number"
+    try:
+        _spline_laws(state)
+    except ValueError as error:
+        return str(error)
+    beyond = [
+        ring.arc_name(neighbour)
+        for ring, sides in zip(state.of.train.drums, state.beyond[..., 0], strict=True)
+        for neighbour, is_beyond in zip(ring.neighbours, sides, strict=True)
+        if is_beyond
+    ]
+    return f"a place beyond the neighbour, {', '.join(beyond)}" if beyond else "a figure too large"

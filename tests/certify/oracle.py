@@ -1,0 +1,542 @@
+"""The certificate of one answer, element by element: what batched and compiled ones are held to.
+
+It is written with scalars, mappings and the laws of the train in place of arrays (formulation,
+section 8), and shares with them the walk along rigid shafts only. Forces are vectors that act on
+centres, moments are force times base radius, and each contact is judged at the displaced position.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from loadshare.certify.rigid import RigidShafts, rigid_shafts
+from loadshare.certify.tolerance import BAND
+from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.gear import Vector
+from loadshare.train.law import RIGID, Law, PowerLaw
+from loadshare.train.memory import SlipFriction, SlipStop
+from loadshare.train.radial import RadialLaw, round_ring_law
+from loadshare.train.ring import Arc
+from loadshare.train.train import Situation, Spline, Train
+
+EPS = float(np.finfo(float).eps)
+"""Round-off of a length, relative to it."""
+
+
+def turned(wedge: float, band: float, distance: float) -> float:
+    """Angle [rad] within which a band [m] leaves the direction between two arcs (`squeezes`)."""
+    across = 2.0 * band / distance
+    return across / (wedge + math.sqrt(wedge * wedge + across))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Push:
+    """A unilateral contact at the answer.
+
+    Attributes
+    ----------
+    name : str
+    gear : str or None
+        The gear whose float it limits, for a ring's contact.
+    force : float
+        [N], as claimed.
+    approach : float
+        [m], positive when compressed.
+    at_rest : float
+        Approach [m] that remains when all coordinates of its tangent plane are zero (minus the
+        gap).
+    law : Law
+    normal : ndarray, shape (3,)
+        Direction of the force on the pushed gear.
+    pushed, pushing : str or None
+        Gears that receive +F n and −F n; None is the housing.
+    """
+
+    name: str
+    gear: str | None
+    force: float
+    approach: float
+    at_rest: float
+    law: Law
+    normal: Vector
+    pushed: str | None
+    pushing: str | None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pull:
+    """A radial element at the answer.
+
+    Attributes
+    ----------
+    name, gear : str
+    law : RadialLaw
+    offset : ndarray, shape (3,)
+        Displacement of the gear's centre from the element's [m].
+    centre : ndarray, shape (3,)
+        The element's centre [m].
+    reaction : ndarray, shape (3,)
+        Force on the gear [N], as claimed.
+    is_ring : bool
+    """
+
+    name: str
+    gear: str
+    law: RadialLaw
+    offset: Vector
+    centre: Vector
+    reaction: Vector
+    is_ring: bool
+
+
+@dataclass(frozen=True)
+class State:
+    """A train, a position and an answer to be judged."""
+
+    train: Train
+    answer: Equilibrium
+
+    @cached_property
+    def situation(self) -> Situation:
+        """What the position brings."""
+        return self.train.situation(self.answer.index)
+
+    def moved(self, gear: str) -> Vector:
+        """Displacement p (3,) [m]."""
+        return np.asarray(self.answer.displacement[gear])
+
+    @cached_property
+    def pushes(self) -> tuple[Push, ...]:
+        """All unilateral contacts: flanks, arcs, stops."""
+        return (*self._flanks(), *self._ring_contacts())
+
+    def _flanks(self) -> Iterator[Push]:
+        phi, offset = self.answer.rotation, self.situation.offset
+        for mesh in self.train.meshes.values():
+            errors = offset[mesh.driver] - offset[mesh.driven]
+            relative = self.moved(mesh.driver) - self.moved(mesh.driven) + errors
+            turned = (phi[mesh.driver], phi[mesh.driven])
+            position = self.situation.mesh_position[mesh.name]
+            for drive in mesh.flanks:
+                name = mesh.flank_name(drive)
+                yield Push(
+                    name=name,
+                    gear=None,
+                    force=self.answer.flank_force[name],
+                    approach=mesh.approach(drive, position, turned, relative),
+                    at_rest=mesh.approach(drive, position, (0.0, 0.0), errors),
+                    law=mesh.law(position),
+                    normal=mesh.direction(drive)[2],
+                    pushed=mesh.driven,
+                    pushing=mesh.driver,
+                )
+
+    def _ring_contacts(self) -> Iterator[Push]:
+        for ring in self.train.drums:
+            law = RIGID if math.isinf(ring.stiffness) else PowerLaw(1.0 / ring.stiffness)
+            for side, neighbour in enumerate(ring.neighbours):
+                arc = self.train.arc(ring, side, self.situation)
+                relative = self.moved(ring.gear) - self.moved(neighbour)
+                normal, margin = arc.normal(relative), arc.margin(relative)
+                name = ring.arc_name(neighbour)
+                yield Push(
+                    name=name,
+                    gear=ring.gear,
+                    force=self.answer.ring_force[name],
+                    approach=-margin,
+                    at_rest=float(normal @ relative) - margin,
+                    law=law,
+                    normal=normal,
+                    pushed=ring.gear,
+                    pushing=neighbour,
+                )
+            across = float(ring.across @ self.moved(ring.gear))
+            for name, sign, limit in zip(
+                ring.stop_names, (1.0, -1.0), (ring.up, ring.down), strict=True
+            ):
+                yield Push(
+                    name=name,
+                    gear=ring.gear,
+                    force=self.answer.ring_force[name],
+                    approach=sign * across - limit,
+                    at_rest=-limit,
+                    law=law,
+                    normal=-sign * ring.across,
+                    pushed=ring.gear,
+                    pushing=None,
+                )
+
+    def _arcs(self) -> Iterator[tuple[str, Arc, Vector]]:
+        """Every exclusion arc: its name, itself, and the relative displacement of its gears [m]."""
+        for ring in self.train.drums:
+            for side, neighbour in enumerate(ring.neighbours):
+                arc = self.train.arc(ring, side, self.situation)
+                yield ring.arc_name(neighbour), arc, self.moved(ring.gear) - self.moved(neighbour)
+
+    def squeezes(self, band: float) -> dict[str, float]:
+        """Force [N] across the two rigid arcs of a ring that a squeeze between them leaves open.
+
+        A centre in touch with both, up to a length, lies anywhere within y across them, where
+        ε y + y²/2a is that length and ε the angle of the wedge; the directions of the two forces
+        are known no better than y/a. The length is what the two arcs overlap or stand open; where
+        the narrowest place of the wedge, ε²a/8 past its mouth, overlaps by less than the band [m],
+        it is the band: through there a float would roll away that a large squeeze seems to hold.
+        Neighbours that give way follow the float instead.
+        """
+        forces = self.answer.ring_force
+        found = {}
+        for ring in self.train.drums:
+            gives_way = any(self.train.gears[n].moves for n in ring.neighbours)
+            if gives_way or not math.isinf(ring.stiffness):
+                continue
+            arcs = [self.train.arc(ring, side, self.situation) for side in (0, 1)]
+            wedge = float(np.linalg.norm(sum(a.normal(np.zeros(3)) for a in arcs)))
+            squeeze = min(forces[ring.arc_name(n)] for n in ring.neighbours)
+            distance = min(a.distance for a in arcs)
+            moved = self.moved(ring.gear)
+            apart = max(abs(a.margin(moved)) for a in arcs) + EPS * float(np.linalg.norm(moved))
+            known = apart if wedge**2 * distance > 8.0 * band else band
+            found[f"ring {ring.gear}: arcs"] = squeeze * turned(wedge, known, distance)
+        return found
+
+    @cached_property
+    def pulls(self) -> tuple[Pull, ...]:
+        """All radial elements: splines and round rings."""
+        found = []
+        before = self.train.slip
+        for gear, spline in self.train.splines.items():
+            if before is not None:
+                found += self._slipping(spline, np.asarray(before[gear]))
+                continue
+            law = spline.law(self.transmitted(gear))
+            reaction = np.asarray(self.answer.radial_reaction[spline.name])
+            moved = self.moved(gear)
+            found.append(Pull(spline.name, gear, law, moved, np.zeros(3), reaction, False))
+        for ring in self.train.rounds:
+            law = round_ring_law(ring.radius, ring.stiffness)
+            reaction = np.asarray(self.answer.radial_reaction[ring.name])
+            offset = self.moved(ring.gear) - ring.offset
+            found.append(Pull(ring.name, ring.gear, law, offset, ring.offset, reaction, True))
+        return tuple(found)
+
+    def _slipping(self, spline: Spline, before: Vector) -> list[Pull]:
+        """Friction and clearance of a spline that remembers its slip."""
+        gear, torque = spline.gear, self.transmitted(spline.gear)
+        slip = self.slip(spline)
+        friction, stop = (
+            np.asarray(self.answer.radial_reaction[name])
+            for name in (spline.name, spline.stop_name)
+        )
+        resisted, room = SlipFriction(spline).law(torque), SlipStop(spline).law(torque)
+        return [
+            Pull(spline.name, gear, resisted, slip - before, before, friction, False),
+            Pull(spline.stop_name, gear, room, slip, np.zeros(3), stop, False),
+        ]
+
+    def slip(self, spline: Spline) -> Vector:
+        """Slip s (3,) [m] of a spline with memory: what the bending of its shaft leaves of p."""
+        return np.asarray(self.moved(spline.gear) - self.bending(spline))
+
+    def bending(self, spline: Spline) -> Vector:
+        """Bending p − s (3,) [m] of a spline's shaft under its claimed force, with memory."""
+        names = (spline.name, spline.stop_name)
+        force = sum(np.asarray(self.answer.radial_reaction[name]) for name in names)
+        return np.asarray(-force / spline.bending_stiffness)
+
+    def winds(self) -> Iterator[tuple[str, float, float]]:
+        """Every shaft with its wind-up φ_a − φ_b − clocking [rad] and its torque [N·m].
+
+        The torque of a rigid shaft is nobody's claim: it is what balances the gears beyond it.
+        """
+        phi, claimed = self.answer.rotation, self.answer.shaft_torque
+        for name, shaft in self.train.shafts.items():
+            wind = phi[shaft.first] - phi[shaft.second] - shaft.clocking
+            if math.isinf(shaft.stiffness):
+                beyond = self.rigid.beyond[name].items()
+                yield name, wind, math.fsum(sign * self.moment[g] for g, sign in beyond)
+            else:
+                yield name, wind, claimed.get(name, shaft.stiffness * wind)
+
+    @cached_property
+    def rigid(self) -> RigidShafts:
+        """The rigid shafts, and what lies beyond each."""
+        return rigid_shafts(self.train)
+
+    @cached_property
+    def moment(self) -> dict[str, float]:
+        """Moment [N·m] on every gear of the load, its flanks and elastic shafts."""
+        train, answer = self.train, self.answer
+        moment = {g: self.situation.torque.get(g, 0.0) for g in train.gears}
+        for mesh in train.meshes.values():
+            for drive in mesh.flanks:
+                force = answer.flank_force[mesh.flank_name(drive)]
+                along = 1.0 if drive else -1.0
+                moment[mesh.driver] -= along * mesh.radii[0] * force
+                moment[mesh.driven] += along * mesh.radii[1] * force
+        for name, shaft in train.shafts.items():
+            if not math.isinf(shaft.stiffness):
+                wind = answer.rotation[shaft.first] - answer.rotation[shaft.second]
+                torque = answer.shaft_torque.get(name, shaft.stiffness * (wind - shaft.clocking))
+                moment[shaft.first] -= torque
+                moment[shaft.second] += torque
+        return moment
+
+    def bearings(self) -> Iterator[tuple[str, Vector, Vector, Vector]]:
+        """Every gear that can be displaced: p [m], stiffness [N/m] and bearing force [N], (2,)."""
+        for name, gear in self.train.gears.items():
+            if gear.support is not None:
+                moved = gear.frame @ self.moved(name)
+                force = self.answer.support_force.get(name, gear.support * moved)
+                yield name, moved, gear.support, np.asarray(force)
+
+    def transmitted(self, gear: str) -> float:
+        """Torque [N·m] that a gear takes over its shaft or spline."""
+        return self.train.transmitted(gear, self.answer.flank_force)
+
+    @cached_property
+    def finite(self) -> bool:
+        """Whether every claimed figure is a number."""
+        a = self.answer
+        figures = [*a.rotation.values(), *a.flank_force.values(), *a.ring_force.values()]
+        figures += a.shaft_torque.values()
+        vectors = [
+            *a.displacement.values(),
+            *a.radial_reaction.values(),
+            *a.support_force.values(),
+        ]
+        return bool(np.isfinite(figures).all() and all(np.isfinite(v).all() for v in vectors))
+
+    @cached_property
+    def fault(self) -> str:
+        """Why the claim cannot be judged, else empty.
+
+        A figure is not a number, a spline has no law, or a gear stands beyond the neighbour on
+        whose ring its own rolls: there the arc's inequality holds, and no gear can be.
+        """
+        if not self.finite:
+            return "a figure that is not a number"
+        try:
+            _ = self.pulls
+        except ValueError as error:
+            return str(error)
+        beyond = [name for name, arc, relative in self._arcs() if arc.beyond(relative)]
+        return f"a place beyond the neighbour, {', '.join(beyond)}" if beyond else ""
+
+    @cached_property
+    def force_scale(self) -> float:
+        """Load of the case [N]: largest flank force or external push; 1 N when nothing acts.
+
+        Reactions of rigid limits do not count: any preload of two opposite stops would be in
+        balance and would hide what is not.
+        """
+        gears = self.train.gears
+        forces = [abs(f) for f in self.answer.flank_force.values()]
+        forces += [abs(t) / gears[g].base_radius for g, t in self.situation.torque.items()]
+        return max(forces, default=0.0) or 1.0
+
+    @cached_property
+    def length_scale(self) -> float:
+        """Deflection of the case [m]: largest compression, gap taken up, or error; 1 µm when none.
+
+        Displacements do not count: a free one could be claimed as large as one likes.
+        """
+        closed = [p for p in self._flanks() if p.force > 0.0]
+        lengths = [p.law.compression(p.force) for p in closed]
+        lengths += [abs(p.at_rest) for p in closed]
+        lengths += [float(np.linalg.norm(c)) for c in self.situation.offset.values()]
+        return max(lengths, default=0.0) or 1e-6
+
+
+ROUNDED = 16.0 * float(np.finfo(float).eps)
+"""Rounding of energies, relative to the sum of their sizes."""
+
+
+def force_balance(state: State) -> dict[str, float]:
+    """Unbalanced force [N] on gears that can be displaced."""
+    train = state.train
+    total = {name: -force @ train.gears[name].frame for name, _, _, force in state.bearings()}
+    for push in state.pushes:
+        for gear, sign in ((push.pushed, 1.0), (push.pushing, -1.0)):
+            if gear in total:
+                total[gear] = total[gear] + sign * push.force * push.normal
+    for pull in state.pulls:
+        total[pull.gear] = total[pull.gear] + pull.reaction
+    return {g: float(np.linalg.norm(train.gears[g].frame @ f)) for g, f in total.items()}
+
+
+def moment_balance(state: State) -> dict[str, float]:
+    """Unbalanced moment over base radius [N] on gears that turn as one, by one of them."""
+    train = state.train
+    unbalanced = {}
+    for group in state.rigid.groups:
+        if train.output not in group:
+            radius = max(train.gears[g].base_radius for g in group)
+            unbalanced[group[0]] = abs(math.fsum(state.moment[g] for g in group)) / radius
+    return unbalanced
+
+
+def penetration(state: State) -> dict[str, float]:
+    """Overlap [m] of contacts that a force of the claimed size does not explain."""
+    overlaps = {}
+    for push in state.pushes:
+        overlaps[push.name] = push.approach - push.law.compression(max(push.force, 0.0))
+    for pull in state.pulls:
+        overlaps[pull.name] = float(np.linalg.norm(pull.offset)) - pull.law.reach
+    return overlaps
+
+
+def complementarity(state: State) -> dict[str, float]:
+    """Work [J] of a force over an open gap, by contact."""
+    return {
+        p.name: p.force * (p.law.compression(max(p.force, 0.0)) - p.approach) for p in state.pushes
+    }
+
+
+def deformation_law(state: State, band: float) -> dict[str, float]:
+    """Misfit [m] of compressed contacts, shafts and bearings with their laws.
+
+    Parameters
+    ----------
+    state : State
+    band : float
+        Force [N] below which a contact counts as open; complementarity judges it then.
+    """
+    misfits = {
+        p.name: abs(p.approach - p.law.compression(p.force)) for p in state.pushes if p.force > band
+    }
+    for name, wind, torque in state.winds():
+        shaft = state.train.shafts[name]
+        lag = abs(wind - torque / shaft.stiffness)
+        misfits[name] = lag * state.train.gears[shaft.first].base_radius
+    for name, moved, stiffness, force in state.bearings():
+        held = stiffness > 0.0
+        off = (moved - force / np.where(held, stiffness, 1.0))[held]
+        misfits[f"bearing {name}"] = float(np.linalg.norm(off))
+    for name, gear in state.train.gears.items():
+        allowed = np.zeros(3)
+        if gear.support is not None:
+            allowed = (gear.frame @ state.moved(name)) @ gear.frame
+        misfits[f"gear {name}"] = float(np.linalg.norm(state.moved(name) - allowed))
+    output = state.train.output
+    turned = state.answer.rotation[output] * state.train.gears[output].base_radius
+    misfits[f"gear {output} rotation"] = abs(turned)
+    return misfits
+
+
+def cone_membership(state: State, band: float) -> dict[str, float]:
+    """Excess [N] of forces over what their contacts or graphs admit.
+
+    Parameters
+    ----------
+    state : State
+    band : float
+        Radius [m] within which a graph's corner admits its whole step.
+    """
+    excess = {p.name: -p.force for p in state.pushes}
+    for name, _, stiffness, force in state.bearings():
+        excess[f"bearing {name}"] = float(np.linalg.norm(force[stiffness == 0.0]))
+    excess |= state.squeezes(band)
+    for pull in state.pulls:
+        radius = float(np.linalg.norm(pull.offset))
+        size = float(np.linalg.norm(pull.reaction))
+        low, high = pull.law.interval(radius, band)
+        along = size
+        sideways = 0.0
+        if radius > band:
+            outward = pull.offset / radius
+            along = -float(pull.reaction @ outward)
+            sideways = float(np.linalg.norm(pull.reaction + along * outward))
+            sideways -= size * band / radius
+        excess[pull.name] = max(low - along, along - high, sideways)
+    return excess
+
+
+def energy_gap(state: State) -> dict[str, float]:
+    """Potential less complementary energy [J], beyond rounding: zero at an equilibrium.
+
+    Bearings and rings may hold far more energy against one another than the load brings in.
+    """
+    primal, dual = [], []
+    for gear, torque in state.situation.torque.items():
+        primal.append(-torque * state.answer.rotation[gear])
+    for push in state.pushes:
+        primal.append(push.law.energy(push.approach))
+        dual += [-push.law.complementary(max(push.force, 0.0)), push.force * push.at_rest]
+    for name, wind, torque in state.winds():
+        shaft = state.train.shafts[name]
+        if not math.isinf(shaft.stiffness):
+            primal.append(0.5 * shaft.stiffness * wind**2)
+        dual += [-0.5 * torque**2 / shaft.stiffness, -torque * shaft.clocking]
+    for _, moved, stiffness, force in state.bearings():
+        primal.append(0.5 * float(stiffness @ moved**2))
+        held = stiffness > 0.0
+        dual.append(-0.5 * float((force[held] ** 2 / stiffness[held]).sum()))
+    for spline in state.train.splines.values() if state.train.slip is not None else ():
+        bent = float(np.linalg.norm(state.bending(spline)))
+        energy = 0.5 * spline.bending_stiffness * bent**2
+        primal.append(energy)
+        dual.append(-energy)
+    for pull in state.pulls:
+        # What exceeds a graph's strength is for cone membership to judge.
+        size = min(float(np.linalg.norm(pull.reaction)), pull.law.strength)
+        primal.append(pull.law.energy(float(np.linalg.norm(pull.offset))))
+        dual += [-pull.law.complementary(size), float(pull.reaction @ pull.centre)]
+    rounding = ROUNDED * math.fsum(map(abs, (*primal, *dual)))
+    gap = abs(math.fsum(primal) - math.fsum(dual))
+    return {"the whole train": max(gap - rounding, 0.0)}
+
+
+@dataclass(frozen=True)
+class Figures:
+    """A residual: the figures of all elements, in `unit`, and the scale of the case."""
+
+    elements: dict[str, float]
+    unit: str
+    scale: float
+
+    @property
+    def worst(self) -> float:
+        """Largest figure, not below zero; not-a-number is the worst of all."""
+        values = [*self.elements.values(), 0.0]
+        return math.inf if any(map(math.isnan, values)) else max(values)
+
+    @property
+    def scaled(self) -> float:
+        """The largest figure over the scale."""
+        return self.worst / self.scale
+
+
+def judged(train: Train, answer: Equilibrium) -> dict[str, Figures]:
+    """All residuals of a claim; infinite, with the reason for an element, where none is judged."""
+    state = State(train, answer)
+    if state.fault:
+        return {name: Figures({state.fault: math.inf}, unit, 1.0) for name, unit in UNITS.items()}
+    load, deflection = state.force_scale, state.length_scale
+    scale = {"N": load, "m": deflection, "J": load * deflection}
+    found = {
+        "force_balance": force_balance(state),
+        "moment_balance": moment_balance(state),
+        "penetration": penetration(state),
+        "complementarity": complementarity(state),
+        "deformation_law": deformation_law(state, BAND * load),
+        "cone_membership": cone_membership(state, BAND * deflection),
+        "energy_gap": energy_gap(state),
+    }
+    return {name: Figures(found[name], unit, scale[unit]) for name, unit in UNITS.items()}
+
+
+UNITS = {
+    "force_balance": "N",
+    "moment_balance": "N",
+    "penetration": "m",
+    "complementarity": "J",
+    "deformation_law": "m",
+    "cone_membership": "N",
+    "energy_gap": "J",
+}
+"""The residuals and their units."""

@@ -1,0 +1,71 @@
+"""The certificate of marches, whose splines remember their slip: figures of the oracle, many
+answers at once.
+
+Source: formulation, sections 5 and 8.
+"""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from tests.certify.test_many import agree, alike, damaged, scales_of, taken
+from tests.support import shipped
+
+from loadshare.certify import RESIDUALS, certify
+from loadshare.certify.tolerance import TOLERANCE
+from loadshare.errors import Refused
+from loadshare.study.memory import stepped
+from loadshare.train import Train, build_train
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.memory import slip_of
+from loadshare.train.situations import situation_of
+
+TURN = {"march": {"gear": "4", "revolutions": 1.0, "steps": 8}}
+MARCHES = {
+    "slips": ("fgfbstts/full_float", TURN),
+    "ends of clearances": ("fgfbstts/spline_clearance", TURN),
+    "rings and shafts": ("fgfbstts/all_elements", {"march.steps": 3}),
+}
+
+
+@cache
+def second_step(name: str) -> tuple[Train, Equilibrium]:
+    """The second step of a march, which starts from a slip, and its train."""
+    case, changes = MARCHES[name]
+    train = build_train(shipped(case).replace(changes))
+    first = train.remembering({g: np.zeros(3) for g in train.splines})
+    found = stepped(first, 1).equilibrium
+    train = train.remembering({g: slip_of(s, found) for g, s in train.splines.items()})
+    return train, stepped(train, 2).equilibrium
+
+
+@pytest.mark.parametrize("name", MARCHES)
+def test_steps_of_a_march(name):
+    """The right answer, and forty with one to three figures damaged."""
+    train, found = second_step(name)
+    situations, claimed = situation_of(train, 2), Equilibria.of(train, found)
+    agree(train, [2], situations, claimed)
+    certificate = certify(train, found)
+    assert certificate.passed
+    rows = np.zeros(40, dtype=int)
+    scales = scales_of(train, certificate.load, certificate.deflection)
+    spoilt = damaged(taken(claimed, rows), scales, seed=len(name))
+    agree(train, [2] * len(rows), situations, spoilt)
+    many = alike(train, situations, spoilt)
+    assert not many.passed.all()
+    for residual in ("force_balance", "penetration", "cone_membership", "energy_gap"):
+        assert (many.residuals[:, RESIDUALS.index(residual)] > TOLERANCE).any(), residual
+
+
+def test_a_law_that_jumps_is_refused():
+    """Friction with memory has no step where it starts to slip."""
+    train, found = second_step("slips")
+    jumping = build_train(
+        shipped("fgfbstts/full_float").replace({**TURN, "splines.4.stick_limit": "1 um"})
+    ).remembering(train.slip)
+    with pytest.raises(Refused, match="leave stick_limit out"):
+        stepped(jumping, 2)
+    certificate = certify(jumping, found)
+    assert {"leave stick_limit out" in r.where for r in certificate.residuals.values()} == {True}
+    assert not certificate.passed
