@@ -14,6 +14,7 @@ import json
 import os
 import re
 import subprocess
+import sys
 import tokenize
 from collections import Counter
 from collections.abc import Iterable, Iterator
@@ -59,10 +60,21 @@ def long_functions(source: str) -> Iterator[tuple[str, int, int]]:
 
 def branched(folders: Iterable[Path]) -> Iterator[tuple[str, str, int, int]]:
     """Yield file, name, line and complexity of functions of complexity above `BRANCHED`."""
-    words = ("ruff", "check", "--isolated", "--select=C901", "--output-format=json", "--exit-zero")
+    words = (
+        "-m",
+        "ruff",
+        "check",
+        "--isolated",
+        "--select=C901",
+        "--output-format=json",
+        "--exit-zero",
+    )
     limit = f"--config=lint.mccabe.max-complexity={BRANCHED}"
     told = subprocess.run(
-        [*words, limit, *map(str, folders)], check=True, capture_output=True, text=True
+        [sys.executable, *words, limit, *map(str, folders)],
+        check=True,
+        capture_output=True,
+        text=True,
     ).stdout
     for found in json.loads(told):
         name, size = re.search(r"`(.*)` is too complex \((\d+)", found["message"]).groups()  # type: ignore[union-attr]

@@ -184,7 +184,7 @@ def energy_gap(state: State) -> Blocks:
         stored.append(energy(state.graph, state.radius))
         stored.append(complementary(state.graph, force))
         work.append((state.reaction * of.centres[..., None]).sum(axis=1))
-    if of.train.slip is not None:
+    if of.train.slip:
         stored.append(here.spline[:, 0] * (state.bend**2).sum(axis=1))
     held_in = sum(part.sum(axis=0) for part in stored)
     gap = np.abs(held_in - sum(part.sum(axis=0) for part in work))

@@ -59,9 +59,9 @@ def solve_symmetric(matrix: Array, right: Array, size: int) -> Solved | None:
 
 def _equilibrate(matrix: Array) -> Array:
     """Symmetric scaling that brings every row's largest entry near 1."""
-    sizes, scale = np.abs(matrix), np.ones(len(matrix))
+    scale = np.ones(len(matrix))
     for _ in range(4):
-        largest = (sizes * scale).max(axis=1) * scale
+        largest = np.abs(matrix * scale[:, None] * scale).max(axis=1)
         scale = scale / np.sqrt(np.where(largest > 0.0, largest, 1.0))
     return scale
 
