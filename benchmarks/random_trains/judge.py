@@ -37,6 +37,8 @@ BEYOND = "displacements are too large for the geometry"
 """What a refusal says where small displacements are none."""
 NO_FORCE = 1e-40
 """Force, in loads, that is none in 70 digits."""
+NO_TORQUE = 1e-26
+"""Torque [N·m] that is none: what acts at less hangs on the last of the reference's 50 digits."""
 SOLVING, REFERRING = 60.0, 60.0
 """Processor time that a solve and a reference may take [s]."""
 
@@ -142,7 +144,7 @@ def _compare(case: Case, train: Train, found: Position | None, told: str, findin
     exact = report(train, machine, settled)
     largest = max(map(abs, exact.torque.values()), default=0.0)
     errors = {n: abs(found.torque[n] - t) for n, t in exact.torque.items()}
-    finding.error = max(errors.values()) / largest if largest else max(errors.values())
+    finding.error = max(errors.values()) / (largest if largest > NO_TORQUE else 1.0)
     finding.outcome = "agrees" if finding.error <= AGREES else "wrong"
     finding.slack = exact.slack
     finding.misplaced = misplaced(train, found, exact, machine, settled)

@@ -10,6 +10,8 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.random_trains.judge import NO_TORQUE
+
 MEANING = {
     "agrees": "torques as the reference has them",
     "wrong": "certified torque off by more than 1e-9 of the largest",
@@ -20,9 +22,6 @@ MEANING = {
     "no answer": "refused, and known to have none",
     "crashed": "exception",
 }
-
-ENDS = 1e-26
-"""Torque [N·m] that is none: what acts at less hangs on the last of the reference's 50 digits."""
 
 
 def text(rows: list[dict[str, Any]]) -> str:
@@ -93,7 +92,7 @@ def _bounds(pairs: list[list[float]]) -> list[str]:
         return []
     claimed, true = np.array(pairs).T
     # The reference itself ends after some 50 digits.
-    true = np.where(true < ENDS, 0.0, true)
+    true = np.where(true < NO_TORQUE, 0.0, true)
     held = int((claimed >= true).sum())
     ratio = claimed[true > 0.0] / true[true > 0.0]
     told = [("torques", str(len(claimed))), ("bound holds", str(held))]
