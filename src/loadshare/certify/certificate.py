@@ -84,8 +84,7 @@ class Certificate:
     def passed(self) -> bool:
         """Whether every residual, and the error of every torque, is within the tolerance.
 
-        The error of a torque counts over the largest torque of the train. Where friction that
-        remembers its slip shares a force with its stop, no bound is sought, and balance decides.
+        The error of a torque counts over the largest torque of the train.
         """
         proved = self.bound.relative <= self.tolerance
         return self.worst <= self.tolerance and proved
