@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,12 +12,16 @@ from benchmarks.random_trains.limit import TooLong, limited
 from benchmarks.reference import NoReference, Reference, reference
 from loadshare.train import Train
 from loadshare.train.gear import Vector
+from loadshare.train.mesh import Mesh
 
 FAR = 1e-2
 """Displacement or compression, over the smallest base radius, from which on neither is small."""
 NEGLECTED = 0.99
 """Approach that linear geometry misses, over the deflection, from which on it tells nothing; what
 refuses from 1 on has an estimate of it."""
+TURNED = 0.15
+"""Angle [rad] of a line of action from which on forces have other directions; what refuses from
+0.176 on has an estimate of it."""
 LIGHTER = (0.5, 0.1)
 """Shares of the load that are looked at where there is no reference."""
 SECONDS = 20.0
@@ -36,7 +41,7 @@ def is_far(train: Train, index: int, exact: Reference) -> bool:
     smallest = min(g.base_radius for g in train.gears.values())
     furthest = [abs(float(v)) for p in exact.displacement.values() for v in p]
     furthest += compressions(train, index, exact)
-    far = max(furthest, default=0.0) > FAR * smallest
+    far = max(furthest, default=0.0) > FAR * smallest or turned(train, index, exact) >= TURNED
     return far or neglected(train, index, exact) >= NEGLECTED
 
 
@@ -75,40 +80,74 @@ def neglected(train: Train, index: int, exact: Reference) -> float:
     The deflection is the largest compression, gap taken up, or error. Face gears are left out.
     """
     here = train.situation(index)
-    still = np.zeros(2)
+    lengths = [float(np.linalg.norm(c)) for c in here.offset.values()]
+    for mesh, drive, force in _pressed(train, exact):
+        at = here.mesh_position[mesh.name]
+        lengths += [mesh.law(at).compression(force), abs(mesh.gap(at, drive))]
+    missed = max((string.missed for string in _strings(train, index, exact)), default=0.0)
+    return missed / (max(lengths, default=0.0) or math.inf)
+
+
+def turned(train: Train, index: int, exact: Reference) -> float:
+    """Return the largest angle by which the line of action of a pressed flank turns [rad].
+
+    Errors count like displacements. Face gears are left out.
+    """
+    return max((abs(string.turned) for string in _strings(train, index, exact)), default=0.0)
+
+
+def _pressed(train: Train, exact: Reference) -> Iterator[tuple[Mesh, bool, float]]:
+    """Flanks with a force: mesh, whether it is the drive flank, force [N]."""
+    for mesh in train.meshes.values():
+        for drive in mesh.flanks:
+            force = exact.force[mesh.flank_name(drive)]
+            if force > 0.0:
+                yield mesh, drive, force
+
+
+def _strings(train: Train, index: int, exact: Reference) -> Iterator[_String]:
+    """Strings between the base circles of pressed flanks."""
+    here, still = train.situation(index), np.zeros(2)
     moved = {
         name: here.offset[name] + exact.displacement.get(name, still) @ gear.frame
         for name, gear in train.gears.items()
     }
-    missed = [0.0]
-    lengths = [float(np.linalg.norm(c)) for c in here.offset.values()]
-    for mesh in train.meshes.values():
+    for mesh, drive, _ in _pressed(train, exact):
         first, second = train.gears[mesh.driver], train.gears[mesh.driven]
-        at = here.mesh_position[mesh.name]
-        for drive in mesh.flanks:
-            force = exact.force[mesh.flank_name(drive)]
-            if force <= 0.0:
-                continue
-            lengths += [mesh.law(at).compression(force), abs(mesh.gap(at, drive))]
-            if "face" not in (first.kind, second.kind):
-                normal, way = mesh.direction(drive)[2], first.centre - second.centre
-                shift = moved[mesh.driver] - moved[mesh.driven]
-                missed.append(_missed(way, shift, normal, np.cross(first.axis, normal)))
-    return max(missed) / (max(lengths, default=0.0) or math.inf)
+        if "face" not in (first.kind, second.kind):
+            normal, way = mesh.direction(drive)[2], first.centre - second.centre
+            shift = moved[mesh.driver] - moved[mesh.driven]
+            yield _String.of(way, shift, normal, np.cross(first.axis, normal))
 
 
-def _missed(way: Vector, shift: Vector, along: Vector, across: Vector) -> float:
-    """Approach [m] by which two involutes miss the linear one when their centres shift.
+@dataclass(frozen=True)
+class _String:
+    """What becomes of the string between two base circles when their centres shift.
 
-    The strings of their base circles leave along the line of action, of length L and direction χ,
-    and the derivative of the approach is the direction of the line. So the approach grows by
-    ΔL − R Δχ, with R the distance of the centres across the line, which stays.
+    The strings leave along the line of action, of length L and direction χ, and the derivative of
+    the approach is the direction of the line. So the approach grows by ΔL − R Δχ, with R the
+    distance of the centres across the line, which stays.
+
+    Attributes
+    ----------
+    turned : float
+        Δχ [rad].
+    missed : float
+        Approach [m] by which the involutes miss the linear one.
     """
-    length, offset = float(way @ along), float(way @ across)
-    there = length + float(shift @ along), offset + float(shift @ across)
-    squared = there[0] ** 2 + there[1] ** 2 - offset**2
-    if squared <= 0.0:
-        return math.inf
-    reached = math.copysign(math.sqrt(squared), length)
-    turned = math.atan2(there[1], there[0]) - math.atan2(offset, reached)
-    return abs(reached - length - offset * turned - float(shift @ along))
+
+    turned: float
+    missed: float
+
+    @classmethod
+    def of(cls, way: Vector, shift: Vector, along: Vector, across: Vector) -> _String:
+        """Return it from the way between the centres and the line of action."""
+        length, offset = float(way @ along), float(way @ across)
+        there = length + float(shift @ along), offset + float(shift @ across)
+        squared = there[0] ** 2 + there[1] ** 2 - offset**2
+        if squared <= 0.0:
+            return cls(math.inf, math.inf)
+        reached = math.copysign(math.sqrt(squared), length)
+        angle = math.atan2(there[1], there[0]) - math.atan2(offset, reached)
+        missed = abs(reached - length - offset * angle - float(shift @ along))
+        return cls(math.remainder(angle, 2.0 * math.pi), missed)

@@ -4,8 +4,9 @@ import pytest
 from tests.certify.test_validity import exact, pair
 
 from benchmarks.random_trains.draw import draw
-from benchmarks.random_trains.far import is_far, is_far_before, neglected
+from benchmarks.random_trains.far import TURNED, is_far, is_far_before, neglected, turned
 from benchmarks.reference import reference
+from benchmarks.stress.families import FAMILIES
 from loadshare.train import build_train
 
 
@@ -32,6 +33,17 @@ def test_only_flanks_with_a_force_are_far(number: int, far: bool) -> None:
 def test_teeth_that_are_compressed_by_more_than_their_height_are_far() -> None:
     train = build_train(draw(1, 363))
     assert is_far(train, 1, reference(train, 1))
+
+
+def test_errors_that_turn_the_line_of_action_are_far() -> None:
+    """Errors of 4 to 6 mm turn lines by more than 10 deg; the same train without them is near."""
+    case = FAMILIES["stiffness-ratio"].problem(197).case
+    train = build_train(case)
+    found = reference(train, 1)
+    assert turned(train, 1, found) > TURNED
+    assert is_far(train, 1, found)
+    train = build_train(case.replace({"errors": None}))
+    assert not is_far(train, 1, reference(train, 1))
 
 
 def test_part_of_the_load_may_be_too_much_already() -> None:

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import loadshare as ls
+from benchmarks.random_trains.judge import NO_TORQUE, judged
 from benchmarks.reference import NoReference, reference
 from benchmarks.stress.families import FAMILIES
 from loadshare.certify import certify
@@ -89,6 +90,15 @@ def test_bound_holds_against_fifty_digits(family: str, number: int) -> None:
                 )
                 error = abs(net * mpmath.mpf(mesh.radii[0]) - mpmath.mpf(truth.exact[name]))
                 assert error <= bound.torque[name] + 1e-40 * largest
+
+
+@pytest.mark.parametrize(("family", "number"), [("free-pinion", 33), ("light-load", 40)])
+def test_what_goes_along_a_free_move_ends_at_idle_flanks(family: str, number: int) -> None:
+    """Lines of action that are parallel but for rounding leave a float's balance to idle flanks."""
+    (found,) = judged(FAMILIES[family].problem(number).case)["positions"]
+    assert found["outcome"] == "agrees"
+    assert [(b, e) for b, e in found["bound"] if e > b and e > NO_TORQUE] == []
+    assert max(b for b, _ in found["bound"]) < 1e-12
 
 
 def stiff_split() -> tuple[object, Equilibrium]:

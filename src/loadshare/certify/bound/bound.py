@@ -124,8 +124,9 @@ def _boxes(claim: Claim, act: Codes, scale: Array, verge: Flags, softest: float)
         rows = np.flatnonzero(group.reshape(-1) == number)
         part = _Part(claim, found, rows, np.flatnonzero(found.active[sample]), left, rounding)
         force, coordinate = part.solve(scale[rows])
-        box.force[rows] = aside(claim, found, rows)
-        box.force[np.ix_(rows, part.columns)] += force + part.shared + part.stray[:, None]
+        # What goes along a free move may end at a contact that does not act.
+        box.force[rows] = aside(claim, found, rows) + part.stray[:, None]
+        box.force[np.ix_(rows, part.columns)] += force + part.shared
         box.coordinate[rows] = coordinate + np.where(part.statics.loose, np.inf, 0.0)
         box.doubtful[rows], box.above[rows] = part.doubts(found, force, coordinate)
         box.unbalanced[rows] = part.stray > rounding_of(found.force[rows], scale[rows])
