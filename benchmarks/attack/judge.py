@@ -11,7 +11,6 @@ import numpy as np
 
 from benchmarks.attack.victims import Victim, victims
 from benchmarks.attack.ways import WAYS
-from benchmarks.random_trains.judge import torque_bounds
 from loadshare.certify import certify
 
 EACH = 40
@@ -84,8 +83,10 @@ def one(victim: Victim, way: str, rng: np.random.Generator) -> Attack | None:
         return None
     certificate = certify(victim.train, claim)
     errors = victim.errors(claim)
-    bounds = torque_bounds(certificate)
-    margin = min((bounds[n] - e for n, e in errors.items() if n in bounds), default=math.inf)
+    margin = min(
+        (b - errors[n] for n, b in certificate.bound.torque.items() if n in errors),
+        default=math.inf,
+    )
     return Attack(
         victim.case.name,
         str(way),

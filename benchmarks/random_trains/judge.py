@@ -6,11 +6,11 @@ import math
 import time
 import traceback
 import warnings
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import loadshare as ls
+from benchmarks.random_trains.bounded import below_error
 from benchmarks.random_trains.far import is_far, is_far_before
 from benchmarks.random_trains.limit import TooLong, limited
 from benchmarks.random_trains.play import play
@@ -20,7 +20,6 @@ from benchmarks.reference.settle import Settled
 from benchmarks.reference.solve import report, settled_in_digits
 from benchmarks.stress.truth import truth_of
 from loadshare.case import Case
-from loadshare.certify import Certificate
 from loadshare.errors import CaseError, Refused
 from loadshare.results.result import Position
 from loadshare.train import Train, build_train
@@ -63,8 +62,12 @@ class Finding:
     misplaced : dict of coordinate to float
         Places that are given as determined and are not where they are given, error in deflections;
         infinite where they are open.
-    bound : list of (float, float)
-        Claimed bound and true error of every torque [N·m], where the certificate has bounds.
+    bound : list of [float, float]
+        Claimed bound and true error of every torque [N·m].
+    others : int
+        Bounds on forces and places that were compared with true errors.
+    below : dict of element or coordinate to [float, float]
+        Those of them that are below the true error: bound and error, [N] and [m].
     slack : float or None
         Distance of the reference from another active set.
     reference : str
@@ -78,6 +81,8 @@ class Finding:
     error: float | None = None
     misplaced: dict[str, float] = field(default_factory=dict)
     bound: list[list[float]] = field(default_factory=list)
+    others: int = 0
+    below: dict[str, list[float]] = field(default_factory=dict)
     slack: float | None = None
     reference: str = ""
 
@@ -148,8 +153,9 @@ def _compare(case: Case, train: Train, found: Position | None, told: str, findin
     finding.outcome = "agrees" if finding.error <= AGREES else "wrong"
     finding.slack = exact.slack
     finding.misplaced = misplaced(train, found, exact, machine, settled)
-    claimed = torque_bounds(found.certificate)
-    finding.bound = [[claimed[n], error] for n, error in errors.items() if n in claimed]
+    claimed = found.certificate.bound.torque
+    finding.bound = [[claimed[n], error] for n, error in errors.items()]
+    finding.others, finding.below = below_error(train, found, machine, settled)
 
 
 def _settled(
@@ -201,9 +207,3 @@ def misplaced(
             if apart > PLACED and name not in named and loose.get(name, 0.0) <= OPEN:
                 wrong[name] = apart
     return wrong
-
-
-def torque_bounds(certificate: Certificate) -> Mapping[str, float]:
-    """Claimed bounds on the error of every mesh's torque [N·m]; none where there are none yet."""
-    bound = getattr(certificate, "bound", None)
-    return getattr(bound, "torque", None) or {}

@@ -10,7 +10,7 @@ from typing import Any
 import loadshare as ls
 from benchmarks import kept
 from benchmarks.random_trains.draw import draw
-from benchmarks.random_trains.judge import judged
+from benchmarks.random_trains.judge import NO_TORQUE, judged
 from benchmarks.stress.families import FAMILIES
 from benchmarks.stress.problem import COUNT
 from loadshare.case import Case
@@ -64,6 +64,9 @@ def failures(row: dict[str, Any]) -> list[str]:
             error = f", torque off by {p['error']:.1e}" if p["error"] is not None else ""
             compared = f"reference: {p['reference']}"
             lines.append(f"position {p['position']}: {p['outcome']}{error}; {compared}; {told}")
+        low = [pair for pair in p["bound"] if NO_TORQUE < pair[1] > pair[0]]
+        if low or p["below"]:
+            lines.append(f"position {p['position']}: bounds below the error: {low}, {p['below']}")
         if p["misplaced"]:
             places = ", ".join(f"{n} ({v:.1e})" for n, v in p["misplaced"].items())
             lines.append(f"position {p['position']}: not so determined: {places}; {p['rung']}")

@@ -47,6 +47,8 @@ def text(rows: list[dict[str, Any]]) -> str:
     rungs = Counter(p["rung"] for p in positions if p["rung"])
     lines += _table(("rung", "positions"), [(r, str(n)) for r, n in rungs.most_common()])
     lines += _bounds([b for p in positions for b in p["bound"]])
+    others, below = sum(p["others"] for p in positions), sum(len(p["below"]) for p in positions)
+    lines += [f"Bounds on forces and places: {others}, below the true error: {below}.", ""]
     errors = [p["error"] for p in positions if p["error"] is not None]
     if errors:
         figures = f"median {np.median(errors):.1e}, worst {max(errors):.1e}"

@@ -96,7 +96,11 @@ def test_bounds_hold_of_light_flanks_too(number):
 
 def test_attacks_depend_on_their_seed_alone(found):
     again = list(attacks(SEED, 20, each=20))
-    assert again == found[:20]
+    assert [(a.train, a.way, a.passed) for a in again] == [
+        (a.train, a.way, a.passed) for a in found[:20]
+    ]
+    # The compiled kernel, once it is at hand, finds victims that differ by round-off.
+    assert [a.error for a in again] == pytest.approx([a.error for a in found[:20]], abs=1e-13)
 
 
 def test_what_slips_is_told():

@@ -74,6 +74,24 @@ def test_a_torque_that_is_wrong_is_found(monkeypatch):
     assert judged(draw(SEED, 0))["positions"][0]["outcome"] == "wrong"
 
 
+@pytest.mark.parametrize("part", ["torque", "force", "place"])
+def test_a_bound_that_is_too_small_is_found(monkeypatch, part):
+    solve = ls.solve
+
+    def lying(case):
+        result = solve(case)
+        first = result.positions[0]
+        none = dict.fromkeys(getattr(first.certificate.bound, part), 0.0)
+        bound = dataclasses.replace(first.certificate.bound, **{part: none})
+        certificate = dataclasses.replace(first.certificate, bound=bound)
+        false = dataclasses.replace(first, certificate=certificate)
+        return dataclasses.replace(result, positions=(false, *result.positions[1:]))
+
+    monkeypatch.setattr(ls, "solve", lying)
+    (line, *_) = failures({"seed": SEED, "number": 0, **judged(draw(SEED, 0))})
+    assert "bounds below the error" in line
+
+
 def test_an_exception_is_a_crash(monkeypatch):
     def broken(case):
         raise KeyError("gear")

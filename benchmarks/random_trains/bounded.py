@@ -1,0 +1,57 @@
+"""Whether claimed forces and places are as near to the 50-digit reference as is bounded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from benchmarks.reference.machine import Machine
+from benchmarks.reference.settle import Settled
+from loadshare.results.result import Position
+from loadshare.train import Train
+
+NO_FORCE = 1e-20
+"""Force, in loads, that is none: what acts at less hangs on the last of the reference's digits."""
+ROUNDING = 2.0**-52
+"""Of a place when it is written as a double, part of itself."""
+
+
+def below_error(
+    train: Train, found: Position, machine: Machine, settled: Settled
+) -> tuple[int, dict[str, list[float]]]:
+    """Count bounds on forces and places, and name those below the true error.
+
+    Returns
+    -------
+    count : int
+    below : dict of element or coordinate to [bound, error]
+        [N] and [m].
+    """
+    certified = found.certificate.bound
+    bounds = {**certified.force, **certified.place}
+    count, below = 0, {}
+    for name, error, allowance in _errors(train, found, machine, settled):
+        count += 1
+        if not error <= bounds[name] + allowance:
+            below[name] = [bounds[name], float(error)]
+    return count, below
+
+
+def _errors(
+    train: Train, found: Position, machine: Machine, settled: Settled
+) -> Iterator[tuple[str, Any, Any]]:
+    """Name, true error, and what of it is none: of flanks, rings, splines and displacements."""
+    of, claim, at = machine.arithmetic.mpf, found.equilibrium, settled.at
+    unit, length = of(machine.force), of(machine.length)
+    for name, force in {**claim.flank_force, **claim.ring_force}.items():
+        yield name, abs(of(force) - at.forces.get(name, 0) * unit), NO_FORCE * unit
+    for name, pulled in claim.radial_reaction.items():
+        parts = train.gears[machine.graphs[name].gear].frame @ pulled
+        apart = [of(float(v)) + p * unit for v, p in zip(parts, at.pulls[name], strict=True)]
+        yield name, machine.arithmetic.hypot(*apart), NO_FORCE * unit
+    for gear, i in machine.moves.items():
+        moved = train.gears[gear].frame @ claim.displacement[gear]
+        for k, axis in enumerate("xy"):
+            value = float(moved[k])
+            error = abs(of(value) - at.x[i + k] * length)
+            yield f"{gear} {axis}", error, ROUNDING * abs(value)
