@@ -156,7 +156,8 @@ def test_radial_elements_move_alike_from_place_to_place(data):
     bound = first * stick * data.draw(st.sampled_from([1.0, 1.5])) + (stick == 0.0) * first
     last = data.draw(st.sampled_from([1.0, np.inf])) if first == 0.0 else first
     law = (first, stick, bound, stick + level, last, True)
-    place = data.draw(st.sampled_from([at.STICK, at.CORNER, at.PINNED, at.SLIP, at.STOP, at.OPEN]))
+    places = [at.OPEN, at.STICK, at.CORNER, at.PINNED, at.SLIP, at.STOP, at.WALL]
+    place = data.draw(st.sampled_from(places))
     u, p = data.draw(length), data.draw(length) * data.draw(st.sampled_from([-1.0, 1.0]))
     graph = at.Graph(*(np.array([v]) for v in law))
     bands = (np.array([1e-12]),) * 3

@@ -205,6 +205,20 @@ def test_an_element_under_a_dead_load_ends_where_the_law_says(name, share):
     assert end == expected
 
 
+@pytest.mark.parametrize(
+    ("name", "place", "radius", "back"),
+    [("rigid ring", at.WALL, CLEARANCE, at.OPEN), ("with a jump", at.CORNER, STICK, at.STICK)],
+)
+def test_a_limit_does_not_hold_from_outside(name, place, radius, back):
+    """A set may ask it to: passes then swing from one side of the centre to the other, and what
+    they come to between has a force that points inward. That is no limit's.
+    """
+    law, _ = LAWS[name]
+    push = 1.2 * STIFFNESS * STICK
+    assert moved(law, place, radius, push) == place
+    assert moved(law, place, radius, -push) == back
+
+
 @pytest.mark.parametrize("name", ["splines", "every element", "round ring", "elastic round ring"])
 def test_a_solved_element_stands_on_its_law(name):
     """In random samples: the force of every radial element is on the train's graph at its radius,

@@ -362,9 +362,9 @@ def _misplaced(place, law, u, v, p, q, force_band, length_band, faint):  # type:
         gone = beyond if radius > reach + length_band else level
         return CORNER if jump else gone
     if place == CORNER:
-        if size > bound + force_band:
-            return level
-        return STICK if size < first * stick - force_band else CORNER
+        if inward or size < first * stick - force_band:
+            return STICK
+        return level if size > bound + force_band else CORNER
     if place == PINNED:
         yields = bound > 0.0 or reach > 0.0 or np.isfinite(last)
         return level if size > bound + force_band and yields else PINNED
@@ -378,7 +378,7 @@ def _misplaced(place, law, u, v, p, q, force_band, length_band, faint):  # type:
         if (radius < reach - length_band or inward) and reach > 0.0:
             return level if reach > stick and radius >= stick else back
         return STOP
-    return OPEN if size <= force_band else WALL
+    return OPEN if inward or size <= force_band else WALL
 
 
 @compiled

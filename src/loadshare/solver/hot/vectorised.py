@@ -720,7 +720,8 @@ def misplaced(
         gone = np.where(radius > law.reach + length_band, past, level)
         after, before = np.where(jump, at.CORNER, gone), stays
     elif place == at.CORNER:
-        up, down = size > law.bound + force_band, size < law.first * law.stick - force_band
+        down = inward | (size < law.first * law.stick - force_band)
+        up = (size > law.bound + force_band) & ~inward
         after, before = level, np.full(len(radius), at.STICK)
     elif place == at.PINNED:
         yields = (law.bound > 0.0) | (law.reach > 0.0) | np.isfinite(law.last)
@@ -737,7 +738,7 @@ def misplaced(
             np.where((law.reach > law.stick) & (radius >= law.stick), level, back),
         )
     else:
-        up, down = False, size <= force_band
+        up, down = False, inward | (size <= force_band)
         after, before = stays, np.full(len(radius), at.OPEN)
     wrong = np.broadcast_to(up | down, radius.shape)
     return wrong, np.where(up, after, before).astype(np.int8)
