@@ -34,12 +34,11 @@ from loadshare.tooth.analysis.ltca import (
 from loadshare.tooth.compliance.slices import Slices
 from loadshare.tooth.contact.problem import ContactProblem
 from loadshare.tooth.contact.programme import by_interface, exchange, solve_contact
-from loadshare.tooth.cylindrical.gear import HelicoidGear
-from loadshare.tooth.cylindrical.modification import Modification
+from loadshare.tooth.cylindrical.gear import HelicoidGear, Modification
 from loadshare.tooth.cylindrical.pair import HelicoidPair
 from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.pair.file import load_pair
-from loadshare.tooth.unloaded.contact import PairGeometry
+from loadshare.tooth.unloaded.positions import GearPair
 
 T = TypeVar("T")
 PAIRS = Path(__file__).parents[1] / "cases/pairs"
@@ -86,7 +85,7 @@ def gears() -> HelicoidPair:
     return HelicoidPair(pinion, wheel, 0.5)
 
 
-def on_half_planes(gears: PairGeometry) -> PairCompliance:
+def on_half_planes(gears: GearPair) -> PairCompliance:
     """Compliances by slices whose bodies are rigid."""
     driver = Slices(gears.driver, 1, rigid_body=True)
     driven = Slices(gears.driven, gears.driven_side, rigid_body=True)
@@ -95,7 +94,7 @@ def on_half_planes(gears: PairGeometry) -> PairCompliance:
 
 def compare_models() -> None:
     """Time and error of the slices against finite elements, for every pair."""
-    pairs: dict[str, tuple[PairGeometry, float]] = {}
+    pairs: dict[str, tuple[GearPair, float]] = {}
     for name in ("p12", "p46", "p610"):
         file = load_pair(PAIRS / f"{name}.toml")
         pairs[name] = file.geometry, file.torque
@@ -108,13 +107,13 @@ def compare_models() -> None:
     )  # fmt: skip
 
 
-def renewed(pair: PairGeometry) -> PairGeometry:
+def renewed(pair: GearPair) -> GearPair:
     """The pair anew, so that nothing is kept from run to run."""
-    made: PairGeometry = replace(pair)  # type: ignore[type-var]
+    made: GearPair = replace(pair)  # type: ignore[type-var]
     return made
 
 
-def model_row(pair: PairGeometry, torque: float) -> list[str]:
+def model_row(pair: GearPair, torque: float) -> list[str]:
     """Times and errors of one pair."""
 
     def whole(compliance: PairCompliance | Model) -> Array:

@@ -3,8 +3,7 @@
 import math
 
 from loadshare.tooth.cylindrical.build import helicoid_pair
-from loadshare.tooth.cylindrical.gear import HelicoidGear
-from loadshare.tooth.cylindrical.modification import Modification
+from loadshare.tooth.cylindrical.gear import HelicoidGear, Modification
 from loadshare.tooth.cylindrical.pair import HelicoidPair, Misalignment
 from loadshare.tooth.face.build import face_gear_pair
 from loadshare.tooth.face.gear import FaceGear, Shaper

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from tests.tooth.geometry.samples import face_gear, face_pair
 
-from loadshare.tooth.cylindrical.modification import Modification
+from loadshare.tooth.cylindrical.gear import Modification
 from loadshare.tooth.face.flank import FaceFlank
 from loadshare.tooth.face.limits import (
     planar_pointing_limit,

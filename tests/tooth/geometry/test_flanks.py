@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from tests.tooth.geometry.samples import RELIEVED, face_gear, gear
 
 from loadshare.tooth.cylindrical.flank import HelicoidFlank
-from loadshare.tooth.cylindrical.modification import Modification
+from loadshare.tooth.cylindrical.gear import Modification
 from loadshare.tooth.face.flank import FaceFlank
 from loadshare.tooth.geometry.compiled import lead, profile
 from loadshare.tooth.geometry.flank import dot, principal_directions, unit
@@ -102,7 +102,7 @@ def test_modification_is_taken_off_along_the_normal(side):
     roll, axial = np.broadcast_arrays(*spread(plain))
     before, after = plain.patch(roll, axial, 0.0), cut.patch(roll, axial, 0.0)
     depth = dot(before.point - after.point, before.normal)
-    taken, radius = cut.gear.deviation.numbers, cut.gear.base_radius
+    taken, radius = cut.gear.taken, cut.gear.base_radius
     expected = [
         profile(taken, radius * a)[0] + lead(taken, b)[0]
         for a, b in zip(roll.ravel(), axial.ravel(), strict=True)

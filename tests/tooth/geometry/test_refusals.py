@@ -9,8 +9,7 @@ from tests.tooth.geometry.samples import face_gear, face_pair, gear, pair
 from loadshare.errors import CaseError
 from loadshare.tooth.cylindrical.build import helicoid_pair
 from loadshare.tooth.cylindrical.checks import gear_problems
-from loadshare.tooth.cylindrical.gear import HelicoidGear
-from loadshare.tooth.cylindrical.modification import Modification
+from loadshare.tooth.cylindrical.gear import HelicoidGear, Modification
 from loadshare.tooth.cylindrical.pair import HelicoidPair, Misalignment
 from loadshare.tooth.face.build import face_gear_pair
 from loadshare.tooth.face.gear import FaceGear, Shaper

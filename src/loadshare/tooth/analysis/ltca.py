@@ -22,7 +22,8 @@ from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
 from loadshare.tooth.contact.programme import Contact, solve_contacts
 from loadshare.tooth.contact.strips import StripLine
 from loadshare.tooth.geometry.body import Array
-from loadshare.tooth.unloaded.contact import ContactLine, MeshPosition, PairGeometry
+from loadshare.tooth.unloaded.contact import ContactLine, MeshPosition
+from loadshare.tooth.unloaded.positions import GearPair
 
 LOADS = (0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 1.0)
 """Parts of the rated torque: those of the fit, others to see its misfit, and the seed's three."""
@@ -49,7 +50,7 @@ class PairCompliance:
 
 
 def pair_compliance(
-    pair: PairGeometry,
+    pair: GearPair,
     model: Model = "finite elements",
     *,
     teeth: int | None = None,
@@ -59,7 +60,7 @@ def pair_compliance(
 
     Parameters
     ----------
-    pair : PairGeometry
+    pair : GearPair
     model : {"finite elements", "slices"}
     teeth : int, optional
         Teeth in the finite-element model, odd; by default as many as feel one another.
@@ -95,7 +96,7 @@ def pair_compliance(
 
 
 def ltca(
-    pair: PairGeometry,
+    pair: GearPair,
     torque: float,
     phases: int | Sequence[float] = 5,
     loads: Sequence[float] = LOADS,
@@ -107,7 +108,7 @@ def ltca(
 
     Parameters
     ----------
-    pair : PairGeometry
+    pair : GearPair
     torque : float
         Rated torque T on the driver [N·m].
     phases : int or sequence of float
@@ -167,14 +168,14 @@ def ltca(
 
 
 def contact_problem(
-    pair: PairGeometry, position: MeshPosition, compliance: PairCompliance
+    pair: GearPair, position: MeshPosition, compliance: PairCompliance
 ) -> ContactProblem:
     """Contact problem of one position; see :func:`contact_problems`."""
     return contact_problems(pair, (position,), compliance)[0]
 
 
 def contact_problems(
-    pair: PairGeometry, positions: Sequence[MeshPosition], compliance: PairCompliance
+    pair: GearPair, positions: Sequence[MeshPosition], compliance: PairCompliance
 ) -> tuple[ContactProblem, ...]:
     """Contact problems of positions: every point of every line that may close.
 
@@ -216,7 +217,7 @@ def _driven_uw(line: ContactLine) -> Array:
 
 
 def _strips(
-    pair: PairGeometry, lines: Sequence[ContactLine], compliance: PairCompliance
+    pair: GearPair, lines: Sequence[ContactLine], compliance: PairCompliance
 ) -> Iterator[StripLine]:
     """Local contact of lines, what can be computed for all of them at once done so."""
     ends = np.cumsum([len(line.length) for line in lines])[:-1]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
@@ -10,15 +11,17 @@ from numpy.typing import ArrayLike
 
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.cylindrical.root import Curve, root_curve
-from loadshare.tooth.geometry.body import Array
-from loadshare.tooth.geometry.placed import PlacedTooth
+from loadshare.tooth.geometry.body import Array, ToothBody
 
 
-class HelicoidBody(PlacedTooth[HelicoidGear]):
+@dataclass(frozen=True)
+class HelicoidBody(ToothBody):
     """`ToothBody` of a cylindrical gear, without its micrometre modifications.
 
     Of a herringbone gear it is one half, with z = 0 in the middle of that half.
     """
+
+    gear: HelicoidGear
 
     @property
     def shape(self) -> Literal["external", "internal"]:
@@ -57,3 +60,12 @@ class HelicoidBody(PlacedTooth[HelicoidGear]):
         square = (points[..., 0] ** 2 + points[..., 1] ** 2) / gear.base_radius**2 - 1.0
         up = (square - gear.form_roll**2) / (gear.tip_roll**2 - gear.form_roll**2)
         return self.foot + (1.0 - self.foot) * up, points[..., 2] / gear.face_width + 0.5
+
+    def margins(self, a: Array, b: Array) -> dict[str, Array]:
+        """Distance to the edges of the flank, at ξ = `a` and ζ = `b`; see `ToothBody.margins`."""
+        gear, reach = self.gear, self.gear.kind * self.gear.base_radius
+        return {
+            "tip": reach * (gear.tip_roll - a),
+            "root": reach * (a - gear.form_roll),
+            "face": 0.5 * gear.face_width - np.abs(b),
+        }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 from loadshare.errors import CaseError, Problem
 from loadshare.tooth.cylindrical.checks import gear_problems
@@ -13,9 +14,17 @@ from loadshare.tooth.cylindrical.pair import (
     working_angle_without_backlash,
 )
 from loadshare.tooth.geometry.involute import inv
-from loadshare.tooth.geometry.partners import Demand, misfits, same
-from loadshare.tooth.unloaded.meeting import meeting_problems
-from loadshare.tooth.words import degrees, millimetres, plain, problem
+from loadshare.tooth.problems import (
+    Check,
+    degrees,
+    failed,
+    millimetres,
+    plain,
+    problem,
+    refuse,
+    same,
+)
+from loadshare.tooth.unloaded.positions import meeting_problems
 
 
 def helicoid_pair(
@@ -46,73 +55,61 @@ def helicoid_pair(
         With everything that is wrong with the gears or with their mesh.
     """
     misalignment = misalignment or Misalignment()
-    problems = gear_problems(driver, "driver") + gear_problems(driven, "driven")
-    if not problems:
-        problems = _partner_problems(driver, driven, misalignment)
-    if problems:
-        raise CaseError(problems)
+    refuse(gear_problems(driver, "driver") + gear_problems(driven, "driven"))
+    refuse(_partner_problems(driver, driven, misalignment))
+    base = abs(driven.base_radius + driver.kind * driven.kind * driver.base_radius)
     if centre_distance is None:
         try:
             angle = working_angle_without_backlash(driver, driven)
         except ValueError as error:
             raise CaseError([_no_working_angle(driver, driven)]) from error
-        base = driven.base_radius + driver.kind * driven.kind * driver.base_radius
-        centre_distance = abs(base) / math.cos(angle)
-    problems = _distance_problems(driver, driven, centre_distance, misalignment)
-    if problems:
-        raise CaseError(problems)
+        centre_distance = base / math.cos(angle)
     pair = HelicoidPair(driver, driven, centre_distance, misalignment)
-    problems = _mesh_problems(pair) or meeting_problems(pair, misalignment)
-    if problems:
-        raise CaseError(problems)
+    if pair.actual_distance <= base:
+        none = "at this centre distance the gears have no line of action"
+        allowed = f"more than {millimetres(base)}"
+        raise CaseError([problem("centre_distance", pair.actual_distance, none, allowed)])
+    refuse(_mesh_problems(pair))
+    refuse(meeting_problems(pair))
     return pair
 
 
 def _partner_problems(
     driver: HelicoidGear, driven: HelicoidGear, misalignment: Misalignment
-) -> list[Problem]:
+) -> Iterator[Problem]:
     kind = driver.kind * driven.kind
     helix = -kind * driver.helix_angle
-    demands = (
-        same("module", driven.module, driver.module, millimetres, "driver"),
-        same("pressure_angle", driven.pressure_angle, driver.pressure_angle, degrees, "driver"),
-        Demand(
-            "helix_angle",
-            math.isclose(driven.helix_angle, helix, rel_tol=1e-9, abs_tol=1e-12),
-            degrees(driven.helix_angle),
-            f"{degrees(helix)}, to run with the driver",
-        ),
-        same("helices", driven.helices, driver.helices, plain, "driver"),
+    fits = math.isclose(driven.helix_angle, helix, rel_tol=1e-9, abs_tol=1e-12)
+    checks: tuple[Check, ...] = (
+        same("module", driven.module, driver.module, "driver"),
+        same("pressure_angle", driven.pressure_angle, driver.pressure_angle, "driver"),
+        ("helix_angle", driven.helix_angle, fits, f"{degrees(helix)}, to run with the driver"),
+        same("helices", driven.helices, driver.helices, "driver"),
     )
-    found = misfits("driven", "the gears do not fit each other", demands)
+    yield from failed("driven", "the gears do not fit each other", checks)
     if driver.internal and driven.internal:
-        found.append(problem("driven.internal", "true", "two internal gears cannot mesh", "false"))
+        yield problem("driven.internal", "true", "two internal gears cannot mesh", "false")
     elif kind < 0:
-        ring, pinion, key = (
-            (driver, driven, "driver") if driver.internal else (driven, driver, "driven")
-        )
+        key, ring, pinion = _ring_first(driver, driven)
         if ring.teeth <= pinion.teeth:
-            found.append(
-                problem(
-                    f"{key}.teeth",
-                    str(ring.teeth),
-                    "an internal gear needs more teeth than its pinion",
-                    f"more than {pinion.teeth}",
-                )
-            )
-    if driver.helices == 2:
-        found += [
-            problem(
+            few, allowed = "an internal gear needs more teeth than its pinion", pinion.teeth
+            yield problem(f"{key}.teeth", ring.teeth, few, f"more than {allowed}")
+    for name in ("inclination", "deviation", "axial_shift"):
+        if driver.helices == 2 and getattr(misalignment, name):
+            yield problem(
                 f"misalignment.{name}",
-                plain(getattr(misalignment, name)),
+                getattr(misalignment, name),
                 "the two halves of a herringbone pair would no longer be alike",
                 "0 for a herringbone pair",
                 "Treat the halves as two helical pairs.",
             )
-            for name in ("inclination", "deviation", "axial_shift")
-            if getattr(misalignment, name)
-        ]
-    return found
+
+
+def _ring_first(
+    driver: HelicoidGear, driven: HelicoidGear
+) -> tuple[str, HelicoidGear, HelicoidGear]:
+    """Key of the internal gear of a pair, that gear, and its pinion."""
+    return ("driver", driver, driven) if driver.internal else ("driven", driven, driver)
 
 
 def _no_working_angle(driver: HelicoidGear, driven: HelicoidGear) -> Problem:
@@ -121,129 +118,85 @@ def _no_working_angle(driver: HelicoidGear, driven: HelicoidGear) -> Problem:
     least -= 0.5 * teeth * inv(driver.transverse_angle) / math.tan(driver.pressure_angle)
     return problem(
         "driven.profile_shift",
-        plain(driven.profile_shift),
+        driven.profile_shift,
         "the base circles would have to overlap for the gears to mesh without backlash",
         f"{'more' if teeth > 0 else 'less'} than {plain(least)} with the driver's profile shift",
         "Or give the centre distance.",
     )
 
 
-def _distance_problems(
-    driver: HelicoidGear, driven: HelicoidGear, distance: float, misalignment: Misalignment
-) -> list[Problem]:
-    base = abs(driven.base_radius + driver.kind * driven.kind * driver.base_radius)
-    actual = distance + misalignment.centre_distance
-    if actual > base:
-        return []
-    return [
-        problem(
-            "centre_distance",
-            millimetres(actual),
-            "at this centre distance the gears have no line of action",
-            f"more than {millimetres(base)}",
-        )
+def _mesh_problems(pair: HelicoidPair) -> Iterator[Problem]:
+    driver, driven = pair.driver_gear, pair.driven_gear
+    found = [
+        *_tip_problems(pair, driver, "driver", driven, "driven"),
+        *_tip_problems(pair, driven, "driven", driver, "driver"),
+        *(_fouling(pair) if pair.kind < 0 else ()),
     ]
-
-
-def _mesh_problems(pair: HelicoidPair) -> list[Problem]:
-    found = []
-    for name, gear, other_name, other in (
-        ("driver", pair.driver_gear, "driven", pair.driven_gear),
-        ("driven", pair.driven_gear, "driver", pair.driver_gear),
-    ):
-        # The partner's tip may come down to where this gear's involute ends; where that lies
-        # beyond the partner's base point of the line of action, only a lower tip helps.
-        limit = pair.partner_roll(gear.form_roll, of_driven=name == "driven")
-        if other.kind * (other.tip_roll - max(limit, 0.0)) > 1e-9:
-            radius = other.base_radius * math.hypot(1.0, max(limit, 0.0))
-            largest = other.kind * (radius - other.radius) / other.module - other.profile_shift
-            found.append(
-                problem(
-                    f"{other_name}.addendum",
-                    plain(other.addendum),
-                    f"the tip of this gear cuts into the root fillet of the {name}",
-                    f"at most {plain(largest)}",
-                )
-            )
-        clearance = _clearance(pair, gear, other)
-        if clearance <= 0.0:
-            found.append(
-                problem(
-                    f"{other_name}.addendum",
-                    plain(other.addendum),
-                    f"the tip of this gear runs into the root of the {name}",
-                    f"less than {plain(other.addendum + clearance / other.module)}",
-                )
-            )
-    if pair.kind < 0:
-        found += _fouling(pair)
+    yield from found
     total = pair.contact_ratio + pair.overlap_ratio
     low, high = pair.axial_range
     if low >= high:
-        reach = 0.5 * (pair.driver_gear.face_width + pair.driven_gear.face_width)
-        found.append(
-            problem(
-                "misalignment.axial_shift",
-                millimetres(pair.misalignment.axial_shift),
-                "the face widths no longer overlap",
-                f"less than {millimetres(reach)}",
-            )
-        )
+        reach = 0.5 * (driver.face_width + driven.face_width)
+        shift, apart = pair.misalignment.axial_shift, "the face widths no longer overlap"
+        allowed = f"less than {millimetres(reach)}"
+        yield problem("misalignment.axial_shift", millimetres(shift), apart, allowed)
     elif not found and (total < 1.0 or pair.contact_ratio <= 0.0):
-        found.append(
-            problem(
-                "driver.addendum",
-                plain(pair.driver_gear.addendum),
-                f"the contact ratio is {total:.3f}: at some positions no teeth are in contact",
-                "a contact ratio of 1 or more",
-                "Larger addenda, a smaller centre distance or a wider helical gear raise it.",
-            )
+        yield problem(
+            "driver.addendum",
+            driver.addendum,
+            f"the contact ratio is {total:.3f}: at some positions no teeth are in contact",
+            "a contact ratio of 1 or more",
+            "Larger addenda, a smaller centre distance or a wider helical gear raise it.",
         )
-    return found
 
 
-def _clearance(pair: HelicoidPair, gear: HelicoidGear, other: HelicoidGear) -> float:
-    """Distance left between the tip of `other` and the root of `gear` [m]."""
-    distance = pair.centre_distance + pair.misalignment.centre_distance
-    if pair.kind > 0:
-        return distance - other.tip - gear.root
-    if gear.internal:
-        return gear.root - distance - other.tip
-    return other.tip - distance - gear.root
+def _tip_problems(
+    pair: HelicoidPair, gear: HelicoidGear, name: str, other: HelicoidGear, other_name: str
+) -> Iterator[Problem]:
+    """What the tip of `other` does in the spaces of `gear`."""
+    key = f"{other_name}.addendum"
+    # The partner's tip may come down to where this gear's involute ends; where that lies
+    # beyond the partner's base point of the line of action, only a lower tip helps.
+    limit = max(pair.partner_roll(gear.form_roll, of_driven=name == "driven"), 0.0)
+    if other.kind * (other.tip_roll - limit) > 1e-9:
+        largest = other.addendum_to(other.base_radius * math.hypot(1.0, limit))
+        cuts = f"the tip of this gear cuts into the root fillet of the {name}"
+        yield problem(key, other.addendum, cuts, f"at most {plain(largest)}")
+    # Inside an internal gear the centres are nearer one another than the circles.
+    clearance = gear.kind * (pair.actual_distance - gear.root) - other.tip
+    if other.internal:
+        clearance = other.tip - pair.actual_distance - gear.root
+    if clearance <= 0.0:
+        allowed = f"less than {plain(other.addendum + clearance / other.module)}"
+        runs = f"the tip of this gear runs into the root of the {name}"
+        yield problem(key, other.addendum, runs, allowed)
 
 
-def _fouling(pair: HelicoidPair) -> list[Problem]:
+def _fouling(pair: HelicoidPair) -> Iterator[Problem]:
     """Tips of pinion and ring that meet outside the line of action (trimming, fouling).
 
     Where the tip circles cross, at polar angles θ1 and θ2 from the line of centres, the pinion's
     tip must have passed the ring's:
     z1 (inv α_a1 + θ1) − z2 (inv α_a2 + θ2) + (z2 − z1) inv α_w ≥ 0.
     """
-    gears = [pair.driver_gear, pair.driven_gear]
-    pinion, ring = sorted(gears, key=lambda gear: gear.internal)
-    key = "driver" if pair.driver_gear is ring else "driven"
-    distance = pair.centre_distance + pair.misalignment.centre_distance
-    r1, r2 = pinion.tip, ring.tip
+    key, ring, pinion = _ring_first(pair.driver_gear, pair.driven_gear)
+    distance, r1, r2 = pair.actual_distance, pinion.tip, ring.tip
     cosine = (r2**2 - r1**2 - distance**2) / (2.0 * distance * r1)
     if abs(cosine) >= 1.0:
-        return []
+        return
     theta_1 = math.acos(cosine)
     theta_2 = math.acos((distance**2 + r2**2 - r1**2) / (2.0 * distance * r2))
 
     def inv_tip(gear: HelicoidGear) -> float:
         return gear.tip_roll - math.atan(gear.tip_roll)
 
-    working = math.tan(pair.working_angle) - pair.working_angle
+    more = ring.teeth - pinion.teeth
     passed = pinion.teeth * (inv_tip(pinion) + theta_1) - ring.teeth * (inv_tip(ring) + theta_2)
-    passed += (ring.teeth - pinion.teeth) * working
-    if passed >= 0.0:
-        return []
-    return [
-        problem(
+    if passed + more * inv(pair.working_angle) < 0.0:
+        yield problem(
             f"{key}.addendum",
-            plain(ring.addendum),
+            ring.addendum,
             "the tips of the internal gear and of its pinion meet beside the line of action, "
-            f"with {ring.teeth - pinion.teeth} teeth difference",
+            f"with {more} teeth difference",
             "a smaller addendum of either gear, or more teeth difference",
         )
-    ]

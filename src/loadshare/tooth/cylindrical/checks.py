@@ -3,186 +3,132 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 from loadshare.errors import Problem
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.cylindrical.root import fillet_angle, rack_tip_half_width
 from loadshare.tooth.geometry.involute import inverse_inv
-from loadshare.tooth.words import degrees, millimetres, plain, problem
+from loadshare.tooth.problems import Check, failed, millimetres, plain, problem
 
 
 def gear_problems(gear: HelicoidGear, key: str) -> list[Problem]:
     """Everything that is wrong with one gear, keys below `key`."""
-    return _value_problems(gear, key) or _tooth_problems(gear, key)
+    found = failed(key, "this value makes no gear", _values(gear))
+    found += failed(key, "not an amount of material taken off", _amounts(gear))
+    return found or list(_tooth_problems(gear, key))
 
 
-def _value_problems(gear: HelicoidGear, key: str) -> list[Problem]:
+def _values(gear: HelicoidGear) -> Iterator[Check]:
     m = gear.modification
-    checks = (
-        ("module", gear.module > 0.0, millimetres(gear.module), "more than 0"),
-        ("teeth", gear.teeth >= 4, str(gear.teeth), "a whole number, 4 or more"),
-        ("face_width", gear.face_width > 0.0, millimetres(gear.face_width), "more than 0"),
-        (
-            "pressure_angle",
-            0.0 < gear.pressure_angle < math.radians(45.0),
-            degrees(gear.pressure_angle),
-            "between 0 and 45 deg",
-        ),
-        (
-            "helix_angle",
-            abs(gear.helix_angle) < math.radians(60.0),
-            degrees(gear.helix_angle),
-            "between −60 and 60 deg",
-        ),
-        (
-            "addendum",
-            gear.addendum > -gear.dedendum,
-            plain(gear.addendum),
-            "a tip above the root: addendum + dedendum more than 0",
-        ),
-        ("tip_radius", gear.tip_radius >= 0.0, plain(gear.tip_radius), "0 or more"),
-        ("helices", gear.helices in (1, 2), str(gear.helices), "1, or 2 for a herringbone gear"),
-        ("helix_gap", gear.helix_gap >= 0.0, millimetres(gear.helix_gap), "0 or more"),
-        ("youngs_modulus", gear.youngs_modulus > 0.0, plain(gear.youngs_modulus), "more than 0"),
-        ("poisson", 0.0 <= gear.poisson < 0.5, plain(gear.poisson), "from 0 to below 0.5"),
-        (
-            "modification.tip_relief_exponent",
-            m.tip_relief_exponent in (1, 2),
-            str(m.tip_relief_exponent),
-            "1 (linear) or 2 (parabolic)",
-        ),
-        (
-            "modification.tip_relief_length",
-            not m.tip_relief or m.tip_relief_length > 0.0,
-            millimetres(m.tip_relief_length),
-            "more than 0 where there is tip relief",
-        ),
-        (
-            "modification.end_relief_length",
-            not m.end_relief or 0.0 < m.end_relief_length <= 0.5 * gear.face_width,
-            millimetres(m.end_relief_length),
-            f"more than 0 and at most half the face width, {millimetres(0.5 * gear.face_width)}",
-        ),
-    )
-    found = [
-        problem(f"{key}.{name}", given, "this value makes no gear", allowed)
-        for name, fine, given, allowed in checks
-        if not fine
-    ]
+    steep, steepest = abs(gear.helix_angle), math.radians(60.0)
+    height, half_width = gear.addendum + gear.dedendum, 0.5 * gear.face_width
+    yield "module", gear.module, gear.module > 0.0, "more than 0"
+    yield "teeth", gear.teeth, gear.teeth >= 4, "a whole number, 4 or more"
+    yield "face_width", gear.face_width, gear.face_width > 0.0, "more than 0"
+    yield pressure_angle_check("pressure_angle", gear.pressure_angle)
+    yield "helix_angle", gear.helix_angle, steep < steepest, "between −60 and 60 deg"
+    above = "a tip above the root: addendum + dedendum more than 0"
+    yield "addendum", gear.addendum, height > 0.0, above
+    yield "tip_radius", gear.tip_radius, gear.tip_radius >= 0.0, "0 or more"
+    yield "helices", gear.helices, gear.helices in (1, 2), "1, or 2 for a herringbone gear"
+    yield "helix_gap", gear.helix_gap, gear.helix_gap >= 0.0, "0 or more"
+    yield from elasticity_checks(gear.youngs_modulus, gear.poisson)
+    known = m.tip_relief_exponent in (1, 2)
+    exponents = "1 (linear) or 2 (parabolic)"
+    yield "modification.tip_relief_exponent", m.tip_relief_exponent, known, exponents
+    fits = not m.tip_relief or m.tip_relief_length > 0.0
+    relieved = "more than 0 where there is tip relief"
+    yield "modification.tip_relief_length", m.tip_relief_length, fits, relieved
+    fits = not m.end_relief or 0.0 < m.end_relief_length <= half_width
+    short = f"more than 0 and at most half the face width, {millimetres(half_width)}"
+    yield "modification.end_relief_length", m.end_relief_length, fits, short
+
+
+def pressure_angle_check(name: str, angle: float) -> Check:
+    """That a pressure angle [rad] is one of involute teeth."""
+    return name, angle, 0.0 < angle < math.radians(45.0), "between 0 and 45 deg"
+
+
+def elasticity_checks(youngs_modulus: float, poisson: float) -> Iterator[Check]:
+    """Check what any gear is made of."""
+    yield "youngs_modulus", youngs_modulus, youngs_modulus > 0.0, "more than 0"
+    yield "poisson", poisson, 0.0 <= poisson < 0.5, "from 0 to below 0.5"
+
+
+def _amounts(gear: HelicoidGear) -> Iterator[Check]:
+    largest = 0.1 * abs(gear.module)
+    allowed = f"from 0 to a tenth of the module, {millimetres(0.1 * gear.module)}"
     for name in ("tip_relief", "profile_crowning", "lead_crowning", "end_relief"):
-        amount = getattr(m, name)
-        if not 0.0 <= amount <= 0.1 * abs(gear.module):
-            found.append(
-                problem(
-                    f"{key}.modification.{name}",
-                    millimetres(amount),
-                    "not an amount of material taken off",
-                    f"from 0 to a tenth of the module, {millimetres(0.1 * gear.module)}",
-                )
-            )
-    return found
+        amount = getattr(gear.modification, name)
+        yield f"modification.{name}", amount, 0.0 <= amount <= largest, allowed
 
 
-def _tooth_problems(gear: HelicoidGear, key: str) -> list[Problem]:
-    found = _internal_problems(gear, key) if gear.internal else _external_problems(gear, key)
-    inside = 0.0 < gear.rim_radius < gear.root if gear.kind > 0 else gear.rim_radius > gear.root
-    if not inside:
-        side = "above 0 and below" if gear.kind > 0 else "above"
-        found.append(
-            problem(
-                f"{key}.rim",
-                millimetres(gear.rim_radius),
-                "no body is left below the teeth",
-                f"{side} the root radius, {millimetres(gear.root)}",
-            )
-        )
-    return found
+def _tooth_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
+    yield from (_internal_problems if gear.internal else _external_problems)(gear, key)
+    depth = gear.kind * (gear.root - gear.rim_radius)
+    if not (depth > 0.0 and gear.rim_radius > 0.0):
+        side = "above" if gear.internal else "above 0 and below"
+        allowed = f"{side} the root radius, {millimetres(gear.root)}"
+        yield problem(f"{key}.rim", gear.rim_radius, "no body is left below the teeth", allowed)
 
 
-def _external_problems(gear: HelicoidGear, key: str) -> list[Problem]:
-    found = []
-    slope = math.tan(gear.pressure_angle)
+def _external_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
+    slope, addendum = math.tan(gear.pressure_angle), f"{key}.addendum"
     if rack_tip_half_width(gear) < 0.0:
         room = math.pi / 4 - gear.dedendum * slope
         largest = room / (1.0 / math.cos(gear.pressure_angle) - slope)
-        found.append(
-            problem(
-                f"{key}.tip_radius",
-                plain(gear.tip_radius),
-                "the tip of the generating rack has no room for this radius",
-                f"at most {plain(largest)} with this dedendum",
-            )
+        yield problem(
+            f"{key}.tip_radius",
+            gear.tip_radius,
+            "the tip of the generating rack has no room for this radius",
+            f"at most {plain(largest)} with this dedendum",
         )
     if gear.profile_shift < gear.least_profile_shift - 1e-12:
-        found.append(
-            problem(
-                f"{key}.profile_shift",
-                plain(gear.profile_shift),
-                "the generating rack undercuts the teeth",
-                f"at least {gear.least_profile_shift:.4f} with {gear.teeth} teeth",
-                "A smaller dedendum, a larger tip radius or more teeth help too.",
-            )
+        yield problem(
+            f"{key}.profile_shift",
+            gear.profile_shift,
+            "the generating rack undercuts the teeth",
+            f"at least {gear.least_profile_shift:.4f} with {gear.teeth} teeth",
+            "A smaller dedendum, a larger tip radius or more teeth help too.",
         )
     if gear.tip <= gear.base_radius:
-        least = (gear.base_radius - gear.radius) / gear.module - gear.profile_shift
-        found.append(
-            problem(
-                f"{key}.addendum",
-                plain(gear.addendum),
-                "the tip lies inside the base circle",
-                f"more than {plain(least)}",
-            )
-        )
+        least = plain(gear.addendum_to(gear.base_radius))
+        inside = "the tip lies inside the base circle"
+        yield problem(addendum, gear.addendum, inside, f"more than {least}")
     elif gear.base_half_angle <= 0.0 or gear.half_angle(gear.tip) <= 0.0:
         largest = -math.inf
         if gear.base_half_angle > 0.0:
             pointed = gear.base_radius / math.cos(inverse_inv(gear.base_half_angle))
-            largest = (pointed - gear.radius) / gear.module - gear.profile_shift
-        found.append(
-            problem(
-                f"{key}.addendum",
-                plain(gear.addendum),
-                "the teeth are pointed below this tip",
-                f"less than {plain(largest)} with this profile shift",
-                "A smaller profile shift helps too.",
-            )
+            largest = gear.addendum_to(pointed)
+        yield problem(
+            addendum,
+            gear.addendum,
+            "the teeth are pointed below this tip",
+            f"less than {plain(largest)} with this profile shift",
+            "A smaller profile shift helps too.",
         )
-    return found
 
 
-def _internal_problems(gear: HelicoidGear, key: str) -> list[Problem]:
-    found = []
+def _internal_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
+    addendum = f"{key}.addendum"
     if gear.tip < gear.base_radius:
-        largest = (gear.radius - gear.base_radius) / gear.module - gear.profile_shift
-        found.append(
-            problem(
-                f"{key}.addendum",
-                plain(gear.addendum),
-                "the tips reach inside the base circle, where there is no involute",
-                f"at most {plain(largest)}",
-            )
-        )
+        largest = plain(gear.addendum_to(gear.base_radius))
+        inside = "the tips reach inside the base circle, where there is no involute"
+        yield problem(addendum, gear.addendum, inside, f"at most {largest}")
     elif gear.half_angle(gear.tip) <= 0.0:
-        found.append(
-            problem(
-                f"{key}.addendum",
-                plain(gear.addendum),
-                "the teeth are pointed below this tip",
-                "a smaller addendum or a larger profile shift",
-            )
-        )
+        pointed = "the teeth are pointed below this tip"
+        allowed = "a smaller addendum or a larger profile shift"
+        yield problem(addendum, gear.addendum, pointed, allowed)
     fits = (
         gear.root - gear.tip_radius * gear.module > gear.base_radius
         and fillet_angle(gear) <= math.pi / gear.teeth
         and gear.base_radius * math.hypot(1.0, gear.form_roll) > gear.tip
     )
     if not fits:
-        found.append(
-            problem(
-                f"{key}.tip_radius",
-                plain(gear.tip_radius),
-                "the tooth space has no room for this root radius",
-                "a smaller tip radius, or a larger dedendum",
-            )
+        yield problem(
+            f"{key}.tip_radius",
+            gear.tip_radius,
+            "the tooth space has no room for this root radius",
+            "a smaller tip radius, or a larger dedendum",
         )
-    return found

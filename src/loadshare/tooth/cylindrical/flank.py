@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
-from loadshare.tooth.cylindrical.gear import HelicoidGear
-from loadshare.tooth.cylindrical.modification import Taken
+from loadshare.tooth.cylindrical.gear import HelicoidGear, Taken
 from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.geometry.flank import Patch, patch
 
@@ -67,8 +66,8 @@ class HelicoidFlank:
             half_angle=gear.base_half_angle,
             sine=math.sin(angle),
             cosine=math.cos(angle),
-            plain=gear.deviation.none,
-            taken=gear.deviation.numbers,
+            plain=gear.modification.none,
+            taken=gear.taken,
         )
 
 

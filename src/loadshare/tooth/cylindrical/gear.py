@@ -5,18 +5,129 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import Literal, NamedTuple
 
-from loadshare.tooth.cylindrical.modification import Deviation, Modification
+from loadshare.tooth.geometry.body import Gear
 from loadshare.tooth.geometry.involute import inv
 
 
 @dataclass(frozen=True)
-class HelicoidGear:
-    """An involute spur or helical gear, external or internal; one half of a herringbone gear.
+class Modification:
+    """Micro-geometry of both flanks of a tooth; every amount is material taken off [m].
+
+    Amounts are measured along the flank's normal.
+
+    Parameters
+    ----------
+    tip_relief : float
+        Relief C_αa at the tip corner.
+    tip_relief_length : float
+        Length of roll, along the transverse line of action, over which the relief grows [m].
+    tip_relief_exponent : {1, 2}
+        1 for linear, 2 for parabolic relief, which starts without a kink.
+    profile_crowning : float
+        Crowning C_α: a parabola with this height at both ends of the usable profile.
+    lead_crowning : float
+        Crowning C_β: a parabola with this height at both ends of the face width.
+    end_relief : float
+        Linear relief C_βI,II at both ends of the face width.
+    end_relief_length : float
+        Length along the axis over which the end relief grows [m].
+    """
+
+    tip_relief: float = 0.0
+    tip_relief_length: float = 0.0
+    tip_relief_exponent: Literal[1, 2] = 1
+    profile_crowning: float = 0.0
+    lead_crowning: float = 0.0
+    end_relief: float = 0.0
+    end_relief_length: float = 0.0
+
+    @property
+    def none(self) -> bool:
+        """Whether nothing is taken off."""
+        amounts = self.tip_relief, self.profile_crowning, self.lead_crowning, self.end_relief
+        return not any(amounts)
+
+
+class Taken(NamedTuple):
+    """A modification laid on a usable flank, as compiled code reads it.
+
+    `root` and `tip` are lengths of roll at the ends of the profile [m], root > tip for an internal
+    gear; `width` is the face width [m], the flank being −width/2 ≤ ζ ≤ width/2.
+    """
+
+    tip_relief_exponent: int
+    root: float
+    tip: float
+    width: float
+    tip_relief: float
+    tip_relief_length: float
+    profile_crowning: float
+    lead_crowning: float
+    end_relief: float
+    end_relief_length: float
+
+
+class InvoluteTooth:
+    """Radii and angles of involute teeth: of a cylindrical gear, or of the cutter of a face gear.
 
     Names and signs are those of ISO 21771 with positive tooth counts: a positive profile shift
     thickens the tooth at the reference circle, and moves the teeth of an internal gear inwards.
+    """
+
+    module: float
+    teeth: int
+    pressure_angle: float
+    profile_shift: float
+    addendum: float
+    helix_angle: float = 0.0
+    internal: bool = False
+
+    @property
+    def kind(self) -> int:
+        """σ: +1 external, −1 internal."""
+        return -1 if self.internal else 1
+
+    @cached_property
+    def transverse_angle(self) -> float:
+        """Transverse pressure angle α_t [rad]."""
+        return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
+
+    @cached_property
+    def radius(self) -> float:
+        """Reference radius [m]."""
+        return 0.5 * self.module * self.teeth / math.cos(self.helix_angle)
+
+    @cached_property
+    def base_radius(self) -> float:
+        """Base radius r_b [m]."""
+        return self.radius * math.cos(self.transverse_angle)
+
+    @property
+    def tip(self) -> float:
+        """Tip radius [m]."""
+        return self.radius + self.kind * (self.addendum + self.profile_shift) * self.module
+
+    @cached_property
+    def tip_roll(self) -> float:
+        """Angle of roll at the tip [rad]."""
+        return math.sqrt((self.tip / self.base_radius) ** 2 - 1.0)
+
+    @cached_property
+    def base_half_angle(self) -> float:
+        """Half the angle of a tooth where its involutes, prolonged, meet the base circle [rad]."""
+        thickness = 0.5 * math.pi + 2.0 * self.profile_shift * math.tan(self.pressure_angle)
+        return thickness / self.teeth + self.kind * inv(self.transverse_angle)
+
+    def addendum_to(self, radius: float) -> float:
+        """Addendum, in modules, of a tip at a radius [m]."""
+        return self.kind * (radius - self.radius) / self.module - self.profile_shift
+
+
+@dataclass(frozen=True)
+class HelicoidGear(InvoluteTooth, Gear):
+    """An involute spur or helical gear, external or internal; one half of a herringbone gear.
 
     Parameters
     ----------
@@ -70,34 +181,9 @@ class HelicoidGear:
     poisson: float = 0.3
 
     @property
-    def kind(self) -> int:
-        """σ: +1 external, −1 internal."""
-        return -1 if self.internal else 1
-
-    @property
     def total_width(self) -> float:
         """Width over both halves and their gap [m]."""
         return self.helices * self.face_width + self.helix_gap * (self.helices - 1)
-
-    @cached_property
-    def transverse_angle(self) -> float:
-        """Transverse pressure angle α_t [rad]."""
-        return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
-
-    @cached_property
-    def radius(self) -> float:
-        """Reference radius [m]."""
-        return 0.5 * self.module * self.teeth / math.cos(self.helix_angle)
-
-    @cached_property
-    def base_radius(self) -> float:
-        """Base radius r_b [m]."""
-        return self.radius * math.cos(self.transverse_angle)
-
-    @property
-    def tip(self) -> float:
-        """Tip radius [m]."""
-        return self.radius + self.kind * (self.addendum + self.profile_shift) * self.module
 
     @property
     def root(self) -> float:
@@ -113,12 +199,6 @@ class HelicoidGear:
     def base_helix_angle(self) -> float:
         """Helix angle on the base cylinder β_b [rad]."""
         return math.asin(math.sin(self.helix_angle) * math.cos(self.pressure_angle))
-
-    @cached_property
-    def base_half_angle(self) -> float:
-        """Half the angle of a tooth where its involutes, prolonged, meet the base circle [rad]."""
-        thickness = 0.5 * math.pi + 2.0 * self.profile_shift * math.tan(self.pressure_angle)
-        return thickness / self.teeth + self.kind * inv(self.transverse_angle)
 
     def half_angle(self, radius: float) -> float:
         """Half the angle of a tooth at a radius [m] not below the base radius [rad]."""
@@ -153,19 +233,17 @@ class HelicoidGear:
         past_pitch = depth / math.sin(self.transverse_angle)
         return math.tan(self.transverse_angle) - past_pitch / self.base_radius
 
-    @cached_property
-    def tip_roll(self) -> float:
-        """Angle of roll at the tip [rad]."""
-        return math.sqrt((self.tip / self.base_radius) ** 2 - 1.0)
-
-    @cached_property
-    def deviation(self) -> Deviation:
+    @property
+    def taken(self) -> Taken:
         """The modification laid on the usable flank."""
-        return Deviation(
-            self.modification,
+        # Floats, for code is compiled for them; another kind of number would have it made again.
+        amounts = {name: float(getattr(self.modification, name)) for name in Taken._fields[4:]}
+        return Taken(
+            self.modification.tip_relief_exponent,
             self.base_radius * self.form_roll,
             self.base_radius * self.tip_roll,
-            self.face_width,
+            float(self.face_width),
+            **amounts,
         )
 
     @property

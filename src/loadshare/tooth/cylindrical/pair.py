@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TypeVar
@@ -13,13 +13,10 @@ import numpy as np
 from loadshare.tooth.cylindrical.body import HelicoidBody
 from loadshare.tooth.cylindrical.flank import HelicoidFlank
 from loadshare.tooth.cylindrical.gear import HelicoidGear
-from loadshare.tooth.geometry.body import Array
-from loadshare.tooth.geometry.flank import Patch
+from loadshare.tooth.geometry.body import Array, Placement, about_x, about_y
 from loadshare.tooth.geometry.gap import Extents, Trace, meet
 from loadshare.tooth.geometry.involute import inv, inverse_inv
-from loadshare.tooth.geometry.placement import Placement, about_x, about_y, fixed
-from loadshare.tooth.unloaded.contact import MeshPosition
-from loadshare.tooth.unloaded.positions import between, positions
+from loadshare.tooth.unloaded.positions import GearPair, between
 
 Roll = TypeVar("Roll", float, Array)
 
@@ -49,12 +46,10 @@ class Misalignment:
 
 
 @dataclass(frozen=True)
-class HelicoidPair:
+class HelicoidPair(GearPair):
     """A pair of cylindrical gears, built by `helicoid_pair`.
 
-    The fixed frame has the driver's axis as z and the driver's mid-width as origin; the pitch
-    point lies on +x, and the driver turns positively. Stations of a contact line are axial
-    coordinates.
+    Stations of a contact line are axial coordinates.
 
     Parameters
     ----------
@@ -76,40 +71,24 @@ class HelicoidPair:
         """σ of the pair: +1 for two external gears, −1 with an internal one."""
         return self.driver_gear.kind * self.driven_gear.kind
 
-    @property
+    @cached_property
     def driven_side(self) -> int:
         """Side of the driven tooth that is pushed."""
         return self.kind
 
     @property
-    def driven_step(self) -> int:
-        """The teeth of two external gears are met in opposite order."""
-        return -self.kind
-
-    @property
-    def helices(self) -> int:
-        """2 for a herringbone pair."""
-        return self.driver_gear.helices
-
-    @property
-    def ratio(self) -> float:
-        """Teeth of the driven gear over teeth of the driver."""
-        return self.driven_gear.teeth / self.driver_gear.teeth
-
-    @property
-    def arm(self) -> float:
-        """r_b cos β_b of the driver [m]."""
-        return self.driver_gear.base_radius * math.cos(self.driver_gear.base_helix_angle)
+    def actual_distance(self) -> float:
+        """Centre distance with its misalignment [m]."""
+        return self.centre_distance + self.misalignment.centre_distance
 
     @cached_property
     def working_angle(self) -> float:
         """Transverse pressure angle at the actual centre distance [rad]."""
-        actual = self.centre_distance + self.misalignment.centre_distance
         base = self.driven_gear.base_radius + self.kind * self.driver_gear.base_radius
-        return math.acos(abs(base) / actual)
+        return math.acos(abs(base) / self.actual_distance)
 
     @cached_property
-    def _roll_range(self) -> tuple[float, float]:
+    def roll_range(self) -> tuple[float, float]:
         """Driver's angle of roll over which both flanks are active."""
         own = sorted((self.driver_gear.form_roll, self.driver_gear.tip_roll))
         other = sorted(
@@ -133,12 +112,6 @@ class HelicoidPair:
         return pitch - self.kind * (1.0 / scale if of_driven else scale) * (roll - pitch)
 
     @property
-    def contact_ratio(self) -> float:
-        """Transverse contact ratio ε_α without load."""
-        first, last = self._roll_range
-        return (last - first) * self.driver_gear.teeth / (2.0 * math.pi)
-
-    @property
     def overlap_ratio(self) -> float:
         """Overlap ratio ε_β of one half."""
         first, last = self.axial_range
@@ -155,21 +128,21 @@ class HelicoidPair:
     @cached_property
     def driver(self) -> HelicoidBody:
         """The driver's tooth."""
-        return HelicoidBody(self.driver_gear, fixed())
+        return HelicoidBody(self.driver_gear)
 
     @cached_property
     def driven(self) -> HelicoidBody:
         """The driven gear's tooth."""
         off = self.misalignment
-        distance = self.centre_distance + off.centre_distance
         # The pitch point is on +x of both centres when the driven gear is internal.
         towards = -1.0 if self.driven_gear.internal else 1.0
         axes = about_y(off.inclination) @ about_x(-off.deviation)
-        centre = np.array([towards * distance, 0.0, 0.0]) + off.axial_shift * axes[:, 2]
+        centre = np.array([towards * self.actual_distance, 0.0, 0.0]) + off.axial_shift * axes[:, 2]
         return HelicoidBody(self.driven_gear, Placement(centre, axes))
 
     @cached_property
-    def _flanks(self) -> tuple[HelicoidFlank, HelicoidFlank]:
+    def flanks(self) -> tuple[HelicoidFlank, HelicoidFlank]:
+        """The flanks that touch."""
         return HelicoidFlank(self.driver_gear), HelicoidFlank(self.driven_gear, self.driven_side)
 
     def ideal(self, phase: Array) -> tuple[Array, Array]:
@@ -188,25 +161,19 @@ class HelicoidPair:
         at_pitch += two.twist * self.misalignment.axial_shift
         return driver, at_pitch - self.kind * turn / self.ratio
 
-    def _roll(self, pairs: Array, axial: Array, driver: Array) -> Array:
-        """Driver's angle of roll where its flank crosses the plane of action."""
-        gear = self.driver_gear
-        phi = driver + 2.0 * math.pi * pairs / gear.teeth + gear.base_half_angle
-        return self.working_angle + gear.kind * (phi + gear.twist * axial)
-
     def extents(self, driver: Array, driven: Array) -> Extents:
         """Lines of the pairs on both active flanks at positions (k,), by position and pair."""
         gear = self.driver_gear
-        first, last = self._roll_range
+        first, last = self.roll_range
         low, high = self.axial_range
         per_tooth = 2.0 * math.pi / gear.teeth
         reach = abs(gear.twist) * max(abs(low), abs(high))
-        middle = self._roll(np.zeros(1), np.zeros(1), driver)
+        middle = self.roll(np.zeros(1), np.zeros(1), driver)
         # The pitch at which the roll of pair k is within the range, for either kind of driver.
         bounds = [gear.kind * (roll - middle) / per_tooth for roll in (first - reach, last + reach)]
         position, pairs = between(*np.sort(bounds, axis=0))
         driver, driven = driver[position], driven[position]
-        at_middle = self._roll(pairs, np.zeros_like(pairs), driver)
+        at_middle = self.roll(pairs, np.zeros_like(pairs), driver)
         slope = gear.kind * gear.twist
         if slope == 0.0:
             start, end = np.full_like(pairs, low), np.full_like(pairs, high)
@@ -227,56 +194,27 @@ class HelicoidPair:
 
     def margins_about(self, driver: Array, driven: Array) -> Mapping[str, Array]:
         """Margins along the lines of pairs near contact, on both flanks or not."""
-        gear, (first, last) = self.driver_gear, self._roll_range
+        gear, (first, last) = self.driver_gear, self.roll_range
         axial = np.linspace(*self.axial_range, 33)
         step = 2.0 * math.pi / gear.teeth
-        middle = self._roll(np.zeros(1), np.zeros(1), driver)
+        middle = self.roll(np.zeros(1), np.zeros(1), driver)
         pairs = np.rint(gear.kind * (0.5 * (first + last) - middle) / step) + np.arange(-1.0, 2.0)
-        roll, axial = np.broadcast_arrays(self._roll(pairs[:, None], axial, driver), axial)
+        roll, axial = np.broadcast_arrays(self.roll(pairs[:, None], axial, driver), axial)
         other = self.partner_roll(roll), axial - self.misalignment.axial_shift
         return self.margins((roll, axial), other)
 
-    def driver_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
-        """Points of the driver's flanks at surface parameters `at`, fixed frame."""
-        turn = rotation + 2.0 * math.pi / self.driver_gear.teeth * pairs
-        return self._flanks[0].patch(*at, turn)
-
-    def driven_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
-        """Points of the driven gear's flanks at surface parameters `at`, fixed frame."""
-        turn = rotation + self.driven_step * 2.0 * math.pi / self.driven_gear.teeth * pairs
-        place = self.driven.placement
-        return self._flanks[1].patch(*at, turn).turned(place.axes, place.origin)
-
     def trace(self, pairs: Array, driver: Array, driven: Array, stations: Array) -> Trace:
         """Flanks and gap at axial stations (m, n) [m] of the lines of pairs (m,)."""
-        pairs, driver, driven = (
-            np.broadcast_to(part[:, None], stations.shape) for part in (pairs, driver, driven)
-        )
-        roll = self._roll(pairs, stations, driver)
+        pairs, driver, driven = pairs[:, None], driver[:, None], driven[:, None]
+        roll = self.roll(pairs, stations, driver)
+        own = self.driver_patch(pairs, (roll, stations), driver)
         start = (self.partner_roll(roll), stations - self.misalignment.axial_shift)
-        own, other, driven_at, gap = meet(self, pairs, (roll, stations), start, driver, driven)
+        other, driven_at, gap = meet(
+            own, lambda a, b: self.driven_patch(pairs, (a, b), driven), start
+        )
         slope = self.driver_gear.kind * self.driver_gear.twist
         tangent = slope * own.rays[0] + own.rays[1]
         return Trace(own, other, (roll, stations), driven_at, gap, tangent)
-
-    def margins(
-        self, driver_at: tuple[Array, Array], driven_at: tuple[Array, Array]
-    ) -> Mapping[str, Array]:
-        """Distance to every edge of the active flanks by name [m], negative beyond it."""
-        edges = {}
-        for name, gear, (roll, axial) in (
-            ("driver", self.driver_gear, driver_at),
-            ("driven", self.driven_gear, driven_at),
-        ):
-            reach = gear.kind * gear.base_radius
-            edges[f"{name} tip"] = reach * (gear.tip_roll - roll)
-            edges[f"{name} root"] = reach * (roll - gear.form_roll)
-            edges[f"{name} face"] = 0.5 * gear.face_width - np.abs(axial)
-        return edges
-
-    def positions(self, phases: Sequence[float], points_per_line: int) -> tuple[MeshPosition, ...]:
-        """Unloaded contact at phases of the mesh cycle; see `positions.positions`."""
-        return positions(self, phases, points_per_line)
 
 
 def working_angle_without_backlash(one: HelicoidGear, two: HelicoidGear) -> float:

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from loadshare.tooth.face.flank import FaceFlank
 from loadshare.tooth.face.gear import FaceGear
-from loadshare.tooth.geometry.body import Array
+from loadshare.tooth.geometry.body import Array, ToothBody, turned
 from loadshare.tooth.geometry.gap import LAST_STEP
-from loadshare.tooth.geometry.placed import PlacedTooth
-from loadshare.tooth.geometry.placement import turned
 
 
-class FaceBody(PlacedTooth[FaceGear]):
+@dataclass(frozen=True)
+class FaceBody(ToothBody):
     """`ToothBody` of a face gear.
 
     Width stations are equal steps of the length along the shaper's axis (at 90°: coaxial
@@ -25,7 +25,12 @@ class FaceBody(PlacedTooth[FaceGear]):
     the path of the shaper's tip land.
     """
 
-    shape: ClassVar[Literal["face"]] = "face"
+    gear: FaceGear
+
+    @property
+    def shape(self) -> Literal["face"]:
+        """Kind of gear body."""
+        return "face"
 
     @property
     def rim(self) -> float:
@@ -74,6 +79,17 @@ class FaceBody(PlacedTooth[FaceGear]):
         _, foot_depth = self._foot(length)
         up = (depth - foot_depth) / (gear.tip_depth - foot_depth)
         return self.foot + (1.0 - self.foot) * up, (length - gear.inner) / (gear.outer - gear.inner)
+
+    def margins(self, a: Array, b: Array) -> dict[str, Array]:
+        """Distance to the edges of the flank, at ξ = `a` and Φ = `b`; see `ToothBody.margins`."""
+        gear, shaper = self.gear, self.gear.shaper
+        length, depth = gear.blank(self.flank.point(a, b))
+        return {
+            "tip": depth - gear.tip_depth,
+            "root": shaper.base_radius * (shaper.tip_roll - a),
+            "inner end": length - gear.inner,
+            "outer end": gear.outer - length,
+        }
 
     def _foot(self, length: Array) -> tuple[Array, Array]:
         """Base-tangent angle and depth where the shaper's tip ends the flank."""

@@ -8,12 +8,12 @@ from functools import cached_property
 
 import numpy as np
 
-from loadshare.tooth.geometry.body import Array
-from loadshare.tooth.geometry.involute import inv
+from loadshare.tooth.cylindrical.gear import InvoluteTooth
+from loadshare.tooth.geometry.body import Array, Gear, about_y
 
 
 @dataclass(frozen=True)
-class Shaper:
+class Shaper(InvoluteTooth):
     """The involute spur cutter whose teeth envelop those of a face gear.
 
     Parameters
@@ -38,39 +38,13 @@ class Shaper:
     addendum: float = 1.25
 
     @property
-    def radius(self) -> float:
-        """Reference radius [m]."""
-        return 0.5 * self.module * self.teeth
-
-    @property
-    def base_radius(self) -> float:
-        """Base radius [m]."""
-        return self.radius * math.cos(self.pressure_angle)
-
-    @property
-    def tip(self) -> float:
-        """Tip radius [m]."""
-        return self.radius + (self.addendum + self.profile_shift) * self.module
-
-    @cached_property
-    def tip_roll(self) -> float:
-        """Angle of roll at the tip [rad]."""
-        return math.sqrt((self.tip / self.base_radius) ** 2 - 1.0)
-
-    @cached_property
-    def base_half_angle(self) -> float:
-        """Half the angle of a tooth at the base circle [rad]."""
-        thickness = 0.5 * math.pi + 2.0 * self.profile_shift * math.tan(self.pressure_angle)
-        return thickness / self.teeth + inv(self.pressure_angle)
-
-    @property
     def tip_half_angle(self) -> float:
         """Half the angle of a tooth at the tip [rad]."""
         return self.base_half_angle - (self.tip_roll - math.atan(self.tip_roll))
 
 
 @dataclass(frozen=True)
-class FaceGear:
+class FaceGear(Gear):
     """A face gear, the envelope of a shaper whose axis crosses its own.
 
     The gear's frame has its origin where the axes of gear and shaper cross, and the teeth point
@@ -123,8 +97,7 @@ class FaceGear:
     @cached_property
     def axes(self) -> Array:
         """Shaper's frame in the gear's, as columns: towards the teeth, tangential, its axis."""
-        sine, cosine = math.sin(self.shaft_angle), math.cos(self.shaft_angle)
-        return np.array([[cosine, 0.0, sine], [0.0, 1.0, 0.0], [-sine, 0.0, cosine]])
+        return about_y(self.shaft_angle)
 
     @cached_property
     def axial_scale(self) -> float:

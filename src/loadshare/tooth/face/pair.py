@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import ClassVar, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,15 +18,12 @@ from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.face.body import FaceBody
 from loadshare.tooth.face.flank import FaceFlank
 from loadshare.tooth.face.gear import FaceGear
-from loadshare.tooth.geometry.body import Array
-from loadshare.tooth.geometry.flank import Patch
+from loadshare.tooth.geometry.body import Array, Placement, about_y
 from loadshare.tooth.geometry.gap import Extents
 from loadshare.tooth.geometry.involute import inv, inverse_inv
-from loadshare.tooth.geometry.placement import Placement, fixed
 from loadshare.tooth.geometry.span import span
 from loadshare.tooth.geometry.valley import Flanks, Known, Valleys, anchor
-from loadshare.tooth.unloaded.contact import MeshPosition
-from loadshare.tooth.unloaded.positions import between, positions
+from loadshare.tooth.unloaded.positions import GearPair, between
 
 Roll = TypeVar("Roll", float, Array)
 
@@ -58,13 +55,12 @@ class FaceMisalignment:
 
 
 @dataclass(frozen=True)
-class FaceGearPair:
+class FaceGearPair(GearPair):
     """A spur pinion and a face gear, built by `face_gear_pair`.
 
-    The fixed frame has the pinion's axis as z, pointing away from the gear's axis, and the middle
-    of the pinion's face width as origin, which stands over the middle of the gear's. The pitch
-    point lies on +x. Stations of a contact line are distances along the major axis of the contact
-    ellipse from the ideal pair's point of contact.
+    The pinion's axis points away from the gear's, and the middle of its face width stands over the
+    middle of the gear's. Stations of a contact line are distances along the major axis of the
+    contact ellipse from the ideal pair's point of contact.
 
     Parameters
     ----------
@@ -80,20 +76,8 @@ class FaceGearPair:
     gear: FaceGear
     misalignment: FaceMisalignment = field(default_factory=FaceMisalignment)
 
-    driven_side: ClassVar[int] = -1
-    driven_step: ClassVar[int] = 1
-    helices: ClassVar[int] = 1
-    overlap_ratio: ClassVar[float] = 0.0
-
-    @property
-    def ratio(self) -> float:
-        """Teeth of the gear over teeth of the pinion."""
-        return self.gear.teeth / self.pinion.teeth
-
-    @property
-    def arm(self) -> float:
-        """Base radius of the pinion [m]."""
-        return self.pinion.base_radius
+    driven_side = -1
+    overlap_ratio = 0.0
 
     @cached_property
     def working_angle(self) -> float:
@@ -137,8 +121,8 @@ class FaceGearPair:
         return pitch + self.gear.shaper.base_radius / self.pinion.base_radius * (roll - pitch)
 
     @cached_property
-    def first_roll(self) -> float:
-        """Pinion's angle of roll where the gear's tip leaves it, for the ideal pair."""
+    def roll_range(self) -> tuple[float, float]:
+        """Pinion's angles of roll where the gear's tip leaves the ideal pair's, and at its tip."""
         gear, flank = self.gear, FaceFlank(self.gear)
         phi = np.array(-self.working_angle)
 
@@ -147,38 +131,30 @@ class FaceGearPair:
             return float(gear.blank(point)[1]) - gear.tip_depth
 
         tip = gear.shaper.tip_roll
-        return self.pinion_roll(float(brentq(depth, -2.0 * tip, tip, xtol=1e-14)))
-
-    @property
-    def contact_ratio(self) -> float:
-        """Contact ratio of the ideal pair without load."""
-        return (self.pinion.tip_roll - self.first_roll) * self.pinion.teeth / (2.0 * math.pi)
+        first = self.pinion_roll(float(brentq(depth, -2.0 * tip, tip, xtol=1e-14)))
+        return first, self.pinion.tip_roll
 
     @cached_property
     def driver(self) -> HelicoidBody:
         """The pinion's tooth."""
-        return HelicoidBody(self.pinion, fixed())
+        return HelicoidBody(self.pinion)
 
     @cached_property
     def driven(self) -> FaceBody:
         """The face gear's tooth."""
         off, ideal = self.misalignment, self.gear.shaft_angle
         crossing = self.axis_distance / math.sin(ideal)
-        axes = self._gear_axes(ideal)
         # Where the axes should cross, in the fixed frame.
-        centre = np.array([-self.axis_distance, 0.0, -self.middle]) - crossing * axes[:, 2]
-        axes = self._gear_axes(ideal + off.shaft_angle)
+        centre = np.array([-self.axis_distance, 0.0, -self.middle])
+        centre = centre - crossing * about_y(-ideal)[:, 2]
+        axes = about_y(-ideal - off.shaft_angle)
         origin = centre + (crossing + off.gear_shift) * axes[:, 2]
         origin = origin + np.array([0.0, off.offset, -off.pinion_shift])
         return FaceBody(self.gear, Placement(origin, axes))
 
-    @staticmethod
-    def _gear_axes(shaft_angle: float) -> Array:
-        sine, cosine = math.sin(shaft_angle), math.cos(shaft_angle)
-        return np.array([[cosine, 0.0, -sine], [0.0, 1.0, 0.0], [sine, 0.0, cosine]])
-
     @cached_property
-    def _flanks(self) -> tuple[HelicoidFlank, FaceFlank]:
+    def flanks(self) -> tuple[HelicoidFlank, FaceFlank]:
+        """The flanks that touch."""
         return HelicoidFlank(self.pinion), FaceFlank(self.gear, self.driven_side)
 
     def ideal(self, phase: Array) -> tuple[Array, Array]:
@@ -195,50 +171,19 @@ class FaceGearPair:
 
     def valleys(self, pairs: Array, driver: Array, driven: Array) -> Valleys:
         """Lines of pairs (m,) at rotations (m,) [rad], from the ideal pair's points of contact."""
-        gear = self.pinion
-        phi = driver + 2.0 * math.pi * pairs / gear.teeth + gear.base_half_angle
-        roll = self.working_angle + phi
         # Below the base circle there is no involute; no pair is active near it.
-        roll = np.maximum(roll, 0.25 * gear.form_roll)
+        roll = np.maximum(self.roll(pairs, 0.0, driver), 0.25 * self.pinion.form_roll)
         own = roll, np.full_like(roll, self.contact_length - self.middle)
         other = self.shaper_roll(roll), np.full_like(roll, -self.working_angle)
-        flanks = self.driver_patch(pairs, own, driver), self.driven_patch(pairs, other, driven)
-        turns = _turn(self.pinion, pairs, driver), _turn(self.gear, pairs, driven)
-        begun = anchor(own, other, flanks)
-        return Valleys(self._numbers, np.stack(turns, axis=-1), begun, Known.nothing(len(pairs)))
+        patches = self.driver_patch(pairs, own, driver), self.driven_patch(pairs, other, driven)
+        turns = np.stack(self.turns(pairs, driver, driven), axis=-1)
+        begun = anchor(own, other, patches)
+        return Valleys(self._numbers, turns, begun, Known.nothing(len(pairs)))
 
     @cached_property
     def _numbers(self) -> Flanks:
-        driver, driven = self._flanks
         place = self.driven.placement
-        return Flanks(driver.numbers, driven.numbers, place.axes, place.origin)
-
-    def driver_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
-        """Points of the pinion's flanks at surface parameters `at`, fixed frame."""
-        return self._flanks[0].patch(*at, _turn(self.pinion, pairs, rotation))
-
-    def driven_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
-        """Points of the gear's flanks at surface parameters `at`, fixed frame."""
-        place = self.driven.placement
-        patch = self._flanks[1].patch(*at, _turn(self.gear, pairs, rotation))
-        return patch.turned(place.axes, place.origin)
-
-    def margins(
-        self, driver_at: tuple[Array, Array], driven_at: tuple[Array, Array]
-    ) -> Mapping[str, Array]:
-        """Distance to every edge of the active flanks by name [m], negative beyond it."""
-        roll, axial = driver_at
-        pinion, gear = self.pinion, self.gear
-        length, depth = gear.blank(self._flanks[1].point(*driven_at))
-        return {
-            "driver tip": pinion.base_radius * (pinion.tip_roll - roll),
-            "driver root": pinion.base_radius * (roll - pinion.form_roll),
-            "driver face": 0.5 * pinion.face_width - np.abs(axial),
-            "driven tip": depth - gear.tip_depth,
-            "driven root": gear.shaper.base_radius * (gear.shaper.tip_roll - driven_at[0]),
-            "driven inner end": length - gear.inner,
-            "driven outer end": gear.outer - length,
-        }
+        return Flanks(self.flanks[0].numbers, self.flanks[1].numbers, place.axes, place.origin)
 
     def extents(self, driver: Array, driven: Array) -> Extents:
         """Lines of the pairs on both active flanks at positions (k,), by position and pair.
@@ -260,16 +205,8 @@ class FaceGearPair:
             return np.where(np.isfinite(gap), least, -1.0)
 
         found, start, end = span(margin, reach)
-        valleys = valleys.rows(found)
-        return Extents(
-            position[found],
-            pairs[found],
-            start,
-            end,
-            driver[position[found]],
-            driven[position[found]],
-            valleys.trace,
-        )
+        position, pairs, trace = position[found], pairs[found], valleys.rows(found).trace
+        return Extents(position, pairs, start, end, driver[position], driven[position], trace)
 
     def margins_about(self, driver: Array, driven: Array) -> Mapping[str, Array]:
         """Margins along the lines of pairs near contact, on both flanks or not."""
@@ -281,23 +218,12 @@ class FaceGearPair:
         self, driver: Array, driven: Array
     ) -> tuple[NDArray[np.int64], Array, Valleys, Array]:
         """Positions, pairs, lines and farthest stations (m,) of pairs that may be in contact."""
-        gear = self.pinion
-        per_tooth = 2.0 * math.pi / gear.teeth
-        middle = self.working_angle + driver + gear.base_half_angle
+        per_tooth = 2.0 * math.pi / self.pinion.teeth
         # Lines of neighbouring stations reach past the ideal contact's range of roll.
-        first, last = self.first_roll - per_tooth, gear.tip_roll + per_tooth
-        position, pairs = between((first - middle) / per_tooth, (last - middle) / per_tooth)
+        ends = np.array(self.roll_range)[:, None] + [[-per_tooth], [per_tooth]]
+        position, pairs = between(*(ends - self.roll(np.zeros(1), 0.0, driver)) / per_tooth)
         valleys = self.valleys(pairs, driver[position], driven[position])
-        width = min(gear.face_width, self.gear.outer - self.gear.inner)
+        width = min(self.pinion.face_width, self.gear.outer - self.gear.inner)
         along = np.maximum(np.abs(valleys.start.major[:, 2]), 0.2)
         reach = 1.1 * (0.5 * width + abs(self.contact_length - self.middle)) / along
         return position, pairs, valleys, reach
-
-    def positions(self, phases: Sequence[float], points_per_line: int) -> tuple[MeshPosition, ...]:
-        """Unloaded contact at phases of the mesh cycle; see `positions.positions`."""
-        return positions(self, phases, points_per_line)
-
-
-def _turn(gear: HelicoidGear | FaceGear, pairs: Array, rotation: Array) -> Array:
-    """How far the teeth of pairs have turned at rotations of their gear [rad]."""
-    return rotation + 2.0 * math.pi / gear.teeth * pairs

@@ -1,8 +1,12 @@
-"""What the rest of the analysis needs to know of one gear's solid tooth."""
+"""Solid teeth of all gears, and where a gear stands in the fixed frame."""
 
 from __future__ import annotations
 
-from typing import Literal, Protocol, TypeAlias
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,45 +14,72 @@ from numpy.typing import ArrayLike, NDArray
 Array: TypeAlias = NDArray[np.float64]
 
 
-class ToothBody(Protocol):
+class Gear:
+    """What gears of every kind have."""
+
+    teeth: int
+    """Number of teeth."""
+    youngs_modulus: float
+    """Modulus of elasticity [Pa]."""
+    poisson: float
+    """Poisson's ratio."""
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """Position of a gear's frame, before the gear turns, in the fixed frame.
+
+    Parameters
+    ----------
+    origin : array (3,)
+        The gear frame's origin [m].
+    axes : array (3, 3)
+        The gear frame's axes as columns.
+    """
+
+    origin: Array
+    axes: Array
+
+
+def fixed() -> Placement:
+    """The fixed frame itself, in which every driver stands."""
+    return Placement(np.zeros(3), np.eye(3))
+
+
+@dataclass(frozen=True)
+class ToothBody(ABC):
     """One gear's solid tooth, in the gear's own frame.
 
     The gear's axis is z, and tooth 0 is centred on +x: at the middle of the face width for a
     cylindrical gear; a face gear's teeth point to +z. Tooth k is tooth 0 turned by 2πk/`teeth`
     about z. Side +1 is the flank that leads when the gear turns by a positive angle, side −1 the
     one that trails.
+
+    Parameters
+    ----------
+    gear : Gear
+        The gear.
+    placement : Placement
+        Where it stands.
+    foot : float
+        The u at which the fillet ends and the flank begins.
     """
 
-    @property
-    def teeth(self) -> int:
-        """Number of teeth."""
-        ...
+    gear: Gear
+    placement: Placement = field(default_factory=fixed)
+    foot: float = 0.4
 
     @property
+    @abstractmethod
     def shape(self) -> Literal["external", "internal", "face"]:
         """Kind of gear body."""
-        ...
 
     @property
+    @abstractmethod
     def rim(self) -> float:
         """Inner radius (external), outer radius (internal), thickness below root (face) [m]."""
-        ...
 
-    @property
-    def youngs_modulus(self) -> float:
-        """Modulus of elasticity [Pa]."""
-        ...
-
-    @property
-    def poisson(self) -> float:
-        """Poisson's ratio."""
-        ...
-
-    @property
-    def foot(self) -> float:
-        """The u at which the fillet ends and the flank begins."""
-        ...
-
+    @abstractmethod
     def outline(self, u: ArrayLike, w: ArrayLike, side: int) -> Array:
         """Boundary of half of tooth 0 at a width station.
 
@@ -67,8 +98,8 @@ class ToothBody(Protocol):
         array (..., 3)
             Points [m].
         """
-        ...
 
+    @abstractmethod
     def locate(self, points: Array) -> tuple[Array, Array]:
         """Flank coordinates (u, w) of points on the flanks of any tooth, gear frame.
 
@@ -82,12 +113,51 @@ class ToothBody(Protocol):
         u, w : array (...)
             Not clipped: a point beyond the tip has u > 1.
         """
-        ...
+
+    @abstractmethod
+    def margins(self, a: Array, b: Array) -> Mapping[str, Array]:
+        """Distance [m] of points of the flank to its edges by name, at surface parameters."""
+
+    @property
+    def teeth(self) -> int:
+        """Number of teeth."""
+        return self.gear.teeth
+
+    @property
+    def youngs_modulus(self) -> float:
+        """Modulus of elasticity [Pa]."""
+        return self.gear.youngs_modulus
+
+    @property
+    def poisson(self) -> float:
+        """Poisson's ratio."""
+        return self.gear.poisson
 
     def to_body(self, points: Array, rotation: Array | float) -> Array:
         """Carry points (..., 3) from the fixed frame to the gear turned by `rotation` [rad]."""
-        ...
+        placed: Array = (points - self.placement.origin) @ self.placement.axes
+        return turned(placed, -np.asarray(rotation))
 
     def to_space(self, points: Array, rotation: Array | float) -> Array:
         """Carry points (..., 3) from the gear turned by `rotation` [rad] to the fixed frame."""
-        ...
+        placed: Array = turned(points, rotation) @ self.placement.axes.T + self.placement.origin
+        return placed
+
+
+def turned(points: Array, angle: Array | float) -> Array:
+    """Points (..., 3) turned about z by angles (...) [rad]."""
+    x, y, z = np.moveaxis(points, -1, 0)
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
+
+
+def about_y(angle: float) -> Array:
+    """Rotation matrix about y."""
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, 0.0, s], [0.0, 1.0, 0.0], [-s, 0.0, c]])
+
+
+def about_x(angle: float) -> Array:
+    """Rotation matrix about x."""
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -114,41 +113,6 @@ class Extents:
         return stations, slice(1 + finer // 2, -1, finer)
 
 
-class Lines(Protocol):
-    """The contact lines of a pair of gears, as geometry gives them before any gap is known."""
-
-    @property
-    def arm(self) -> float:
-        """Approach along the normal per radian of the driver [m]."""
-        ...
-
-    def ideal(self, phase: Array) -> tuple[Array, Array]:
-        """Rotations of driver and driven gear at phases of the ideal pair [rad]."""
-        ...
-
-    def extents(self, driver: Array, driven: Array) -> Extents:
-        """Lines of the pairs on both active flanks at positions (k,), by position and pair."""
-        ...
-
-    def margins_about(self, driver: Array, driven: Array) -> Mapping[str, Array]:
-        """`margins` along the lines of pairs near contact, on both flanks or not."""
-        ...
-
-    def driver_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
-        """Points of the driver's flanks at surface parameters `at`, fixed frame."""
-        ...
-
-    def driven_patch(self, pairs: Array, at: tuple[Array, Array], rotation: Array) -> Patch:
-        """Points of the driven gear's flanks at surface parameters `at`, fixed frame."""
-        ...
-
-    def margins(
-        self, driver_at: tuple[Array, Array], driven_at: tuple[Array, Array]
-    ) -> Mapping[str, Array]:
-        """Distance to every edge of the active flanks by name [m], negative beyond it."""
-        ...
-
-
 def least_gap(lines: Extents, points: int = FEWEST) -> tuple[Array, Array, Trace]:
     """Least gap on each line, ends included, and the station where it stands.
 
@@ -195,47 +159,39 @@ def least_gap(lines: Extents, points: int = FEWEST) -> tuple[Array, Array, Trace
 
 
 def meet(
-    lines: Lines,
-    pairs: Array,
-    driver_at: tuple[Array, Array],
-    driven_at: tuple[Array, Array],
-    driver: Array,
-    driven: Array,
-) -> tuple[Patch, Patch, tuple[Array, Array], Array]:
-    """Follow the driver's normals to the driven flank, by Newton's method.
+    own: Patch,
+    other_at: Callable[[Array, Array], Patch],
+    start: tuple[Array, Array],
+) -> tuple[Patch, tuple[Array, Array], Array]:
+    """Follow normals of one flank to the other, by Newton's method.
 
     Parameters
     ----------
-    lines : Lines
-        The pair of gears.
-    pairs : array (m, n)
-        Pair of teeth of every point.
-    driver_at : tuple of two arrays (m, n)
-        Points of the driver's flank.
-    driven_at : tuple of two arrays (m, n)
-        Where to start on the driven flank.
-    driver, driven : array (m, n)
-        Rotations [rad].
+    own : Patch
+        Points (m, n) of the first flank.
+    other_at : callable
+        Points of the other flank at its surface parameters.
+    start : tuple of two arrays (m, n)
+        Where to start on it.
 
     Returns
     -------
-    driver, driven : Patch
-        Both flanks where the normals meet them.
-    driven_at : tuple of two arrays (m, n)
+    other : Patch
+        The other flank where the normals meet it.
+    other_at : tuple of two arrays (m, n)
         Surface parameters there.
     gap : array (m, n)
         Distance along the normals [m], NaN where Newton's method found no point.
     """
-    a, b = driven_at
-    own = lines.driver_patch(pairs, driver_at, driver)
-    other = lines.driven_patch(pairs, (a, b), driven)
+    a, b = start
+    other = other_at(a, b)
     gap = dot(other.point - own.point, own.normal)
     for _ in range(25):
         apart = own.point + gap[..., None] * own.normal - other.point
         step = solve_3(other.rays[0], other.rays[1], -own.normal, apart)
         a, b, gap = a + step[0], b + step[1], gap + step[2]
-        other = lines.driven_patch(pairs, (a, b), driven)
+        other = other_at(a, b)
         moved = np.abs(apart).max(axis=-1)
         if moved.max(initial=0.0) < LAST_STEP:
             break
-    return own, other, (a, b), np.where(moved < LAST_STEP, gap, np.nan)
+    return other, (a, b), np.where(moved < LAST_STEP, gap, np.nan)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from loadshare.case.keys import dotted
 from loadshare.errors import Problem
 from loadshare.tooth.face.pair import FaceGearPair
-from loadshare.tooth.words import degrees, millimetres
+from loadshare.tooth.problems import degrees, millimetres
 
 if TYPE_CHECKING:
     from loadshare.case import Case, Gear

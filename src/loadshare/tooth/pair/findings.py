@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from loadshare.errors import Problem
+from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.cylindrical.pair import HelicoidPair
 from loadshare.tooth.face.limits import tip_half_angle
 from loadshare.tooth.face.pair import FaceGearPair
+from loadshare.tooth.problems import millimetres, plain, problem
 from loadshare.tooth.unloaded.touch import contact_points
-from loadshare.tooth.words import millimetres, plain, problem
 
 # Tips thinner than this, in modules, are commonly avoided for case-hardened teeth.
 THIN_TIP = 0.2
@@ -45,34 +48,26 @@ def findings(pair: HelicoidPair | FaceGearPair, positions: int = 16) -> tuple[Pr
     NoContactError
         If at some position no pair of teeth is within both active flanks.
     """
-    found = []
-    gears = (
-        {"driver": pair.pinion}
-        if isinstance(pair, FaceGearPair)
-        else {"driver": pair.driver_gear, "driven": pair.driven_gear}
-    )
-    for name, gear in gears.items():
-        land = 2.0 * gear.tip * gear.half_angle(gear.tip)
-        if land < THIN_TIP * gear.module:
-            found.append(_thin_tip(f"{name}.addendum", plain(gear.addendum), land, gear.module))
+    return (*_tip_findings(pair), *edge_contacts(pair, positions))
+
+
+def _tip_findings(pair: HelicoidPair | FaceGearPair) -> Iterator[Problem]:
+    for name, gear in (("driver", pair.driver.gear), ("driven", pair.driven.gear)):
+        if isinstance(gear, HelicoidGear):
+            land = 2.0 * gear.tip * gear.half_angle(gear.tip)
+            yield from _thin_tip(f"{name}.addendum", gear.addendum, land, gear.module)
     if isinstance(pair, FaceGearPair):
-        face = pair.gear
+        face, shaper = pair.gear, pair.gear.shaper
         land = 2.0 * face.outer * tip_half_angle(pair.driven.flank, face.outer)
-        if land < THIN_TIP * face.shaper.module:
-            found.append(
-                _thin_tip("driven.outer", millimetres(face.outer), land, face.shaper.module)
+        yield from _thin_tip("driven.outer", face.outer, land, shaper.module)
+        if pair.pinion.teeth == shaper.teeth:
+            yield problem(
+                "driven.shaper.teeth",
+                shaper.teeth,
+                "the pinion has as many teeth as the shaper: contact is along a line and "
+                "moves to an end of the teeth when the pair is misaligned",
+                f"{pair.pinion.teeth + 1} to {pair.pinion.teeth + 3} for localised contact",
             )
-        if pair.pinion.teeth == face.shaper.teeth:
-            found.append(
-                problem(
-                    "driven.shaper.teeth",
-                    str(face.shaper.teeth),
-                    "the pinion has as many teeth as the shaper: contact is along a line and "
-                    "moves to an end of the teeth when the pair is misaligned",
-                    f"{pair.pinion.teeth + 1} to {pair.pinion.teeth + 3} for localised contact",
-                )
-            )
-    return (*found, *edge_contacts(pair, positions))
 
 
 def edge_contacts(pair: HelicoidPair | FaceGearPair, positions: int = 16) -> tuple[Problem, ...]:
@@ -110,10 +105,7 @@ def edge_contacts(pair: HelicoidPair | FaceGearPair, positions: int = 16) -> tup
     )
 
 
-def _thin_tip(key: str, given: str, land: float, module: float) -> Problem:
-    return problem(
-        key,
-        given,
-        f"the tip land is {millimetres(land)} wide",
-        f"{millimetres(THIN_TIP * module)} or more for case-hardened teeth",
-    )
+def _thin_tip(key: str, given: float, land: float, module: float) -> Iterator[Problem]:
+    if land < THIN_TIP * module:
+        allowed = f"{millimetres(THIN_TIP * module)} or more for case-hardened teeth"
+        yield problem(key, given, f"the tip land is {millimetres(land)} wide", allowed)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
-from loadshare.tooth.geometry.body import Array, ToothBody
+from loadshare.tooth.geometry.body import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,59 +73,3 @@ class MeshPosition:
     driven_rotation: float
     transmission_error: float
     lines: tuple[ContactLine, ...]
-
-
-class PairGeometry(Protocol):
-    """Two gears in mesh: the driver turns positively and pushes with its side +1.
-
-    Pair k is on tooth k of the driver and on tooth k·`driven_step` of the driven gear.
-    """
-
-    @property
-    def driver(self) -> ToothBody:
-        """Tooth of the driving gear."""
-        ...
-
-    @property
-    def driven(self) -> ToothBody:
-        """Tooth of the driven gear."""
-        ...
-
-    @property
-    def driven_side(self) -> int:
-        """Side of the driven tooth that is pushed, +1 or −1."""
-        ...
-
-    @property
-    def driven_step(self) -> int:
-        """+1 or −1: how the driven gear's teeth are counted from pair to pair."""
-        ...
-
-    @property
-    def arm(self) -> float:
-        """Approach along the normal per radian of the driver, r_b cos β_b [m]."""
-        ...
-
-    @property
-    def helices(self) -> int:
-        """2 for a herringbone pair, whose lines cover one half; else 1."""
-        ...
-
-    @property
-    def ratio(self) -> float:
-        """Angle of the driver over angle of the driven gear, positive."""
-        ...
-
-    @property
-    def contact_ratio(self) -> float:
-        """Transverse contact ratio without load."""
-        ...
-
-    @property
-    def overlap_ratio(self) -> float:
-        """Overlap ratio; 0 for spur teeth and face gears."""
-        ...
-
-    def positions(self, phases: Sequence[float], points_per_line: int) -> tuple[MeshPosition, ...]:
-        """Unloaded contact at phases of the mesh cycle."""
-        ...

@@ -2,39 +2,173 @@
 
 from __future__ import annotations
 
+import math
+from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from typing import Protocol
+from dataclasses import asdict
+from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.errors import Problem
 from loadshare.tooth.geometry.body import Array, ToothBody
-from loadshare.tooth.geometry.flank import cross, dot, relative_curvature, unit
-from loadshare.tooth.geometry.gap import FEWEST, Extents, Lines, NoContactError, Trace, least_gap
-from loadshare.tooth.unloaded.contact import ContactLine, MeshPosition, PairGeometry
+from loadshare.tooth.geometry.flank import Patch, cross, dot, relative_curvature, unit
+from loadshare.tooth.geometry.gap import FEWEST, Extents, NoContactError, Trace, least_gap
+from loadshare.tooth.problems import plain, problem
+from loadshare.tooth.unloaded.contact import ContactLine, MeshPosition
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+    from loadshare.tooth.cylindrical.body import HelicoidBody
+    from loadshare.tooth.cylindrical.flank import HelicoidFlank
+    from loadshare.tooth.face.flank import FaceFlank
 
 # The flanks touch when the least gap is below this [m]: a hundredth of the gap that a
 # transmission error of 1e-9 rad makes at a base radius of 0.1 m.
 TOUCHING = 1e-12
+# Positions of the mesh cycle at which the teeth of a misaligned pair must meet.
+LOOKED_AT = 16
+
+Place: TypeAlias = tuple[Array, Array]
+"""Surface parameters of points on a flank."""
 
 
-class Pair(Lines, PairGeometry, Protocol):
-    """A pair of gears with its contact lines."""
+class GearPair(ABC):
+    """Two gears in mesh: the driver turns positively and pushes with its side +1.
+
+    Pair k is on tooth k of the driver and on tooth k·`driven_step` of the driven gear. The fixed
+    frame has the driver's axis as z and the middle of its face width as origin; the pitch point
+    lies on +x.
+    """
+
+    misalignment: DataclassInstance
+    """How far the gears are off; nothing by default."""
+
+    @property
+    @abstractmethod
+    def driver(self) -> HelicoidBody:
+        """Tooth of the driving gear."""
+
+    @property
+    @abstractmethod
+    def driven(self) -> ToothBody:
+        """Tooth of the driven gear."""
+
+    @property
+    @abstractmethod
+    def driven_side(self) -> int:
+        """Side of the driven tooth that is pushed, +1 or −1."""
+
+    @property
+    @abstractmethod
+    def flanks(self) -> tuple[HelicoidFlank, HelicoidFlank | FaceFlank]:
+        """The flanks that touch, of the driver and of the driven gear."""
+
+    @property
+    @abstractmethod
+    def working_angle(self) -> float:
+        """Transverse pressure angle of the driver at the pitch point [rad]."""
+
+    @property
+    @abstractmethod
+    def roll_range(self) -> tuple[float, float]:
+        """Driver's angle of roll over which both flanks are active [rad]."""
+
+    @property
+    def driven_step(self) -> int:
+        """+1 or −1: two external gears' teeth are met in opposite order, from pair to pair."""
+        return -self.driven_side
+
+    @property
+    def arm(self) -> float:
+        """Approach along the normal per radian of the driver, r_b cos β_b [m]."""
+        return self.driver.gear.base_radius * math.cos(self.driver.gear.base_helix_angle)
+
+    @property
+    def helices(self) -> int:
+        """2 for a herringbone pair, whose lines cover one half; else 1."""
+        return self.driver.gear.helices
+
+    @property
+    def ratio(self) -> float:
+        """Angle of the driver over angle of the driven gear, positive."""
+        return self.driven.teeth / self.driver.teeth
+
+    @property
+    def contact_ratio(self) -> float:
+        """Transverse contact ratio ε_α without load."""
+        first, last = self.roll_range
+        return (last - first) * self.driver.teeth / (2.0 * math.pi)
+
+    @property
+    @abstractmethod
+    def overlap_ratio(self) -> float:
+        """Overlap ratio ε_β of one half; 0 for spur teeth and face gears."""
+
+    @abstractmethod
+    def ideal(self, phase: Array) -> tuple[Array, Array]:
+        """Rotations of driver and driven gear at phases of the ideal pair [rad]."""
+
+    @abstractmethod
+    def extents(self, driver: Array, driven: Array) -> Extents:
+        """Lines of the pairs on both active flanks at positions (k,), by position and pair."""
+
+    @abstractmethod
+    def margins_about(self, driver: Array, driven: Array) -> Mapping[str, Array]:
+        """`margins` along the lines of pairs near contact, on both flanks or not."""
+
+    def margins(self, driver_at: Place, driven_at: Place) -> Mapping[str, Array]:
+        """Distance to every edge of the active flanks by name [m], negative beyond it."""
+        sides = ("driver", self.driver, driver_at), ("driven", self.driven, driven_at)
+        return {
+            f"{name} {edge}": margin
+            for name, body, at in sides
+            for edge, margin in body.margins(*at).items()
+        }
+
+    def roll(self, pairs: Array, axial: Array | float, driver: Array) -> Array:
+        """Driver's angle of roll where its flank crosses the plane of action."""
+        gear = self.driver.gear
+        phi = driver + 2.0 * math.pi * pairs / gear.teeth + gear.base_half_angle
+        return self.working_angle + gear.kind * (phi + gear.twist * axial)
+
+    def turns(self, pairs: Array, driver: Array, driven: Array) -> tuple[Array, Array]:
+        """How far the teeth of pairs have turned at rotations of their gears [rad]."""
+        pitches = 2.0 * math.pi / self.driver.teeth, 2.0 * math.pi / self.driven.teeth
+        return driver + pitches[0] * pairs, driven + self.driven_step * pitches[1] * pairs
+
+    def driver_patch(self, pairs: Array, at: Place, rotation: Array) -> Patch:
+        """Points of the driver's flanks at surface parameters `at`, fixed frame."""
+        return self.flanks[0].patch(*at, self.turns(pairs, rotation, rotation)[0])
+
+    def driven_patch(self, pairs: Array, at: Place, rotation: Array) -> Patch:
+        """Points of the driven gear's flanks at surface parameters `at`, fixed frame."""
+        place = self.driven.placement
+        patch = self.flanks[1].patch(*at, self.turns(pairs, rotation, rotation)[1])
+        return patch.turned(place.axes, place.origin)
+
+    def positions(
+        self, phases: int | Sequence[float], points_per_line: int
+    ) -> tuple[MeshPosition, ...]:
+        """Unloaded contact at phases of the mesh cycle; see :func:`positions`."""
+        return positions(self, phases, points_per_line)
 
 
-def position(pair: Pair, phase: float, points_per_line: int) -> MeshPosition:
+def position(pair: GearPair, phase: float, points_per_line: int) -> MeshPosition:
     """Unloaded contact at one phase; see :func:`positions`."""
     return positions(pair, [phase], points_per_line)[0]
 
 
 def positions(
-    pair: Pair, phases: int | Sequence[float], points_per_line: int
+    pair: GearPair, phases: int | Sequence[float], points_per_line: int
 ) -> tuple[MeshPosition, ...]:
     """Unloaded contact at several phases, all at once.
 
     Parameters
     ----------
-    pair : Pair
+    pair : GearPair
         The two gears.
     phases : int or sequence of float
         Number of equal steps of the mesh cycle, or phases of it, 0 ≤ phase < 1.
@@ -87,7 +221,7 @@ def positions(
     return tuple(made)
 
 
-def transmission_error(pair: Pair, phase: float) -> float:
+def transmission_error(pair: GearPair, phase: float) -> float:
     """Lead of the driver over the ideal pair when the first flanks touch [rad].
 
     Raises
@@ -99,7 +233,7 @@ def transmission_error(pair: Pair, phase: float) -> float:
 
 
 def touching(
-    pair: Pair, phases: Sequence[float], points: int = FEWEST
+    pair: GearPair, phases: Sequence[float], points: int = FEWEST
 ) -> tuple[Array, Extents, Trace]:
     """Where the first flanks touch.
 
@@ -140,6 +274,21 @@ def touching(
         error = error + np.where(apart, least / pair.arm, 0.0)
     found = pair.extents(driver + error, driven)
     return error, found, least_gap(found, points)[2]
+
+
+def meeting_problems(pair: GearPair) -> list[Problem]:
+    """The problem of a misalignment with which no teeth meet at some position; none without one."""
+    off = {name: value for name, value in asdict(pair.misalignment).items() if value}
+    if not off:
+        return []
+    try:
+        touching(pair, list(np.arange(LOOKED_AT) / LOOKED_AT))
+    except NoContactError as error:
+        name, value = next(iter(off.items()))
+        alone = len(off) == 1
+        key, given = (f"misalignment.{name}", plain(value)) if alone else ("misalignment", "")
+        return [problem(key, given, str(error), "less; wider faces or longer teeth help too")]
+    return []
 
 
 def _missed(margins: Mapping[str, Array], far: float) -> str:

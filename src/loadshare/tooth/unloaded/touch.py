@@ -9,7 +9,7 @@ import numpy as np
 from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.geometry.flank import dot, principal_directions, relative_curvature, unit
 from loadshare.tooth.geometry.gap import LAST_STEP, least_gap
-from loadshare.tooth.unloaded.positions import Pair, touching
+from loadshare.tooth.unloaded.positions import GearPair, touching
 
 # A gap that grows by less than this per length of line [m/m] is level: an unmodified line contact.
 LEVEL = 1e-9
@@ -54,7 +54,7 @@ class ContactPoint:
     edge: str
 
 
-def contact_points(pair: Pair, phase: float) -> tuple[ContactPoint, ...]:
+def contact_points(pair: GearPair, phase: float) -> tuple[ContactPoint, ...]:
     """First contact of every pair of teeth at one phase, each pair taken alone.
 
     The contact equations, equal points and opposite normals in five unknowns (two parameters on
@@ -65,7 +65,7 @@ def contact_points(pair: Pair, phase: float) -> tuple[ContactPoint, ...]:
 
     Parameters
     ----------
-    pair : Pair
+    pair : GearPair
         The two gears.
     phase : float
         0 ≤ phase < 1 of the mesh cycle.
@@ -126,7 +126,7 @@ def contact_points(pair: Pair, phase: float) -> tuple[ContactPoint, ...]:
     return tuple(points)
 
 
-def _newton(pair: Pair, pairs: Array, unknowns: Array, driver: Array, driven: Array) -> Array:
+def _newton(pair: GearPair, pairs: Array, unknowns: Array, driver: Array, driven: Array) -> Array:
     """Solve the contact equations; unknowns (m, 1, 5) with the driver's further turn as last."""
     for _ in range(20):
         a, b, c, d, turn = np.moveaxis(unknowns, -1, 0)

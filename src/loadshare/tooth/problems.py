@@ -1,0 +1,72 @@
+"""Problems of gears as text, each with the dimension that causes it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import TypeAlias
+
+from loadshare.errors import CaseError, Problem
+
+LENGTHS = {
+    *("module", "face_width", "helix_gap", "rim", "inner", "outer", "centre_distance"),
+    *("tip_relief", "tip_relief_length", "end_relief", "end_relief_length"),
+    *("profile_crowning", "lead_crowning"),
+}
+"""Dimensions that are written in mm."""
+ANGLES = {"pressure_angle", "helix_angle", "shaft_angle"}
+"""Dimensions that are written in degrees."""
+
+Check: TypeAlias = tuple[str, float | str, bool, str]
+"""Name of a dimension, its value, whether that will do, and what would."""
+
+
+def millimetres(length: float) -> str:
+    """A length [m] as text in mm."""
+    return f"{plain(length * 1e3)} mm"
+
+
+def degrees(angle: float) -> str:
+    """An angle [rad] as text in degrees."""
+    return f"{plain(math.degrees(angle))} deg"
+
+
+def plain(number: float) -> str:
+    """A number with six figures."""
+    return f"{number:.6g}"
+
+
+def written(key: str, value: float) -> str:
+    """The value of a dimension [m, rad or 1], in the unit that its name asks for."""
+    name = key.rpartition(".")[2]
+    if name in LENGTHS:
+        return millimetres(value)
+    return degrees(value) if name in ANGLES else plain(value)
+
+
+def problem(key: str, given: float | str, message: str, allowed: str, hint: str = "") -> Problem:
+    """A problem with one dimension; geometry does not know the file it came from."""
+    text = given if isinstance(given, str) else written(key, given)
+    return Problem("", key, text, message, allowed, hint)
+
+
+def same(name: str, own: float, other: float, whose: str) -> Check:
+    """That a dimension is its partner's."""
+    fits = math.isclose(own, other, rel_tol=1e-9)
+    return name, own, fits, f"that of the {whose}, {written(name, other)}"
+
+
+def failed(key: str, message: str, checks: Iterable[Check]) -> list[Problem]:
+    """Problems with the dimensions of a gear, "driver" or "driven", that will not do."""
+    return [
+        problem(f"{key}.{name}", value, message, allowed)
+        for name, value, fits, allowed in checks
+        if not fits
+    ]
+
+
+def refuse(problems: Iterable[Problem]) -> None:
+    """Raise problems where there are any."""
+    found = list(problems)
+    if found:
+        raise CaseError(found)
