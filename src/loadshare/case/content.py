@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
-from pydantic import Field
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import Field, PrivateAttr
 
 from loadshare.case.element import Element
 from loadshare.case.gears import Errors, Gear
+from loadshare.case.keys import Path, parse
 from loadshare.case.links import Ring, Shaft, Spline
 from loadshare.case.measured import Measurement
 from loadshare.case.meshes import Mesh
 from loadshare.case.operation import March, Operating, Stage
+from loadshare.case.origin import Origin
 from loadshare.case.study import Study
+from loadshare.errors import Problem
 
 ABOUT = ("title", "source", "notes", "assumed", "measured", "study")
 """The keys that say something about a case and nothing about the machine."""
 
 
-class Content(Element):
-    """A transmission, how it is loaded, and what is known about these inputs."""
+class Sections(Element):
+    """What a case file may say, as a whole or as far as it could be read."""
+
+    _data: Mapping[str, Any] = PrivateAttr()
+    _origin: Origin = PrivateAttr()
 
     title: str = ""
     """One line that says what the case is."""
@@ -31,16 +40,16 @@ class Content(Element):
     assumed: tuple[str, ...] = ()
     """Key paths of inputs that are assumptions; a star stands for any name."""
 
-    operating: Operating
+    operating: Operating | None = None
     """The operating point: where the power enters and leaves, and how much of it."""
 
     march: March | None = None
     """A march through the rotation of one gear, for errors that turn with their gears."""
 
-    gears: dict[str, Gear]
+    gears: dict[str, Gear] = Field(default_factory=dict)
     """The gears, by name."""
 
-    meshes: dict[str, Mesh]
+    meshes: dict[str, Mesh] = Field(default_factory=dict)
     """The meshes; one named a-b joins the driver a to the driven gear b."""
 
     shafts: dict[str, Shaft] = Field(default_factory=dict)
@@ -63,3 +72,34 @@ class Content(Element):
 
     study: dict[str, Study] = Field(default_factory=dict)
     """Studies of the case, by name."""
+
+    def problem(self, key: str | Path, message: str, allowed: str = "", hint: str = "") -> Problem:
+        """Return a problem with a key, with its file and what was given.
+
+        Parameters
+        ----------
+        key : str or tuple of str or int
+            Dotted key path, or its steps.
+        message, allowed, hint : str
+            As in `Problem`.
+
+        Returns
+        -------
+        Problem
+            The problem, to be raised in a `CaseError`.
+        """
+        path = parse(key) if isinstance(key, str) else key
+        return self._origin.problem(self._data, path, message, allowed, hint)
+
+
+class Content(Sections):
+    """A transmission, how it is loaded, and what is known about these inputs."""
+
+    operating: Operating
+    """The operating point: where the power enters and leaves, and how much of it."""
+
+    gears: dict[str, Gear]
+    """The gears, by name."""
+
+    meshes: dict[str, Mesh]
+    """The meshes; one named a-b joins the driver a to the driven gear b."""

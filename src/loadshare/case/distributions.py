@@ -7,9 +7,9 @@ from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, Strict, Tag
 
-from loadshare.case.element import NESTED, VALUE, Element, Rule, shaped
+from loadshare.case.element import NESTED, VALUE, Element, Number, Rule, shaped
 
-Given: TypeAlias = str | Annotated[float, Strict(), Field(allow_inf_nan=False)]
+Given: TypeAlias = str | Number
 Coefficient = Annotated[float, Strict(), Field(ge=-1, le=1)]
 
 # Which numbers each distribution takes.

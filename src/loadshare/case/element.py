@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, Self, TypeVar
+from typing import Annotated, Any, Self, TypeVar, get_args
 
 from pydantic import (
     BaseModel,
     ConfigDict,
     Discriminator,
     Field,
+    Strict,
     Tag,
     ValidationError,
     model_validator,
@@ -118,6 +119,14 @@ def written(element: Element) -> dict[str, Any]:
     return data
 
 
+def elements_in(annotation: Any) -> Iterator[type[Element]]:
+    """Yield the elements that a field may hold, in the order of its annotation."""
+    if isinstance(annotation, type) and issubclass(annotation, Element):
+        yield annotation
+    for inner in get_args(annotation):
+        yield from elements_in(inner)
+
+
 def shaped(allowed: str, *, limits: tuple[str, ...] = ()) -> Discriminator:
     """Return what picks the member of a union by the shape of the value: one problem, not several.
 
@@ -147,6 +156,9 @@ def shaped(allowed: str, *, limits: tuple[str, ...] = ()) -> Discriminator:
 
 
 T = TypeVar("T")
+Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
+Positive = Annotated[float, Strict(), Field(gt=0, allow_inf_nan=False)]
+Count = Annotated[int, Strict(), Field(ge=1)]
 
 PerPosition = Annotated[
     Annotated[T, Tag(VALUE)] | Annotated[tuple[T, ...], Field(min_length=1), Tag(LIST)],

@@ -7,14 +7,19 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Strict, Tag
 
-from loadshare.case.element import LIST, TABLE, VALUE, Element, Rule, shaped
-from loadshare.case.quantity import LENGTH, STIFFNESS, Angle, Length, Quantity
+from loadshare.case.element import LIST, TABLE, VALUE, Element, Number, Rule, shaped
+from loadshare.case.quantity import (
+    LENGTH,
+    STIFFNESS,
+    Angle,
+    Distance,
+    Length,
+    Quantity,
+    Radius,
+    Stiffness,
+)
 
-PositiveLength = Annotated[Quantity, LENGTH.bounded(above=0)]
-Amount = Annotated[Quantity, LENGTH.bounded(at_least=0)]
-SupportStiffness = Annotated[Quantity, STIFFNESS.bounded(above=0)]
 Components = Annotated[tuple[Length, ...], Field(min_length=2, max_length=3), Tag(LIST)]
-Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
 
 
 class Polar(Element):
@@ -23,7 +28,7 @@ class Polar(Element):
     about: str | None = None
     """Gear whose centre is the pole; the origin when left out."""
 
-    distance: Amount
+    distance: Distance
     """Distance from the pole in the x-y plane [length]."""
 
     angle: Angle
@@ -52,13 +57,13 @@ class Gear(Element):
     ] = "z"
     """Direction of the axis: x, y, z, or three components [-]."""
 
-    base_radius: PositiveLength | None = None
+    base_radius: Radius | None = None
     """Base radius; of a face gear the acting radius [length]."""
 
-    inner_radius: PositiveLength | None = None
+    inner_radius: Radius | None = None
     """Inner radius of a face gear's teeth [length]."""
 
-    outer_radius: PositiveLength | None = None
+    outer_radius: Radius | None = None
     """Outer radius of a face gear's teeth [length]."""
 
     teeth: Annotated[int, Strict(), Field(ge=5)] | None = None
@@ -71,7 +76,7 @@ class Gear(Element):
                 STIFFNESS.bounded(above=0).or_words("rigid", "free"),
                 Tag(VALUE),
             ]
-            | Annotated[tuple[SupportStiffness, SupportStiffness], Tag(LIST)],
+            | Annotated[tuple[Stiffness, Stiffness], Tag(LIST)],
             shaped('"rigid", "free", a stiffness such as "5.5e8 N/m", or a list of 2 of them'),
         ]
         | None
@@ -115,7 +120,7 @@ class Gear(Element):
 class Offset(Element):
     """An installation error given by size and direction."""
 
-    amount: Amount
+    amount: Distance
     """Size of the offset [length]."""
 
     direction: Angle
@@ -125,7 +130,7 @@ class Offset(Element):
 class Eccentricity(Element):
     """A manufacturing error: the offset of the base circle, which turns with the gear."""
 
-    amount: Amount
+    amount: Distance
     """Size of the offset [length]."""
 
     direction: Angle = Quantity("0 deg", 0.0)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from fnmatch import fnmatchcase
 from typing import Any, TypeAlias
 
 Path: TypeAlias = tuple[str | int, ...]
 
 BARE = re.compile(r"\w+")
-_STEP = re.compile(r'"((?:[^"\\]|\\.)*)"|\'([^\']*)\'|([^.\'"]+)')
-_INDEX = re.compile(r"\[(\d+)\]$")
+_STEP = re.compile(r"""(?:"((?:[^"\\]|\\.)*)"|'([^']*)'|([^.'"]+?))((?:\[\d+\])*)\s*(\.|\Z)""")
 
 
 def dotted(path: Path) -> str:
@@ -56,30 +56,19 @@ def parse(text: str) -> Path:
         If the text is no key path.
     """
     path: list[str | int] = []
-    at = 0
-    while True:
-        match = _STEP.match(text, at)
-        if match is None:
+    at, dot = 0, "."
+    while dot:
+        step = _STEP.match(text, at)
+        if step is None:
             raise ValueError(text)
-        quoted, literal, bare = match.groups()
-        at = match.end()
-        if bare is None:
-            path.append(literal if quoted is None else json.loads(f'"{quoted}"'))
-            indices = re.match(r"(\[\d+\])*", text[at:])
-            tail = indices[0] if indices else ""
-            at += len(tail)
+        quoted, literal, bare, indices, dot = step.groups()
+        if bare is not None:
+            path.append(bare.strip())
         else:
-            name = bare.strip()
-            tail = ""
-            while found := _INDEX.search(name):
-                name, tail = name[: found.start()], found[0] + tail
-            path.append(name)
-        path += [int(number) for number in re.findall(r"\d+", tail)]
-        if at == len(text):
-            return tuple(path)
-        if text[at] != ".":
-            raise ValueError(text)
-        at += 1
+            path.append(literal if quoted is None else json.loads(f'"{quoted}"'))
+        path += map(int, re.findall(r"\d+", indices))
+        at = step.end()
+    return tuple(path)
 
 
 def look_up(data: Any, path: Path) -> Any:
@@ -126,3 +115,45 @@ def walk(data: Mapping[str, Any], above: Path = ()) -> Iterator[Path]:
         yield (*above, key)
         if isinstance(value, Mapping):
             yield from walk(value, (*above, key))
+
+
+def covers(pattern: Path, path: Path) -> bool:
+    """Tell whether a pattern names a key or a table above it.
+
+    Parameters
+    ----------
+    pattern : tuple of str or int
+        A key path in which a star stands for any part of one name.
+    path : tuple of str or int
+        The key.
+
+    Returns
+    -------
+    bool
+        Whether it does.
+    """
+    return len(pattern) <= len(path) and all(
+        fnmatchcase(str(step), str(wanted)) for wanted, step in zip(pattern, path, strict=False)
+    )
+
+
+def ends_of(name: str, gears: Iterable[str]) -> tuple[str, str] | None:
+    """Return the two gears that a name a-b tells; a gear's own name may hold dashes.
+
+    Parameters
+    ----------
+    name : str
+        Of a mesh or a shaft.
+    gears : iterable of str
+        Gears that there are.
+
+    Returns
+    -------
+    tuple of (str, str) or None
+        None where the name does not tell two gears.
+    """
+    at = [index for index, letter in enumerate(name) if letter == "-"]
+    splits = [(name[:index], name[index + 1 :]) for index in at]
+    known = [split for split in splits if set(split) <= set(gears)]
+    candidates = known or splits
+    return candidates[0] if len(candidates) == 1 else None

@@ -23,12 +23,13 @@ from loadshare.case.quantity import (
     STIFFNESS,
     TORSIONAL_STIFFNESS,
     Angle,
+    Distance,
     Length,
     Quantity,
+    Radius,
+    Stiffness,
 )
 
-Clearance = Annotated[Quantity, LENGTH.bounded(at_least=0)]
-Radius = Annotated[Quantity, LENGTH.bounded(above=0)]
 Load = Annotated[Quantity, FORCE.bounded(at_least=0)]
 
 
@@ -50,13 +51,13 @@ class Shaft(Element):
 class Spline(Element):
     """A clearance spline on a gear: it sticks, then slips, then its clearance is used up."""
 
-    bending_stiffness: Annotated[Quantity, STIFFNESS.bounded(above=0)]
+    bending_stiffness: Stiffness
     """Bending stiffness of the spline shaft, K_w [force/length]."""
 
-    clearance: Clearance
+    clearance: Distance
     """Displacement at which the clearance is used up, S2 [length]."""
 
-    stick_limit: Clearance | None = None
+    stick_limit: Distance | None = None
     """Displacement up to which the spline sticks, S1 [length]; F_m / K_w when left out."""
 
     friction_force: Load | None = None
@@ -98,10 +99,10 @@ class Spline(Element):
 class Range(Element):
     """A float range to either side."""
 
-    up: Clearance
+    up: Distance
     """Float outwards [length]."""
 
-    down: Clearance
+    down: Distance
     """Float inwards [length]."""
 
 
@@ -124,14 +125,14 @@ class Ring(Element):
     """Drum: the two gears whose rings it rolls on; up is left of the way from first to second."""
 
     clearance: Annotated[
-        Annotated[Clearance, Tag(VALUE)] | Annotated[tuple[Clearance, Clearance], Tag(LIST)],
+        Annotated[Distance, Tag(VALUE)] | Annotated[tuple[Distance, Distance], Tag(LIST)],
         shaped("a length, or a list of 2 lengths, one per neighbour"),
     ] = Quantity("0 um", 0.0)
     """Drum: gap between the rings [length], for both neighbours or each."""
 
     float_: (
         Annotated[
-            Annotated[Clearance, Tag(VALUE)]
+            Annotated[Distance, Tag(VALUE)]
             | Annotated[Range, Tag(TABLE)]
             | Annotated[Backlashes, Tag(LIMITS)],
             shaped(
@@ -143,7 +144,7 @@ class Ring(Element):
     ) = Field(default=None, alias="float")
     """Drum: float across the line of the neighbours [length], or the meshes that set it."""
 
-    radius: Annotated[Quantity, LENGTH.bounded(at_least=0)] | None = None
+    radius: Distance | None = None
     """Circle: radius of the disc in which the centre may move [length]."""
 
     offset: tuple[Length, Length] = (Quantity("0 mm", 0.0), Quantity("0 mm", 0.0))

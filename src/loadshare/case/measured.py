@@ -5,13 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated
 
-from pydantic import Field, Strict
-
-from loadshare.case.element import Element, Rule
-from loadshare.case.operation import Count
+from loadshare.case.element import Count, Element, Number, Positive, Rule
 from loadshare.case.quantity import TORQUE, Quantity, Torque
 
-Coefficient = Annotated[float, Strict(), Field(allow_inf_nan=False)]
 COEFFICIENTS = ("share", "pair_share", "omega", "pair_omega")
 
 
@@ -27,19 +23,19 @@ class Measurement(Element):
     torque_uncertainty: Annotated[Quantity, TORQUE.bounded(above=0)] | None = None
     """Standard deviation of each torque [torque]."""
 
-    share: dict[str, Coefficient] | None = None
+    share: dict[str, Number] | None = None
     """Load-sharing coefficients over the mean of the stage, by mesh [-]."""
 
-    pair_share: dict[str, Coefficient] | None = None
+    pair_share: dict[str, Number] | None = None
     """Load-sharing coefficients over the mean of the group, by mesh [-]."""
 
-    omega: dict[str, Coefficient] | None = None
+    omega: dict[str, Number] | None = None
     """Largest share of a stage, by stage, or of the system [-]."""
 
-    pair_omega: dict[str, Coefficient] | None = None
+    pair_omega: dict[str, Number] | None = None
     """Largest pair share of a stage, by stage, or of the system [-]."""
 
-    uncertainty: Annotated[float, Strict(), Field(gt=0, allow_inf_nan=False)] | None = None
+    uncertainty: Positive | None = None
     """Standard deviation of each coefficient [-]."""
 
     source: str = ""

@@ -19,14 +19,15 @@ from loadshare.case.element import (
     values,
     without_default,
 )
+from loadshare.case.keys import Path
 from loadshare.case.quantity import (
     ANGLE,
     HERTZ_COMPLIANCE,
-    LENGTH,
     TORQUE,
     TORSIONAL_COMPLIANCE,
     TORSIONAL_STIFFNESS,
     Angle,
+    Distance,
     Quantity,
 )
 from loadshare.case.words import count
@@ -34,7 +35,6 @@ from loadshare.case.words import count
 STEEPEST = Quantity("45 deg", math.radians(45))
 LAWS = ("stiffness", "law", "table", "law_file", "geometry")
 
-Play = Annotated[Quantity, LENGTH.bounded(at_least=0)]
 MeshStiffness = Annotated[Quantity, TORSIONAL_STIFFNESS.bounded(above=0)]
 Bending = Annotated[Quantity, TORSIONAL_COMPLIANCE.bounded(at_least=0)]
 Hertz = Annotated[Quantity, HERTZ_COMPLIANCE.bounded(at_least=0)]
@@ -92,7 +92,7 @@ class Table(Element):
         """The deflections [angle]: one curve, or one per position."""
         return tuple(points for _, points in self._curves())
 
-    def _curves(self) -> Iterator[tuple[tuple[str | int, ...], tuple[Quantity, ...]]]:
+    def _curves(self) -> Iterator[tuple[Path, tuple[Quantity, ...]]]:
         flat = tuple(point for point in self.deflection if isinstance(point, Quantity))
         if flat:
             yield ("deflection",), flat
@@ -134,10 +134,10 @@ class Mesh(Element):
     gap: PerPosition[Angle] | None = None
     """Unloaded gap at the driver that opens the mesh [angle], one value or one per position."""
 
-    backlash: Play | None = None
+    backlash: Distance | None = None
     """Circumferential working backlash [length]; without any backlash the coast flank is free."""
 
-    normal_backlash: Play | None = None
+    normal_backlash: Distance | None = None
     """Backlash along the line of action [length], in place of `backlash`."""
 
     def rules(self) -> Iterator[Rule]:
@@ -158,6 +158,14 @@ class Mesh(Element):
             yield Rule("stands beside backlash: give one or the other", ("normal_backlash",))
         if abs(self.helix_angle.si) >= math.pi / 2:
             yield Rule("is 90 deg or more", ("helix_angle",), ANGLE.allowed)
+
+    def per_position(self) -> Iterator[tuple[Path, object]]:
+        """Yield what may be given once or once per position, with its key."""
+        yield from (((key,), getattr(self, key)) for key in ("stiffness", "gap"))
+        if self.law is not None:
+            yield from ((("law", key), getattr(self.law, key)) for key in "abc")
+        if self.table is not None:
+            yield ("table", "deflection"), self.table.curves
 
 
 def _increases(points: tuple[Quantity, ...]) -> bool:

@@ -14,11 +14,10 @@ from pydantic import PrivateAttr
 from loadshare.case.checks import check
 from loadshare.case.content import ABOUT, Content
 from loadshare.case.draft import plain, read_draft
-from loadshare.case.keys import parse
+from loadshare.case.keys import covers, parse
 from loadshare.case.origin import Origin
-from loadshare.case.patterns import covers
 from loadshare.case.revise import revise
-from loadshare.errors import CaseError, Problem
+from loadshare.errors import CaseError
 
 
 class Case(Content):
@@ -44,8 +43,6 @@ class Case(Content):
         With all problems of the case at once.
     """
 
-    _data: dict[str, Any] = PrivateAttr()
-    _origin: Origin = PrivateAttr()
     _name: str = PrivateAttr()
 
     def __init__(
@@ -63,7 +60,7 @@ class Case(Content):
         problems = [*draft.problems, *check(draft)]
         if problems:
             raise CaseError(problems)
-        super().__init__(**draft.content())
+        super().__init__(**{n: getattr(draft, n) for n in Content.model_fields if n in data})
         self._data, self._origin, self._name = data, origin, name
 
     @property
@@ -86,7 +83,7 @@ class Case(Content):
         dict
             Tables, lists, texts and numbers, by the keys of the case file.
         """
-        return copy.deepcopy(self._data)
+        return copy.deepcopy(dict(self._data))
 
     def to_toml(self, path: str | FilePath | None = None) -> str:
         """Return the case as a case file that stands alone, and write it where a path is given.
@@ -129,23 +126,6 @@ class Case(Content):
         """
         data, origin = revise(self._data, self._origin, changes)
         return Case(data, name=self._name, origin=origin)
-
-    def problem(self, key: str, message: str, allowed: str = "", hint: str = "") -> Problem:
-        """Return a problem with a key of this case, with its file and what was given.
-
-        Parameters
-        ----------
-        key : str
-            Dotted key path.
-        message, allowed, hint : str
-            As in `Problem`.
-
-        Returns
-        -------
-        Problem
-            The problem, to be raised in a `CaseError`.
-        """
-        return self._origin.problem(self._data, parse(key), message, allowed, hint)
 
     def is_assumed(self, key: str) -> bool:
         """Tell whether an input is marked as assumed, itself or as part of what is.

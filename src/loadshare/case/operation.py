@@ -5,13 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Annotated, Literal
 
-from pydantic import Field, Strict
+from pydantic import Field
 
-from loadshare.case.element import Element, PerPosition, Rule, values
+from loadshare.case.element import Count, Element, PerPosition, Positive, Rule, values
 from loadshare.case.quantity import ANGULAR_SPEED, POWER, Quantity, Torque
-
-InputPower = Annotated[Quantity, POWER]
-Count = Annotated[int, Strict(), Field(ge=1)]
 
 
 class Operating(Element):
@@ -29,7 +26,7 @@ class Operating(Element):
     torque: PerPosition[Torque] | None = None
     """Input torque [torque], one value or one per position; negative where the input brakes."""
 
-    power: PerPosition[InputPower] | None = None
+    power: PerPosition[Annotated[Quantity, POWER]] | None = None
     """Input power [power], one value or one per position; goes with `speed`."""
 
     speed: Annotated[Quantity, ANGULAR_SPEED.bounded(above=0)] | None = None
@@ -78,7 +75,7 @@ class March(Element):
     gear: str
     """Gear whose revolutions are counted."""
 
-    revolutions: Annotated[float, Strict(), Field(gt=0, allow_inf_nan=False)]
+    revolutions: Positive
     """How far to march [revolutions]."""
 
     steps: Count

@@ -220,12 +220,8 @@ TORSIONAL_COMPLIANCE = Dimension("rad/(N*m)", "a torsional compliance", "2e-7 ra
 HERTZ_COMPLIANCE = Dimension("rad/(N*m)^(2/3)", "a Hertz compliance", "1e-6 rad/(N*m)^(2/3)")
 
 Length = Annotated[Quantity, LENGTH]
+Distance = Annotated[Quantity, LENGTH.bounded(at_least=0)]
+Radius = Annotated[Quantity, LENGTH.bounded(above=0)]
 Angle = Annotated[Quantity, ANGLE]
-AngularSpeed = Annotated[Quantity, ANGULAR_SPEED]
-Power = Annotated[Quantity, POWER]
 Torque = Annotated[Quantity, TORQUE]
-Force = Annotated[Quantity, FORCE]
-Stiffness = Annotated[Quantity, STIFFNESS]
-TorsionalStiffness = Annotated[Quantity, TORSIONAL_STIFFNESS]
-TorsionalCompliance = Annotated[Quantity, TORSIONAL_COMPLIANCE]
-HertzCompliance = Annotated[Quantity, HERTZ_COMPLIANCE]
+Stiffness = Annotated[Quantity, STIFFNESS.bounded(above=0)]

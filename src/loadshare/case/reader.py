@@ -13,7 +13,7 @@ from loadshare.case.draft import Draft, plain, read_draft
 from loadshare.case.keys import Path, parse, walk
 from loadshare.case.model import Case
 from loadshare.case.origin import Origin
-from loadshare.case.revise import drop, revise
+from loadshare.case.revise import change, revise
 from loadshare.case.words import as_given
 from loadshare.errors import CaseError, Problem
 
@@ -73,7 +73,7 @@ def load_draft(path: str | FilePath, changes: Mapping[str, Any] | None = None) -
     data, files, problems = _read(path, ())
     data, origin = revise(plain(data), Origin(str(path), files), changes or {})
     draft = read_draft(data, origin)
-    draft.problems = [*problems, *draft.problems, *check(draft)]
+    draft.problems[:] = [*problems, *draft.problems, *check(draft)]
     return draft
 
 
@@ -95,7 +95,9 @@ def _read(
         )
         removals = []
     for number, key in enumerate(removals):
-        problems += _remove(data, files, key, Problem(str(path), f"remove[{number}]", "", ""))
+        wrong = _remove(data, files, key)
+        if wrong:
+            problems.append(Problem(str(path), f"remove[{number}]", as_given(key), *wrong))
     # What the base assumes stays assumed: a case may only add to it.
     inherited, added = data.get("assumed", []), own.get("assumed", [])
     _merge(data, own)
@@ -106,30 +108,20 @@ def _read(
     return data, files, problems
 
 
-def _remove(
-    data: dict[str, Any], files: dict[Path, str], key: object, place: Problem
-) -> list[Problem]:
-    """Drop an inherited key; `place` is where the wish stands."""
+def _remove(data: dict[str, Any], files: dict[Path, str], key: object) -> tuple[str, ...]:
+    """Drop an inherited key; return what is wrong with it, what is allowed, and a hint."""
     try:
         path = parse(key) if isinstance(key, str) else ()
     except ValueError:
         path = ()
     if not path:
-        return [
-            Problem(
-                place.file,
-                place.key,
-                as_given(key),
-                "is not a key path",
-                'a text such as "errors.6"',
-            )
-        ]
-    hint = drop(data, path)
+        return "is not a key path", 'a text such as "errors.6"'
+    hint = change(data, path, None)
     if hint is not None:
-        return [Problem(place.file, place.key, as_given(key), "is not inherited", "", hint)]
+        return "is not inherited", "", hint
     for known in [known for known in files if known[: len(path)] == path]:
         del files[known]
-    return []
+    return ()
 
 
 def _merge(data: dict[str, Any], own: Mapping[str, Any]) -> None:

@@ -49,7 +49,7 @@ def revise(
         except ValueError:
             problems.append(Problem(FILE, key, as_given(plain(value)), "is not a key path"))
             continue
-        lost = (change if value is not None else drop)(changed, path, plain(value))
+        lost = change(changed, path, plain(value))
         if lost is None:
             files = {known: file for known, file in files.items() if known[: len(path)] != path}
             files[path] = FILE
@@ -61,7 +61,7 @@ def revise(
 
 
 def change(data: dict[str, Any], path: Path, value: Any) -> str | None:
-    """Set the value at a key path, in place.
+    """Set the value at a key path, or remove the key, in place.
 
     Parameters
     ----------
@@ -71,47 +71,28 @@ def change(data: dict[str, Any], path: Path, value: Any) -> str | None:
         The key; the table that holds it must exist, or be a section of a case file or the table of
         a gear's errors.
     value : object
-        The new value.
+        The new value; None removes the key.
 
     Returns
     -------
     str or None
         None, or a hint where the path leads nowhere.
     """
-    if len(path) > 1 and path[0] in Content.model_fields and path[0] not in data:
-        data[str(path[0])] = {}
-    if path[0] == "errors" and len(path) > 2:
-        # A gear without errors has no table of them; every key of one is optional.
-        data["errors"].setdefault(path[1], {})
-    holder = look_up(data, path[:-1])
-    step = path[-1]
-    if isinstance(holder, dict) and isinstance(step, str):
+    if value is not None and len(path) > 1 and path[0] in Content.model_fields:
+        section = data.setdefault(str(path[0]), {})
+        if path[0] == "errors" and len(path) > 2:
+            # A gear without errors has no table of them; every key of one is optional.
+            section.setdefault(path[1], {})
+    holder: Any = look_up(data, path[:-1])
+    step: Any = path[-1]
+    if value is None:
+        if isinstance(holder, dict) and step in holder:
+            del holder[step]
+            return None
+    elif (isinstance(holder, dict) and isinstance(step, str)) or (
+        isinstance(holder, list) and step in range(len(holder))
+    ):
         holder[step] = value
-        return None
-    if isinstance(holder, list) and isinstance(step, int) and step < len(holder):
-        holder[step] = value
-        return None
-    return nearest(data, path)
-
-
-def drop(data: dict[str, Any], path: Path, _: Any = None) -> str | None:
-    """Remove a key, in place.
-
-    Parameters
-    ----------
-    data : dict
-        A case as plain data.
-    path : tuple of str or int
-        The key.
-
-    Returns
-    -------
-    str or None
-        None, or a hint where the path leads nowhere.
-    """
-    holder = look_up(data, path[:-1])
-    if isinstance(holder, dict) and path[-1] in holder:
-        del holder[path[-1]]
         return None
     return nearest(data, path)
 

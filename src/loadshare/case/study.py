@@ -8,8 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field, Strict
 
 from loadshare.case.distributions import Given, Group, Spread
-from loadshare.case.element import Element, Rule
-from loadshare.case.operation import Count
+from loadshare.case.element import Count, Element, Positive, Rule
 
 # What each kind of study needs, and what it may have besides.
 KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
@@ -24,11 +23,8 @@ KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
         ("groups", "samples", "seed", "sampling", "limit", "indices", "quantiles"),
     ),
 }
-_OWN = (
-    *("over", "keys", "start", "stop", "gear", "revolutions", "steps", "unknowns"),
-    *("inputs", "groups", "samples", "sampling", "limit", "indices", "quantiles"),
-    *("starts", "seed"),
-)
+OWN = tuple(dict.fromkeys(key for some in KEYS.values() for keys in some for key in keys))
+"""The keys that only some kinds of study know."""
 Level = Annotated[float, Strict(), Field(gt=0, lt=1)]
 
 
@@ -53,7 +49,7 @@ class Study(Element):
     gear: str | None = None
     """March: gear whose revolutions are counted; that of `march` when left out."""
 
-    revolutions: Annotated[float, Strict(), Field(gt=0, allow_inf_nan=False)] | None = None
+    revolutions: Positive | None = None
     """March: how far [revolutions]."""
 
     steps: Count | None = None
@@ -80,7 +76,7 @@ class Study(Element):
     sampling: Literal["random", "sobol"] | None = None
     """Tolerance: independent draws, or 16 scrambled Sobol sequences; random when left out."""
 
-    limit: Annotated[float, Strict(), Field(gt=0, allow_inf_nan=False)] | None = None
+    limit: Positive | None = None
     """Tolerance: Ω that should not be exceeded [-]."""
 
     indices: Annotated[int, Strict(), Field(ge=0)] | None = None
@@ -99,7 +95,7 @@ class Study(Element):
             if getattr(self, key) is None:
                 yield Rule("is missing", (key,), hint=f"A {self.kind} needs it.")
         known = (*needed, *possible)
-        for key in _OWN:
+        for key in OWN:
             if key in self.model_fields_set and key not in known:
                 allowed = ", ".join((*known, "positions"))
                 yield Rule(f"says nothing to a {self.kind}", (key,), allowed)

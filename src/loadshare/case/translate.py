@@ -2,26 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
-
+from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from loadshare.case.element import MARK, Element
+from loadshare.case.element import MARK, Element, Rule, elements_in
 from loadshare.case.keys import Path
 from loadshare.case.words import choices, count, did_you_mean
-
-
-@dataclass(frozen=True)
-class Finding:
-    """What is wrong at one key of an element."""
-
-    path: Path
-    message: str
-    allowed: str = ""
-    hint: str = ""
-
 
 # What each kind of finding is called; the braces are filled from pydantic's context.
 WANTED = {
@@ -44,7 +30,7 @@ WANTED = {
 }
 
 
-def translate(error: ErrorDetails, model: type[Element]) -> Finding:
+def translate(error: ErrorDetails, model: type[Element]) -> Rule:
     """Return one of pydantic's findings in our own words.
 
     Parameters
@@ -56,61 +42,40 @@ def translate(error: ErrorDetails, model: type[Element]) -> Finding:
 
     Returns
     -------
-    Finding
+    Rule
         The same, for the user.
     """
     path = tuple(step for step in error["loc"] if not str(step).startswith(MARK))
     kind, context = error["type"], error.get("ctx", {})
     if kind == "said":
-        return Finding(path, context["said"], context["allowed"], context["hint"])
+        return Rule(context["said"], path, context["allowed"], context["hint"])
     if kind == "extra_forbidden":
-        keys = _keys(model, path[:-1])
-        return Finding(path, "unknown key", choices(sorted(keys)), did_you_mean(path[-1], keys))
+        keys = list(map(str, _fields(model, path[:-1])))
+        return Rule("unknown key", path, choices(sorted(keys)), did_you_mean(path[-1], keys))
     if kind == "missing" and isinstance(path[-1], int):
-        return Finding(path[:-1], f"has {count(path[-1])}, more are needed")
+        return Rule(f"has {count(path[-1])}, more are needed", path[:-1])
     if kind == "missing":
-        described = _describe(model, path)
-        return Finding(path, "is missing", hint=described)
+        about = _fields(model, path[:-1]).get(path[-1])
+        described = ((about and about.description) or "").split("\n")[0]
+        return Rule("is missing", path, hint=described)
     if kind == "literal_error":
         words = context["expected"].replace(" or ", ", ").replace("'", "").split(", ")
         hint = did_you_mean(error["input"], words)
-        return Finding(path, "is not one of the words that can stand here", choices(words), hint)
+        return Rule("is not one of the words that can stand here", path, choices(words), hint)
     if kind == "shape":
-        return Finding(path, "is not of a form that can stand here", error["msg"])
+        return Rule("is not of a form that can stand here", path, error["msg"])
     wanted = WANTED.get(kind, "another value").format_map(context)
-    return Finding(path, "cannot stand here", wanted)
+    return Rule("cannot stand here", path, wanted)
 
 
-def _keys(model: type[Element], path: Path) -> list[str]:
-    properties = _table(model, path).get("properties", {})
-    return list(properties)
-
-
-def _describe(model: type[Element], path: Path) -> str:
-    field = _table(model, path[:-1]).get("properties", {}).get(path[-1], {})
-    return str(field.get("description", "")).split("\n")[0]
-
-
-def _table(model: type[Element], path: Path) -> Mapping[str, Any]:
-    """Return the part of an element's schema in which the last step of a path was looked for."""
-    schema = model.model_json_schema()
-    table: Mapping[str, Any] = schema
+def _fields(model: type[Element], path: Path) -> dict[str | int, FieldInfo]:
+    """Fields, by their keys, of the table that a path leads to; none where it leads nowhere."""
+    found = _by_key(model)
     for step in path:
-        inner = table.get("properties", {}).get(step, {})
-        table = next(
-            (
-                schema["$defs"][option["$ref"].rpartition("/")[2]]
-                for option in _options(inner)
-                if "$ref" in option
-            ),
-            {},
-        )
-    return table
-
-
-def _options(schema: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    found = [schema]
-    for key in ("anyOf", "oneOf"):
-        for option in schema.get(key, ()):
-            found += _options(option)
+        inner = next(elements_in(found[step].annotation), None) if step in found else None
+        found = _by_key(inner) if inner else {}
     return found
+
+
+def _by_key(model: type[Element]) -> dict[str | int, FieldInfo]:
+    return {about.alias or name: about for name, about in model.model_fields.items()}

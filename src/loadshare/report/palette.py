@@ -10,6 +10,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from loadshare.case.keys import ends_of
 from loadshare.results import Result
 
 INK = "#1f2933"
@@ -119,10 +120,5 @@ def palette_of(result: Result) -> Palette:
 def ends_from_names(meshes: Iterable[str], gears: Iterable[str]) -> dict[str, tuple[str, str]]:
     """Driver and driven gear of the meshes whose names, a-b, tell them."""
     known = set(gears)
-    ends = {}
-    for mesh in meshes:
-        splits = [(mesh[:k], mesh[k + 1 :]) for k, letter in enumerate(mesh) if letter == "-"]
-        found = [split for split in splits if set(split) <= known]
-        if len(found) == 1:
-            ends[mesh] = found[0]
-    return ends
+    told = {mesh: ends_of(mesh, known) for mesh in meshes}
+    return {mesh: ends for mesh, ends in told.items() if ends and set(ends) <= known}

@@ -8,7 +8,7 @@ they push, and changes the machine itself. What a key writes into the arrays sta
 from __future__ import annotations
 
 from loadshare import case as spec
-from loadshare.case.checks.turning import turning_told
+from loadshare.case.checks.meshing import turning_told
 from loadshare.train.columns import Column
 
 _LENGTH = "m"

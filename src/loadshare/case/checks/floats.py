@@ -1,10 +1,10 @@
-"""Splines and limit rings must have something to hold, and laws that can be held."""
+"""Splines and limit rings must have something to hold, and no input may be idle."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from loadshare.case.checks.fit import SQUARE
+from loadshare.case.checks.meshing import SQUARE
 from loadshare.case.draft import Draft
 from loadshare.case.links import Backlashes
 from loadshare.case.place import axis_of, dot
@@ -69,3 +69,21 @@ def check_float_backlashes(draft: Draft) -> Iterator[Problem]:
                 if mesh is not None and not mesh.given("backlash", "normal_backlash"):
                     path = ("rings", name, "float", side, number)
                     yield draft.problem(path, "this mesh has no backlash", hint="Give it one.")
+
+
+def check_idle_inputs(draft: Draft) -> Iterator[Problem]:
+    """Yield what was given and bears on nothing for want of something else."""
+    for name, mesh in draft.meshes.items():
+        if mesh.helix_angle.si and mesh.backlash is None:
+            message = "turns a circumferential backlash into one along the line of action, but"
+            path = ("meshes", name, "helix_angle")
+            if mesh.normal_backlash is not None:
+                told, hint = "the backlash is given along it", "Give backlash in its place."
+            else:
+                told, hint = f'meshes."{name}".backlash is missing', "Give it, or drop the angle."
+            yield draft.problem(path, f"{message} {told}", hint=hint)
+    for name, ring in draft.rings.items():
+        if ring.radius is not None and "measured" in ring.model_fields_set:
+            path = ("rings", name, "measured")
+            message = "is for rings that roll on neighbours: a circle stands in the housing"
+            yield draft.problem(path, message, hint="Leave it out.")

@@ -1,31 +1,20 @@
-"""Names must lead somewhere, and pairs must be two."""
+"""What a case names must be there, and what it groups must be whole."""
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 
+from loadshare.case.content import ABOUT
 from loadshare.case.draft import Draft
 from loadshare.case.gears import Polar
-from loadshare.case.keys import Path, look_up
-from loadshare.case.links import Backlashes
+from loadshare.case.keys import Path, covers, dotted, look_up, parse, walk
+from loadshare.case.measured import COEFFICIENTS
 from loadshare.case.words import choices, did_you_mean
 from loadshare.errors import Problem
 
-GEAR_KEYS: tuple[Path, ...] = (
-    ("gears", "centre", "about"),
-    ("meshes", "driver"),
-    ("meshes", "driven"),
-    ("shafts", "ends"),
-    ("rings", "neighbours"),
-    ("operating", "input"),
-    ("operating", "output"),
-    ("march", "gear"),
-)
-MESH_KEYS: tuple[Path, ...] = (
-    ("rings", "float", "upward"),
-    ("rings", "float", "downward"),
-    ("stages", "meshes"),
-)
+ENDS = {"meshes": ("driver", "driven"), "shafts": ("ends",)}
+"""Keys that tell gears, or else leave it to the element's name."""
 
 
 def check_gear_names(draft: Draft) -> Iterator[Problem]:
@@ -82,68 +71,114 @@ def check_pairs(draft: Draft) -> Iterator[Problem]:
 
 
 def _gears_named(draft: Draft) -> Iterator[tuple[Path, str]]:
-    for name, gear in draft.gears.items():
-        if isinstance(gear.centre, Polar) and gear.centre.about is not None:
-            yield ("gears", name, "centre", "about"), gear.centre.about
-    for name, mesh in draft.meshes.items():
-        yield _told(draft, ("meshes", name), "driver"), mesh.driver
-        yield _told(draft, ("meshes", name), "driven"), mesh.driven
-    for name, shaft in draft.shafts.items():
-        for end in shaft.ends:
-            yield _told(draft, ("shafts", name), "ends"), end
-    for section in ("splines", "rings", "errors"):
+    yield from _texts(draft, "gears", "centre", "about")
+    for section, keys in ENDS.items():
+        valid = getattr(draft, section)
         for name in draft.names(section):
-            yield (section, name), name
-    for name, ring in draft.rings.items():
-        for number, neighbour in enumerate(ring.neighbours or ()):
-            yield ("rings", name, "neighbours", number), neighbour
-    if draft.operating is not None:
-        yield ("operating", "input"), draft.operating.input
-        yield ("operating", "output"), draft.operating.output
-        for name in draft.operating.external:
-            yield ("operating", "external", name), name
-    if draft.march is not None:
-        yield ("march", "gear"), draft.march.gear
-    for path in _unread(draft, GEAR_KEYS):
-        yield from _texts(draft, path)
-
-
-def _told(draft: Draft, path: Path, key: str) -> Path:
-    """Return where a gear was told: in a key, or else in the element's name."""
-    return (*path, key) if draft.has((*path, key)) else path
+            for key in keys:
+                path: Path = (section, name, key)
+                if name in valid:
+                    told = getattr(valid[name], key)
+                    given = look_up(draft.data, path) is not None
+                    for gear in (told,) if isinstance(told, str) else told:
+                        yield path if given else path[:-1], gear
+                else:
+                    yield from _texts_at(draft, path)
+    for section in ("splines", "rings", "errors"):
+        yield from (((section, name), name) for name in draft.names(section))
+    yield from _texts(draft, "rings", "neighbours")
+    yield from _texts_at(draft, ("operating", "input"))
+    yield from _texts_at(draft, ("operating", "output"))
+    for name in draft.operating.external if draft.operating is not None else ():
+        yield ("operating", "external", name), name
+    yield from _texts_at(draft, ("march", "gear"))
 
 
 def _meshes_named(draft: Draft) -> Iterator[tuple[Path, str]]:
-    for name, ring in draft.rings.items():
-        if isinstance(ring.float_, Backlashes):
-            for side in ("upward", "downward"):
-                for number, mesh in enumerate(getattr(ring.float_, side)):
-                    yield ("rings", name, "float", side, number), mesh
-    for name, stage in draft.stages.items():
-        for number, mesh in enumerate(stage.meshes):
-            yield ("stages", name, "meshes", number), mesh
-    for path in _unread(draft, MESH_KEYS):
-        yield from _texts(draft, path)
+    for keys in (
+        ("rings", "float", "upward"),
+        ("rings", "float", "downward"),
+        ("stages", "meshes"),
+    ):
+        yield from _texts(draft, *keys)
 
 
-def _unread(draft: Draft, keys: tuple[Path, ...]) -> Iterator[Path]:
-    """Yield the keys that name others in elements with a problem, which must not hide theirs."""
-    for section, *rest in keys:
-        section = str(section)
-        valid = getattr(draft, section)
-        if section in ("operating", "march"):
-            if valid is None and section in draft.data:
-                yield (section, *rest)
-            continue
-        for name in draft.names(section):
-            if name not in valid:
-                yield (section, name, *rest)
+def _texts(draft: Draft, section: str, *keys: str) -> Iterator[tuple[Path, str]]:
+    """Yield the texts at a key of every element, also of one with other problems."""
+    for name in draft.names(section):
+        yield from _texts_at(draft, (section, name, *keys))
 
 
-def _texts(draft: Draft, path: Path) -> Iterator[tuple[Path, str]]:
+def _texts_at(draft: Draft, path: Path) -> Iterator[tuple[Path, str]]:
     """Yield a text, or the texts of a list, with their places; nothing for what is neither."""
     value = look_up(draft.data, path)
     if isinstance(value, str):
         yield path, value
     elif isinstance(value, list):
         yield from (((*path, k), v) for k, v in enumerate(value) if isinstance(v, str))
+
+
+def check_stage_groups(draft: Draft) -> Iterator[Problem]:
+    """Yield meshes that a stage names twice, and groups that do not split the stage."""
+    for name, stage in draft.stages.items():
+        path = ("stages", name)
+        twice = [mesh for mesh, count in Counter(stage.meshes).items() if count > 1]
+        if twice:
+            yield draft.problem((*path, "meshes"), f"names {', '.join(twice)} more than once")
+        if stage.groups is None:
+            continue
+        grouped = Counter(mesh for group in stage.groups for mesh in group)
+        for mesh, count in grouped.items():
+            if mesh not in stage.meshes:
+                yield draft.problem((*path, "groups"), f'"{mesh}" is not among the stage\'s meshes')
+            elif count > 1:
+                yield draft.problem((*path, "groups"), f'"{mesh}" is in {count} groups')
+        left = [mesh for mesh in dict.fromkeys(stage.meshes) if mesh not in grouped]
+        if left:
+            yield draft.problem((*path, "groups"), f"{', '.join(left)} is in no group")
+
+
+SYSTEM = "system"
+
+
+def check_measured_names(draft: Draft) -> Iterator[Problem]:
+    """Yield measured figures of meshes or stages that do not exist or are in no stage."""
+    shared = [m for stage in draft.stages.values() for m in stage.meshes]
+    for name, measurement in draft.measured.items():
+        for quantity in ("torque", *COEFFICIENTS):
+            known = draft.names("meshes") if quantity == "torque" else shared
+            what = "a mesh" if quantity == "torque" else "a mesh of a stage"
+            if quantity.endswith("omega"):
+                known, what = [*draft.names("stages"), SYSTEM], "a stage"
+            for key in getattr(measurement, quantity) or ():
+                if known and key not in known:
+                    path = ("measured", name, quantity, key)
+                    hint = did_you_mean(key, known)
+                    yield draft.problem(path, f'"{key}" is not {what}', choices(known), hint)
+
+
+def check_measured_positions(draft: Draft) -> Iterator[Problem]:
+    """Yield measurements at positions that the case does not have."""
+    if draft.operating is None:
+        return
+    count = draft.operating.positions if draft.march is None else draft.march.steps
+    for name, measurement in draft.measured.items():
+        if measurement.position is not None and measurement.position > count:
+            path = ("measured", name, "position")
+            yield draft.problem(path, f"the case has {count}", f"1 to {count}, or left out")
+
+
+def check_assumed_patterns(draft: Draft) -> Iterator[Problem]:
+    """Yield patterns of `assumed` that match no key of the case."""
+    known = [path for path in walk(draft.data) if path[0] not in ABOUT]
+    for number, pattern in enumerate(draft.assumed):
+        path = ("assumed", number)
+        try:
+            wanted = parse(pattern)
+        except ValueError:
+            yield draft.problem(path, "is not a key path", 'a text such as "gears.*.base_radius"')
+            continue
+        if not any(covers(wanted, key) for key in known):
+            names = [dotted(key) for key in known]
+            hint = did_you_mean(pattern, names)
+            yield draft.problem(path, "matches no key of the case", hint=hint)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loadshare.case import Gear, Mesh
-from loadshare.case.checks.fit import TOLERANCE
+from loadshare.case.checks.meshing import TOLERANCE
 from loadshare.case.content import Content
 from loadshare.case.draft import Draft
 from loadshare.case.place import axis_of, centres_of

@@ -12,9 +12,8 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from loadshare.case.keys import parse, walk
+from loadshare.case.keys import covers, parse, walk
 from loadshare.case.origin import Origin
-from loadshare.case.patterns import covers
 from loadshare.case.reader import read_toml
 from loadshare.case.translate import translate
 from loadshare.case.words import as_given, choices, did_you_mean
