@@ -15,6 +15,7 @@ from benchmarks.random_trains.draw import LAYOUTS, draw
 from benchmarks.random_trains.judge import AGREES, judged
 from benchmarks.random_trains.run import PROBLEMS, STRESS, failures, one, run
 from benchmarks.random_trains.table import text
+from loadshare.job.ladder import HOT, SEARCHED
 
 SEED = 7
 
@@ -59,6 +60,13 @@ def test_drawn_trains_are_solved_as_the_reference_has_them():
 def test_a_rigid_ring_that_would_have_to_pull_lets_go(number):
     """These were refused, after seconds: exchange ended with a ring that held a gear inward."""
     assert not faults([number], seed=1)
+
+
+@pytest.mark.parametrize("number", [1651, 2119, 3551])
+def test_gears_that_carry_nothing_leave_no_torque_unproved(number):
+    """Their contacts push with forces of rounding, in numbers, and are endlessly soft."""
+    assert not faults([number], seed=1)
+    assert {p.effort.rung for p in ls.solve(draw(1, number)).positions} <= {HOT, SEARCHED}
 
 
 @pytest.mark.slow

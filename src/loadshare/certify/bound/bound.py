@@ -107,7 +107,10 @@ def boxes(claim: Claim, act: Codes, scale: Array, verge: Flags | None = None) ->
     rows = np.flatnonzero(np.isinf(box.force).any(axis=1))
     if claim.columns.pairs and len(rows):
         # What holds a coordinate may be no more than the turning of a light force.
-        box.put(rows, _boxes(claim.take(rows), act[rows], scale[rows], verge[rows], SOFTEST))
+        other = _boxes(claim.take(rows), act[rows], scale[rows], verge[rows], SOFTEST)
+        unbounded = [np.isinf(b.force[:, claim.columns.flanks]).sum(axis=1) for b in (box, other)]
+        better = np.flatnonzero(unbounded[1] <= unbounded[0][rows])
+        box.put(rows[better], Box(*(getattr(other, f.name)[better] for f in fields(Box))))
     return box
 
 

@@ -80,7 +80,7 @@ def quick_boxes(claim: Claim, act: Codes, scale: Array) -> Box:
     rounding = rounding + put_aside(claim.columns, found.spare, NOISE * scale[:, None] * arms)
     for rows in alike(act):
         for _ in range(REFERENCES):
-            group = _Group(claim, found, rows, doubled, scale[rows])
+            group = _Group(claim, found, rows, doubled, scale[rows], np.abs(left) + rounding)
             if not group.is_covered:
                 break
             pick = slice(None) if len(rows) == len(act) else rows
@@ -174,8 +174,10 @@ class _Group:
         rows: NDArray[np.intp],
         doubled: Flags,
         scale: Array,
+        load: Array,
     ) -> None:
         self.claim, self.found, self.rows, self.doubled = claim, found, rows, doubled
+        self.load = load[rows]
         columns = claim.columns
         self.pick = slice(None) if len(rows) == len(found.act) else rows
         acts = found.act[rows[0], len(columns.contacts) :]
@@ -234,11 +236,20 @@ class _Group:
             # What yields without end carries a load only where nothing else does.
             self.is_left = left
             known = Statics.of(self.directions[~left]) if left.any() else self.statics
-            self.is_covered = known.moves.shape == self.statics.moves.shape
+            self.is_covered = self._is_idle(known.moves)
             if self.is_covered:
                 self.particular = np.zeros(self.particular.shape)
                 self.particular[~left] = known.particular
                 break
+
+    def _is_idle(self, moves: Array) -> bool:
+        """Tell whether no load is left along moves, beyond those that nothing at all resists.
+
+        Gears that carry nothing have none, to the last digit.
+        """
+        more = moves - self.statics.moves @ (self.statics.moves.T @ moves)
+        along = (self.load @ np.abs(more)).max(initial=0.0)
+        return bool(along <= EPS * len(moves) * self.load.max(initial=0.0))
 
     def _set_stiffness(self) -> None:
         """Find L from the smallest compliances."""
