@@ -21,7 +21,7 @@ import numpy as np
 import scipy
 from scipy.optimize import nnls
 
-from loadshare.solver.backend import backend
+from loadshare.contact.backends.backend import backend
 from loadshare.tooth.analysis.fit import FIT_LOADS
 from loadshare.tooth.analysis.ltca import (
     POINTS,

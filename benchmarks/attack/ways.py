@@ -14,10 +14,10 @@ import loadshare as ls
 from benchmarks.attack.balance import Array, Balance
 from benchmarks.attack.victims import Victim
 from loadshare.case.keys import Path, dotted
+from loadshare.contact.law import PowerLaw
 from loadshare.results.claim import claim_of
 from loadshare.train import build_train
 from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.law import PowerLaw
 
 FIELDS = (
     "rotation",

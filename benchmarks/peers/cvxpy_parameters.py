@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks.peers.cvxpy_rebuilt import radial, solve_with_clarabel, square_root
 from benchmarks.peers.form import Array, Form
 from benchmarks.peers.loop import Claim, settle
-from loadshare.train.radial import RadialLaw
+from loadshare.contact.radial import RadialLaw
 
 
 class CvxpyParameters:

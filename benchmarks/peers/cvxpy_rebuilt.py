@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmarks.peers.form import Array, Form
 from benchmarks.peers.loop import Claim, Failure, settle
-from loadshare.train.radial import RadialLaw
+from loadshare.contact.radial import RadialLaw
 
 
 class CvxpyRebuilt:

@@ -18,7 +18,7 @@ import numpy as np
 
 from benchmarks.peers.form import Array, Form
 from benchmarks.peers.loop import Claim, Failure, NotForThis, settle
-from loadshare.train.radial import RadialLaw
+from loadshare.contact.radial import RadialLaw
 
 EQUATION = 5
 """DAQP's word for an equation."""

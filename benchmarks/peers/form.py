@@ -13,10 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.scene import ArcRow, Radial, Row, Scene
+from loadshare.contact.law import PowerLaw
+from loadshare.contact.problem import ArcRow, Row
+from loadshare.contact.radial import RadialLaw
+from loadshare.scene.scene import GearRadial, Scene
 from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.law import PowerLaw
-from loadshare.train.radial import RadialLaw
 
 Array = NDArray[np.float64]
 
@@ -62,7 +63,7 @@ class Arcs:
 class Graph:
     """A radial element on q = P x − m; its law follows the torque where `follows` says so."""
 
-    radial: Radial
+    radial: GearRadial
     matrix: Array
     centre: Array
     follows: bool
@@ -131,7 +132,7 @@ class Form:
         return {n: float(f) for n, f in zip(self.names, values, strict=True)}
 
     def laws(self, forces: Array) -> tuple[RadialLaw, ...]:
-        """Radial laws at the torques that row forces make."""
+        """GearRadial laws at the torques that row forces make."""
         found: dict[str, float] = {}
         if any(g.follows for g in self.graphs):
             found = self.forces_in_newton(forces)

@@ -15,7 +15,7 @@ import numpy as np
 
 from benchmarks.peers.form import Array, Form
 from benchmarks.peers.loop import Claim
-from loadshare.train.radial import RadialLaw
+from loadshare.contact.radial import RadialLaw
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_matrix

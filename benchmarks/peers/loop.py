@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from benchmarks.peers.form import Array, Form
-from loadshare.train.radial import RadialLaw
+from loadshare.contact.radial import RadialLaw
 
 PASSES = 60
 SMALL, OPEN = 1e-18, 1e-6

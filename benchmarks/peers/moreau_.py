@@ -18,7 +18,7 @@ from benchmarks.peers.loop import (
     misfit_of,
     next_forces,
 )
-from loadshare.train.radial import RadialLaw
+from loadshare.contact.radial import RadialLaw
 
 
 class Moreau:

@@ -10,7 +10,7 @@ import numpy as np
 from benchmarks.peers.form import Array, Form
 from benchmarks.peers.layout import Layout
 from benchmarks.peers.loop import Claim, Failure, NotForThis, settle
-from loadshare.train.radial import RadialLaw
+from loadshare.contact.radial import RadialLaw
 
 DENSE = 120
 """Variables up to which the dense solver is the faster one."""

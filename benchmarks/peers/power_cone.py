@@ -8,9 +8,9 @@ import numpy as np
 
 from benchmarks.peers.form import Array, Form
 from benchmarks.peers.loop import Claim, Failure, settle
-from loadshare.scene.programme import Cone, Programme
-from loadshare.solver.conic import conic_form
-from loadshare.train.radial import RadialLaw
+from loadshare.contact.backends.conic import conic_form
+from loadshare.contact.programme import Cone, Programme
+from loadshare.contact.radial import RadialLaw
 
 
 class PowerCone:

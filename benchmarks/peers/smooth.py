@@ -14,7 +14,7 @@ import numpy as np
 
 from benchmarks.peers.form import Array, Form
 from benchmarks.peers.loop import Claim, NotForThis, faces, force_of
-from loadshare.train.radial import RadialLaw
+from loadshare.contact.radial import RadialLaw
 
 
 class Smooth:

@@ -12,7 +12,7 @@ import numpy as np
 
 from benchmarks.peers.form import Array, Form
 from benchmarks.peers.loop import Claim, Failure, faces
-from loadshare.train.radial import RadialLaw
+from loadshare.contact.radial import RadialLaw
 
 STIFF = 1e6
 """Penalty stiffness of rigid limits, over that of a flank."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.reference.elements import Contact, ExactArc, Graph, Row, Yield
-from loadshare.train.law import Law, PowerLaw, TableLaw
+from loadshare.contact.law import Law, PowerLaw, TableLaw
 from loadshare.train.ring import DrumRing, RoundRing
 from loadshare.train.train import Situation, Train
 

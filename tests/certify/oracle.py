@@ -16,12 +16,12 @@ import numpy as np
 
 from loadshare.certify.rigid import RigidShafts, rigid_shafts
 from loadshare.certify.tolerance import BAND
+from loadshare.contact.arc import Arc
+from loadshare.contact.law import RIGID, Law, PowerLaw
+from loadshare.contact.radial import RadialLaw, round_ring_law
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
-from loadshare.train.law import RIGID, Law, PowerLaw
 from loadshare.train.memory import SlipFriction, SlipStop
-from loadshare.train.radial import RadialLaw, round_ring_law
-from loadshare.train.ring import Arc
 from loadshare.train.train import Situation, Spline, Train
 
 EPS = float(np.finfo(float).eps)

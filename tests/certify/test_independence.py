@@ -7,7 +7,15 @@ import sys
 
 import pytest
 
-FORBIDDEN = ("loadshare.solver", "loadshare.scene", "clarabel", "osqp", "cvxpy", "scipy.optimize")
+FORBIDDEN = (
+    "loadshare.solver",
+    "loadshare.scene",
+    "loadshare.contact.programme",
+    "clarabel",
+    "osqp",
+    "cvxpy",
+    "scipy.optimize",
+)
 
 
 def modules_after(code: str) -> set[str]:
@@ -28,5 +36,7 @@ def test_the_certificate_imports_no_solver():
     ("solver", "absent"), [("clarabel", ("cvxpy", "osqp")), ("osqp", ("cvxpy", "clarabel"))]
 )
 def test_a_back_end_is_imported_only_when_asked_for(solver, absent):
-    loaded = modules_after(f"from loadshare.solver.backend import backend\nbackend({solver!r})")
+    loaded = modules_after(
+        f"from loadshare.contact.backends.backend import backend\nbackend({solver!r})"
+    )
     assert not [m for m in loaded if m.split(".")[0] in absent]

@@ -7,8 +7,8 @@ import pytest
 
 import loadshare as ls
 from loadshare.cli.options import MethodName, SolverName
-from loadshare.solver.backend import SOLVERS
-from loadshare.solver.record import METHODS
+from loadshare.contact.backends.backend import SOLVERS
+from loadshare.contact.record import METHODS
 
 
 def test_a_certified_case_prints_everything_an_engineer_asks_for(command, cases):

@@ -16,12 +16,12 @@ from benchmarks.random_trains.draw import draw
 from loadshare.certify import certify
 from loadshare.certify.residuals import turned
 from loadshare.certify.tolerance import TOLERANCE
+from loadshare.contact.plan import Role
 from loadshare.errors import Refused
 from loadshare.job import ladder
 from loadshare.job.ladder import HOT, SEARCHED, STEPS, climb, climb_all, hot_answers, rungs
 from loadshare.job.machine import Machine
 from loadshare.scene import assemble
-from loadshare.scene.plan import Role
 from loadshare.solver import Options
 from loadshare.solver.contradiction import contradiction
 from loadshare.solver.hot import places, vectorised

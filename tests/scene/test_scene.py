@@ -9,8 +9,8 @@ import pytest
 from tests.support import answer, driver_torques, furthest, round_ring, shipped, with_backlash
 
 from benchmarks import families
+from loadshare.contact.plan import Linearisation, Role, programme
 from loadshare.scene import Plan, assemble
-from loadshare.scene.plan import Linearisation, Role, programme
 from loadshare.scene.scene import Scene
 from loadshare.train import build_train
 

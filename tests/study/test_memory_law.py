@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from tests.support import shipped
 
+from loadshare.contact.radial import Piece, RadialLaw
 from loadshare.scene import assemble
 from loadshare.train import build_train
 from loadshare.train.memory import SlipFriction, SlipStop
-from loadshare.train.radial import Piece, RadialLaw
 from loadshare.train.train import Spline
 
 SPLINE = Spline("4", 1e7, None, 40e-6, None, 0.1 / 0.035)

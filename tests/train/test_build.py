@@ -13,8 +13,8 @@ from tests.support import shipped, with_backlash
 
 import loadshare as ls
 from benchmarks import families
+from loadshare.contact.arc import Arc
 from loadshare.train import build_train
-from loadshare.train.ring import Arc
 
 # --- Senses and ratios ---
 

@@ -10,9 +10,9 @@ import math
 import numpy as np
 import pytest
 
+from loadshare.contact.law import PowerLaw
 from loadshare.train.gear import Gear, transverse_frame
 from loadshare.train.kinematics import settle
-from loadshare.train.law import PowerLaw
 from loadshare.train.mesh import Mesh, MeshGeometryError, contact_of
 
 ANGLE = math.radians(20.0)

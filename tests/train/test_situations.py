@@ -9,8 +9,8 @@ from tests.support import SHIPPED, round_ring, shipped
 
 import loadshare as ls
 from benchmarks import families
+from loadshare.contact.law import PowerLaw
 from loadshare.train import build_train
-from loadshare.train.law import PowerLaw
 from loadshare.train.ring import DrumRing
 from loadshare.train.situations import Situations, arcs_from, situation_of, stack
 

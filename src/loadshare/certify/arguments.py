@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from loadshare.certify.mechanics import Mechanics
 from loadshare.certify.residuals import ROUNDED
 from loadshare.certify.tolerance import BAND
+from loadshare.contact.radial import ROUNDING
 from loadshare.train.equilibria import CLAIMED, Equilibria
-from loadshare.train.radial import ROUNDING
 from loadshare.train.situations import VARYING, Situations
 
 Array = NDArray[np.float64]

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.state import State
+from loadshare.contact.radial import RadialLaw, round_ring_law
 from loadshare.train.memory import SlipFriction, SlipStop
-from loadshare.train.radial import RadialLaw, round_ring_law
 
 Array = NDArray[np.float64]
 

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from loadshare.certify.graphs import Graph
 from loadshare.certify.laws import area, interpolated, strain_energy
 from loadshare.certify.mechanics import Mechanics
+from loadshare.contact.radial import ROUNDING
 from loadshare.train.equilibria import Equilibria
-from loadshare.train.radial import ROUNDING
 from loadshare.train.situations import Situations
 
 Array = NDArray[np.float64]

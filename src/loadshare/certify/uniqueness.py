@@ -33,9 +33,9 @@ from loadshare.certify.bound.one import columns_of
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.pulls import Pull, pulls_of
 from loadshare.certify.state import State
+from loadshare.contact.radial import Piece
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.radial import Piece
 from loadshare.train.situations import situation_of
 from loadshare.train.train import Spline, Train
 

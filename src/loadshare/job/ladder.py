@@ -18,17 +18,17 @@ from loadshare.certify import Certificate, certify
 from loadshare.certify.bound import Bound, bound_of
 from loadshare.certify.certificate import certify_later
 from loadshare.certify.validity import TOLD, Validity, refusal_told, validity
+from loadshare.contact.findings import Work
+from loadshare.contact.plan import Plan, Role
 from loadshare.errors import Refused
 from loadshare.job.least import least_places
 from loadshare.job.machine import Answers, Machine, engine_at_hand
 from loadshare.scene import assemble
 from loadshare.scene.elements import elements_of
-from loadshare.scene.plan import Plan, Role
 from loadshare.scene.scene import Scene
 from loadshare.solver import Iteration, Options, Record, solve_scene
 from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.contradiction import OVERLAP, contradiction
-from loadshare.solver.findings import Work
 from loadshare.solver.position import Known, coordinates_of
 from loadshare.solver.runaway import runaway
 from loadshare.train.equilibrium import Equilibrium

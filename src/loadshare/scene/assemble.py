@@ -6,11 +6,12 @@ import math
 
 import numpy as np
 
+from loadshare.contact.law import RIGID, Law, PowerLaw
+from loadshare.contact.problem import ArcRow, Array, FollowingLaw, Row
+from loadshare.contact.radial import round_ring_law
 from loadshare.scene.coordinates import Coordinates, coordinates_of
-from loadshare.scene.scene import ArcRow, Array, Radial, Row, Scene
-from loadshare.train.law import RIGID, Law, PowerLaw
+from loadshare.scene.scene import GearRadial, Scene
 from loadshare.train.memory import SlipFriction, SlipStop
-from loadshare.train.radial import round_ring_law
 from loadshare.train.ring import DrumRing
 from loadshare.train.train import Situation, Train
 
@@ -122,27 +123,32 @@ def _wall(ring: DrumRing) -> Law:
     return RIGID if math.isinf(ring.stiffness) else PowerLaw(1.0 / ring.stiffness)
 
 
-def _round_rings(train: Train, at: Coordinates) -> list[Radial]:
+def _round_rings(train: Train, at: Coordinates) -> list[GearRadial]:
     """Round rings as radial elements."""
     found = []
     for ring in train.rounds:
         moved = at.components(at.displacement[ring.gear])
         centre = train.gears[ring.gear].frame @ ring.offset
         law = round_ring_law(ring.radius, ring.stiffness)
-        found.append(Radial(ring.name, ring.gear, moved, centre, law))
+        found.append(GearRadial(ring.name, moved, centre, law, gear=ring.gear))
     return found
 
 
-def _splines(train: Train, at: Coordinates) -> list[Radial]:
+def _splines(train: Train, at: Coordinates) -> list[GearRadial]:
     """Splines as radial elements: whole, or with memory as friction and clearance of their slip."""
-    found = []
+    found: list[GearRadial] = []
+    origin = np.zeros(2)
     for gear, spline in train.splines.items():
+        parts: list[tuple[str, Array, Array, FollowingLaw]]
         if train.slip is None:
-            moved = at.components(at.displacement[gear])
-            found.append(Radial(spline.name, gear, moved, np.zeros(2), spline))
-            continue
-        slipped = at.components(at.slip[gear])
-        before = train.gears[gear].frame @ train.slip[gear]
-        found.append(Radial(spline.name, gear, slipped, before, SlipFriction(spline)))
-        found.append(Radial(spline.stop_name, gear, slipped, np.zeros(2), SlipStop(spline)))
+            parts = [(spline.name, at.components(at.displacement[gear]), origin, spline)]
+        else:
+            slipped = at.components(at.slip[gear])
+            before = train.gears[gear].frame @ train.slip[gear]
+            parts = [
+                (spline.name, slipped, before, SlipFriction(spline)),
+                (spline.stop_name, slipped, origin, SlipStop(spline)),
+            ]
+        levers = train.levers(gear)
+        found += [GearRadial(*part, levers, gear=gear) for part in parts]
     return found

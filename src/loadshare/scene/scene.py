@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.condense import Condensation, condense
-from loadshare.train.law import Law
-from loadshare.train.memory import SlipFriction, SlipStop
-from loadshare.train.radial import RadialLaw
-from loadshare.train.ring import Arc
-from loadshare.train.train import Situation, Spline, Train
+from loadshare.contact.problem import ContactProblem, Radial
+from loadshare.train.train import Situation, Train
 
 Array = NDArray[np.float64]
 
@@ -38,99 +33,24 @@ class Rotation:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Row:
-    """A unilateral contact: approach a·x − g, force F ≥ 0.
+class GearRadial(Radial):
+    """A spline or a round ring.
 
     Attributes
     ----------
-    name : str
-    kind : str
-        "drive flank", "coast flank", "stop" or "arc".
-    vector : ndarray, shape (n,)
-        a, dimensionless.
-    gap : float
-        g [m].
-    law : Law
+    gear : str
+        Whose displacement it limits.
     """
 
-    name: str
-    kind: str
-    vector: Array
-    gap: float
-    law: Law
+    gear: str = field(kw_only=True)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class ArcRow:
-    """A ring's exclusion arc, which becomes a row at each iterate.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Scene(ContactProblem):
+    """The whole contact problem of a position, in metres and newtons.
 
     Attributes
     ----------
-    name : str
-    arc : Arc
-    relative : ndarray, shape (3, n)
-        Relative displacement of the two centres from the coordinates.
-    law : Law
-    sagitta : float
-        Room [m] that the arc leaves beyond its face at rest, at the end of the float.
-    """
-
-    name: str
-    arc: Arc
-    relative: Array
-    law: Law
-    sagitta: float
-
-    def row(self, x: Array, wide: bool = False) -> Row:
-        """Tangent face at the coordinates x [m]: −n·Δ ≤ g.
-
-        A wide face stands off by the sagitta, so that all of the float lies inside. Faces at rest
-        of two opposite arcs can wedge a float in that the arcs themselves let pass.
-        """
-        normal, bound = self.arc.face(self.relative @ x)
-        bound += self.sagitta if wide else 0.0
-        return Row(self.name, "arc", -(normal @ self.relative), bound, self.law)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Radial:
-    """A radial element on p = P x − m.
-
-    Attributes
-    ----------
-    name, gear : str
-    matrix : ndarray, shape (2, n)
-        P.
-    centre : ndarray, shape (2,)
-        m [m].
-    source : RadialLaw, Spline, SlipFriction or SlipStop
-        A fixed law, or a spline, as a whole or in its parts, whose friction may follow the torque.
-    """
-
-    name: str
-    gear: str
-    matrix: Array
-    centre: Array
-    source: RadialLaw | Spline | SlipFriction | SlipStop
-
-    @property
-    def follows_torque(self) -> bool:
-        """Whether the law must be settled in the outer loop."""
-        return not isinstance(self.source, RadialLaw) and self.source.friction_force is None
-
-    def law(self, torque: float) -> RadialLaw:
-        """Law when the gear takes `torque` [N·m] from its shafts."""
-        return self.source if isinstance(self.source, RadialLaw) else self.source.law(torque)
-
-
-@dataclass(frozen=True, eq=False)
-class Scene:
-    """The whole contact problem of a position: minimise ½xᵀHx − fᵀx + Σ U(a·x − g) + Σ W(|Px − m|).
-
-    Attributes
-    ----------
-    train, situation
-        Where it comes from.
     coordinates : tuple of str
         Names; every coordinate is a length [m].
     stiffness : ndarray, shape (n, n)
@@ -139,7 +59,9 @@ class Scene:
         f [N].
     rows : tuple of Row
     arcs : tuple of ArcRow
-    radials : tuple of Radial
+    radials : tuple of GearRadial
+    train, situation
+        Where it comes from.
     rotation : mapping of gear to Rotation
     displacement : mapping of gear to slice
         Where the two displacement components of a moving gear stand.
@@ -147,36 +69,12 @@ class Scene:
         What never became a coordinate or row, and why.
     """
 
+    radials: tuple[GearRadial, ...]
     train: Train
     situation: Situation
-    coordinates: tuple[str, ...]
-    stiffness: Array
-    load: Array
-    rows: tuple[Row, ...]
-    arcs: tuple[ArcRow, ...]
-    radials: tuple[Radial, ...]
     rotation: dict[str, Rotation]
     displacement: dict[str, slice]
     removed: tuple[tuple[str, str], ...]
-
-    @property
-    def size(self) -> int:
-        """Number of coordinates."""
-        return len(self.coordinates)
-
-    @cached_property
-    def condensation(self) -> Condensation:
-        """Coordinates that no contact touches, as linear functions of the others."""
-        touched = np.zeros(self.size, dtype=bool)
-        for row in self.rows:
-            touched |= row.vector != 0.0
-        for matrix in (*(a.relative for a in self.arcs), *(r.matrix for r in self.radials)):
-            touched |= (matrix != 0.0).any(axis=0)
-        return condense(self.stiffness, self.load, touched)
-
-    def rows_at(self, x: Array, wide: bool = False) -> tuple[Row, ...]:
-        """All rows, arcs replaced by their faces at x, wide or tangent."""
-        return self.rows + tuple(a.row(x, wide) for a in self.arcs)
 
     def force_unit(self) -> float:
         """Force that the scene is measured by [N]: the largest external push, or 1 N at rest."""
@@ -197,6 +95,11 @@ class Scene:
             return 1e-6
         yielded = float(np.median([r.law.compression(force) for r in flanks]))
         return max(yielded, 1e-3 * max(abs(r.gap) for r in flanks))
+
+    def first_torques(self) -> dict[str, float]:
+        """Return the whole input torque over every spline [N·m], to begin with."""
+        driving, gears = self.situation.torque[self.train.input], self.train.gears
+        return {r.name: driving / gears[r.gear].ratio for r in self.radials}
 
     def angle(self, gear: str, x: Array) -> float:
         """Rotation φ [rad] of a gear at the coordinates x."""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from loadshare.contact.law import PowerLaw
 from loadshare.scene.scene import Scene
-from loadshare.train.law import PowerLaw
 
 OVERLAP = 1e-12
 """Overlap, over the lengths at hand, that counts as round-off."""

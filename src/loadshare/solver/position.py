@@ -6,15 +6,15 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from loadshare.contact.backends.backend import Backend, backend
+from loadshare.contact.exact import ROUNDING
+from loadshare.contact.findings import Unsolved, Work
+from loadshare.contact.outer import Settled, settle
+from loadshare.contact.plan import Plan, Role
+from loadshare.contact.programme import Array
+from loadshare.contact.record import Options, Record
 from loadshare.errors import Refused
-from loadshare.scene.plan import Plan, Role
-from loadshare.scene.programme import Array
 from loadshare.scene.scene import Scene
-from loadshare.solver.backend import Backend, backend
-from loadshare.solver.exact import ROUNDING
-from loadshare.solver.findings import Unsolved, Work
-from loadshare.solver.outer import Settled, settle
-from loadshare.solver.record import Options, Record
 from loadshare.solver.undetermined import free_set, places
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.memory import SlipFriction

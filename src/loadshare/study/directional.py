@@ -20,8 +20,9 @@ from typing import Protocol
 
 import numpy as np
 
+from loadshare.contact.problem import ArcRow, Row
 from loadshare.errors import CaseError, Refused
-from loadshare.scene.scene import ArcRow, Array, Row, Scene
+from loadshare.scene.scene import Array, Scene
 from loadshare.study.branch import Branch, Units
 from loadshare.study.branch.gauges import LOOSE, Gauge
 from loadshare.study.branch.system import BranchLost, identified

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from loadshare.contact.radial import RadialLaw
 from loadshare.solver.hot import places as at
 from loadshare.study.follow.line import Line
 from loadshare.study.follow.search import Change
-from loadshare.train.radial import RadialLaw
 
 _STATES = {
     at.OPEN: "slip",

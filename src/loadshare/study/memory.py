@@ -18,17 +18,17 @@ import numpy as np
 
 from loadshare.certify import certify
 from loadshare.certify.tolerance import TOLERANCE
+from loadshare.contact.findings import Work
+from loadshare.contact.outer import Settled
+from loadshare.contact.plan import Plan
 from loadshare.errors import Refused
 from loadshare.job.ladder import SEARCHED, Answer, rungs
 from loadshare.scene import assemble
 from loadshare.scene.data import data_of
 from loadshare.scene.elements import elements_of
-from loadshare.scene.plan import Plan
 from loadshare.scene.scene import Array, Scene
 from loadshare.solver import Options, Record, solve_scene
-from loadshare.solver.findings import Work
 from loadshare.solver.hot.proximal import search
-from loadshare.solver.outer import Settled
 from loadshare.solver.position import Known, equilibrium_of, of_least_norm
 from loadshare.study.answers import BACKEND, certified
 from loadshare.train.equilibrium import Equilibrium

@@ -12,10 +12,10 @@ from loadshare import case as spec
 from loadshare.case.place import axis_of, centres_of
 from loadshare.case.power_flow import against_the_names
 from loadshare.case.teeth import tooth_counts
+from loadshare.contact.law import Law, PowerLaw, TableLaw
 from loadshare.errors import CaseError, Problem
 from loadshare.train.gear import Gear, Vector, transverse_frame
 from loadshare.train.kinematics import Kinematics, settle
-from loadshare.train.law import Law, PowerLaw, TableLaw
 from loadshare.train.mesh import Contact, Mesh, contact_of
 from loadshare.train.offset import Offset
 from loadshare.train.ring import DrumRing, Ring, RoundRing, transverse

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from loadshare.contact.radial import ROUNDING, Piece, RadialLaw
 from loadshare.train.gear import Vector
-from loadshare.train.radial import ROUNDING, Piece, RadialLaw
 
 if TYPE_CHECKING:
     from loadshare.train.equilibrium import Equilibrium
@@ -40,6 +40,10 @@ class _Part:
     def friction_force(self) -> float | None:
         """Friction bound F_m [N] where it is fixed."""
         return self.spline.friction_force
+
+    def bound(self, torque: float) -> float:
+        """Friction bound [N] at a torque [N·m]."""
+        return self.spline.bound(torque)
 
 
 class SlipFriction(_Part):

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loadshare.contact.law import Law
 from loadshare.train.gear import Gear, Vector, cross
-from loadshare.train.law import Law
 
 
 class MeshGeometryError(ValueError):

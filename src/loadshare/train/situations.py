@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.train.law import PowerLaw, TableLaw
+from loadshare.contact.law import PowerLaw, TableLaw
 from loadshare.train.train import Train
 
 Array = NDArray[np.float64]

@@ -9,11 +9,12 @@ from functools import cached_property
 
 import numpy as np
 
+from loadshare.contact.arc import Arc
+from loadshare.contact.radial import RadialLaw, spline_law
 from loadshare.train.gear import Gear, Vector
 from loadshare.train.mesh import Mesh
 from loadshare.train.offset import Offset
-from loadshare.train.radial import RadialLaw, spline_law
-from loadshare.train.ring import Arc, DrumRing, Ring, RoundRing, transverse
+from loadshare.train.ring import DrumRing, Ring, RoundRing, transverse
 
 
 @dataclass(frozen=True, slots=True)
@@ -262,6 +263,17 @@ class Train:
         # one before.
         return math.floor((cycles % 1.0) * self.positions + 1e-9) % self.positions
 
+    def levers(self, gear: str) -> dict[str, float]:
+        """Torque over a gear's shaft or spline, per unit of every flank's force [m]."""
+        found: dict[str, float] = {}
+        for mesh in self.meshes.values():
+            for drive in mesh.flanks:
+                on_driver, on_driven, _ = mesh.direction(drive)
+                if gear in (mesh.driver, mesh.driven):
+                    lever = on_driver if gear == mesh.driver else on_driven
+                    found[mesh.flank_name(drive)] = lever
+        return found
+
     def transmitted(self, gear: str, flank_force: Mapping[str, float]) -> float:
         """Torque [N·m] that reaches a gear other than through its meshes: over its shaft or spline.
 
@@ -271,14 +283,7 @@ class Train:
         flank_force : mapping of flank to float
             [N]; a flank that is not named carries nothing.
         """
-        total = 0.0
-        for mesh in self.meshes.values():
-            for drive in mesh.flanks:
-                force = flank_force.get(mesh.flank_name(drive), 0.0)
-                on_driver, on_driven, _ = mesh.direction(drive)
-                total += force * on_driver if gear == mesh.driver else 0.0
-                total += force * on_driven if gear == mesh.driven else 0.0
-        return total
+        return sum(a * flank_force.get(name, 0.0) for name, a in self.levers(gear).items())
 
     def arc(self, ring: DrumRing, side: int, situation: Situation) -> Arc:
         """Exclusion arc of a drum ring towards its neighbour number `side` (0 or 1)."""

@@ -16,13 +16,13 @@ from tests.solver.hot.trains import varied
 import loadshare as ls
 from benchmarks import families
 from loadshare.certify.tolerance import TOLERANCE
+from loadshare.contact.radial import RadialLaw, round_ring_law, spline_law
 from loadshare.job.ladder import HOT
 from loadshare.job.machine import Machine
 from loadshare.scene.data import data_of
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot import vectorised
 from loadshare.train import build_train
-from loadshare.train.radial import RadialLaw, round_ring_law, spline_law
 from loadshare.train.samples import samples_of
 
 NAN = math.nan

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 
+from loadshare.contact.backends.backend import SOLVERS, backend
 from loadshare.errors import Refused
-from loadshare.solver.backend import SOLVERS, backend
 from loadshare.tooth.contact import programme as contact_programme
 from loadshare.tooth.contact.certificate import certify_contact
 from loadshare.tooth.contact.hertz import PointContact, compression, contact_modulus, half_width

@@ -27,8 +27,8 @@ from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.laws import APART, CORNER, LIGHT, NOISE
 from loadshare.certify.bound.quick import GAIN, NEAR, OPPOSED, SECANT
 from loadshare.certify.bound.statics import RANK, Statics
+from loadshare.contact.radial import ROUNDING
 from loadshare.train.equilibria import CLAIMED, Equilibria
-from loadshare.train.radial import ROUNDING
 from loadshare.train.ring import transverse
 from loadshare.train.situations import VARYING, Situations
 from loadshare.train.train import Train

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.twofold import Twofold, exact, minus, plus, product, quotient
+from loadshare.contact.radial import ROUNDING
 from loadshare.train.equilibria import Equilibria
-from loadshare.train.radial import ROUNDING
 from loadshare.train.situations import Situations
 
 Array = NDArray[np.float64]

@@ -9,10 +9,10 @@ from rich.table import Table
 from loadshare.cli.console import say
 from loadshare.cli.exits import counted
 from loadshare.cli.tables.table import show, table
+from loadshare.contact.plan import Role
 from loadshare.job.ladder import Answer
 from loadshare.report.numbers import fixed, small
 from loadshare.report.undetermined import range_told
-from loadshare.scene.plan import Role
 from loadshare.solver import Record
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from loadshare.certify import FloatState
+from loadshare.contact.radial import spline_law
 from loadshare.report.figures.marks import Point
 from loadshare.report.figures.region import Region, features, region
 from loadshare.report.figures.rest import rest_told, spline_told
@@ -14,7 +15,6 @@ from loadshare.report.numbers import significant
 from loadshare.report.units import MICROMETRE
 from loadshare.results import Position, Result
 from loadshare.train import Train
-from loadshare.train.radial import spline_law
 
 MILLIMETRES = 75.0
 """Width of a panel for which the enlargement is told [mm]."""

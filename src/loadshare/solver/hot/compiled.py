@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.compilation import jit
+from loadshare.contact.radial import ROUNDING as WRITTEN
 from loadshare.scene.data import Data
 from loadshare.scene.elements import Basis, Elements
 from loadshare.scene.scene import Array
@@ -21,7 +22,6 @@ from loadshare.solver.hot import lanes
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot.plain import is_plain
 from loadshare.solver.hot.state import State
-from loadshare.train.radial import ROUNDING as WRITTEN
 
 Rows = NDArray[np.intp]
 Codes = NDArray[np.int8]

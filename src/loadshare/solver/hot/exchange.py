@@ -14,12 +14,12 @@ from itertools import permutations
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.contact.radial import RadialLaw
 from loadshare.scene.data import Data
 from loadshare.scene.elements import Basis, Elements
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot.state import State
 from loadshare.solver.hot.vectorised import pick
-from loadshare.train.radial import RadialLaw
 
 Codes = NDArray[np.int8]
 Engine = Callable[

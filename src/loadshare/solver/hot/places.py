@@ -1,6 +1,6 @@
 """Where rows and radial elements stand, as the numbers in the code of a set.
 
-A radial law is a chain of at most three pieces (:mod:`loadshare.train.radial`), told by five
+A radial law is a chain of at most three pieces (:mod:`loadshare.contact.radial`), told by five
 numbers: it rises with `first` up to `stick`, jumps to `bound`, stays level up to `reach`, and rises
 with `last` beyond. A round ring has first = stick = bound = 0; a rigid one has an infinite `last`.
 """
@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from loadshare.contact.radial import ROUNDING as WRITTEN
 from loadshare.scene.scene import Array
-from loadshare.train.radial import ROUNDING as WRITTEN
 
 OPEN = 0
 """A row without contact; a radial element that moves freely and carries nothing."""

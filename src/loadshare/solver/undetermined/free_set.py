@@ -14,11 +14,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loadshare.contact.problem import ArcRow
+from loadshare.contact.programme import Array
+from loadshare.contact.radial import RadialLaw
 from loadshare.scene.elements import spring_directions, unresisted
-from loadshare.scene.programme import Array
-from loadshare.scene.scene import ArcRow, Radial, Scene
+from loadshare.scene.scene import GearRadial, Scene
 from loadshare.solver.undetermined.norm import Norm, norm_of
-from loadshare.train.radial import RadialLaw
 
 CARRIES = 1e-11
 """Force, over the largest, from which on a contact holds: far above the round-off of forces, far
@@ -31,12 +32,12 @@ class Round:
 
     Attributes
     ----------
-    radial : Radial
+    radial : GearRadial
     radius : float
         R [m].
     """
 
-    radial: Radial
+    radial: GearRadial
     radius: float
 
 

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from loadshare.scene.programme import Array
+from loadshare.contact.programme import Array
 from loadshare.scene.scene import Scene
 from loadshare.solver.undetermined.free_set import FreeSet, Round
 from loadshare.solver.undetermined.region import ALMOST, INSIDE, Disc, Region

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.programme import Array
+from loadshare.contact.programme import Array
 
 INSIDE = 1e-12
 """How far a point may lie outside, in sizes of the region: round-off of what bounds it."""

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loadshare.contact.law import Law
+from loadshare.contact.radial import RadialLaw
 from loadshare.scene.scene import Array, Scene
 from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.law import Law
-from loadshare.train.radial import RadialLaw
 
 CARRIES = 1e-11
 """Force over the load from which on a contact counts as closed."""

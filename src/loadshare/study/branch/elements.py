@@ -9,9 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loadshare.scene.scene import ArcRow, Array, Radial, Row
-from loadshare.train.law import Law
-from loadshare.train.radial import RadialLaw
+from loadshare.contact.law import Law
+from loadshare.contact.problem import ArcRow, Row
+from loadshare.contact.radial import RadialLaw
+from loadshare.scene.scene import Array, GearRadial
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,7 +55,7 @@ class Hold:
 
     Attributes
     ----------
-    radial : Radial
+    radial : GearRadial
     law : RadialLaw
     piece : int
         Of the law on which it stands, or in front of which.
@@ -66,7 +67,7 @@ class Hold:
         Where its force stands among the unknowns, on a step; None on a piece.
     """
 
-    radial: Radial
+    radial: GearRadial
     law: RadialLaw
     piece: int
     offset: Array

@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from loadshare.contact.radial import RadialLaw
 from loadshare.scene.scene import Array
 from loadshare.study.branch.active import Place, corner
 from loadshare.study.branch.elements import Hold, Touch
 from loadshare.study.branch.units import Units
-from loadshare.train.radial import RadialLaw
 
 LOOSE = 1e-9
 """Approach per move that nothing resists, from which on a contact's approach is undetermined."""

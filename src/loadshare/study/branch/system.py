@@ -16,7 +16,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.scene import ArcRow, Array, Radial, Row, Scene
+from loadshare.contact.problem import ArcRow, Row
+from loadshare.scene.scene import Array, GearRadial, Scene
 from loadshare.study.branch.active import ActiveSet, Place, index_of, is_rigid, read_set
 from loadshare.study.branch.elements import Hold, Touch, pressed, pulled
 from loadshare.study.branch.gauges import LOOSE, Gauge, contact_gauges, radial_gauges
@@ -72,7 +73,7 @@ class Branch:
                 at += width
         self.size = at
 
-    def _at_centre(self, radial: Radial, place: Place) -> bool:
+    def _at_centre(self, radial: GearRadial, place: Place) -> bool:
         """Whether a step stands at radius zero; that does not depend on the size of the torque."""
         train = self.scene.train
         ratio = train.gears[radial.gear].ratio or 1.0

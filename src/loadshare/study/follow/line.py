@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from loadshare.case import Case
 from loadshare.case.keys import parse
 from loadshare.certify.tolerance import TOLERANCE
+from loadshare.contact.radial import RadialLaw
 from loadshare.errors import CaseError, Refused
 from loadshare.job.machine import Answers, Machine
 from loadshare.scene import assemble
@@ -31,7 +32,6 @@ from loadshare.study.parameter import Parameter, Value
 from loadshare.train import Train, build_train
 from loadshare.train.columns import Column
 from loadshare.train.equilibria import Equilibria
-from loadshare.train.radial import RadialLaw
 from loadshare.train.samples import Samples, samples_of
 from loadshare.train.situations import Situations, situation_of
 

@@ -25,11 +25,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.contact.backends.backend import Backend, backend
+from loadshare.contact.findings import Unsolved
+from loadshare.contact.inner import solve_programme
+from loadshare.contact.programme import Programme
 from loadshare.errors import Refused
-from loadshare.scene.programme import Programme
-from loadshare.solver.backend import Backend, backend
-from loadshare.solver.findings import Unsolved
-from loadshare.solver.inner import solve_programme
 from loadshare.tooth.contact.certificate import ContactCertificate, certify_contacts
 from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
 from loadshare.tooth.contact.strips import FAINT

@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.scene.plan import Plan, Role
-from loadshare.scene.programme import Array
-from loadshare.scene.scene import Scene
-from loadshare.train.radial import RadialLaw
+from loadshare.contact.plan import Plan, Role
+from loadshare.contact.problem import ContactProblem
+from loadshare.contact.programme import Array
+from loadshare.contact.radial import RadialLaw
 
 
-def potential(scene: Scene, plan: Plan, laws: dict[str, RadialLaw], x: Array) -> float:
+def potential(problem: ContactProblem, plan: Plan, laws: dict[str, RadialLaw], x: Array) -> float:
     """½xᵀHx − fᵀx + Σ U + Σ W [J] of what is in play, rigid contacts taken as satisfied."""
-    total = float(0.5 * x @ scene.stiffness @ x - scene.load @ x)
-    for row in scene.rows_at(x):
+    total = float(0.5 * x @ problem.stiffness @ x - problem.load @ x)
+    for row in problem.rows_at(x):
         role = plan.rows[row.name]
         if role is Role.OPEN:
             continue
         approach = float(row.vector @ x) - row.gap
         total += row.law.energy(abs(approach) if role is Role.CLOSED else approach)
-    for radial in scene.radials:
+    for radial in problem.radials:
         radius = float(np.linalg.norm(radial.matrix @ x - radial.centre))
         law = laws[radial.name]
         if plan.radials[radial.name] is Role.IN_PLAY:

@@ -5,8 +5,8 @@ from tests.support import shipped
 
 from benchmarks import families
 from loadshare.certify import certify
+from loadshare.contact.condense import condense, nothing_condensed
 from loadshare.scene import assemble
-from loadshare.scene.condense import condense, nothing_condensed
 from loadshare.solver import Options, solve_scene
 from loadshare.train import build_train
 

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.train.radial import RadialLaw
+from loadshare.contact.radial import RadialLaw
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

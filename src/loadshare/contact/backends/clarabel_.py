@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.scene.programme import Point, Programme
-from loadshare.solver.backend import KINDS_CONIC, Backend, BackendFailure
-from loadshare.solver.conic import conic_form
+from loadshare.contact.backends.backend import KINDS_CONIC, Backend, BackendFailure
+from loadshare.contact.backends.conic import conic_form
+from loadshare.contact.programme import Point, Programme
 
 
 class Clarabel:
@@ -16,7 +16,7 @@ class Clarabel:
     kinds = KINDS_CONIC
 
     def solve(self, programme: Programme) -> Point:
-        """See :meth:`loadshare.solver.backend.Backend.solve`."""
+        """See :meth:`loadshare.contact.backends.backend.Backend.solve`."""
         import clarabel
 
         form = conic_form(programme)

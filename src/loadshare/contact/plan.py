@@ -1,7 +1,7 @@
-"""Which parts of a scene are in play, and the programme that follows.
+"""Which parts of a contact problem are in play, and the programme that follows.
 
 A plan starts from what a loaded train most likely does: drive flanks carry load, everything else is
-idle. What turns out otherwise is put in play and the scene is solved again (see *Reduction is
+idle. What turns out otherwise is put in play and the problem is solved again (see *Reduction is
 verified, not trusted* in the design notes). Source: formulation, section 11.
 """
 
@@ -13,11 +13,11 @@ from enum import Enum
 
 import numpy as np
 
-from loadshare.scene.condense import Condensation, nothing_condensed
-from loadshare.scene.programme import Array, Cone, Programme
-from loadshare.scene.scene import Row, Scene
-from loadshare.train.law import PowerLaw
-from loadshare.train.radial import RadialLaw
+from loadshare.contact.condense import Condensation, nothing_condensed
+from loadshare.contact.law import PowerLaw
+from loadshare.contact.problem import ContactProblem, Row
+from loadshare.contact.programme import Array, Cone, Programme
+from loadshare.contact.radial import RadialLaw
 
 
 class Role(Enum):
@@ -41,20 +41,20 @@ class Plan:
     condensed: bool = False
 
     @classmethod
-    def full(cls, scene: Scene) -> Plan:
+    def full(cls, problem: ContactProblem) -> Plan:
         """Put everything in play."""
-        names = [r.name for r in scene.rows] + [a.name for a in scene.arcs]
+        names = [r.name for r in problem.rows] + [a.name for a in problem.arcs]
         return cls(
             dict.fromkeys(names, Role.IN_PLAY),
-            {r.name: Role.IN_PLAY for r in scene.radials},
+            {r.name: Role.IN_PLAY for r in problem.radials},
         )
 
     @classmethod
-    def lean(cls, scene: Scene) -> Plan:
+    def lean(cls, problem: ContactProblem) -> Plan:
         """Take drive flanks as closed and everything else as idle."""
-        rows = {r.name: Role.CLOSED if r.kind == "drive flank" else Role.OPEN for r in scene.rows}
-        rows |= {a.name: Role.OPEN for a in scene.arcs}
-        return cls(rows, {r.name: Role.CLOSED for r in scene.radials}, condensed=True)
+        rows = {r.name: Role.CLOSED if r.kind == "drive flank" else Role.OPEN for r in problem.rows}
+        rows |= {a.name: Role.OPEN for a in problem.arcs}
+        return cls(rows, {r.name: Role.CLOSED for r in problem.radials}, condensed=True)
 
     def with_in_play(self, names: set[str]) -> Plan:
         """Put the named rows and radial elements in play as well."""
@@ -108,13 +108,13 @@ class Units:
 
 
 def programme(
-    scene: Scene, plan: Plan, at: Linearisation, exact_hertz: bool = False
+    problem: ContactProblem, plan: Plan, at: Linearisation, exact_hertz: bool = False
 ) -> tuple[Programme, Units]:
     """Write the programme of a plan at a linearisation.
 
     Parameters
     ----------
-    scene : Scene
+    problem : ContactProblem
     plan : Plan
     at : Linearisation
     exact_hertz : bool
@@ -126,12 +126,12 @@ def programme(
         Dimensionless, rows of unit norm.
     Units
     """
-    force, length = scene.force_unit(), scene.length_unit()
-    stiffness = scene.stiffness.copy()
-    load = scene.load.copy()
+    force, length = problem.force_unit(), problem.length_unit()
+    stiffness = problem.stiffness.copy()
+    load = problem.load.copy()
     cones = []
-    condensed = scene.condensation if plan.condensed else nothing_condensed(scene.size)
-    for radial in scene.radials:
+    condensed = problem.condensation if plan.condensed else nothing_condensed(problem.size)
+    for radial in problem.radials:
         law = at.radial_laws[radial.name]
         first = law.pieces[0]
         unbounded = len(law.pieces) == 1 and first.force == 0.0 and np.isinf(first.length)
@@ -144,11 +144,11 @@ def programme(
             load += first.stiffness * radial.matrix.T @ radial.centre
     rows = [
         r
-        for r in scene.rows_at(at.x, at.wide)
+        for r in problem.rows_at(at.x, at.wide)
         if plan.rows[r.name] is not Role.OPEN and r.vector.any()
     ]
     norms = np.array([float(np.linalg.norm(r.vector)) for r in rows])
-    vectors = np.array([r.vector for r in rows]).reshape(len(rows), scene.size)
+    vectors = np.array([r.vector for r in rows]).reshape(len(rows), problem.size)
     expansion = condensed.expansion
     load -= stiffness @ condensed.constant
     linear, hertz, gaps = np.zeros(len(rows)), np.zeros(len(rows)), np.zeros(len(rows))
@@ -159,7 +159,7 @@ def programme(
         gaps[e] = (row.gap + offset) / (length * norm)
     return (
         Programme(
-            coordinates=tuple(scene.coordinates[k] for k in condensed.kept),
+            coordinates=tuple(problem.coordinates[k] for k in condensed.kept),
             stiffness=expansion.T @ stiffness @ expansion * length / force,
             load=expansion.T @ load / force,
             names=tuple(r.name for r in rows),

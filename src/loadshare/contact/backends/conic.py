@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loadshare.scene.programme import Array, Point, Programme
+from loadshare.contact.programme import Array, Point, Programme
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_matrix

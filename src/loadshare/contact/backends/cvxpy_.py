@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from loadshare.scene.programme import Cone, Point, Programme
-from loadshare.solver.backend import KINDS_CONIC, Backend, BackendFailure
+from loadshare.contact.backends.backend import KINDS_CONIC, Backend, BackendFailure
+from loadshare.contact.programme import Cone, Point, Programme
 
 
 class Cvxpy:
@@ -18,7 +18,7 @@ class Cvxpy:
     kinds = KINDS_CONIC
 
     def solve(self, programme: Programme) -> Point:
-        """See :meth:`loadshare.solver.backend.Backend.solve`."""
+        """See :meth:`loadshare.contact.backends.backend.Backend.solve`."""
         import cvxpy as cp
 
         x = cp.Variable(len(programme.load))

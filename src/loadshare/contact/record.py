@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from loadshare.scene.plan import Plan
+from loadshare.contact.plan import Plan
 
 METHODS = ("newton", "picard", "power")
 
@@ -21,7 +21,7 @@ class Options:
         "newton" (tangent compliances), "picard" (secant compliances) or "power" (one power-cone
         programme).
     reduce : bool
-        Leave out what cannot matter (and verify it), or put the whole scene in play.
+        Leave out what cannot matter (and verify it), or put everything in play.
     polish : bool
         Solve exactly on the identified active set. Without it the back-end's bare answer is taken,
         which hardly ever passes the certificate; it serves comparisons.

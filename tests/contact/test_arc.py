@@ -6,7 +6,7 @@ Source: formulation, section 6: the arc condition is meant on the side on which 
 import numpy as np
 import pytest
 
-from loadshare.train.ring import Arc
+from loadshare.contact.arc import Arc
 
 ARC = Arc(np.array([0.16, 0.0, 0.0]), np.array([1e-5, 2e-5, 0.0]), 3e-6)
 

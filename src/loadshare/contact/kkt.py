@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loadshare.scene.programme import Array
+from loadshare.contact.programme import Array
 
 RANK = 1e-13
 """Eigenvalues of the equilibrated matrix below this, relative to the largest, count as zero."""

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Protocol
 
-from loadshare.scene.programme import Point, Programme
+from loadshare.contact.programme import Point, Programme
 
 
 class BackendFailure(RuntimeError):  # noqa: N818 -- a finding, not a fault
@@ -37,9 +37,9 @@ KINDS_QP = frozenset({"linear", "QP"})
 KINDS_CONIC = KINDS_QP | {"SOCP", "power cone"}
 
 _ROOMS: dict[str, str] = {
-    "clarabel": "loadshare.solver.clarabel_",
-    "osqp": "loadshare.solver.osqp_",
-    "cvxpy": "loadshare.solver.cvxpy_",
+    "clarabel": "loadshare.contact.backends.clarabel_",
+    "osqp": "loadshare.contact.backends.osqp_",
+    "cvxpy": "loadshare.contact.backends.cvxpy_",
 }
 SOLVERS = tuple(_ROOMS)
 

@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from loadshare.scene.programme import Array, Cone, Point, Programme
-from loadshare.solver.findings import Work
-from loadshare.solver.kkt import solve_symmetric
+from loadshare.contact.findings import Work
+from loadshare.contact.kkt import solve_symmetric
+from loadshare.contact.programme import Array, Cone, Point, Programme
 
 SIGN = 1e-11
 """Violation of a sign, in units of the programme, that counts as round-off."""

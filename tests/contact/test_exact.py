@@ -9,9 +9,9 @@ import itertools
 import numpy as np
 import pytest
 
-from loadshare.scene.programme import Point, Programme
-from loadshare.solver.exact import ActiveSet, first_guess, identify, solve_exact
-from loadshare.solver.kkt import solve_symmetric
+from loadshare.contact.exact import ActiveSet, first_guess, identify, solve_exact
+from loadshare.contact.kkt import solve_symmetric
+from loadshare.contact.programme import Point, Programme
 
 
 def problem(seed: int, rigid: bool, size: int = 5, contacts: int = 7) -> Programme:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from loadshare.scene.programme import Point, Programme
-from loadshare.solver.backend import Backend, BackendFailure
-from loadshare.solver.exact import ActiveSet, first_guess, identify, solve_exact
-from loadshare.solver.findings import Unsolved, Work
-from loadshare.solver.proximal import solve_proximal
+from loadshare.contact.backends.backend import Backend, BackendFailure
+from loadshare.contact.exact import ActiveSet, first_guess, identify, solve_exact
+from loadshare.contact.findings import Unsolved, Work
+from loadshare.contact.programme import Point, Programme
+from loadshare.contact.proximal import solve_proximal
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -18,9 +18,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from loadshare.scene.programme import Array, Point, Programme
-from loadshare.solver.exact import ActiveSet, at_rest, first_guess, solve_exact
-from loadshare.solver.findings import Unsolved, Work
+from loadshare.contact.exact import ActiveSet, at_rest, first_guess, solve_exact
+from loadshare.contact.findings import Unsolved, Work
+from loadshare.contact.programme import Array, Point, Programme
 
 PULLS = (*[1e-5] * 8, *(10.0**-k for k in range(6, 12)), *[1e-11] * 6)
 """ε of every pass, in the programme's units (where a flank's compliance is about 1).

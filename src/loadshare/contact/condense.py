@@ -1,4 +1,4 @@
-"""Coordinates that only springs touch, condensed out once per scene (formulation, section 11).
+"""Coordinates that only springs touch, condensed out once per problem (formulation, section 11).
 
 A coordinate in no contact row and no radial element follows linearly from the others: a flange
 between two torsion shafts, say. It need not be in any programme.

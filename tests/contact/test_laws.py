@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from loadshare.train.law import RIGID, PowerLaw, TableLaw
+from loadshare.contact.law import RIGID, PowerLaw, TableLaw
 
 TABLE = TableLaw((0.0, 100.0, 500.0, 2000.0), (0.0, 2e-6, 5e-6, 20e-6))
 LAWS = {

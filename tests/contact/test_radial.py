@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from loadshare.train.radial import Piece, RadialLaw, round_ring_law, spline_law
+from loadshare.contact.radial import Piece, RadialLaw, round_ring_law, spline_law
 
 KW, FM, S2 = 1.78e7, 178.0, 40e-6
 """K_w [N/m], F_m [N], S2 [m]; S1 = F_m/K_w = 10 µm."""

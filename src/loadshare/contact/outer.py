@@ -17,16 +17,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loadshare.scene.plan import Linearisation, Plan, Role, Units, programme
-from loadshare.scene.programme import Array, Point
-from loadshare.scene.scene import Scene
-from loadshare.solver.backend import Backend
-from loadshare.solver.energy import potential
-from loadshare.solver.findings import Unsolved, Work
-from loadshare.solver.inner import Inner, solve_programme
-from loadshare.solver.record import Iteration, Options
-from loadshare.train.law import PowerLaw
-from loadshare.train.radial import RadialLaw
+from loadshare.contact.backends.backend import Backend
+from loadshare.contact.energy import potential
+from loadshare.contact.findings import Unsolved, Work
+from loadshare.contact.inner import Inner, solve_programme
+from loadshare.contact.law import PowerLaw
+from loadshare.contact.plan import Linearisation, Plan, Role, Units, programme
+from loadshare.contact.problem import ContactProblem
+from loadshare.contact.programme import Array, Point
+from loadshare.contact.radial import RadialLaw
+from loadshare.contact.record import Iteration, Options
 
 STALLED = 1e-9
 """A loop whose misfit no longer falls has arrived at round-off below this, and is stuck above."""
@@ -72,7 +72,7 @@ class _State:
 
 
 def settle(
-    scene: Scene,
+    problem: ContactProblem,
     plan: Plan,
     backend: Backend,
     options: Options,
@@ -83,7 +83,7 @@ def settle(
 
     Parameters
     ----------
-    scene : Scene
+    problem : ContactProblem
     plan : Plan
     backend : Backend
     options : Options
@@ -98,24 +98,24 @@ def settle(
     ValueError
         If a spline's law would drop at the torque it carries.
     """
-    state = _start(scene)
+    state = _start(problem)
     warm: Inner | None = None
     history: list[Iteration] = []
     while len(history) < options.max_iterations and not _stuck(history):
-        laws = {r.name: r.law(state.torques[r.gear]) for r in scene.radials}
-        compliances = _compliances(scene, state.forces, method)
+        laws = {r.name: r.law(state.torques[r.name]) for r in problem.radials}
+        compliances = _compliances(problem, state.forces, method)
         at = Linearisation(state.x, compliances, laws, wide=not history)
-        written, units = programme(scene, plan, at, exact_hertz=method == "power")
+        written, units = programme(problem, plan, at, exact_hertz=method == "power")
         warm = solve_programme(written, backend, warm, options.polish, work)
         x = units.condensation.expand(warm.point.x * units.length)
         forces = _forces(written.names, warm.point, units)
-        torques = {r.gear: scene.train.transmitted(r.gear, forces) for r in scene.radials}
-        law_misfit = _law_misfit(scene, at, forces, method)
-        face_misfit = _face_misfit(scene, plan, at, x, forces)
-        friction_misfit = _friction_misfit(scene, state.torques, torques)
+        torques = {r.name: r.torque(forces) for r in problem.radials}
+        law_misfit = _law_misfit(problem, at, forces, method)
+        face_misfit = _face_misfit(problem, plan, at, x, forces)
+        friction_misfit = _friction_misfit(problem, state.torques, torques)
         step = 1.0
         if method == "newton" and history and law_misfit > history[-1].law > options.stop:
-            step = _step(scene, plan, laws, state.x, x)
+            step = _step(problem, plan, laws, state.x, x)
         now = Iteration(written.kind, warm.via, law_misfit, face_misfit, friction_misfit, step)
         history.append(now)
         if now.misfit <= options.stop or (_stalled(history) and now.misfit <= STALLED):
@@ -126,36 +126,34 @@ def settle(
                     c.name: f * units.force
                     for c, f in zip(written.cones, warm.point.cone_forces, strict=True)
                 },
-                {r.name: r.law(torques[r.gear]) for r in scene.radials},
+                {r.name: r.law(torques[r.name]) for r in problem.radials},
                 written.kind,
                 tuple(history),
             )
         x = state.x + step * (x - state.x)
-        state = _State(x, _next_forces(scene, plan, state.forces, forces, x, method), torques)
+        state = _State(x, _next_forces(problem, plan, state.forces, forces, x, method), torques)
     raise Unsolved(
         f"the {method} loop did not settle in {len(history)} passes "
         f"(last misfit {history[-1].misfit:.2e})"
     )
 
 
-def _start(scene: Scene) -> _State:
+def _start(problem: ContactProblem) -> _State:
     """Every contact under the force unit, every spline under the whole input torque."""
-    unit = scene.force_unit()
-    situation, gears = scene.situation, scene.train.gears
-    driving = situation.torque[scene.train.input]
-    names = [r.name for r in scene.rows] + [a.name for a in scene.arcs]
+    unit = problem.force_unit()
+    names = [r.name for r in problem.rows] + [a.name for a in problem.arcs]
     return _State(
-        np.zeros(scene.size),
+        np.zeros(problem.size),
         dict.fromkeys(names, unit),
-        {r.gear: driving / gears[r.gear].ratio for r in scene.radials},
+        problem.first_torques(),
     )
 
 
 def _compliances(
-    scene: Scene, forces: dict[str, float], method: str
+    problem: ContactProblem, forces: dict[str, float], method: str
 ) -> dict[str, tuple[float, float]]:
     """Linear stand-ins of the laws: secants through the origin (Picard) or tangents (Newton)."""
-    laws = {r.name: r.law for r in scene.rows} | {a.name: a.law for a in scene.arcs}
+    laws = {r.name: r.law for r in problem.rows} | {a.name: a.law for a in problem.arcs}
     if method == "picard":
         return {n: (law.secant(forces[n]), 0.0) for n, law in laws.items()}
     return {n: law.tangent(forces[n]) for n, law in laws.items()}
@@ -166,25 +164,27 @@ def _forces(names: tuple[str, ...], point: Point, units: Units) -> dict[str, flo
     return {n: float(f) for n, f in zip(names, values, strict=True)}
 
 
-def _law_misfit(scene: Scene, at: Linearisation, forces: dict[str, float], method: str) -> float:
+def _law_misfit(
+    problem: ContactProblem, at: Linearisation, forces: dict[str, float], method: str
+) -> float:
     """Largest difference between a law and what stood for it, at the forces found [deflections]."""
     worst = 0.0
-    for row in scene.rows:
+    for row in problem.rows:
         force = abs(forces.get(row.name, 0.0))
         exact = method == "power" and isinstance(row.law, PowerLaw)
         if force == 0.0 or row.law.is_linear or exact:
             continue
         b, offset = at.compliance[row.name]
         worst = max(worst, abs(row.law.compression(force) - b * force - offset))
-    return worst / scene.length_unit()
+    return worst / problem.length_unit()
 
 
 def _face_misfit(
-    scene: Scene, plan: Plan, at: Linearisation, x: Array, forces: dict[str, float]
+    problem: ContactProblem, plan: Plan, at: Linearisation, x: Array, forces: dict[str, float]
 ) -> float:
     """Largest difference between arcs and the faces that stood for them [deflections, loads]."""
     worst = 0.0
-    for arc in scene.arcs:
+    for arc in problem.arcs:
         if plan.rows[arc.name] is Role.OPEN:
             continue
         relative = arc.relative @ x
@@ -194,36 +194,33 @@ def _face_misfit(
             continue
         normal, bound = arc.arc.face(arc.relative @ at.x)
         bound += arc.sagitta if at.wide else 0.0
-        worst = max(worst, abs(margin - bound - float(normal @ relative)) / scene.length_unit())
+        worst = max(worst, abs(margin - bound - float(normal @ relative)) / problem.length_unit())
         turned = float(np.linalg.norm(arc.arc.normal(relative) - normal))
-        worst = max(worst, turned * abs(force) / scene.force_unit())
+        worst = max(worst, turned * abs(force) / problem.force_unit())
     return worst
 
 
-def _friction_misfit(scene: Scene, used: dict[str, float], found: dict[str, float]) -> float:
+def _friction_misfit(
+    problem: ContactProblem, used: dict[str, float], found: dict[str, float]
+) -> float:
     """Largest change of a friction bound that follows the torque [loads]."""
-    worst = 0.0
-    for radial in scene.radials:
-        if radial.follows_torque:
-            spline = scene.train.splines[radial.gear]
-            change = spline.bound(found[radial.gear]) - spline.bound(used[radial.gear])
-            worst = max(worst, abs(change))
-    return worst / scene.force_unit()
+    changes = [abs(r.friction_change(used[r.name], found[r.name])) for r in problem.radials]
+    return max(changes, default=0.0) / problem.force_unit()
 
 
 def _step(
-    scene: Scene, plan: Plan, laws: dict[str, RadialLaw], before: Array, after: Array
+    problem: ContactProblem, plan: Plan, laws: dict[str, RadialLaw], before: Array, after: Array
 ) -> float:
     """Halve the step until the true energy falls."""
-    here = potential(scene, plan, laws, before)
+    here = potential(problem, plan, laws, before)
     step = 1.0
-    while step > 1e-3 and potential(scene, plan, laws, before + step * (after - before)) > here:
+    while step > 1e-3 and potential(problem, plan, laws, before + step * (after - before)) > here:
         step *= 0.5
     return step
 
 
 def _next_forces(
-    scene: Scene,
+    problem: ContactProblem,
     plan: Plan,
     before: dict[str, float],
     found: dict[str, float],
@@ -231,9 +228,9 @@ def _next_forces(
     method: str,
 ) -> dict[str, float]:
     """Forces at which the laws are linearised next."""
-    unit = scene.force_unit()
+    unit = problem.force_unit()
     forces = dict(before)
-    for row in scene.rows:
+    for row in problem.rows:
         role = plan.rows[row.name]
         if role is Role.OPEN or row.law.is_linear:
             continue

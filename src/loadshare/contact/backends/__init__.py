@@ -1,0 +1,1 @@
+"""Solvers of programmes, behind one small interface."""

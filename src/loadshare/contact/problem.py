@@ -1,0 +1,207 @@
+r"""A contact problem: springs, loads, unilateral contacts, arcs, radial elements. No gear in it.
+
+.. math::
+
+    \min_x \; \tfrac12 x^\mathsf{T} H x - f^\mathsf{T} x + \sum_e U_e(a_e\cdot x - g_e)
+        + \sum_j W_j(\lVert P_j x - m_j \rVert)
+
+U is the energy of a contact that only pushes, W that of a radial element; arcs are contacts whose
+row turns with x. Units are those of whoever writes it, as long as they belong together: a train's
+scene has coordinates in metres and forces in newtons. Source: formulation, sections 4 to 6.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.contact.arc import Arc
+from loadshare.contact.condense import Condensation, condense
+from loadshare.contact.law import Law
+from loadshare.contact.radial import RadialLaw
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Row:
+    """A unilateral contact: approach a·x − g, force F ≥ 0.
+
+    Attributes
+    ----------
+    name : str
+    kind : str
+        What it is: "drive flank", "coast flank", "stop", "arc", or any word.
+    vector : ndarray, shape (n,)
+        a.
+    gap : float
+        g.
+    law : Law
+    """
+
+    name: str
+    kind: str
+    vector: Array
+    gap: float
+    law: Law
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ArcRow:
+    """An exclusion arc, which becomes a row at each iterate.
+
+    Attributes
+    ----------
+    name : str
+    arc : Arc
+    relative : ndarray, shape (3, n)
+        Relative displacement of the two centres from the coordinates.
+    law : Law
+    sagitta : float
+        Room that the arc leaves beyond its face at rest, at the end of the float.
+    """
+
+    name: str
+    arc: Arc
+    relative: Array
+    law: Law
+    sagitta: float
+
+    def row(self, x: Array, wide: bool = False) -> Row:
+        """Tangent face at the coordinates x: −n·Δ ≤ g.
+
+        A wide face stands off by the sagitta, so that all of the float lies inside. Faces at rest
+        of two opposite arcs can wedge a float in that the arcs themselves let pass.
+        """
+        normal, bound = self.arc.face(self.relative @ x)
+        bound += self.sagitta if wide else 0.0
+        return Row(self.name, "arc", -(normal @ self.relative), bound, self.law)
+
+
+class FollowingLaw(Protocol):
+    """A radial law whose friction may follow a torque, such as that of a spline."""
+
+    @property
+    def friction_force(self) -> float | None:
+        """Friction where it is fixed; None where it follows the torque."""
+
+    def law(self, torque: float) -> RadialLaw:
+        """Law at a torque."""
+
+    def bound(self, torque: float) -> float:
+        """Friction at a torque."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Radial:
+    """A radial element on p = P x − m.
+
+    Attributes
+    ----------
+    name : str
+    matrix : ndarray, shape (2, n)
+        P.
+    centre : ndarray, shape (2,)
+        m.
+    source : RadialLaw or FollowingLaw
+    levers : mapping of row name to float
+        Torque over the element per unit of the row's force, for a law that follows it.
+    """
+
+    name: str
+    matrix: Array
+    centre: Array
+    source: RadialLaw | FollowingLaw
+    levers: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def follows_torque(self) -> bool:
+        """Whether the law must be settled in the outer loop."""
+        return not isinstance(self.source, RadialLaw) and self.source.friction_force is None
+
+    def torque(self, forces: Mapping[str, float]) -> float:
+        """Torque over the element; a row that is not named carries nothing."""
+        return sum(lever * forces.get(name, 0.0) for name, lever in self.levers.items())
+
+    def law(self, torque: float) -> RadialLaw:
+        """Law at a torque over the element."""
+        return self.source if isinstance(self.source, RadialLaw) else self.source.law(torque)
+
+    def friction_change(self, before: float, after: float) -> float:
+        """Change of the friction from one torque to another."""
+        if isinstance(self.source, RadialLaw) or not self.follows_torque:
+            return 0.0
+        return self.source.bound(after) - self.source.bound(before)
+
+
+@dataclass(frozen=True, eq=False)
+class ContactProblem:
+    """A contact problem in the module's form.
+
+    Attributes
+    ----------
+    coordinates : tuple of str
+        Names.
+    stiffness : ndarray, shape (n, n)
+        H, of springs.
+    load : ndarray, shape (n,)
+        f.
+    rows : tuple of Row
+    arcs : tuple of ArcRow
+    radials : tuple of Radial
+    """
+
+    coordinates: tuple[str, ...]
+    stiffness: Array
+    load: Array
+    rows: tuple[Row, ...] = ()
+    arcs: tuple[ArcRow, ...] = ()
+    radials: tuple[Radial, ...] = ()
+
+    @property
+    def size(self) -> int:
+        """Number of coordinates."""
+        return len(self.coordinates)
+
+    @cached_property
+    def condensation(self) -> Condensation:
+        """Coordinates that no contact touches, as linear functions of the others."""
+        touched = np.zeros(self.size, dtype=bool)
+        for row in self.rows:
+            touched |= row.vector != 0.0
+        for matrix in (*(a.relative for a in self.arcs), *(r.matrix for r in self.radials)):
+            touched |= (matrix != 0.0).any(axis=0)
+        return condense(self.stiffness, self.load, touched)
+
+    def rows_at(self, x: Array, wide: bool = False) -> tuple[Row, ...]:
+        """All rows, arcs replaced by their faces at x, wide or tangent."""
+        return self.rows + tuple(a.row(x, wide) for a in self.arcs)
+
+    def force_unit(self) -> float:
+        """Force that the problem is measured by: the largest load, or 1 without any."""
+        return float(np.abs(self.load).max(initial=0.0)) or 1.0
+
+    def length_unit(self) -> float:
+        """Length that the problem is measured by.
+
+        What contacts and springs yield under the force unit, or 1/1000 of the gaps, whichever is
+        larger: measured by compressions that are far smaller than the gaps, the size of the gaps
+        would overflow what a solver resolves.
+        """
+        force = self.force_unit()
+        yielded = [r.law.compression(force) for r in self.rows]
+        yielded += [force / k for k in np.diag(self.stiffness).tolist() if k > 0.0]
+        gaps = [abs(r.gap) for r in self.rows] + [a.arc.clearance for a in self.arcs]
+        gaps += [p.length for r in self.radials for p in r.law(0.0).pieces if p.length < np.inf]
+        soft = float(np.median([v for v in yielded if v > 0.0] or [0.0]))
+        return max(soft, 1e-3 * max(gaps, default=0.0)) or 1.0
+
+    def first_torques(self) -> dict[str, float]:
+        """Torques over radial elements that follow them, to begin with."""
+        force = self.force_unit()
+        return {r.name: force * max(map(abs, r.levers.values()), default=0.0) for r in self.radials}
