@@ -69,6 +69,12 @@ def test_gears_that_carry_nothing_leave_no_torque_unproved(number):
     assert {p.effort.rung for p in ls.solve(draw(1, number)).positions} <= {HOT, SEARCHED}
 
 
+def test_a_search_that_goes_to_and_fro_is_told():
+    """An idle gear on its ring, held and let go in turns: Clarabel was asked, for two seconds."""
+    assert not faults([4849], seed=1)
+    assert ls.solve(draw(1, 4849)).positions[0].effort.rung == SEARCHED
+
+
 @pytest.mark.slow
 def test_many_drawn_trains_are_solved_as_the_reference_has_them():
     assert not faults(range(25, 325))

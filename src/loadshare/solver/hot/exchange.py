@@ -173,7 +173,7 @@ def exchange(
         basis = elements.basis(here[:switches])
         verdict, proposal = engine(elements, data, basis, here[:switches], rows, state, one_only)
         onward = (verdict == at.OTHER) & (visited < limit)
-        for k in np.flatnonzero(onward & (visited > TOGETHER)).tolist():
+        for k in np.flatnonzero(onward & (singly | (visited > TOGETHER))).tolist():
             verdict[k] = rounds.judged(int(rows[k]), here[:switches], proposal[k])
             onward[k] = verdict[k] == at.OTHER
         stay, done = rows[~onward], verdict[~onward] == at.DONE

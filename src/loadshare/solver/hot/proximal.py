@@ -57,8 +57,8 @@ STILL = 1e-15
 """Step, over the largest coordinate, that is round-off."""
 TRIES = 3
 """Passes from which a set is solved exactly: a later one may stand nearer."""
-EXCHANGES = 6
-"""Sets that an exact solve visits from where the passes stand."""
+EXCHANGES = 7
+"""Sets that an exact solve visits from where the passes stand: enough to tell to and fro."""
 
 
 @dataclass(slots=True)
