@@ -188,8 +188,11 @@ def solvable(train: Train, index: int) -> bool:
 def misplaced(
     train: Train, found: Position, exact: Reference, machine: Machine, settled: Settled
 ) -> dict[str, float]:
-    """Places given as determined that are open, or elsewhere; error in deflections."""
-    named = set(found.undetermined)
+    """Places given as determined that are open, or elsewhere; error in deflections.
+
+    Elsewhere is what is off by more than `PLACED`, and by more than its own bound.
+    """
+    named, bounds = set(found.undetermined), found.certificate.bound.place
     free = play(machine, settled.at, NO_FORCE)
     # What hangs on forces of round-off may be called either.
     loose = play(machine, settled.at, 1e-9)
@@ -203,7 +206,8 @@ def misplaced(
     for gear, place in exact.displacement.items():
         for axis, k in ("x", 0), ("y", 1):
             name = f"gear {gear} {axis}"
-            apart = abs(found.displacement[gear][k] - float(place[k])) / scale
-            if apart > PLACED and name not in named and loose.get(name, 0.0) <= OPEN:
-                wrong[name] = apart
+            error = abs(found.displacement[gear][k] - float(place[k]))
+            off = error > max(PLACED * scale, bounds[f"{gear} {axis}"])
+            if off and name not in named and loose.get(name, 0.0) <= OPEN:
+                wrong[name] = error / scale
     return wrong

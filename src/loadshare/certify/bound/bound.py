@@ -159,10 +159,14 @@ def _yielding(soft: Array, skew: Array, at: NDArray[np.intp], force: Array) -> A
 
 
 def aside(claim: Claim, found: Elements, rows: NDArray[np.intp] | slice) -> Array:
-    """Part of the claimed forces that what acts cannot carry, shape (rows, m) [N]."""
+    """What claimed forces are off by whatever acts: what it cannot carry, friction put aside.
+
+    Shape (rows, m) [N].
+    """
     claimed, force = claim.forces[rows], found.force[rows]
     apart = np.abs(claimed - force)
-    arcs = claim.columns.arcs
+    arcs, radials = claim.columns.arcs, claim.columns.radials
+    apart[:, radials] += found.rounding[rows][:, radials]
     if arcs.start < arcs.stop:
         size = np.abs(claimed[:, arcs][:, ::2])
         left = np.where(found.active[rows][:, arcs][:, ::2], 0.0, size)

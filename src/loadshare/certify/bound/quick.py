@@ -339,6 +339,7 @@ class _Group:
             if len(lined):
                 whole[:, at + k] += np.abs(size) / distance * way
         proved = self._is_proved(whole, places, moved, left, scale) & near
+        self._cover_twins(whole)
         shared = np.abs(self.rigid).max(axis=1, initial=0.0) > SHARED
         whole[:, self.plain[shared[: len(self.plain)]]] = np.inf
         for k in (0, 1):
@@ -346,6 +347,19 @@ class _Group:
         whole[~proved], places[~proved] = np.inf, np.inf
         places[:, self.statics.loose] = np.inf
         return whole, places
+
+    def _cover_twins(self, errors: Array) -> None:
+        """Give contacts that their twin stands for the twin's errors: it may be they that act."""
+        columns = self.claim.columns
+        ends = columns.contacts, range(columns.arcs.start, columns.arcs.stop, 2)
+        at = np.array([*ends[0], *ends[1]], dtype=np.intp)
+        doubled = self.doubled[self.pick][:, : len(at)]
+        for e in np.flatnonzero(doubled.any(axis=0)).tolist():
+            first = columns.flanks.stop
+            twin = first + ((e - first) ^ 1)
+            for k in (0, 1) if e >= len(ends[0]) else (0,):
+                error = np.maximum(errors[:, at[e] + k], errors[:, at[twin] + k])
+                errors[:, at[e] + k] = np.where(doubled[:, e], error, errors[:, at[e] + k])
 
     def _under(self, load: Array, misfit: Array | float) -> tuple[Array, Array]:
         """Sizes of the forces that carry a load, and of the misfit that is left for self-stress."""
