@@ -28,7 +28,7 @@ def beam(length, thickness, width, along, across, layers, skew=0.0):
         for j in range(0, 2 * along, 2)
     ]
     clamped = np.array([j == 0 for _, j in names])
-    return BlockMesh(np.array(points), names, np.array(quads), clamped), names
+    return BlockMesh(np.array(points), np.array(quads), clamped), names
 
 
 def tip_deflection(poisson, **mesh):

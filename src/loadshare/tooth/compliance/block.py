@@ -19,21 +19,24 @@ follows involute and fillet closely.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
 from loadshare.tooth.compliance.middle import MiddleSurface, under
-from loadshare.tooth.geometry.body import Array
+from loadshare.tooth.geometry.body import Array, turned
 
 Index = NDArray[np.int64]
-Key = tuple[object, ...]
 
 GROWTH = 2.0
 """Ratio of the depths of neighbouring elements, from the root into the rim."""
+ONE_PLACE = 1e-7
+"""Distance, over the size of a section, of nodes of neighbouring blocks that are one node."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +68,11 @@ class Divisions:
         """Return the divisions of a tooth that carries no load; rim and width must fit."""
         return Divisions(2, max(2, self.flank // 2), 1, 1, self.rim, self.width)
 
+    def heights(self, middle: MiddleSurface) -> Array:
+        """The z of the nodes of a tooth, from the rim's free side to the tip."""
+        below = middle.waist - self.depths()[:0:-1] * (1.0 + middle.waist)
+        return np.concatenate([below, self.levels(middle)])
+
     def levels(self, middle: MiddleSurface) -> Array:
         """The u of the nodes of the tooth, from the waist to the tip."""
         foot = middle.body.foot
@@ -83,14 +91,6 @@ class Divisions:
         return np.linspace(0.0, 1.0, 2 * self.width + 1)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Block:
-    """A mapped block of one section: names (a, b) of its grid nodes, points (a, b, w, 3)."""
-
-    names: list[list[Key]]
-    points: Array
-
-
 @dataclass(frozen=True, eq=False)
 class BlockMesh:
     """Teeth in hexahedra.
@@ -99,30 +99,34 @@ class BlockMesh:
     ----------
     points : array (m, layers, 3)
         Section nodes on every layer [m].
-    number : dict
-        Section node of each name.
     quads : array (q, 3, 3)
         Section nodes of each quadrilateral.
     clamped : array (m,) of bool
         Section nodes on the rim's free side and on the cut sides.
+    teeth : dict of array (across, heights) of int
+        Section nodes of each tooth by its number, from side −1 to side +1, and from the rim's free
+        side to the tip.
     """
 
     points: Array
-    number: dict[Key, int]
     quads: Index
     clamped: NDArray[np.bool_]
+    teeth: dict[int, Index] = field(default_factory=dict)
 
     @property
     def layers(self) -> int:
         """Node layers over the width."""
         return int(self.points.shape[1])
 
+    def over_width(self, nodes: Index) -> Index:
+        """Nodes (..., layers) of section nodes on every layer."""
+        return nodes[..., None] * self.layers + np.arange(self.layers)
+
     def hexahedra(self) -> Index:
         """Nodes (element, 3, 3, 3) as section node · layers + layer."""
-        first = np.arange(0, self.layers - 2, 2)
-        layer = first[:, None] + np.arange(3)
-        nodes = self.quads[None, :, :, :, None] * self.layers + layer[:, None, None, None, :]
-        return nodes.reshape(-1, 3, 3, 3)
+        nodes = self.over_width(self.quads)
+        first = range(0, self.layers - 2, 2)
+        return np.concatenate([nodes[..., k : k + 3] for k in first])
 
 
 def block_mesh(
@@ -145,112 +149,81 @@ def block_mesh(
         Of tooth 0 and of its neighbours; `rim` and `width` must agree.
     """
     reach = teeth // 2
-    number: dict[Key, int] = {}
-    points: list[Array] = []
-    quads: list[Index] = []
-    ends = reach + np.cumsum([0, *bare])
-    blocks = [
-        block
-        for k in range(-reach, reach + 1)
-        for block in _tooth(middle, k, loaded if k == 0 else others)
+    numbers = range(-reach, reach + 1)
+    divisions = [loaded if k == 0 else others for k in numbers]
+    columns = [_tooth(middle, k, n) for k, n in zip(numbers, divisions, strict=True)]
+    rims = [
+        _root(middle, k, side, n)
+        for k, n in zip(numbers, divisions, strict=True)
+        for side in (-1, 1)
     ]
-    for first, last in pairwise(ends.tolist()):
-        blocks.append(_bare_rim(middle, first + 1, last + 1, others))
-        blocks.append(_bare_rim(middle, -last, -first, others))
-    for block in blocks:
-        ids = np.empty((len(block.names), len(block.names[0])), dtype=np.int64)
-        for a, row in enumerate(block.names):
-            for b, name in enumerate(row):
-                if name not in number:
-                    number[name] = len(points)
-                    points.append(block.points[a, b])
-                ids[a, b] = number[name]
-        quads += [
-            ids[a : a + 3, b : b + 3]
-            for a in range(0, ids.shape[0] - 1, 2)
-            for b in range(0, ids.shape[1] - 1, 2)
-        ]
-    floor = len(loaded.depths()) - 1
-    cut = {("space", -int(ends[-1])), ("space", int(ends[-1]) + 1)}
-    clamped = np.array([name[-1] == ("rim", floor) or name[:2] in cut for name in number])
-    return BlockMesh(np.array(points), number, np.array(quads), clamped)
+    ends = (reach + np.cumsum([0, *bare])).tolist()
+    for first, last in pairwise(ends):
+        rims.append(_bare_rim(middle, (first + 1, 0.5 * (first + last) + 1, last + 1), others))
+        rims.append(_bare_rim(middle, (-last, -0.5 * (first + last), -first), others))
+    cuts = [_bare_rim(middle, (place,), others) for place in (-ends[-1], ends[-1] + 1)]
+    blocks = [*columns, *rims, *cuts]
+    points, grids = _merged(blocks)
+    clamped = np.zeros(len(points), dtype=bool)
+    for grid in grids:
+        clamped[grid[:, 0]] = True
+    for grid in grids[-len(cuts) :]:
+        clamped[grid] = True
+    quads = [sliding_window_view(grid, (3, 3))[::2, ::2] for grid in grids[: -len(cuts)]]
+    return BlockMesh(
+        points,
+        np.concatenate([part.reshape(-1, 3, 3) for part in quads]),
+        clamped,
+        dict(zip(numbers, grids, strict=False)),
+    )
 
 
-def _tooth(middle: MiddleSurface, k: int, n: Divisions) -> Iterable[Block]:
-    """Blocks of tooth k."""
-    body = middle.body
-    w = n.stations()
-    levels, depths = n.levels(middle), n.depths()
-    t = np.linspace(0.0, 1.0, 2 * n.across + 1)
-    turn = _turn(2.0 * np.pi * k / body.teeth)
+def _merged(blocks: Sequence[Array]) -> tuple[Array, list[Index]]:
+    """Section nodes (m, layers, 3) of blocks (a, b, layers, 3), and their numbers (a, b) in each.
 
-    def sweep(low: Array, high: Array, at: Array) -> Array:
-        return (1.0 - at)[..., None] * low + at[..., None] * high
+    Nodes at one place are one node.
+    """
+    points = np.concatenate([block.reshape(-1, *block.shape[2:]) for block in blocks])
+    section = points[:, points.shape[1] // 2]
+    near = KDTree(section).query_ball_point(section, ONE_PLACE * np.ptp(section))
+    used, number = np.unique([min(same) for same in near], return_inverse=True)
+    ends = np.cumsum([block.shape[0] * block.shape[1] for block in blocks])[:-1]
+    parts = np.split(number, ends)
+    grids = [part.reshape(block.shape[:2]) for part, block in zip(parts, blocks, strict=True)]
+    return points[used], grids
 
-    sides = {s: body.outline(levels[:, None], w[None, :], s) for s in (-1, 1)}
-    top = sweep(sides[-1][None], sides[1][None], t[:, None, None])
-    names = [[_in_tooth(k, i, j) for j in range(len(levels))] for i in range(len(t))]
-    yield Block(names, top @ turn.T)
 
-    waist = top[:, 0]
-    core = sweep(waist[:, None], under(body, waist)[:, None], depths[None, :, None])
-    names = [[_in_core(k, i, j) for j in range(len(depths))] for i in range(len(t))]
-    yield Block(names, core @ turn.T)
+def _tooth(middle: MiddleSurface, k: int, n: Divisions) -> Array:
+    """Tooth k with the core under it: from side −1 to side +1, from the free side to the tip."""
+    body, levels, w = middle.body, n.levels(middle), n.stations()
+    low, high = (body.outline(levels[:, None], w[None, :], s) for s in (-1, 1))
+    t = np.linspace(0.0, 1.0, 2 * n.across + 1)[:, None, None, None]
+    top = (1.0 - t) * low + t * high
+    core = _to_free_side(middle, top[:, 0], n)
+    return turned(np.concatenate([core[:, :-1], top], axis=1), _pitches(middle, k))
 
+
+def _root(middle: MiddleSurface, k: int, side: int, n: Divisions) -> Array:
+    """The rim under half of a root space, on a side of tooth k."""
     u = np.linspace(0.0, middle.waist, 2 * n.root + 1)
-    for side in (-1, 1):
-        root = body.outline(u[:, None], w[None, :], side)
-        rim = sweep(root[:, None], under(body, root)[:, None], depths[None, :, None])
-        edge = 0 if side < 0 else len(t) - 1
-        names = [
-            [_in_rim(k, side, i, j, len(u) - 1, edge) for j in range(len(depths))]
-            for i in range(len(u))
-        ]
-        yield Block(names, rim @ turn.T)
+    root = middle.body.outline(u[:, None], n.stations()[None, :], side)
+    return turned(_to_free_side(middle, root, n), _pitches(middle, k))
 
 
-def _bare_rim(middle: MiddleSurface, first: int, last: int, n: Divisions) -> Block:
+def _bare_rim(middle: MiddleSurface, spaces: Sequence[float], n: Divisions) -> Array:
     """The rim from one root space to another, without its teeth."""
-    body, depths = middle.body, n.depths()
-    pitch = 2.0 * np.pi / body.teeth
-    space = body.outline(0.0, n.stations(), -1)
-    sections = []
-    for place in (first, 0.5 * (first + last), last):
-        root = space @ _turn(pitch * place).T
-        free = under(body, root)
-        sections.append((1.0 - depths)[:, None, None] * root + depths[:, None, None] * free)
-    starts: tuple[Key, ...] = (("space", first), ("bare", first), ("space", last))
-    names = [[(*start, ("rim", j)) for j in range(len(depths))] for start in starts]
-    return Block(names, np.array(sections))
+    root = middle.body.outline(0.0, n.stations(), -1)
+    at = [turned(root, _pitches(middle, place)) for place in spaces]
+    return _to_free_side(middle, np.array(at), n)
 
 
-def _in_tooth(k: int, i: int, j: int) -> Key:
-    return ("tooth", k, i, ("level", j))
+def _to_free_side(middle: MiddleSurface, root: Array, n: Divisions) -> Array:
+    """Points (a, depths, w, 3) of the rim under root points (a, w, 3), from the free side up."""
+    depth = n.depths()[::-1, None, None]
+    free = under(middle.body, root)
+    return np.asarray((1.0 - depth) * root[:, None] + depth * free[:, None])
 
 
-def _in_core(k: int, i: int, j: int) -> Key:
-    return _in_tooth(k, i, 0) if j == 0 else ("core", k, i, ("rim", j))
-
-
-def _in_rim(k: int, side: int, i: int, j: int, last: int, edge: int) -> Key:
-    if i == last:
-        return _in_core(k, edge, j)
-    if i == 0:  # shared with the next tooth
-        return ("space", k + (side > 0), ("rim", j))
-    return ("root", k, side, i, ("rim", j))
-
-
-def flank_name(level: int, across: int, side: int) -> Key:
-    """Name of a node on a flank of tooth 0: its level, and the elements across the tooth."""
-    return _in_tooth(0, 0 if side < 0 else 2 * across, level)
-
-
-def middle_names(k: int, n: Divisions) -> list[Key]:
-    """Names of the nodes on the middle surface of tooth k, from the rim's free side to the tip."""
-    under_tooth = [_in_core(k, n.across, j) for j in range(2 * n.rim, 0, -1)]
-    return under_tooth + [_in_tooth(k, n.across, j) for j in range(2 * (n.fillet + n.flank) + 1)]
-
-
-def _turn(angle: float) -> Array:
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+def _pitches(middle: MiddleSurface, number: float) -> float:
+    """Angle of a number of pitches [rad]."""
+    return 2.0 * np.pi * number / middle.body.teeth

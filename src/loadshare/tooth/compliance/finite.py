@@ -7,18 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from loadshare.tooth.compliance.block import (
-    BlockMesh,
-    Divisions,
-    block_mesh,
-    flank_name,
-    middle_names,
-)
+from loadshare.tooth.compliance.block import BlockMesh, Divisions, block_mesh
 from loadshare.tooth.compliance.interface import Flank
 from loadshare.tooth.compliance.middle import MiddleSurface, under
 from loadshare.tooth.compliance.sheet import Sheet
 from loadshare.tooth.compliance.solid import Solid, build_solid
-from loadshare.tooth.geometry.body import Array, ToothBody
+from loadshare.tooth.geometry.body import Array, ToothBody, turned
 
 REACH = 4.0
 """Distance from the loaded tooth to the cut, in rim depths."""
@@ -79,7 +73,7 @@ class FiniteElements:
         self.size = solid.size
         self._flank = Sheet(n.levels(self.middle)[2 * n.fillet :], n.stations())
         self._feet = self.middle.feet(self._flank.places, side)
-        self._influence = self._solve(mesh, solid, teeth // 2)
+        self._influence = self._solve(mesh, solid)
 
     def bulk(self, flanks: tuple[Flank, ...]) -> Array:
         """See :meth:`loadshare.tooth.compliance.interface.Compliance.bulk`."""
@@ -103,45 +97,29 @@ class FiniteElements:
         """See :meth:`loadshare.tooth.compliance.interface.Compliance.depth`."""
         return np.asarray(self._flank.weights(uw) @ self._feet.depth)
 
-    def _solve(self, mesh: BlockMesh, solid: Solid, reach: int) -> dict[int, Array]:
+    def _solve(self, mesh: BlockMesh, solid: Solid) -> dict[int, Array]:
         """Displacement of every foot on tooth k, along its normal, for loads on tooth 0."""
-        n = self.divisions
-        rows = range(2 * n.fillet, 2 * (n.fillet + n.flank) + 1)
-        names = [flank_name(level, n.across, self.side) for level in rows]
-        loaded = self._nodes(mesh, names)[self._flank.present]
+        n, body = self.divisions, self.body
+        on_flank = mesh.teeth[0][0 if self.side < 0 else -1, -(2 * n.flank + 1) :]
+        loaded = mesh.over_width(on_flank)[self._flank.present]
         forces = np.zeros((solid.size, len(loaded)))
         for axis in range(3):
             forces[solid.free[loaded, axis], np.arange(len(loaded))] = self._feet.inward[:, axis]
 
-        influence = {}
         sheets, read = {}, {}
-        for k in range(-reach, reach + 1):
+        for k, grid in mesh.teeth.items():
             divisions = n if k == 0 else n.coarser()
-            z = np.concatenate([self._below(divisions), divisions.levels(self.middle)])
-            sheets[k] = Sheet(z, n.stations())
-            read[k] = self._nodes(mesh, middle_names(k, divisions))[sheets[k].present]
+            sheets[k] = Sheet(divisions.heights(self.middle), n.stations())
+            read[k] = mesh.over_width(grid[divisions.across])[sheets[k].present]
         moved = solid.displacements(forces, np.concatenate(list(read.values())))
-        start = 0
-        for k, sheet in sheets.items():
-            part = moved[start : start + len(read[k])]
-            start += len(read[k])
+        parts = np.split(moved, np.cumsum([len(nodes) for nodes in read.values()])[:-1])
+        influence = {}
+        for (k, sheet), part in zip(sheets.items(), parts, strict=True):
             weights = sheet.weights(self._feet.zw)
-            at_feet = (weights @ part.reshape(len(part), -1)).reshape(-1, 3, part.shape[2])
-            angle = 2.0 * np.pi * k / self.body.teeth
-            c, s = np.cos(angle), np.sin(angle)
-            normals = self._feet.inward @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+            at_feet = (weights @ part.reshape(len(part), -1)).reshape(-1, *part.shape[1:])
+            normals = turned(self._feet.inward, 2.0 * np.pi * k / body.teeth)
             influence[k] = np.einsum("nij,ni->nj", at_feet, normals)
         return influence
-
-    def _nodes(self, mesh: BlockMesh, names: list[tuple[object, ...]]) -> np.ndarray:
-        """Nodes (names, layers) of named section nodes."""
-        section = np.array([mesh.number[name] for name in names])
-        return section[:, None] * mesh.layers + np.arange(mesh.layers)
-
-    def _below(self, n: Divisions) -> Array:
-        """Places on the middle surface below the waist, from the rim's free side."""
-        waist = self.middle.waist
-        return waist - n.depths()[:0:-1] * (1.0 + waist)
 
 
 def _bare_rim(body: ToothBody, teeth: int) -> list[int]:

@@ -38,42 +38,32 @@ class LayeredFactor:
         from scipy.linalg.blas import dsyrk
 
         ends = np.searchsorted(group, np.arange(int(group[-1]) + 2))
-        self._rows = [slice(int(a), int(b)) for a, b in pairwise(ends)]
-        self._factors: list[Array] = []
-        self._links: list[Array] = []
-        diagonal = matrix[self._rows[0], self._rows[0]].toarray(order="F")
-        for rows, after in pairwise([*self._rows, slice(0, 0)]):
+        rows = [slice(a, b) for a, b in pairwise([*ends.tolist(), len(group)])]
+        self._parts: list[tuple[slice, Array, Array]] = []
+        diagonal = matrix[rows[0], rows[0]].toarray(order="F")
+        for here, after in pairwise(rows):
             # Only the lower triangle is read from here on, and written below.
             factor = cholesky(diagonal, lower=True, overwrite_a=True, check_finite=False)
-            self._factors.append(factor)
-            if after.stop == 0:
-                break
-            coupling = matrix[rows, after].tocsc()
-            reach = int(coupling.indices.size and np.flatnonzero(np.diff(coupling.indptr))[-1] + 1)
-            link = solve_triangular(
-                factor,
-                coupling[:, :reach].toarray(order="F"),
-                lower=True,
-                overwrite_b=True,
-                check_finite=False,
-            )
-            self._links.append(link)
+            coupling = matrix[here, after].tocsc()
+            reach = int(np.flatnonzero(np.diff(coupling.indptr)).max(initial=-1)) + 1
+            link = coupling[:, :reach].toarray(order="F")
+            link = solve_triangular(factor, link, lower=True, overwrite_b=True, check_finite=False)
+            self._parts.append((here, factor, link))
             diagonal = matrix[after, after].toarray(order="F")
-            diagonal[:reach, :reach] -= dsyrk(1.0, link, trans=1, lower=1)
+            if reach:
+                diagonal[:reach, :reach] -= dsyrk(1.0, link, trans=1, lower=1)
 
     def solve(self, right: Array) -> Array:
         """Solve for right-hand sides (n, k)."""
         from scipy.linalg import solve_triangular
 
-        parts = [right[rows].copy() for rows in self._rows]
-        for g, factor in enumerate(self._factors):
-            parts[g] = solve_triangular(factor, parts[g], lower=True, check_finite=False)
-            if g < len(self._links):
-                parts[g + 1][: self._links[g].shape[1]] -= self._links[g].T @ parts[g]
-        for g in reversed(range(len(self._factors))):
-            if g < len(self._links):
-                parts[g] -= self._links[g] @ parts[g + 1][: self._links[g].shape[1]]
-            parts[g] = solve_triangular(
-                self._factors[g], parts[g], lower=True, trans=1, check_finite=False
+        found = right.copy()
+        for rows, factor, link in self._parts:
+            found[rows] = solve_triangular(factor, found[rows], lower=True, check_finite=False)
+            found[rows.stop : rows.stop + link.shape[1]] -= link.T @ found[rows]
+        for rows, factor, link in reversed(self._parts):
+            found[rows] -= link @ found[rows.stop : rows.stop + link.shape[1]]
+            found[rows] = solve_triangular(
+                factor, found[rows], lower=True, trans=1, check_finite=False
             )
-        return np.concatenate(parts)
+        return found

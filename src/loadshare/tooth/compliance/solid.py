@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,9 @@ from numpy.typing import NDArray
 from loadshare.tooth.compliance.block import BlockMesh
 from loadshare.tooth.compliance.layered import LayeredFactor
 from loadshare.tooth.geometry.body import Array
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_matrix
 
 Index = NDArray[np.int64]
 
@@ -63,7 +67,6 @@ def build_solid(mesh: BlockMesh, modulus: float, poisson: float) -> Solid:
         E [Pa] and ν.
     """
     import skfem
-    from scipy.sparse import coo_matrix
 
     cells = mesh.hexahedra()
     coordinates = mesh.points.reshape(-1, 3)
@@ -80,29 +83,18 @@ def build_solid(mesh: BlockMesh, modulus: float, poisson: float) -> Solid:
     ].transpose(2, 0, 1)
 
     basis = skfem.CellBasis(hexes, straight, intorder=4)
-    gradients = np.stack([np.asarray(b[0].grad) for b in basis.basis])  # (20, 3, cells, points)
-    stiffness = _stiffness(gradients, np.asarray(basis.dx), modulus, poisson)
+    nodes = np.empty(basis.N, dtype=np.int64)
+    nodes[basis.element_dofs] = _lexicographic(cells, straight.doflocs)
 
-    nodes = _lexicographic(cells, straight.doflocs)
-    present = np.zeros(len(coordinates), dtype=bool)
-    present[nodes] = True
-    held = np.repeat(mesh.clamped, mesh.layers) | ~present
     # Node by node along a layer, layer by layer: the order of the factorisation.
-    number = np.full((len(coordinates), 3), -1, dtype=np.int64)
-    layer = np.tile(np.arange(mesh.layers), len(mesh.points))
-    order = np.argsort(layer, kind="stable")
-    kept = order[~held[order]]
-    number[kept] = np.arange(3 * len(kept)).reshape(-1, 3)
-    places = number[nodes].transpose(1, 0, 2).reshape(len(cells), -1)  # (cells, 60)
-    rows = np.repeat(places, places.shape[1], axis=1).ravel()
-    columns = np.tile(places, (1, places.shape[1])).ravel()
-    inside = (rows >= 0) & (columns >= 0)
-    size = 3 * len(kept)
-    matrix = coo_matrix(
-        (stiffness.ravel()[inside], (rows[inside], columns[inside])), shape=(size, size)
-    ).tocsr()
-    group = np.repeat(layer[kept] // 2, 3)
-    return Solid(LayeredFactor(matrix, group), number, mesh.layers)
+    section, layer = np.divmod(nodes, mesh.layers)
+    order = np.lexsort((nodes, layer))
+    kept = order[~mesh.clamped[section[order]]]
+    free = np.full((len(coordinates), 3), -1, dtype=np.int64)
+    free[nodes[kept]] = np.arange(3 * len(kept)).reshape(-1, 3)
+    places = (3 * kept[:, None] + np.arange(3)).ravel()
+    matrix = _stiffness(basis, modulus, poisson)[places][:, places]
+    return Solid(LayeredFactor(matrix, np.repeat(layer[kept] // 2, 3)), free, mesh.layers)
 
 
 def _lexicographic(cells: Index, places: Array) -> Index:
@@ -111,16 +103,23 @@ def _lexicographic(cells: Index, places: Array) -> Index:
     return cells[:, i, j, k].T
 
 
-def _stiffness(gradients: Array, weights: Array, modulus: float, poisson: float) -> Array:
-    """Element matrices (cells, 60, 60) of isotropic elasticity, nodes outermost."""
-    nodes, _, cells, points = gradients.shape
+def _stiffness(basis: Any, modulus: float, poisson: float) -> csr_matrix:
+    """Sparse matrix of isotropic elasticity, the three directions of a node after one another.
+
+    Much quicker than a form over pairs of shape functions, for they are all multiplied at once.
+    """
+    from scipy.sparse import coo_matrix
+
     lame = modulus * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
     shear = 0.5 * modulus / (1.0 + poisson)
-    flat = gradients.transpose(2, 0, 1, 3).reshape(cells, 3 * nodes, points)
-    pairs = (flat * weights[:, None, :]) @ flat.transpose(0, 2, 1)
+    slopes = np.stack([np.asarray(b[0].grad) for b in basis.basis], axis=1)  # (3, 20, cells, …)
+    nodes, cells = slopes.shape[1:3]
+    flat = slopes.transpose(2, 1, 0, 3).reshape(cells, 3 * nodes, -1)
+    pairs = (flat * np.asarray(basis.dx)[:, None]) @ flat.transpose(0, 2, 1)
     pairs = pairs.reshape(cells, nodes, 3, nodes, 3)  # ∫ ∂ᵢN_a ∂ⱼN_b
     total = lame * pairs + shear * pairs.transpose(0, 1, 4, 3, 2)
-    trace = shear * np.trace(pairs, axis1=2, axis2=4)
-    for i in range(3):
-        total[:, :, i, :, i] += trace
-    return total.reshape(cells, 3 * nodes, 3 * nodes)
+    trace = np.trace(pairs, axis1=2, axis2=4)
+    total += shear * trace[:, :, None, :, None] * np.eye(3)[:, None, :]
+    places = (3 * basis.element_dofs.T[..., None] + np.arange(3)).reshape(cells, -1)
+    rows, columns = np.broadcast_arrays(places[:, :, None], places[:, None, :])
+    return coo_matrix((total.ravel(), (rows.ravel(), columns.ravel()))).tocsr()
