@@ -124,7 +124,7 @@ def at_hand(*functions: Any) -> bool:
     *functions
         Of `jit`.
     """
-    return why_not() is None and all(f.signatures or f._cache.load_all(f) for f in functions)
+    return why_not() is None and all(f.overloads or f._cache.load_all(f) for f in functions)
 
 
 def words_of(error: BaseException) -> str:

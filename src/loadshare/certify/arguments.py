@@ -91,7 +91,7 @@ def arguments_of(of: Mechanics) -> Arguments:
     for number, members in enumerate(of.groups):
         group[members] = number
     held = group[order[train.output]]
-    rounds = len(train.rounds)
+    rounds, pulls = len(train.rounds), np.argsort(of.claimed)
     return Arguments(
         driver=driver,
         driven=driven,
@@ -118,8 +118,8 @@ def arguments_of(of: Mechanics) -> Arguments:
         nominal=of.nominal,
         distance=of.distance,
         is_squeezed=_flags(of.squeezed, len(of.drum)),
-        pull_gear=np.roll(of.pulled, rounds).astype(np.uintp),
-        pull_centre=np.roll(of.centres, rounds, axis=0),
+        pull_gear=of.pulled[pulls].astype(np.uintp),
+        pull_centre=of.centres[pulls],
         rounds=rounds,
         band=BAND,
         rounding=ROUNDING,

@@ -118,7 +118,9 @@ class _Later(Mapping[str, Value]):
         return len(self._made)
 
 
-def certify_later(train: Train, answer: Equilibrium, tolerance: float, bound: Bound) -> Certificate:
+def certify_later(
+    train: Train, answer: Equilibrium, claimed: Equilibria, tolerance: float, bound: Bound
+) -> Certificate:
     """Return the certificate of an answer that passed when it was judged with many others.
 
     Its figures are computed, as `certify` computes them, when they are first asked for.
@@ -127,17 +129,19 @@ def certify_later(train: Train, answer: Equilibrium, tolerance: float, bound: Bo
     ----------
     train, answer, tolerance
         As for `certify`.
+    claimed : Equilibria
+        The answer as the only sample.
     bound : Bound
         As it was found with the many others.
     """
     # The batch's scales may differ in the last digit, and a result that is loaded again would.
-    single = _Single(train, answer)
+    single = _Single(train, answer, claimed)
     return Certificate(
         residuals=_Later(single.residuals),
         floats=_Later(single.floats),
         tolerance=tolerance,
-        load=single.scale["N"],
-        deflection=single.scale["m"],
+        load=float(single.state.load[0]),
+        deflection=float(single.state.deflection[0]),
         bound=bound,
     )
 
@@ -183,16 +187,25 @@ def certify(
 class _Single:
     """An answer as a batch of one."""
 
-    def __init__(self, train: Train, answer: Equilibrium) -> None:
+    def __init__(
+        self, train: Train, answer: Equilibrium, claimed: Equilibria | None = None
+    ) -> None:
         self.train, self.undetermined = train, answer.undetermined
         self.situation = situation_of(train, answer.index)
         with np.errstate(all="ignore"):
-            self.claimed = Equilibria.of(train, answer)
+            self.claimed = claimed or Equilibria.of(train, answer)
             self.state = State(mechanics_of(train), self.situation, self.claimed)
-            self.fault = fault_of(self.state)
-        self.scale = dict.fromkeys("NmJ", 1.0)
-        if not self.fault:
-            self.scale = {unit: float(size[0]) for unit, size in scales(self.state).items()}
+
+    @cached_property
+    def fault(self) -> str:
+        with np.errstate(all="ignore"):
+            return fault_of(self.state)
+
+    @cached_property
+    def scale(self) -> dict[str, float]:
+        if self.fault:
+            return dict.fromkeys("NmJ", 1.0)
+        return {unit: float(size[0]) for unit, size in scales(self.state).items()}
 
     def residuals(self) -> Mapping[str, Residual]:
         with np.errstate(all="ignore"):

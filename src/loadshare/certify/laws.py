@@ -57,26 +57,25 @@ def _root(b: Array, c: Array, compression: Array) -> Array:
 
 
 def interpolated(axis: Array, values: Array, at: Array) -> Array:
-    """Values of tables (points, S) at `at` (S,), straight beyond the last point."""
-    last = (~np.isnan(axis)).sum(axis=0) - 2
-    k = np.clip((axis <= at).sum(axis=0) - 1, 0, last)[None]
-    x0, x1, y0, y1 = (
-        np.take_along_axis(a, k + step, 0)[0] for a in (axis, values) for step in (0, 1)
-    )
+    """Values of k tables (k, points, S or 1) at `at` (k, S), straight beyond the last point."""
+    last = (~np.isnan(axis)).sum(axis=1) - 2
+    left = np.clip((axis <= at[:, None]).sum(axis=1) - 1, 0, last)
+    table, sample = np.ogrid[: len(at), : axis.shape[2]]
+    x0, x1, y0, y1 = (a[table, left + step, sample] for a in (axis, values) for step in (0, 1))
     return np.asarray(y0 + (y1 - y0) / (x1 - x0) * (at - x0))
 
 
 def area(forces: Array, compressions: Array, force: Array) -> Array:
-    """∫δ dF of tables (points, S) up to `force` (S,)."""
-    total = np.zeros(len(force))
-    points = (~np.isnan(forces)).sum(axis=0)
-    for k in range(len(forces) - 1):
-        inside = k + 1 < points
-        start = forces[k]
-        end = np.where(k + 2 < points, forces[k + 1], np.inf)
+    """∫δ dF of k tables (k, points, S or 1) up to `force` (k, S)."""
+    total = np.zeros(force.shape)
+    points = (~np.isnan(forces)).sum(axis=1)
+    for at in range(forces.shape[1] - 1):
+        inside = at + 1 < points
+        start = forces[:, at]
+        end = np.where(at + 2 < points, forces[:, at + 1], np.inf)
         upper = np.minimum(force, end)
-        low = compressions[k]
-        slope = (compressions[k + 1] - low) / (forces[k + 1] - start)
+        low = compressions[:, at]
+        slope = (compressions[:, at + 1] - low) / (forces[:, at + 1] - start)
         width = np.where(inside, np.maximum(upper - start, 0.0), 0.0)
         part = width * (low + 0.5 * slope * width)
         total += np.where(inside & (width > 0.0), part, 0.0)

@@ -166,7 +166,7 @@ def energy_gap(state: State) -> Blocks:
     Bearings and rings may hold far more energy against one another than the load brings in.
     """
     of, here, claim = state.of, state.here, state.claim
-    stored = [state.primal, state.dual]
+    stored = [*state.energies]
     work = [here.torque * claim.rotation, state.force * state.at_rest]
     if len(of.shaft):
         torsion = here.torsion[of.elastic]

@@ -19,6 +19,7 @@ from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 
 class State:
@@ -44,28 +45,15 @@ class State:
     force, approach, at_rest, compression : ndarray, shape (contacts, S)
         Claimed force [N], approach, what remains of it when all coordinates of its tangent plane
         are zero, compression at the claimed force [m].
-    primal, dual : ndarray, shape (contacts, S)
-        Strain energy at the approach, complementary energy at the force [J].
     way : ndarray, shape (drums, 2, 3, S)
         From each neighbour's centre to the limited gear's [m].
     ring_force : ndarray, shape (drums, 4, S)
         Of both arcs and both stops [N].
-    bend : ndarray, shape (splines, 3, S)
-        p − s of splines with memory, whose slip s is what the bending of their shafts leaves of
-        the displacement p [m].
-    offset, reaction : ndarray, shape (radials, 3, S)
-        Way from a radial element's centre [m], its force on the gear [N].
-    graph : Graph
-        Of the radial elements.
-    moment : ndarray, shape (gears, S)
-        Of the load, flanks and elastic shafts on each gear [N·m].
     load, deflection : ndarray, shape (S,)
         Scales [N], [m].
     beyond : ndarray of bool, shape (drums, 2, S)
         Whether a gear stands beyond the neighbour on whose ring its own rolls: there the arc's
         inequality holds, and no gear can be.
-    lawless : ndarray of bool, shape (splines, S)
-        Whether a spline has no law.
     """
 
     @np.errstate(all="ignore")
@@ -76,14 +64,10 @@ class State:
         self.force = self.claim.flank_force
         self._put_flanks()
         self._put_scales()
-        self.moment = self._moments()
         self.beyond = np.zeros((0, 2, self.count), dtype=bool)
         self.ring_force = np.zeros((0, 4, self.count))
         if len(mechanics.drum):
             self._put_drums()
-        self.lawless = np.zeros((0, self.count), dtype=bool)
-        if mechanics.pulls:
-            self._put_radials()
 
     def _put_flanks(self) -> None:
         of, here, claim = self.of, self.here, self.claim
@@ -95,26 +79,44 @@ class State:
         self.approach += self.at_rest
         b, c = here.bending[of.mesh_of], here.hertz[of.mesh_of]
         positive = np.maximum(self.force, 0.0)
-        root = np.zeros_like(positive)
+        self._root = np.zeros_like(positive)
         if c.any():
-            np.cbrt(positive, out=root, where=positive > 0.0)
-        square = root * root
-        self.compression = b * positive + c * square
-        self.dual = 0.5 * b * positive**2 + 0.6 * c * (square * square * root)
-        self.primal = strain_energy(b, c, self.approach, root)
-        for e in of.tabled:
-            self._tabulate(e, positive[e])
+            np.cbrt(positive, out=self._root, where=positive > 0.0)
+        self.compression = b * positive + c * (self._root * self._root)
+        if len(of.tabled):
+            forces, compressions = self._tables
+            self.compression[of.tabled] = interpolated(forces, compressions, positive[of.tabled])
 
-    def _tabulate(self, e: int, force: Array) -> None:
-        """Compression and energies of a tabulated flank."""
-        forces, compressions = (
-            np.broadcast_to(t, (len(t), self.count)) for t in self.here.table[self.of.mesh_of[e]]
-        )
-        self.compression[e] = interpolated(forces, compressions, force)
-        self.dual[e] = area(forces, compressions, force)
-        approach = np.maximum(self.approach[e], 0.0)
-        true = np.where(approach > 0.0, interpolated(compressions, forces, approach), 0.0)
-        self.primal[e] = true * approach - area(forces, compressions, true)
+    @cached_property
+    def _tables(self) -> tuple[Array, Array]:
+        """Forces and compressions of the tabulated flanks, shape (tabled, points, S or 1)."""
+        tables = self.here.table[self.of.mesh_of[self.of.tabled]]
+        return tables[:, 0], tables[:, 1]
+
+    @cached_property
+    def energies(self) -> tuple[Array, Array]:
+        """Strain energy at the approach, complementary energy at the force, (contacts, S) [J]."""
+        of, here, root = self.of, self.here, self._root
+        flanks, tabled = len(root), of.tabled
+        approach, positive = self.approach[:flanks], np.maximum(self.force[:flanks], 0.0)
+        b, c = here.bending[of.mesh_of], here.hertz[of.mesh_of]
+        square = root * root
+        dual = 0.5 * b * positive**2 + 0.6 * c * (square * square * root)
+        primal = strain_energy(b, c, approach, root)
+        if len(tabled):
+            forces, compressions = self._tables
+            dual[tabled] = area(forces, compressions, positive[tabled])
+            pressed = np.maximum(approach[tabled], 0.0)
+            true = np.where(pressed > 0.0, interpolated(compressions, forces, pressed), 0.0)
+            primal[tabled] = true * pressed - area(forces, compressions, true)
+        if not len(of.drum):
+            return primal, dual
+        wall = np.repeat(here.wall, 4, axis=0)
+        approach, force = self.approach[flanks:], self.force[flanks:]
+        yields = (wall > 0.0) & (approach > 0.0)
+        pressed = np.where(yields, 0.5 * approach**2 / np.where(yields, wall, 1.0), 0.0)
+        released = 0.5 * self.compression[flanks:] * force
+        return np.concatenate([primal, pressed]), np.concatenate([dual, released])
 
     def _put_scales(self) -> None:
         """Load: the largest flank force or external push; 1 N when nothing acts.
@@ -133,9 +135,11 @@ class State:
         deflection = np.maximum(closed, shifts)
         self.deflection = np.where(deflection == 0.0, 1e-6, deflection)
 
-    def _moments(self) -> Array:
+    @cached_property
+    def moment(self) -> Array:
+        """Moment of the load, flanks and elastic shafts on each gear [N·m], shape (gears, S)."""
         of, claim = self.of, self.claim
-        moment = of.moment @ self.force
+        moment = of.moment @ claim.flank_force
         moment += self.here.torque
         if len(of.elastic):
             moment += of.shaft_moment @ claim.shaft_torque
@@ -163,64 +167,83 @@ class State:
         force[:, :2] = self.claim.ring_force[stops:].reshape(-1, 2, self.count)
         force[:, 2:] = self.claim.ring_force[:stops].reshape(-1, 2, self.count)
         self.ring_force = force
-        wall = here.wall[:, None]
-        compression = wall * np.maximum(force, 0.0)
-        yields = (wall > 0.0) & (approach > 0.0)
-        primal = np.where(yields, 0.5 * approach**2 / np.where(yields, wall, 1.0), 0.0)
-        dual = 0.5 * compression * force
+        compression = here.wall[:, None] * np.maximum(force, 0.0)
         self.at_rest = np.broadcast_to(self.at_rest, self.force.shape)
-        self.force, self.approach, self.at_rest, self.compression, self.primal, self.dual = (
+        self.force, self.approach, self.at_rest, self.compression = (
             np.concatenate([flanks, rings.reshape(-1, self.count)])
             for flanks, rings in (
                 (self.force, force),
                 (self.approach, approach),
                 (self.at_rest, at_rest),
                 (self.compression, compression),
-                (self.primal, primal),
-                (self.dual, dual),
             )
         )
 
-    def _put_radials(self) -> None:
-        of, here, claim = self.of, self.here, self.claim
-        splines, rounds = len(of.train.splines), len(of.train.rounds)
-        self.reaction = claim.radial_reaction[of.claimed]
-        place = claim.displacement[of.pulled]
-        zero = np.zeros((rounds, 1))
-        graphs = [Graph(zero, zero, zero, here.round_radius, here.round_stiffness)]
-        if splines:
-            graphs = [*self._spline_graphs(), *graphs]
-        if of.train.slip is not None:
-            pushed = self.reaction[:splines] + self.reaction[splines : 2 * splines]
-            self.bend = -pushed / here.spline[:, :1]
-            place[: 2 * splines] -= np.concatenate([self.bend, self.bend])
-        self.offset = place - of.centres[..., None]
-        self.graph = Graph(
+    @cached_property
+    def reaction(self) -> Array:
+        """Force of every radial element on its gear [N], shape (radials, 3, S)."""
+        return np.asarray(self.claim.radial_reaction[self.of.claimed])
+
+    @cached_property
+    def bend(self) -> Array:
+        """Bending p − s of the shafts of splines with memory [m], shape (splines, 3, S).
+
+        Their slip s is what it leaves of the displacement p.
+        """
+        splines = len(self.of.train.splines)
+        pushed = self.reaction[:splines] + self.reaction[splines : 2 * splines]
+        return np.asarray(-pushed / self.here.spline[:, :1])
+
+    @cached_property
+    def offset(self) -> Array:
+        """Way from the centre of every radial element [m], shape (radials, 3, S)."""
+        place = self.claim.displacement[self.of.pulled]
+        if self.of.train.slip is not None:
+            place[: 2 * len(self.bend)] -= np.concatenate([self.bend, self.bend])
+        return np.asarray(place - self.of.centres[..., None])
+
+    @cached_property
+    def graph(self) -> Graph:
+        """Graphs of the radial elements."""
+        zero = np.zeros((len(self.of.train.rounds), 1))
+        rings = Graph(zero, zero, zero, self.here.round_radius, self.here.round_stiffness)
+        graphs = [*self._spline_graphs[0], rings]
+        return Graph(
             *(
                 np.concatenate([np.broadcast_to(v, (len(v), self.count)) for v in parts])
                 for parts in zip(*graphs, strict=True)
             )
         )
 
-    def _spline_graphs(self) -> list[Graph]:
-        """Graphs of splines; with memory those of friction and of the stop at the end of the slip.
+    @property
+    def lawless(self) -> Flags:
+        """Whether a spline has no law, shape (splines, S)."""
+        return self._spline_graphs[1]
 
-        With memory there is no step where a spline starts to slip.
+    @cached_property
+    def _spline_graphs(self) -> tuple[list[Graph], Flags]:
+        """Graphs of splines, and whether one has none.
+
+        With memory those of friction and of the stop at the end of the slip; there is then no step
+        where a spline starts to slip.
         """
+        if not self.of.train.splines:
+            return [], np.zeros((0, self.count), dtype=bool)
         stiffness, given, reach, fixed, per_torque = self.here.spline.swapaxes(0, 1)
         bound = np.where(np.isnan(fixed), per_torque * np.abs(self.transmitted), fixed)
         continuous = bound / stiffness
         free = np.isnan(given)
         stick = np.where(free, continuous, np.minimum(given, continuous))
-        self.lawless = stiffness * given > bound * (1.0 + ROUNDING)
-        self.lawless |= ~free & (reach < stick)
+        lawless = stiffness * given > bound * (1.0 + ROUNDING)
+        lawless |= ~free & (reach < stick)
         if self.of.train.slip is None:
             stick = np.where((reach < stick) & free, np.inf, stick)
-            return [Graph(stiffness, stick, bound, reach, stiffness)]
-        self.lawless |= stiffness * given < bound * (1.0 - ROUNDING)
+            return [Graph(stiffness, stick, bound, reach, stiffness)], lawless
+        lawless |= stiffness * given < bound * (1.0 - ROUNDING)
         zero, endless = np.zeros_like(bound), np.full_like(bound, np.inf)
         room = np.maximum(reach - continuous, 0.0)
-        return [Graph(zero, zero, bound, endless, endless), Graph(zero, zero, zero, room, endless)]
+        friction = Graph(zero, zero, bound, endless, endless)
+        return [friction, Graph(zero, zero, zero, room, endless)], lawless
 
     @cached_property
     def transmitted(self) -> Array:
@@ -277,7 +300,7 @@ class State:
         return self.here.support[moving], self.claim.support_force[moving]
 
     @cached_property
-    def faulty(self) -> NDArray[np.bool_]:
+    def faulty(self) -> Flags:
         """Whether a claim cannot be judged, shape (S,).
 
         A figure is not a number, a spline has no law, or a gear stands beyond its neighbour.

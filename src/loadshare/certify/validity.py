@@ -35,6 +35,7 @@ from numpy.typing import NDArray
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.gear import cross
 from loadshare.train.mesh import Mesh
 from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Train
@@ -151,11 +152,9 @@ class Measuring:
         self.train = train
         self.of = of = mechanics_of(train)
         order, meshes = of.order, list(train.meshes.values())
-        normals = np.array([m.direction(d)[2] for m, d in of.flanks]).reshape(-1, 3)
-        axes = np.array([_axis(train, m) for m, _ in of.flanks]).reshape(-1, 3)
         across = np.zeros((len(of.flanks), len(order), 3))
-        for e, way in enumerate(np.cross(axes, normals)):
-            mesh, _ = of.flanks[e]
+        for e, (mesh, drive) in enumerate(of.flanks):
+            way = cross(_axis(train, mesh), mesh.direction(drive)[2])
             across[e, order[mesh.driver]] += way
             across[e, order[mesh.driven]] -= way
         self.across = across.reshape(len(of.flanks), -1)
@@ -295,7 +294,9 @@ class Measuring:
         return {name: found[name] for name in TOLD if name in found}
 
 
-def validity(train: Train, answer: Equilibrium, deflection: float) -> Validity:
+def validity(
+    train: Train, answer: Equilibrium, deflection: float, claimed: Equilibria | None = None
+) -> Validity:
     """Measure the displacements of an answer.
 
     Parameters
@@ -304,9 +305,11 @@ def validity(train: Train, answer: Equilibrium, deflection: float) -> Validity:
     answer : Equilibrium
     deflection : float
         Of the case [m], as its certificate has it.
+    claimed : Equilibria, optional
+        The answer as the only sample.
     """
-    here = situation_of(train, answer.index)
-    return Validity(measuring(train).one(here, Equilibria.of(train, answer), deflection))
+    here, claimed = situation_of(train, answer.index), claimed or Equilibria.of(train, answer)
+    return Validity(measuring(train).one(here, claimed, deflection))
 
 
 @lru_cache(maxsize=16)

@@ -31,6 +31,7 @@ from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.contradiction import OVERLAP, contradiction
 from loadshare.solver.position import Known, coordinates_of
 from loadshare.solver.runaway import runaway
+from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.train import Train
 
@@ -59,6 +60,8 @@ class Answer:
         Plan, passes of the outer loop, and what was left out.
     rung : str
         Rung of the ladder that answered.
+    claimed : Equilibria or None
+        The equilibrium as the only sample, where that is at hand.
     """
 
     train: Train
@@ -66,6 +69,7 @@ class Answer:
     certificate: Certificate
     record: Record
     rung: str
+    claimed: Equilibria | None = None
 
     @property
     def scene(self) -> Scene:
@@ -75,7 +79,8 @@ class Answer:
     @cached_property
     def validity(self) -> Validity:
         """Whether its displacements are small enough for the geometry in which it was found."""
-        return validity(self.train, self.equilibrium, self.certificate.deflection)
+        deflection = self.certificate.deflection
+        return validity(self.train, self.equilibrium, deflection, self.claimed)
 
 
 def rungs(options: Options) -> Iterator[tuple[str, Options]]:
@@ -152,10 +157,11 @@ def hot_answers(
         if before.force is not None and math.isinf(bound.relative):
             # The forces, and so the bound on torques, are those of the answer before it was moved.
             bound = Bound.of(before, row)
-        certificate = certify_later(train, equilibrium, tolerance, bound)
+        claimed = found.equilibria.part(slice(row, row + 1))
+        certificate = certify_later(train, equilibrium, claimed, tolerance, bound)
         record = _hot_record(machine, found, row)
         rung = SEARCHED if found.searched[row] else HOT
-        answers[index] = Answer(train, equilibrium, certificate, record, rung)
+        answers[index] = Answer(train, equilibrium, certificate, record, rung, claimed)
     return answers
 
 

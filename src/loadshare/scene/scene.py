@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from statistics import median
 
 import numpy as np
 from numpy.typing import NDArray
@@ -93,7 +94,7 @@ class Scene(ContactProblem):
         flanks = [r for r in self.rows if r.kind == "drive flank"]
         if not flanks:
             return 1e-6
-        yielded = float(np.median([r.law.compression(force) for r in flanks]))
+        yielded = median(r.law.compression(force) for r in flanks)
         return max(yielded, 1e-3 * max(abs(r.gap) for r in flanks))
 
     def first_torques(self) -> dict[str, float]:

@@ -227,9 +227,7 @@ class Plan:
             for k, (way, size) in enumerate(zip(of.nominal, of.apart, strict=True))
         ]
         width = matrix.shape[1]
-        self.contacts = np.concatenate(
-            [matrix[list(columns.contacts)], np.reshape(arcs, (-1, width))]
-        )
+        self.contacts = np.concatenate([matrix[columns.contacts], np.reshape(arcs, (-1, width))])
         pairs = matrix[columns.arcs].reshape(-1, 2, width)
         self.across = np.abs(pairs).sum(axis=1)
         self.springs = matrix[of.spring[:, 0]]

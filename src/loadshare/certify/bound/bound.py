@@ -500,7 +500,7 @@ def doubts(
     act = found.act[pick]
     length = claim.lengths[0].value[pick]
     doubtful, above = np.zeros(act.shape, bool), np.zeros(act.shape, bool)
-    scalar = np.array(columns.contacts, dtype=np.intp)
+    scalar = columns.contacts
     acting = found.force[pick][:, scalar] > errors[:, scalar]
     away = -length[:, scalar] > moved[:, scalar] + found.width[pick][:, scalar]
     closed = act[:, : len(scalar)] != Act.OPEN
@@ -548,7 +548,7 @@ def _room(
     low[:, :arcs] = np.where(
         act[:, :arcs] != Act.OPEN, size[:, :arcs] > error[:, :arcs], gap > moved[:, :arcs]
     )
-    stiffness, stick, level, reach, _ = np.moveaxis(claim.graphs[rows], 2, 0)
+    stiffness, stick, level, reach, _ = claim.graphs[rows].transpose(2, 0, 1)
     part, acts = slice(arcs, None), act[:, arcs:]
     size, distance, error, moved = (v[:, part] for v in (size, distance, error, moved))
     ends = np.isfinite(stick) & (stiffness > 0.0)

@@ -209,9 +209,17 @@ class Columns:
         return found
 
     @cached_property
-    def contacts(self) -> tuple[int, ...]:
+    def contacts(self) -> NDArray[np.intp]:
         """Columns of flanks and stops."""
-        return (*range(self.flanks.stop), *range(self.stops.start, self.stops.stop))
+        every = np.arange(len(self.names))
+        return np.concatenate([every[self.flanks], every[self.stops]])
+
+    @cached_property
+    def is_contact(self) -> NDArray[np.bool_]:
+        """Which columns these are, shape (m,)."""
+        found = np.zeros(len(self.names), dtype=bool)
+        found[self.contacts] = True
+        return found
 
     @cached_property
     def arms(self) -> Array:

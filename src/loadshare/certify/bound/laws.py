@@ -12,7 +12,6 @@ Source: formulation, sections 3, 5, 6 and 16.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,8 +40,11 @@ CORNER = 1e-12
 """Relative distance from a level within which a force is on it, up to rounding."""
 
 
-class Act(IntEnum):
-    """How an element acts."""
+class Act:
+    """How an element acts.
+
+    Plain numbers: arrays are compared with members of an enumeration in ten times the time.
+    """
 
     OPEN = 0
     """Not at all."""
@@ -56,6 +58,8 @@ class Act(IntEnum):
     """With a given force along its line."""
     STOP = 5
     """Along its line: a closed flank, stop or arc, a ring, a spline at its clearance."""
+    WAYS = 6
+    """How many there are."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +152,7 @@ def _radial_acts(claim: Claim, noise: Array) -> Codes:
     pair = claim.forces[:, columns.radials].reshape(claim.count, -1, 2)
     where = claim.lengths[0].value[:, columns.radials].reshape(claim.count, -1, 2)
     size, distance = (np.sqrt((v**2).sum(axis=2)) for v in (pair, where))
-    first, stick, level, reach, last = np.moveaxis(claim.graphs, 2, 0)
+    first, stick, level, reach, last = claim.graphs.transpose(2, 0, 1)
     with np.errstate(invalid="ignore"):
         end = np.where(stick > 0.0, first * stick, 0.0)
     held = np.where(np.isinf(last), Act.PINNED, Act.STICK)
@@ -338,10 +342,11 @@ def _springs(claim: Claim, active: Flags, soft: Array, misfit: Array, width: Arr
     compliance = np.concatenate([np.broadcast_to(v, (rows, v.shape[1])) for v in given], axis=1)
     linear, stops = slice(columns.shafts.start, columns.bends.stop), columns.stops
     held = ~np.isnan(compliance)
+    compliance = np.where(held, compliance, 0.0)
     active[:, linear.start : stops.start] = held[:, : stops.start - linear.start]
     active[:, columns.bends] = held[:, stops.stop - linear.start :]
-    soft[:, linear] = value = np.nan_to_num(compliance)
-    yielded = value * claim.forces[:, linear]
+    soft[:, linear] = compliance
+    yielded = compliance * claim.forces[:, linear]
     length = claim.lengths[0]
     misfit[:, linear] = (length.high[:, linear] - yielded) + length.low[:, linear]
     width[:, linear] += EPS * np.abs(yielded)
@@ -366,7 +371,7 @@ def _pairs(claim: Claim, act: Codes, found: Elements, softest: float) -> None:
     sign = np.ones(where.shape[1])
     sign[:arcs] = -1.0
     size[:, :arcs] = claimed[:, :arcs, 0]
-    graph = np.moveaxis(claim.graphs, 2, 0)
+    graph = claim.graphs.transpose(2, 0, 1)
     stick_stiffness, stick, level, radius, last = graph
     acts = act[:, arcs:]
     size[:, arcs:] = np.where(acts == Act.SLIP, level, size[:, arcs:])

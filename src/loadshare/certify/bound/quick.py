@@ -138,7 +138,7 @@ def alike(codes: Codes) -> list[NDArray[np.intp]]:
     group = np.zeros(len(codes), dtype=np.int64)
     for at in range(0, codes.shape[1], DIGITS):
         digits = codes[:, at : at + DIGITS].astype(np.int64)
-        number = digits @ len(Act) ** np.arange(digits.shape[1])
+        number = digits @ Act.WAYS ** np.arange(digits.shape[1])
         _, number = np.unique(number, return_inverse=True)
         _, group = np.unique(group * (number.max() + 1) + number, return_inverse=True)
     order = np.argsort(group, kind="stable")
@@ -209,10 +209,7 @@ class _Group:
         self.statics = Statics.of(self.directions)
         self.is_sliding = np.zeros(len(self.directions), dtype=bool)
         for k in (0, 1):
-            self.is_sliding |= np.isin(
-                np.arange(len(self.directions)),
-                np.searchsorted(self.plain, first + 2 * self.slips + k),
-            )
+            self.is_sliding[np.searchsorted(self.plain, first + 2 * self.slips + k)] = True
         self.is_left = self.is_sliding.copy()
         self.is_left[self.line.stop :] = True
         self.is_covered = True
@@ -295,7 +292,8 @@ class _Group:
         )
         misfit = self._columns(found.misfit, off)
         # A contact without force misses its law only where it overlaps.
-        idle = np.isin(self.plain, columns.contacts) & (found.force[pick][:, self.plain] == 0.0)
+        contacts = columns.is_contact[self.plain]
+        idle = contacts & (found.force[pick][:, self.plain] == 0.0)
         misfit[:, : len(self.plain)] = np.where(
             idle, np.maximum(misfit[:, : len(self.plain)], 0.0), misfit[:, : len(self.plain)]
         )
@@ -417,7 +415,6 @@ class _Group:
         # The curvature of a table is that of a corner within reach.
         proved &= (found.curve[pick] >= 0.0).all(axis=1)
         proved &= (errors <= found.room[pick]).all(axis=1)
-        unsided = np.array([*columns.contacts, *range(columns.arcs.start, columns.arcs.stop)], int)
         doubtful, _ = doubts(claim, found, self.rows, errors, moved)
         sizes = [
             found.force[pick][:, columns.contacts],
@@ -432,9 +429,9 @@ class _Group:
         radials = found.act[pick][:, pushed.shape[1] :]
         doubtful[:, pushed.shape[1] :] &= ~(loose & (radials == Act.STOP))
         proved &= ~(doubtful & ~self.doubled[pick]).any(axis=1)
-        columns_on = np.append(unsided, np.arange(columns.radials.start, columns.radials.stop))
-        columns_on = columns_on if loose.any() else unsided
-        active = found.active[pick][:, columns_on]
-        open_ended = active & (force[:, columns_on] <= errors[:, columns_on])
+        one_sided = columns.is_contact.copy()
+        one_sided[columns.arcs] = True
+        one_sided[columns.radials] = loose.any()
+        open_ended = found.active[pick] & one_sided & (force <= errors)
         places[open_ended.any(axis=1)] = np.inf
         return np.asarray(proved)

@@ -191,7 +191,7 @@ def _ways(claim: Claim, e: int, act: int, above: bool) -> tuple[int, ...]:
     chain.append(Act.STOP)
     if act not in chain:
         return (act,)
-    at = chain.index(Act(act))
+    at = chain.index(act)
     other = at + 1 if above else at - 1
     return (act, chain[other]) if 0 <= other < len(chain) else (act,)
 
