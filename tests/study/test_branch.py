@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 from tests.support import coasting, lost_contact, round_ring, shipped
 
-from loadshare.certify import certify
-from loadshare.scene import assemble
 from loadshare.study.answers import certified
-from loadshare.study.branch.system import identified
+from loadshare.study.sensitivity.branch import Setting
 from loadshare.train import build_train
 
 CASES = {
@@ -31,36 +29,37 @@ CASES = {
 
 @pytest.fixture(params=CASES, ids=str)
 def standing(request):
-    """A train, and the branch and unknowns of its first position."""
+    """A certified answer, the branch of its first position and the unknowns there."""
     train = build_train(CASES[request.param]())
     answer = certified(train, 1)
-    return train, answer, *identified(assemble(train, 1), answer.equilibrium)
+    return answer, *Setting.at(train, 1).branch_of(answer.equilibrium)
 
 
 def test_the_jacobian_is_the_derivative_of_the_residual(standing):
-    _, _, branch, z = standing
+    _, branch, z = standing
     h = 1e-6
     differences = np.array(
         [
-            (branch.residual(z + h * e) - branch.residual(z - h * e)) / (2.0 * h)
+            (branch.figures(z + h * e) - branch.figures(z - h * e)) / (2.0 * h)
             for e in np.eye(branch.size)
         ]
     ).T
-    jacobian = branch.jacobian(z)
+    found = np.vstack([branch.jacobians(z[None])[0], branch.torque_gradients(z)])
     # Central differences of smooth terms: h² and round-off over h, both below 1e-8 of the largest.
-    assert np.abs(jacobian - differences).max() < 1e-7 * np.abs(jacobian).max()
+    assert np.abs(found - differences).max() < 1e-7 * np.abs(found).max()
 
 
 def test_a_branch_gives_back_its_equilibrium(standing):
-    train, answer, branch, z = standing
-    found = branch.equilibrium(z)
-    certificate = certify(train, found)
-    assert certificate.passed, certificate.failing
-    for name, force in answer.equilibrium.flank_force.items():
+    answer, branch, z = standing
+    elements = branch.setting.elements
+    force = branch.equations.state(z[None], branch.numbers).force[0] * elements.force
+    found = dict(zip(elements.row_names, force[elements.springs :], strict=False))
+    for name, certain in answer.equilibrium.flank_force.items():
         # Torques are unique: two certified answers differ by what the certificate leaves open.
-        assert found.flank_force[name] == pytest.approx(force, abs=1e-9 * certificate.load)
+        assert found[name] == pytest.approx(certain, abs=1e-9 * answer.certificate.load)
+    assert np.abs(branch.figures(z)[: branch.size]).max() <= 1e-12 * np.abs(z).max()
 
 
 def test_every_gauge_is_positive_at_an_equilibrium(standing):
-    _, _, branch, z = standing
-    assert all(gauge.value > -1e-9 for gauge in branch.gauges(z))
+    _, branch, z = standing
+    assert all(gauge.value > -1e-9 for gauge in branch.gauges(z).values())

@@ -12,14 +12,12 @@ from benchmarks.critical_paths.compare import compared
 from benchmarks.critical_paths.draw import random_path
 from benchmarks.critical_paths.judge import Outcome, followed, judged, shown
 from benchmarks.critical_paths.table import text
-from loadshare.scene import assemble
 from loadshare.study.answers import certified
-from loadshare.study.branch import Units, read_set
-from loadshare.study.branch.system import identified
 from loadshare.study.follow.line import Line
 from loadshare.study.follow.search import Search
 from loadshare.study.follow.zero import first_zero
 from loadshare.study.parameter import read_parameter
+from loadshare.study.sensitivity.branch import Setting
 from loadshare.train import build_train
 
 EXACT = 1e-12
@@ -49,9 +47,11 @@ def unlimited(case: ls.Case, pinion: str) -> float:
     displacement open to 1e-9 of the deflection, which is thirty times as large.
     """
     train = build_train(case.replace({"rings.4.float": "1 mm", "rings.5.float": "1 mm"}))
-    scene = assemble(train, 1)
-    branch, z = identified(scene, certified(train, 1).equilibrium)
-    return abs(float(train.rings[pinion].across @ scene.moved(pinion, branch.x(z)))) * 1e6
+    setting = Setting.at(train, 1)
+    scene = setting.elements.scene
+    _, z = setting.branch_of(certified(train, 1).equilibrium)
+    x = z[: scene.size] * setting.elements.length
+    return abs(float(train.rings[pinion].across @ scene.moved(pinion, x))) * 1e6
 
 
 @pytest.mark.parametrize("pinion", ["4", "5"])
@@ -165,10 +165,11 @@ def sets_along(
     changes, last = [], None
     for value in values:
         answer = ls.explain(case.replace({key: f"{float(value)!r} {unit}"}))
-        units = Units.of(answer.scene)
-        active, *_ = read_set(answer.scene, answer.equilibrium, units)
-        if last is not None and last.changes(active):
-            changes.append((float(value), set(last.changes(active))))
+        setting = Setting.at(answer.train, 1)
+        active = setting.active_set(answer.equilibrium)
+        moved = active.changes(last or active, setting.elements)
+        if moved:
+            changes.append((float(value), set(moved)))
         last = active
     return changes
 
@@ -262,7 +263,7 @@ def test_no_set_is_proved_to_hold_over_its_events():
     search = searched(shipped(FULL), ECCENTRICITY, 0.0, 100.0, "um")
     values = [61.1, 61.15, 68.9, 68.95]
     points = search.points(np.array(values))
-    assert len({p.held for p in points}) == 1
+    assert len({p.active for p in points}) == 1
     stretches = list(zip(points, points[1:], values, values[1:], strict=False))
     left = search._proved_alike(stretches)
     assert [s[2] for s in left] == [61.15]
@@ -273,7 +274,7 @@ def test_a_ring_without_play_pins_its_gear_only_there():
     case = round_ring().replace({"rings.sun.offset": ["0 um", "0 um"]})
     search = searched(case, "rings.sun.radius", 0.0, 2.0, "um")
     first, last = search.points(np.array([0.0, 1.0]))
-    assert first.held != last.held
+    assert first.active != last.active
     assert search._exit(first, last) == 0.0
 
 
@@ -286,7 +287,7 @@ def drawn(number: int) -> Search:
 def test_a_spline_without_friction_and_force_is_free():
     """A pinion has lost its branch, and its spline the torque that its friction follows."""
     points = drawn(329).points(np.array([680.0, 1000.0, 2000.0, 3295.5, 3295.512343928895]))
-    assert len({p.held for p in points}) == 1
+    assert len({p.active for p in points}) == 1
 
 
 def test_a_float_comes_to_its_round_limit_where_the_limit_lets_go_of_it():
@@ -296,9 +297,10 @@ def test_a_float_comes_to_its_round_limit_where_the_limit_lets_go_of_it():
     (floating,) = search.points(np.array([2.19]))
     beyond = []
     for point in pressed:
-        equations = search.equations(point.held)
+        equations = search.equations(point.active)
         state = equations.state(point.z[None], search.line.numbers(1, np.array([point.value])))
-        beyond.append(float(state.radials[1].radius[0] - state.laws[1].reach[0]))
+        spline = equations.radials[1]
+        beyond.append(float(state.polars[spline].radius[0] - state.laws[spline].reach[0]))
     values = [p.value for p in pressed]
     zero = values[1] + beyond[1] * (values[1] - values[0]) / (beyond[0] - beyond[1])
     assert search._exit(floating, pressed[1]) == pytest.approx(zero, rel=1e-9)

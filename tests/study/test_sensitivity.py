@@ -11,9 +11,9 @@ from benchmarks.random_trains.draw import draw
 from benchmarks.sensitivities import FINE, Verdict, judged, one, problem, text
 from loadshare.cli.study.sensitivity import good
 from loadshare.errors import CaseError
-from loadshare.study.differences import differentiate
 from loadshare.study.parameter import Value
 from loadshare.study.sensitivity import SIDES, Sensitivity, sensitivity
+from loadshare.study.sensitivity.differences import differentiate
 
 
 def about_to_leave() -> ls.Case:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from loadshare.contact.radial import RadialLaw
 from loadshare.solver.hot import places as at
+from loadshare.study.follow.active import switch_names
 from loadshare.study.follow.line import Line
 from loadshare.study.follow.search import Change
 
@@ -92,7 +93,7 @@ def events_of(line: Line, position: int, change: Change) -> list[Event]:
     """
     elements = line.elements
     scene, rows = elements.scene, elements.rows
-    names = (*elements.row_names, *(radial.name for radial in scene.radials))
+    names = switch_names(elements)
     pairs = list(zip(change.before.code, change.after.code, strict=True))
     changed = [k for k, (here, then) in enumerate(pairs) if here != then]
     found = []

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from loadshare.case import Case, Study
 from loadshare.case.words import did_you_mean
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from loadshare.study.sweep import Sweep
     from loadshare.study.tolerance.result import Tolerance
 
-    Found = Sweep | Critical | Sensitivity | March | Comparison | Fit | Tolerance
+    Found: TypeAlias = Sweep | Critical | Sensitivity | March | Comparison | Fit | Tolerance
 
 
 def run_study(case: Case | str | Path, name: str, *, progress: Progress | None = None) -> Found:
@@ -61,91 +62,42 @@ def run_study(case: Case | str | Path, name: str, *, progress: Progress | None =
     if block is None:
         known = list(case.study)
         allowed = ", ".join(known) or "a table [study.NAME] in the case"
+        hint = did_you_mean(name, known)
         raise CaseError(
-            [
-                Problem(
-                    case.name,
-                    f"study.{name}",
-                    "",
-                    "is not in the case",
-                    allowed,
-                    did_you_mean(name, known),
-                )
-            ]
+            [Problem(case.name, f"study.{name}", "", "is not in the case", allowed, hint)]
         )
-    found: Found = _RUN[block.kind](case, block, progress)
+    arguments = _ARGUMENTS[block.kind](block, name)
+    run = getattr(import_module("loadshare"), block.kind)
+    found: Found = run(case, **arguments, progress=progress)
     return found
 
 
-def _sweep(case: Case, block: Study, progress: Any) -> Sweep:
-    from loadshare.study.sweep import sweep
-
-    over = {k: list(v) if isinstance(v, tuple) else v for k, v in (block.over or {}).items()}
-    return sweep(case, over, positions=block.positions, progress=progress)
-
-
-def _critical(case: Case, block: Study, progress: Any) -> Critical:
-    from loadshare.study.critical import critical
-
-    return critical(
-        case,
-        block.keys or (),
-        block.start,
-        block.stop,
-        positions=block.positions,
-        progress=progress,
-    )
-
-
-def _sensitivity(case: Case, block: Study, progress: Any) -> Sensitivity:
-    from loadshare.study.sensitivity import sensitivity
-
-    return sensitivity(case, block.keys, positions=block.positions, progress=progress)
-
-
-def _march(case: Case, block: Study, progress: Any) -> March:
-    from loadshare.study.march import march
-
-    return march(
-        case,
-        gear=block.gear,
-        revolutions=block.revolutions,
-        steps=block.steps,
-        progress=progress,
-    )
-
-
-def _compare(case: Case, _: Study, progress: Any) -> Comparison:
-    from loadshare.study.compare import compare
-
-    return compare(case, progress=progress)
-
-
-def _fit(case: Case, block: Study, progress: Any) -> Fit:
-    from loadshare.study.fit import fit
-
-    return fit(
-        case,
-        dict((block.unknowns or {}).items()),
-        starts=block.starts,
-        seed=block.seed,
-        progress=progress,
-    )
-
-
-def _tolerance(case: Case, block: Study, progress: Any) -> Tolerance:
-    from loadshare.study.tolerance.study import tolerance
-
-    name = next(name for name, known in case.study.items() if known is block)
-    return tolerance(case, study=name, progress=progress)
-
-
-_RUN: dict[str, Callable[[Case, Study, Any], Any]] = {
-    "sweep": _sweep,
-    "critical": _critical,
-    "sensitivity": _sensitivity,
-    "march": _march,
-    "compare": _compare,
-    "fit": _fit,
-    "tolerance": _tolerance,
+_ARGUMENTS: dict[str, Callable[[Study, str], dict[str, Any]]] = {
+    "sweep": lambda asked, _: {
+        "parameters": {
+            key: list(values) if isinstance(values, tuple) else values
+            for key, values in (asked.over or {}).items()
+        },
+        "positions": asked.positions,
+    },
+    "critical": lambda asked, _: {
+        "key": asked.keys or (),
+        "start": asked.start,
+        "stop": asked.stop,
+        "positions": asked.positions,
+    },
+    "sensitivity": lambda asked, _: {"inputs": asked.keys, "positions": asked.positions},
+    "march": lambda asked, _: {
+        "gear": asked.gear,
+        "revolutions": asked.revolutions,
+        "steps": asked.steps,
+    },
+    "compare": lambda *_: {},
+    "fit": lambda asked, _: {
+        "unknowns": dict((asked.unknowns or {}).items()),
+        "starts": asked.starts,
+        "seed": asked.seed,
+    },
+    "tolerance": lambda _, name: {"study": name},
 }
+"""What the function of each kind of study is given besides the case."""

@@ -13,9 +13,8 @@ from scipy.optimize import linprog
 from scipy.sparse import block_diag
 
 from loadshare.scene.scene import Array
-from loadshare.solver.hot import places as at
 from loadshare.study.follow.equations import Equations, free_moves, scaling
-from loadshare.study.follow.line import Numbers
+from loadshare.study.follow.numbers import Numbers
 
 FACETS = 24
 """Sides at first of the polygon that stands for a round ring in which a body floats."""
@@ -61,8 +60,8 @@ def _into_the_middle(
     moves = [m / np.maximum(np.abs(m).max(axis=1, initial=0.0), 1e-300)[:, None] for m in moves]
     turns = 2.0 * np.pi * np.arange(FACETS) / FACETS
     ways = np.stack([np.cos(turns), np.sin(turns)], axis=1)
-    facets = np.broadcast_to(ways, (len(z), len(equations.places), FACETS, 2))
-    bends = len(equations.arc_at) < len(equations.arc_acts)
+    facets = np.broadcast_to(ways, (len(z), len(equations.radials), FACETS, 2))
+    bends = any(k not in equations.polar_at for k in equations.arcs)
     rows, scale = np.arange(len(z)), np.ones(len(z))
     for number in range(PASSES):
         here = numbers.take(rows)
@@ -140,14 +139,16 @@ def _rooms(equations: Equations, z: Array, numbers: Numbers, facets: Array) -> t
     room = [np.where(np.isfinite(approach), -approach, np.inf)]
     vectors = np.broadcast_to(numbers.vectors, (count, *numbers.vectors.shape[1:]))
     closing = [vectors[:, idle]]
-    for a, polar in state.arcs.items():
-        if a not in equations.arc_at:
-            room.append(state.margin[:, [a]])
+    for k in equations.arcs:
+        polar = state.polars[k]
+        if k not in equations.polar_at:
+            room.append(state.margin[k][:, None])
             closing.append(-polar.along[:, None, :] @ polar.matrix)
-    for j, polar in state.radials.items():
-        if equations.places[j] == at.OPEN:
+    for j, k in enumerate(equations.radials):
+        polar = state.polars[k]
+        if k not in equations.polar_at:
             ways = facets[:, j]
-            room.append(state.laws[j].reach[:, None] - (ways @ polar.offset[:, :, None])[:, :, 0])
+            room.append(state.laws[k].reach[:, None] - (ways @ polar.offset[:, :, None])[:, :, 0])
             closing.append(ways @ np.broadcast_to(polar.matrix, (count, 2, n)))
     return np.concatenate(room, axis=1), np.concatenate(closing, axis=1)
 
@@ -155,9 +156,9 @@ def _rooms(equations: Equations, z: Array, numbers: Numbers, facets: Array) -> t
 def _round(equations: Equations, z: Array, numbers: Numbers) -> tuple[Array, Array]:
     """Ways (S, radials, 2) of floats from the centres of round limits, and the least room."""
     state = equations.state(z, numbers)
-    ways, least = np.zeros((len(z), len(equations.places), 2)), np.full(len(z), np.inf)
-    for j, polar in state.radials.items():
-        if equations.places[j] == at.OPEN:
-            ways[:, j] = polar.along
-            least = np.minimum(least, state.laws[j].reach - polar.radius)
+    ways, least = np.zeros((len(z), len(equations.radials), 2)), np.full(len(z), np.inf)
+    for j, k in enumerate(equations.radials):
+        if k not in equations.polar_at:
+            ways[:, j] = state.polars[k].along
+            least = np.minimum(least, state.laws[k].reach - state.polars[k].radius)
     return ways, least

@@ -13,17 +13,15 @@ Source: formulation, sections 3 to 6.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
 from loadshare.solver.hot import places as at
-from loadshare.study.follow.line import Codes, Numbers
-
-Flags = NDArray[np.bool_]
+from loadshare.study.follow.active import ActiveSet, Codes
+from loadshare.study.follow.numbers import Numbers
+from loadshare.study.follow.ranges import Flags
 
 STEPS = 40
 """Newton's steps before a branch counts as lost."""
@@ -33,19 +31,6 @@ ROOTS = 30
 """Newton's steps for a cube root of a force; about six are taken."""
 RANK = 1e-12
 """Singular values below this, relative to the largest, of the scaled Jacobian, count as zero."""
-
-
-@dataclass(frozen=True, slots=True)
-class Held:
-    """A set: codes of all elements, and on which piece of its table each tabulated contact stands.
-
-    Attributes
-    ----------
-    code, pieces : tuple of int
-    """
-
-    code: tuple[int, ...]
-    pieces: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,8 +47,12 @@ class Polar:
         Unit vector; zero at the centre.
     size, slope : ndarray, shape (S,)
         φ, the force along it, and its derivative with respect to the radius.
-    limit : ndarray, shape (S,), or None
-        Radius at which the element is held by an unknown force.
+    beyond : ndarray, shape (S,), or None
+        Distance beyond the radius at which an unknown force holds it.
+    sense : float
+        What an unknown force is to be multiplied by to act along the offset.
+    spring : bool
+        Whether its force is proportional to the offset.
     """
 
     matrix: Array
@@ -72,14 +61,25 @@ class Polar:
     along: Array
     size: Array
     slope: Array
-    limit: Array | None
+    beyond: Array | None
+    sense: float = 1.0
+    spring: bool = False
+
+    @property
+    def force(self) -> Array:
+        """Force (S, k) along the offset."""
+        if self.spring:
+            return np.asarray(self.slope[:, None] * self.offset)
+        return np.asarray(self.size[:, None] * self.along)
 
     @property
     def stiffness(self) -> Array:
         """Derivative (S, k, k) of the force with respect to the offset."""
+        one = np.eye(self.offset.shape[1])
+        if self.spring:
+            return np.asarray(self.slope[:, None, None] * one)
         dyad = self.along[:, :, None] * self.along[:, None, :]
         across = self.size / np.where(self.radius > 0.0, self.radius, np.inf)
-        one = np.eye(self.offset.shape[1])
         return np.asarray(self.slope[:, None, None] * dyad + across[:, None, None] * (one - dyad))
 
 
@@ -91,10 +91,11 @@ class State:
     ----------
     approach, force, slope : ndarray, shape (S, k)
         Of all springs, flanks and stops; F and dF/dδ, zero for open and rigid ones.
-    margin : ndarray, shape (S, arcs)
+    polars : mapping of switch to Polar
+        Arcs and radial elements, by their number in a code.
+    margin : mapping of switch to ndarray, shape (S,)
         Distance beyond each arc.
-    arcs, radials : mapping of number to Polar
-    laws : list of Graph
+    laws : mapping of switch to Graph
         Of the radial elements.
     transmitted : ndarray, shape (S, radials)
         Torque that each radial element transmits.
@@ -103,66 +104,77 @@ class State:
     approach: Array
     force: Array
     slope: Array
-    margin: Array
-    arcs: dict[int, Polar]
-    radials: dict[int, Polar]
-    laws: list[at.Graph]
+    polars: dict[int, Polar]
+    margin: dict[int, Array]
+    laws: dict[int, at.Graph]
     transmitted: Array
 
 
 class Equations:
-    """A machine on a set.
+    """A machine on an active set.
 
     Parameters
     ----------
     elements : Elements
-    held : Held
+    active : ActiveSet
     numbers : Numbers
         At any value: they tell which contacts are rigid, linear, curved or tabulated.
-    tabulated : ndarray of int, shape (m,)
-        Number of the table of an element, −1 without.
+
+    Attributes
+    ----------
+    arcs, radials : range
+        Their numbers in a code.
+    polar_at : mapping of switch to int or None
+        Arcs and radial elements that act, and where their unknown forces stand in z.
     """
 
-    def __init__(
-        self, elements: Elements, held: Held, numbers: Numbers, tabulated: NDArray[np.intp]
-    ) -> None:
-        self.elements, self.held, self.tabulated = elements, held, tabulated
-        self.code: Codes = np.array(held.code, dtype=np.int8)
+    def __init__(self, elements: Elements, active: ActiveSet, numbers: Numbers) -> None:
+        self.elements, self.active = elements, active
+        self.tabulated = tabulated = numbers.tabulated[0]
+        self.code: Codes = np.array(active.code, dtype=np.int8)
         self.n = elements.scene.size
         self.scalars = elements.springs + len(elements.scene.rows)
+        self.arcs = range(len(elements.scene.rows), elements.rows)
+        self.radials = range(elements.rows, elements.switches)
         rows = self.code[: elements.rows] == at.CLOSED
         acting = np.append(np.ones(elements.springs, dtype=bool), rows)
         self.acts = acting[: self.scalars]
-        self.arc_acts = acting[self.scalars :]
         curved: Flags = np.asarray((numbers.hertz > 0.0).any(axis=0))
         yields: Flags = np.asarray((numbers.bending > 0.0).any(axis=0) | curved | (tabulated >= 0))
+        tied = [elements.springs + k for k in active.tied]
+        yields[tied] = curved[tied] = False
         part = slice(0, self.scalars)
         self.rigid = np.flatnonzero(self.acts & ~yields[part])
         self.linear = np.flatnonzero(self.acts & yields[part] & ~curved[part])
         self.linear = self.linear[tabulated[self.linear] < 0]
         self.curved = np.flatnonzero(self.acts & curved[part])
         self.tables = np.flatnonzero(self.acts & (tabulated[part] >= 0))
-        self.places = self.code[elements.rows :]
         self._free: bool | None = None
-        self._count_unknowns(yields[self.scalars :])
+        # Every force that does not follow from a displacement has its place in z.
+        self.rigid_at = self.n + np.arange(len(self.rigid))
+        self.size = self.n + len(self.rigid)
+        self.polar_at: dict[int, int | None] = {}
+        for k in (*self.arcs, *self.radials):
+            width = self._forces_of(k, yields)
+            if self.code[k] != at.OPEN:
+                self.polar_at[k] = self.size if width else None
+                self.size += width
 
-    def _count_unknowns(self, yields: Flags) -> None:
-        """Give every force that does not follow from a displacement its place in z."""
-        count = self.n
-        self.rigid_at = count + np.arange(len(self.rigid))
-        count += len(self.rigid)
-        self.arc_at: dict[int, int | None] = {}
-        for a in np.flatnonzero(self.arc_acts).tolist():
-            self.arc_at[a] = None if yields[a] else count
-            count += not yields[a]
-        self.radial_at: dict[int, int | None] = {}
-        for j, place in enumerate(self.places.tolist()):
-            if place == at.OPEN:
-                continue
-            known = place in (at.STICK, at.SLIP, at.STOP)
-            self.radial_at[j] = None if known else count
-            count += 0 if known else 2 if place == at.PINNED else 1
-        self.size = count
+    def _forces_of(self, k: int, yields: Flags) -> int:
+        """How many unknown forces an arc or radial element has that acts."""
+        if k in self.arcs:
+            return int(not yields[self.elements.springs + k])
+        return {at.PINNED: 2, at.CORNER: 1, at.WALL: 1}.get(int(self.code[k]), 0)
+
+    def matrix(self, k: int, numbers: Numbers) -> Array:
+        """Offset of an arc or radial element per unit of the coordinates, (S or 1, 3 or 2, n)."""
+        if k in self.arcs:
+            return np.asarray(numbers.relative[:, k - self.arcs.start])
+        return np.asarray(numbers.vectors[:, self._columns(k)])
+
+    def _columns(self, k: int) -> slice:
+        column = self.elements.radial_column(k - self.radials.start)
+        return slice(column, column + 2)
 
     # --- At points ------------------------------------------------------------------------------
 
@@ -172,69 +184,70 @@ class Equations:
         vectors = numbers.vectors[:, : self.scalars]
         approach = (vectors @ x[:, :, None])[:, :, 0] - numbers.gap[:, : self.scalars]
         force, slope = np.zeros_like(approach), np.zeros_like(approach)
-        for k in self.linear:
+        for k in self.linear.tolist():
             slope[:, k] = 1.0 / numbers.bending[:, k]
             force[:, k] = approach[:, k] * slope[:, k]
         if len(self.curved):
             b, c = numbers.bending[:, self.curved], numbers.hertz[:, self.curved]
             force[:, self.curved], slope[:, self.curved] = pressed(b, c, approach[:, self.curved])
-        for k, piece in zip(self.tables, self.held.pieces, strict=True):
+        for k, piece in zip(self.tables.tolist(), self.active.pieces, strict=True):
             table = numbers.tables[:, self.tabulated[k]]
             start, rate = table[:, :, piece], np.diff(table[:, :, piece : piece + 2])[:, :, 0]
             slope[:, k] = rate[:, 0] / rate[:, 1]
             force[:, k] = start[:, 0] + slope[:, k] * (approach[:, k] - start[:, 1])
         force[:, self.rigid] = z[:, self.rigid_at]
         transmitted = (numbers.carried[:, :, : self.scalars] @ force[:, :, None])[:, :, 0]
-        count = len(z)
-        laws = [
-            at.graph(np.broadcast_to(numbers.radial[:, j], (count, 6)), transmitted[:, j])
-            for j in range(len(self.places))
-        ]
-        arcs, margin = {}, np.zeros((count, len(self.arc_acts)))
-        for a in range(len(self.arc_acts)) if every else self.arc_at:
-            arcs[a], margin[:, a] = self._arc(a, z, numbers)
-        those = range(len(self.places)) if every else self.radial_at
-        radials = {j: self._radial(j, laws[j], z, numbers) for j in those}
-        return State(approach, force, slope, margin, arcs, radials, laws, transmitted)
+        laws = {
+            k: at.graph(np.broadcast_to(numbers.radial[:, j], (len(z), 6)), transmitted[:, j])
+            for j, k in enumerate(self.radials)
+        }
+        polars, margin = {}, {}
+        for k in (*self.arcs, *self.radials) if every else self.polar_at:
+            if k in self.arcs:
+                polars[k], margin[k] = self._arc(k, z, numbers)
+            else:
+                polars[k] = self._radial(k, laws[k], z, numbers)
+        return State(approach, force, slope, polars, margin, laws, transmitted)
 
-    def _arc(self, a: int, z: Array, numbers: Numbers) -> tuple[Polar, Array]:
-        matrix, nominal = numbers.relative[:, a], numbers.nominal[:, a]
+    def _arc(self, k: int, z: Array, numbers: Numbers) -> tuple[Polar, Array]:
+        a, matrix = k - self.arcs.start, self.matrix(k, numbers)
+        nominal = numbers.nominal[:, a]
         moved = numbers.shift[:, a] + (matrix @ z[:, : self.n, None])[:, :, 0]
         offset = nominal + moved
         radius = np.sqrt((offset * offset).sum(axis=1))
         apart = np.sqrt((nominal * nominal).sum(axis=1))
         grown = 2.0 * (moved * nominal).sum(axis=1) + (moved * moved).sum(axis=1)
         margin = grown / (radius + apart) + numbers.clearance[:, a]
-        size, slope, limit = np.zeros_like(radius), np.zeros_like(radius), None
-        if a in self.arc_at:
-            where = self.arc_at[a]
-            if where is None:
-                slope = np.broadcast_to(1.0 / numbers.bending[:, self.scalars + a], radius.shape)
-                size = margin * slope
-            else:
-                size, limit = -z[:, where], radius - margin
-        return Polar(matrix, offset, radius, offset / radius[:, None], size, slope, limit), margin
+        size, slope, beyond = np.zeros_like(radius), np.zeros_like(radius), None
+        where = self.polar_at.get(k)
+        if where is not None:
+            size, beyond = -z[:, where], -margin
+        elif k in self.polar_at:
+            slope = np.broadcast_to(1.0 / numbers.bending[:, self.scalars + a], radius.shape)
+            size = margin * slope
+        along = offset / radius[:, None]
+        return Polar(matrix, offset, radius, along, size, slope, beyond, sense=-1.0), margin
 
-    def _radial(self, j: int, law: at.Graph, z: Array, numbers: Numbers) -> Polar:
-        column = self.elements.radial_column(j)
-        matrix = numbers.vectors[:, column : column + 2]
-        offset = (matrix @ z[:, : self.n, None])[:, :, 0] - numbers.gap[:, column : column + 2]
+    def _radial(self, k: int, law: at.Graph, z: Array, numbers: Numbers) -> Polar:
+        matrix, code, where = self.matrix(k, numbers), self.code[k], self.polar_at.get(k)
+        offset = (matrix @ z[:, : self.n, None])[:, :, 0] - numbers.gap[:, self._columns(k)]
         radius = np.sqrt((offset * offset).sum(axis=1))
         along = offset / np.where(radius > 0.0, radius, 1.0)[:, None]
         size, slope = np.zeros_like(radius), np.zeros_like(radius)
-        limit: Array | None = None
-        place = self.places[j]
-        if place == at.STICK:
+        beyond: Array | None = None
+        if code == at.STICK:
             size, slope = law.first * radius, law.first
-        elif place == at.SLIP:
+        elif code == at.SLIP:
             size = law.bound
-        elif place == at.STOP:
+        elif code == at.STOP:
             size, slope = law.bound + law.last * (radius - law.reach), law.last
-        elif place in (at.WALL, at.CORNER):
-            where = self.radial_at[j]
+        elif code in (at.WALL, at.CORNER):
             assert where is not None
-            size, limit = z[:, where], law.stick if place == at.CORNER else law.reach
-        return Polar(matrix, offset, radius, along, size, slope, limit)
+            size = z[:, where]
+            beyond = radius - (law.stick if code == at.CORNER else law.reach)
+        return Polar(
+            matrix, offset, radius, along, size, slope, beyond, spring=bool(code == at.STICK)
+        )
 
     def residual(self, z: Array, numbers: Numbers, state: State | None = None) -> Array:
         """Return G, shape (S, size)."""
@@ -244,37 +257,17 @@ class Equations:
         vectors = numbers.vectors[:, : self.scalars]
         found[:, :n] = (state.force[:, None, :] @ vectors)[:, 0] - numbers.load
         found[:, self.rigid_at] = state.approach[:, self.rigid]
-        for polar, where, pinned in self._acting(state):
-            if pinned:
+        for k, where in self.polar_at.items():
+            polar = state.polars[k]
+            force = polar.force
+            if self.code[k] == at.PINNED:
                 assert where is not None
                 force = z[:, where : where + 2]
                 found[:, where : where + 2] = polar.offset
-            else:
-                force = polar.size[:, None] * polar.along
-                if self.places_stick(polar, state):
-                    force = polar.slope[:, None] * polar.offset
+            elif polar.beyond is not None:
+                found[:, where] = polar.beyond
             found[:, :n] += (force[:, None, :] @ polar.matrix)[:, 0]
-        for a, where in self.arc_at.items():
-            if where is not None:
-                found[:, where] = -state.margin[:, a]
-        for j, where in self.radial_at.items():
-            limit = state.radials[j].limit
-            if limit is not None:
-                found[:, where] = state.radials[j].radius - limit
         return found
-
-    def places_stick(self, polar: Polar, state: State) -> bool:
-        """Whether a polar element is a spring about its centre."""
-        return any(p is polar and self.places[j] == at.STICK for j, p in state.radials.items())
-
-    def _acting(self, state: State) -> list[tuple[Polar, int | None, bool]]:
-        """Polar elements that act, where their unknowns stand, and whether they are pinned."""
-        arcs = [(state.arcs[a], w, False) for a, w in self.arc_at.items()]
-        radials = [
-            (state.radials[j], w, bool(self.places[j] == at.PINNED))
-            for j, w in self.radial_at.items()
-        ]
-        return [*arcs, *radials]
 
     def jacobian(self, z: Array, numbers: Numbers, state: State | None = None) -> Array:
         """Return the derivative of G, shape (S, size, size)."""
@@ -285,45 +278,61 @@ class Equations:
         found[:, :n, :n] = vectors.transpose(0, 2, 1) @ (state.slope[:, :, None] * vectors)
         found[:, :n, self.rigid_at] = vectors[:, self.rigid].transpose(0, 2, 1)
         found[:, self.rigid_at, :n] = vectors[:, self.rigid]
-        for a, where in self.arc_at.items():
-            polar = state.arcs[a]
+        for k, where in self.polar_at.items():
+            polar = state.polars[k]
             turned = polar.matrix.transpose(0, 2, 1)
-            found[:, :n, :n] += turned @ polar.stiffness @ polar.matrix
-            if where is not None:
-                pull = (polar.along[:, None, :] @ polar.matrix)[:, 0]
-                found[:, :n, where] = found[:, where, :n] = -pull
-        for j, where in self.radial_at.items():
-            polar, place = state.radials[j], self.places[j]
-            turned = polar.matrix.transpose(0, 2, 1)
-            if place == at.PINNED:
+            if self.code[k] == at.PINNED:
                 assert where is not None
                 both = slice(where, where + 2)
                 found[:, :n, both], found[:, both, :n] = turned, polar.matrix
                 continue
-            springs = polar.slope[:, None, None] * np.eye(2)
-            stiff = springs if place == at.STICK else polar.stiffness
-            found[:, :n, :n] += turned @ stiff @ polar.matrix
-            pull = (polar.along[:, None, :] @ polar.matrix)[:, 0]
+            found[:, :n, :n] += turned @ polar.stiffness @ polar.matrix
+            pull = polar.sense * (polar.along[:, None, :] @ polar.matrix)[:, 0]
             if where is not None:
                 found[:, :n, where] = found[:, where, :n] = pull
-            if place in (at.SLIP, at.STOP):
-                found[:, :n] += pull[:, :, None] * self.follow(j, state, numbers)[:, None, :]
+            elif k in self.radials and self.code[k] in (at.SLIP, at.STOP):
+                found[:, :n] += pull[:, :, None] * self._follow(k, state, numbers)[:, None, :]
         return found
 
-    def follow(self, j: int, state: State, numbers: Numbers) -> Array:
+    def _follow(self, k: int, state: State, numbers: Numbers) -> Array:
         """Derivative (S, size) of a friction bound that follows the torque; zero for others."""
-        count = len(state.transmitted)
-        rate = np.zeros((count, self.size))
+        j, count = k - self.radials.start, len(state.transmitted)
         number = np.broadcast_to(numbers.radial[:, j], (count, 6))
         follows = np.isnan(number[:, 3])
         if not follows.any():
-            return rate
+            return np.zeros((count, self.size))
         per = np.where(follows, number[:, 4] * np.sign(state.transmitted[:, j]), 0.0)
-        arms = np.broadcast_to(numbers.carried[:, j, : self.scalars], (count, self.scalars))
-        vectors = numbers.vectors[:, : self.scalars]
-        rate[:, : self.n] = ((arms * state.slope)[:, None, :] @ vectors)[:, 0]
-        rate[:, self.rigid_at] += arms[:, self.rigid]
-        return per[:, None] * rate
+        arms = numbers.carried[:, [j], : self.scalars]
+        return np.asarray(per[:, None] * self.along_forces(arms, state, numbers)[:, 0])
+
+    def along_forces(self, weights: Array, state: State, numbers: Numbers) -> Array:
+        """Derivative (S, k, size) of sums of forces, weighted by (S or 1, k, scalars)."""
+        count = len(state.slope)
+        rate = np.zeros((count, weights.shape[1], self.size))
+        rate[:, :, : self.n] = (weights * state.slope[:, None]) @ numbers.vectors[:, : self.scalars]
+        rate[:, :, self.rigid_at] += weights[:, :, self.rigid]
+        return rate
+
+    def sizes(self, z: Array, numbers: Numbers, state: State) -> Array:
+        """Sum of the sizes of the terms of every equation, shape (S, size)."""
+        vectors = np.abs(numbers.vectors[:, : self.scalars])
+        x = np.abs(z[:, : self.n])
+        gap = np.where(np.isfinite(numbers.gap), np.abs(numbers.gap), 0.0)
+        reach = (vectors @ x[:, :, None])[:, :, 0] + gap[:, : self.scalars]
+        pushes = np.abs(state.force) + state.slope * reach
+        found = np.zeros(z.shape)
+        found[:, : self.n] = (pushes[:, None, :] @ vectors)[:, 0] + np.abs(numbers.load)
+        found[:, self.rigid_at] = reach[:, self.rigid]
+        for k, polar in state.polars.items():
+            matrix = np.abs(polar.matrix)
+            moved = (matrix @ x[:, :, None])[:, :, 0]
+            push = (np.abs(polar.size) + polar.slope * moved.max(axis=1))[:, None]
+            found[:, : self.n] += (np.broadcast_to(push, moved.shape)[:, None, :] @ matrix)[:, 0]
+            where = self.polar_at.get(k)
+            if where is not None:
+                width = 2 if self.code[k] == at.PINNED else 1
+                found[:, where : where + width] += moved.max(axis=1)[:, None]
+        return found
 
     # --- Answers --------------------------------------------------------------------------------
 
@@ -354,7 +363,7 @@ class Equations:
             rows, off, jacobian = rows[finite], off[finite], jacobian[finite]
             if not len(rows):
                 continue
-            step = self._step(jacobian, off)
+            step = least_norm_step(jacobian, off, self.leaves_free(jacobian))
             z[rows] -= step
             size = np.abs(step).max(axis=1, initial=0.0)
             scale = np.maximum(np.abs(z[rows]).max(axis=1, initial=0.0), 1.0)
@@ -366,10 +375,6 @@ class Equations:
             off = np.abs(self.residual(z, numbers)).max(axis=1, initial=0.0)
         unit = np.abs(numbers.load).max(axis=1, initial=0.0)
         return z, (done | (previous <= SOLVED)) & ~lost & (off <= 1e-9 * np.maximum(unit, 1.0))
-
-    def _step(self, jacobian: Array, off: Array) -> Array:
-        """Newton's step; of least norm on a set that leaves something free."""
-        return least_norm_step(jacobian, off, self.leaves_free(jacobian))
 
     @property
     def floats(self) -> bool:
@@ -393,11 +398,6 @@ class Equations:
             borders = self.jacobian(z, numbers)[:, : self.n, self.n :]
             z[:, self.n :] = -(np.linalg.pinv(borders) @ off[:, :, None])[:, :, 0]
         return z
-
-    @cached_property
-    def names(self) -> tuple[str, ...]:
-        """Names of all switches."""
-        return (*self.elements.row_names, *(r.name for r in self.elements.scene.radials))
 
 
 def pressed(b: Array, c: Array, approach: Array) -> tuple[Array, Array]:

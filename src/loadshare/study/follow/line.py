@@ -6,95 +6,25 @@ values; otherwise every value is a train of its own, written in the units of the
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
-
-import numpy as np
-from numpy.typing import NDArray
 
 from loadshare.case import Case
 from loadshare.case.keys import parse
 from loadshare.certify.tolerance import TOLERANCE
-from loadshare.contact.radial import RadialLaw
 from loadshare.errors import CaseError, Refused
 from loadshare.job.machine import Answers, Machine
-from loadshare.scene import assemble
-from loadshare.scene.data import Data, data_of
-from loadshare.scene.elements import Elements, elements_of
+from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array, Scene
-from loadshare.solver.hot import places as at
 from loadshare.solver.hot import vectorised
 from loadshare.study.answers import certified
-from loadshare.study.branch.active import Place, coordinates, read_set
-from loadshare.study.branch.units import Units
+from loadshare.study.follow.active import Codes, coordinates, read_code
+from loadshare.study.follow.numbers import Numbers, elements_like
 from loadshare.study.parameter import Parameter, Value
 from loadshare.train import Train, build_train
 from loadshare.train.columns import Column
-from loadshare.train.equilibria import Equilibria
 from loadshare.train.samples import Samples, samples_of
 from loadshare.train.situations import Situations, situation_of
-
-Codes = NDArray[np.int8]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Numbers:
-    """What the equations of a machine consist of at S values, in the units of its elements.
-
-    Attributes
-    ----------
-    vectors : ndarray, shape (S or 1, m, n)
-        A.
-    load, gap, bending, hertz : ndarray, shape (S or 1, n), (S or 1, m) ...
-        f, g, b, c; see `loadshare.scene.data.Data`.
-    tables : ndarray, shape (S or 1, tables, 2, points)
-    nominal, shift, clearance : ndarray, shape (S or 1, arcs, 3), (S or 1, arcs, 3), (S or 1, arcs)
-    relative : ndarray, shape (S or 1, arcs, 3, n)
-    radial : ndarray, shape (S or 1, radials, 6)
-    carried : ndarray, shape (S or 1, radials, m)
-    """
-
-    vectors: Array
-    load: Array
-    gap: Array
-    bending: Array
-    hertz: Array
-    tables: Array
-    nominal: Array
-    shift: Array
-    clearance: Array
-    relative: Array
-    radial: Array
-    carried: Array
-
-    def take(self, rows: NDArray[np.intp] | slice) -> Numbers:
-        """Return the numbers at some of the values."""
-        every = {f.name: getattr(self, f.name) for f in fields(self)}
-        return Numbers(**{k: v[rows] if len(v) > 1 else v for k, v in every.items()})
-
-
-def numbers_of(elements: Elements, data: Data) -> Numbers:
-    """Collect the numbers of a machine."""
-    return Numbers(
-        vectors=elements.vectors[None],
-        load=data.load,
-        gap=data.gap,
-        bending=data.bending,
-        hertz=data.hertz,
-        tables=data.tables,
-        nominal=data.nominal[None],
-        shift=data.shift,
-        clearance=data.clearance,
-        relative=data.relative[None],
-        radial=data.radial,
-        carried=data.carried[None],
-    )
-
-
-def _stacked(parts: Sequence[Numbers]) -> Numbers:
-    names = [f.name for f in fields(Numbers)]
-    return Numbers(**{n: np.concatenate([getattr(p, n) for p in parts]) for n in names})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -184,23 +114,19 @@ class Line:
         """Train and elements at a value that makes a machine of its own."""
         if value not in self._known:
             train = self.train(value)
-            base = self.elements
-            mine = elements_of(assemble(train, 1))
-            if mine.kinds != base.kinds or mine.scene.coordinates != base.scene.coordinates:
-                raise ValueError("the parameter changes which elements there are")
-            self._known[value] = train, replace(mine, force=base.force, length=base.length)
+            self._known[value] = train, elements_like(self.elements, train)
         return self._known[value]
 
     def numbers(self, position: int, values: Array) -> Numbers:
         """Return the numbers of a position at values (S,)."""
         if self._samples is not None:
             situations = self._at(values).situations(position)
-            return numbers_of(self.elements, data_of(self.elements, situations))
+            return Numbers.of(self.elements, situations)
         parts = []
         for value in values.tolist():
             train, elements = self._own(value)
-            parts.append(numbers_of(elements, data_of(elements, situation_of(train, position))))
-        return _stacked(parts)
+            parts.append(Numbers.of(elements, situation_of(train, position)))
+        return Numbers.stacked(parts)
 
     def solved(self, position: int, values: Array) -> list[Solved | str]:
         """Solve and certify a position at values (S,).
@@ -235,7 +161,7 @@ class Line:
         return self._from_batch(elements.scene, found, 0, value)
 
     def _from_batch(self, scene: Scene, found: Answers, k: int, value: float) -> Solved:
-        x = _coordinates(scene, found.equilibria, k) / self.elements.length
+        x = coordinates(scene, found.equilibria.one(k, 1)) / self.elements.length
         return Solved(value, found.code[k].copy(), x, float(found.verdicts.worst[k]))
 
     def _from_ladder(self, position: int, value: float) -> Solved | str:
@@ -245,42 +171,8 @@ class Line:
             answer = certified(train, position)
         except (CaseError, Refused) as refusal:
             return str(refusal)
-        scene = assemble(train, position)
-        units = Units(self.elements.force, self.elements.length)
-        active, *_ = read_set(scene, answer.equilibrium, units)
-        code = np.zeros(self.elements.switches, dtype=np.int8)
-        for k, name in enumerate(self.elements.row_names):
-            code[k] = at.CLOSED if name in active.closed else at.OPEN
-        flanks = answer.equilibrium.flank_force
-        for j, (radial, (_, place)) in enumerate(zip(scene.radials, active.places, strict=True)):
-            law = radial.law(train.transmitted(radial.gear, flanks))
-            code[self.elements.rows + j] = _code_of(place, law)
-        x = coordinates(scene, answer.equilibrium) / self.elements.length
+        elements, found = elements_like(self.elements, train), answer.equilibrium
+        x = coordinates(elements.scene, found) / elements.length
+        numbers = Numbers.of(elements, situation_of(train, position))
+        code = read_code(elements, numbers, found, x)
         return Solved(value, code, x, answer.certificate.worst)
-
-
-def _coordinates(scene: Scene, found: Equilibria, k: int) -> Array:
-    """Coordinates x [m] of an answer of a batch."""
-    names = found.names
-    x = np.zeros(scene.size)
-    for g, gear in enumerate(names.gears):
-        turn, where = scene.rotation[gear], scene.displacement.get(gear)
-        if turn.index is not None:
-            x[turn.index] = (found.rotation[k, g] - turn.constant) / turn.rate
-        if where is not None:
-            x[where] = names.train.gears[gear].frame @ found.displacement[k, g]
-    return x
-
-
-def _code_of(place: Place, law: RadialLaw) -> int:
-    """Code of a place on a radial graph."""
-    if place.corner and not place.piece:
-        return at.WALL if law.reach > 0.0 else at.PINNED
-    first = place.piece == law.pieces[0].name
-    if place.corner:
-        return at.PINNED if first else at.CORNER
-    if place.piece == "stick":
-        return at.STICK
-    if place.piece in ("slip", "inside"):
-        return at.SLIP if law.pieces[0].force > 0.0 or not first else at.OPEN
-    return at.STOP

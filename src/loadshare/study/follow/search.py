@@ -15,15 +15,18 @@ from itertools import pairwise
 import numpy as np
 
 from loadshare.errors import Refused
-from loadshare.scene.data import data_of
 from loadshare.scene.scene import Array
 from loadshare.solver.hot import places as at
+from loadshare.study.follow.active import ActiveSet, Codes, read_pieces
 from loadshare.study.follow.centre import centred
-from loadshare.study.follow.equations import Equations, Flags, Held
-from loadshare.study.follow.line import Codes, Line, Numbers, Solved
-from loadshare.study.follow.proof import NODES, VERGE, Stretches
+from loadshare.study.follow.equations import Equations
+from loadshare.study.follow.gauges import gauges_at
+from loadshare.study.follow.line import Line, Solved
+from loadshare.study.follow.numbers import Numbers
+from loadshare.study.follow.proof import VERGE, prove
+from loadshare.study.follow.ranges import NODES, Flags
+from loadshare.study.follow.stretches import Stretches
 from loadshare.study.follow.zero import first_zero
-from loadshare.train.situations import situation_of
 
 FIRST = 8
 """Stretches at the beginning."""
@@ -54,14 +57,14 @@ class Point:
     Attributes
     ----------
     value : float
-    held : Held
+    active : ActiveSet
     z : ndarray
     worst : float
         Worst scaled residual of its certificate.
     """
 
     value: float
-    held: Held
+    active: ActiveSet
     z: Array
     worst: float
 
@@ -73,7 +76,7 @@ class Change:
     Attributes
     ----------
     value : float
-    before, after : Held
+    before, after : ActiveSet
     confirmed : bool
         Whether both sides were proved up to it.
     worst : float
@@ -83,8 +86,8 @@ class Change:
     """
 
     value: float
-    before: Held
-    after: Held
+    before: ActiveSet
+    after: ActiveSet
     confirmed: bool
     worst: float
     apart: float
@@ -117,14 +120,12 @@ class Search:
 
     def __init__(self, line: Line, position: int, low: float, high: float) -> None:
         self.line, self.position, self.low, self.high = line, position, low, high
-        first = data_of(line.elements, situation_of(line.machine.train, position))
-        self.tabulated = first.tabulated
         # Which contacts are rigid or curved anywhere on the way.
         self._anywhere = line.numbers(position, np.linspace(low, high, 3))
         self.least = LEAST * max(abs(low), abs(high))
         self.changes: list[Change] = []
         self.gaps: list[Gap] = []
-        self._equations: dict[Held, Equations] = {}
+        self._equations: dict[ActiveSet, Equations] = {}
         self._hints: dict[tuple[float, float], float] = {}
         self._sharp: dict[float, bool] = {}
 
@@ -183,15 +184,15 @@ class Search:
         found: list[Point | str] = [UNREAD] * len(solved)
         waiting = [(k, code, s.x) for k, s in enumerate(solved)]
         for _ in range(3):
-            groups: dict[Held, list[tuple[int, Array]]] = {}
+            groups: dict[ActiveSet, list[tuple[int, Array]]] = {}
             for k, own, x in waiting:
-                held = Held(own, self._pieces(own, x, numbers.take(slice(k, k + 1))))
-                groups.setdefault(held, []).append((k, x))
+                active = self._set(own, x, numbers.take(slice(k, k + 1)))
+                groups.setdefault(active, []).append((k, x))
             waiting = []
-            for held, members in groups.items():
+            for active, members in groups.items():
                 rows = np.array([k for k, _ in members])
                 some = numbers.take(rows)
-                equations = self.equations(held)
+                equations = self.equations(active)
                 z = equations.start(np.array([x for _, x in members]), some)
                 z, good = equations.solve(z, some)
                 carries = self._carrying(equations, z, some)
@@ -200,23 +201,16 @@ class Search:
                     x, own = z[i, : equations.n], tuple(carries[i].tolist())
                     if not good[i]:
                         continue
-                    if Held(own, self._pieces(own, x, numbers.take(slice(k, k + 1)))) == held:
-                        found[k] = Point(solved[k].value, held, z[i], solved[k].worst)
+                    if self._set(own, x, numbers.take(slice(k, k + 1))) == active:
+                        found[k] = Point(solved[k].value, active, z[i], solved[k].worst)
                     else:
                         waiting.append((k, own, x))
         return found
 
-    def _pieces(self, code: tuple[int, ...], x: Array, numbers: Numbers) -> tuple[int, ...]:
-        """On which piece of its table each closed tabulated contact stands."""
-        found = []
-        springs = self.line.elements.springs
-        for k in np.flatnonzero(self.tabulated >= 0).tolist():
-            if code[k - springs] == at.CLOSED:
-                approach = float(numbers.vectors[0, k] @ x - numbers.gap[0, k])
-                points = numbers.tables[0, self.tabulated[k], 1]
-                last = int(np.isfinite(points).sum()) - 2
-                found.append(int(np.clip(np.searchsorted(points, approach) - 1, 0, last)))
-        return tuple(found)
+    def _set(self, code: tuple[int, ...], x: Array, numbers: Numbers) -> ActiveSet:
+        """Active set of a code at one value."""
+        pieces = read_pieces(self.line.elements, numbers, code, x)
+        return ActiveSet(code, pieces)
 
     def _carrying(self, equations: Equations, z: Array, numbers: Numbers) -> Codes:
         """Codes (S, switches) of the elements that carry something at points z."""
@@ -230,28 +224,21 @@ class Search:
         moved[:, np.isin(columns, equations.rigid)] = 0.0
         idle = (np.abs(state.force[:, columns]) <= band[:, None]) & (moved <= IDLE)
         code[:, : len(columns)][idle] = at.OPEN
-        for a, where in equations.arc_at.items():
-            loose = np.abs(state.arcs[a].size) <= band
-            if where is None:
-                loose &= np.abs(state.margin[:, a]) <= IDLE
-            code[loose, len(columns) + a] = at.OPEN
-        for j, place in enumerate(equations.places.tolist()):
-            if place == at.OPEN:
-                continue
-            loose = np.abs(state.radials[j].size) <= band
-            if place != at.WALL:
+        for k, where in equations.polar_at.items():
+            loose = np.abs(state.polars[k].size) <= band
+            if k in equations.arcs and where is None:
+                loose &= np.abs(state.margin[k]) <= IDLE
+            elif k in equations.radials and equations.code[k] != at.WALL:
                 # Whether it slips or sticks hangs on rounding once its friction is gone.
-                loose &= np.abs(state.laws[j].bound) <= band
-            code[loose, equations.elements.rows + j] = at.OPEN
+                loose &= np.abs(state.laws[k].bound) <= band
+            code[loose, k] = at.OPEN
         return code
 
-    def equations(self, held: Held) -> Equations:
+    def equations(self, active: ActiveSet) -> Equations:
         """Return the equations of a set, set up once."""
-        if held not in self._equations:
-            self._equations[held] = Equations(
-                self.line.elements, held, self._anywhere, self.tabulated
-            )
-        return self._equations[held]
+        if active not in self._equations:
+            self._equations[active] = Equations(self.line.elements, active, self._anywhere)
+        return self._equations[active]
 
     # --- Proofs ---------------------------------------------------------------------------------
 
@@ -276,14 +263,14 @@ class Search:
         first, last = gap.first, gap.last
         if not (isinstance(first, Point) and isinstance(last, Point)):
             return None
-        if first.held.code == last.held.code:
+        if first.active.code == last.active.code:
             return None
         # What was found last was found from nearest.
         value = 0.5 * (gap.start + gap.stop)
         for hint in self._hints.values():
             value = hint if gap.start <= hint <= gap.stop else value
         apart = max(value - gap.start, gap.stop - value)
-        return Change(value, first.held, last.held, False, max(first.worst, last.worst), apart)
+        return Change(value, first.active, last.active, False, max(first.worst, last.worst), apart)
 
     def _stretches(
         self, equations: Equations, ends: list[tuple[float, float, Array, Array]]
@@ -296,44 +283,47 @@ class Search:
 
     def _proved_alike(self, stretches: list[Stretch]) -> list[Stretch]:
         """Prove those whose ends stand on one set, and return the others."""
-        groups: dict[Held, list[Stretch]] = {}
+        groups: dict[ActiveSet, list[Stretch]] = {}
         left: list[Stretch] = []
         for stretch in stretches:
             first, last, *_ = stretch
-            if isinstance(first, Point) and isinstance(last, Point) and first.held == last.held:
-                groups.setdefault(first.held, []).append(stretch)
+            if isinstance(first, Point) and isinstance(last, Point) and first.active == last.active:
+                groups.setdefault(first.active, []).append(stretch)
             else:
                 left.append(stretch)
-        for held, group in groups.items():
+        for active, group in groups.items():
             ends = [(low, high, a.z, b.z) for a, b, low, high in group]  # type: ignore[union-attr]
-            holds = self._stretches(self._equations[held], ends).prove().holds
+            holds = prove(self._stretches(self._equations[active], ends)).holds
             failed = [s for s, good in zip(group, holds, strict=True) if not good]
-            left += [s for s in failed if not self._hidden(held, s)]
+            left += [s for s in failed if not self._hidden(active, s)]
         return left
 
-    def _hidden(self, held: Held, stretch: Stretch) -> bool:
+    def _hidden(self, active: ActiveSet, stretch: Stretch) -> bool:
         """Give up a stretch at both ends of which round-off alone leaves no enclosure."""
-        if any(self._is_sharp(held, p) for p in stretch[:2] if isinstance(p, Point)):
+        if any(self._is_sharp(active, p) for p in stretch[:2] if isinstance(p, Point)):
             return False
         self._give_up(stretch, "round-off hides what holds its bodies")
         return True
 
-    def _is_sharp(self, held: Held, point: Point) -> bool:
+    def _is_sharp(self, active: ActiveSet, point: Point) -> bool:
         """Whether a point is enclosed by itself."""
         if point.value not in self._sharp:
             ends = [(point.value, point.value, point.z, point.z)]
-            enclosed = self._stretches(self._equations[held], ends).prove().enclosed
+            enclosed = prove(self._stretches(self._equations[active], ends)).enclosed
             self._sharp[point.value] = bool(enclosed[0])
         return self._sharp[point.value]
 
     def _crossed(self, stretch: Stretch) -> bool:
         """Find and prove the change between two ends; on failure note where it may stand."""
         first, last, low, high = stretch
-        if not (isinstance(first, Point) and isinstance(last, Point)) or first.held == last.held:
+        if (
+            not (isinstance(first, Point) and isinstance(last, Point))
+            or first.active == last.active
+        ):
             return False
         # Where a body comes to float, room is exacter than forces that vanish all together.
         ways = [(first, last), (last, first)]
-        ways.sort(key=lambda way: not self._equations[way[0].held].floats)
+        ways.sort(key=lambda way: not self._equations[way[0].active].floats)
         value = self._exit(*ways[0])
         if value is None:
             value = self._exit(*ways[1])
@@ -344,19 +334,19 @@ class Search:
             return False
         apart = float(max(value - low, high - value))
         worst = max(first.worst, last.worst)
-        if first.held.code != last.held.code:
-            self.changes.append(Change(value, first.held, last.held, True, worst, apart))
+        if first.active.code != last.active.code:
+            self.changes.append(Change(value, first.active, last.active, True, worst, apart))
         return True
 
     def _reaches(self, point: Point, value: float) -> bool:
         """Whether a point's set is proved to hold up to an event at a value."""
         if value == point.value:
             return True
-        equations = self._equations[point.held]
+        equations = self._equations[point.active]
         z, good = self._solved(equations, np.array([value]), point.z[None])
         if good[0] and self._proved(equations, [point.value, value], np.array([point.z, z[0]])):
             return True
-        # Bodies held by vanishing forces alone: their equations become singular at the event, so
+        # Bodies active by vanishing forces alone: their equations become singular at the event, so
         # stretches shrink towards it, down to what counts as the event itself.
         parts = [(value - point.value) * GRADE**k for k in range(200)]
         near = RESOLVED * max(abs(value), abs(value - point.value))
@@ -370,7 +360,7 @@ class Search:
         """Whether a set is proved to hold between neighbouring values."""
         pairs = list(zip(values[:-1], values[1:], z[:-1], z[1:], strict=True))
         ends = [(a, b, p, q) if a < b else (b, a, q, p) for a, b, p, q in pairs]
-        return bool(self._stretches(equations, ends).prove().holds.all())
+        return bool(prove(self._stretches(equations, ends)).holds.all())
 
     def _solved(self, equations: Equations, values: Array, near: Array) -> tuple[Array, Flags]:
         """Solve a set at values (S,), from unknowns near by; what nothing holds is centred."""
@@ -383,14 +373,13 @@ class Search:
         numbers = self.line.numbers(self.position, values)
         z, good = equations.solve(near, numbers)
         z = centred(equations, z, numbers)
-        rows = np.repeat(np.arange(len(values)), NODES)
-        here = Stretches(equations, np.stack([z, z], axis=1), numbers.take(rows))
         with np.errstate(all="ignore"):
-            return here.standing(), good
+            found = gauges_at(Stretches.at_points(equations, z, numbers))
+            return np.stack([gauge.first for gauge in found], axis=1), good
 
     def _exit(self, near: Point, far: Point) -> float | None:
         """Value at which the first gauge of one end's set vanishes on the way to the other."""
-        equations = self._equations[near.held]
+        equations = self._equations[near.active]
         values = np.linspace(near.value, far.value, SECTIONS)
         found = self._sections(equations, values, near.z)
         if found is None:

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from loadshare.errors import CaseError, Problem, Refused
-from loadshare.scene import assemble
 from loadshare.scene.scene import Array
 from loadshare.study.answers import certified
-from loadshare.study.directional import Motion, Neighbourhood
 from loadshare.study.parameter import Value
+from loadshare.study.sensitivity.branch import LOOSE, Setting
 from loadshare.study.sensitivity.differenced import NoDifference, differenced
+from loadshare.study.sensitivity.directional import Motion, Neighbourhood
 from loadshare.study.sensitivity.result import SIDES, Rates, Remark
-from loadshare.study.sensitivity.variation import Variation, torque_gradients, torques_of
+from loadshare.study.sensitivity.variation import Variation, torques_of
 from loadshare.train import Train
 
 
@@ -66,7 +66,9 @@ class Corner:
     def __init__(self, train: Train, position: int) -> None:
         self.train, self.position = train, position
         self._answer = certified(train, position).equilibrium
-        self.neighbourhood = Neighbourhood(assemble(train, position), self._answer)
+        setting = Setting.at(train, position)
+        self.elements = setting.elements
+        self.neighbourhood = Neighbourhood(setting, self._answer)
         self.torque = torques_of(train, self._answer)
         self.remarks: list[Remark] = []
         self._caught: dict[str, None] = {}
@@ -84,7 +86,7 @@ class Corner:
         CaseError
             If the input can be varied to neither side.
         """
-        varied = Variation(trains, value, self.position)
+        varied = Variation(trains, value, self.position, self.elements)
         found: dict[str, Rates] = {}
         both: Rates | None = None
         for side, sign in zip(SIDES, (-1.0, 1.0), strict=True):
@@ -142,16 +144,16 @@ class Corner:
     def _moved(self, motion: Motion, floating: Iterable[str]) -> Motions:
         """Torques and displacements of a motion, beside which some coordinates float."""
         branch, size = motion.branch, motion.branch.size
-        gradients = torque_gradients(branch, motion.z)
+        gradients = branch.torque_gradients(motion.z)
         direct, direct_error = motion.change.value[size:], motion.change.error[size:]
 
         def bound(weights: Array) -> Array:
             return np.asarray(motion.bound(weights @ gradients) + np.abs(weights) @ direct_error)
 
-        loose, length = self._loose(floating), branch.units.length
+        loose, length = self._loose(floating), self.elements.length
         moved = {g: np.zeros(2) for g in self.train.gears}
         error = {g: np.zeros(2) for g in self.train.gears}
-        for gear, where in branch.scene.displacement.items():
+        for gear, where in self.elements.scene.displacement.items():
             pick = np.eye(size)[where]
             moved[gear] = np.where(loose[gear], np.nan, pick @ motion.rate * length)
             error[gear] = np.where(loose[gear], np.nan, motion.bound(pick) * length)
@@ -210,7 +212,7 @@ class Corner:
         place = self.neighbourhood.own
         if place is not None:
             moves = np.abs(place.tangent.loose).max(axis=1, initial=0.0) > LOOSE
-            for gear, where in place.branch.scene.displacement.items():
+            for gear, where in self.elements.scene.displacement.items():
                 loose[gear] = loose[gear] | moves[where]
         return loose
 
@@ -234,10 +236,6 @@ class Corner:
 
     def _remark(self, key: str, side: str, message: str) -> None:
         self.remarks.append(Remark(key, self.position, side, message))
-
-
-LOOSE = 1e-9
-"""Part of a coordinate in a loose move from which on it counts as undetermined."""
 
 
 def _word(side: str) -> str:

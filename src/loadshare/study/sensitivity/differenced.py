@@ -55,7 +55,7 @@ def differenced(
     NoDifference
         If there is no certified equilibrium to that side, however near.
     """
-    train = varied.scene(0.0).train
+    train = varied.setting(0.0).train
     start = _laid(train, here)
     first = 4.0 * step if step is not None else FIRST * (abs(varied.value.si) or 1e-3)
     slopes: list[tuple[Array, Array]] = []
@@ -65,7 +65,7 @@ def differenced(
             break
         amount = first * 0.25**k
         try:
-            there = _laid(varied.scene(sign * amount).train, varied.answer(sign * amount))
+            there = _laid(varied.setting(sign * amount).train, varied.answer(sign * amount))
         except (Refused, CaseError, ValueError) as fault:
             why = str(fault)
             slopes.clear()

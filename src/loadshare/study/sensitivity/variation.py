@@ -10,15 +10,13 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
 
-import numpy as np
-
-from loadshare.scene import assemble
-from loadshare.scene.scene import Array, Scene
+from loadshare.scene.elements import Elements
+from loadshare.scene.scene import Array
 from loadshare.study.answers import certified
-from loadshare.study.branch import ActiveSet, Branch
-from loadshare.study.branch.system import BranchLost
-from loadshare.study.differences import Derivative, differentiate
+from loadshare.study.follow.active import ActiveSet
 from loadshare.study.parameter import Value
+from loadshare.study.sensitivity.branch import Branch, BranchLost, Setting
+from loadshare.study.sensitivity.differences import Derivative, differentiate
 from loadshare.train import Train
 from loadshare.train.equilibrium import Equilibrium
 
@@ -36,23 +34,29 @@ class Variation:
     value : Value
     position : int
         1-based.
+    elements : Elements
+        At the value itself.
     """
 
-    def __init__(self, trains: Callable[[float], Train], value: Value, position: int) -> None:
+    def __init__(
+        self, trains: Callable[[float], Train], value: Value, position: int, elements: Elements
+    ) -> None:
         self._trains, self.value, self.position = trains, value, position
+        self._elements = elements
         self.cycle = trains(value.number).situation(position).mesh_position
-        self._scene = lru_cache(maxsize=None)(self._assembled)
-        self._changes: dict[tuple[ActiveSet, frozenset[str], bytes], Derivative] = {}
+        self._setting = lru_cache(maxsize=None)(self._at)
+        self._changes: dict[tuple[ActiveSet, bytes], Derivative] = {}
 
     def _number(self, amount: float) -> float:
         return self.value.number + amount / self.value.factor
 
-    def _assembled(self, number: float) -> Scene:
-        return assemble(held(self._trains(number), self.cycle), self.position)
+    def _at(self, number: float) -> Setting:
+        train = held(self._trains(number), self.cycle)
+        return Setting.at(train, self.position, self._elements)
 
-    def scene(self, amount: float) -> Scene:
-        """Return the scene with the input moved by an amount [SI]."""
-        return self._scene(self._number(amount))
+    def setting(self, amount: float) -> Setting:
+        """Return the train with the input moved by an amount [SI]."""
+        return self._setting(self._number(amount))
 
     def answer(self, amount: float) -> Equilibrium:
         """Return the certified equilibrium with the input moved by an amount [SI].
@@ -64,7 +68,7 @@ class Variation:
         Refused
             If there is no certified equilibrium.
         """
-        return certified(self.scene(amount).train, self.position).equilibrium
+        return certified(self.setting(amount).train, self.position).equilibrium
 
     def change(self, branch: Branch, z: Array) -> Derivative:
         """Return the derivative of a branch's residual and torques at z, by the input.
@@ -74,17 +78,16 @@ class Variation:
         CaseError
             If the input can be varied to neither side.
         """
-        key = branch.active, branch.tied, z.tobytes()
+        key = branch.active, z.tobytes()
         if key not in self._changes:
 
             def of(number: float) -> Array:
-                there = Branch(self._scene(number), branch.active, branch.units, branch.tied)
+                there = Branch(self._setting(number), branch.active)
                 if there.size != branch.size:
                     raise BranchLost("a limit without play is another element than one with some")
-                return np.concatenate([there.residual(z), torques(there, z)])
+                return there.figures(z)
 
-            rounding = np.concatenate([branch.rounding(z), torque_rounding(branch, z)])
-            self._changes[key] = differentiate(of, self.value, rounding)
+            self._changes[key] = differentiate(of, self.value, branch.rounding(z))
         return self._changes[key]
 
     def steps(self, sign: float, step: float) -> tuple[str, ...]:
@@ -107,34 +110,6 @@ def held(train: Train, cycle: Mapping[str, int]) -> Train:
             for name, mesh in train.meshes.items()
         },
     )
-
-
-def torques(branch: Branch, z: Array) -> Array:
-    """Torque of every mesh, drive flank less coast flank, as results tell it [N·m]."""
-    contacts = branch.contacts(z)
-    return np.array(
-        [
-            sum(mesh.lever(d) * contacts[mesh.flank_name(d)][0] for d in mesh.flanks)
-            for mesh in branch.scene.train.meshes.values()
-        ]
-    )
-
-
-def torque_gradients(branch: Branch, z: Array) -> Array:
-    """Derivatives (meshes, size) of the torques with respect to z."""
-    contacts = branch.contacts(z)
-    found = np.zeros((len(branch.scene.train.meshes), branch.size))
-    for row, mesh in zip(found, branch.scene.train.meshes.values(), strict=True):
-        for drive in mesh.flanks:
-            row += mesh.lever(drive) * contacts[mesh.flank_name(drive)][1]
-    return found
-
-
-def torque_rounding(branch: Branch, z: Array) -> Array:
-    """Bound on the round-off of the torques [N·m]."""
-    gradients = np.abs(torque_gradients(branch, z))
-    size = np.abs(torques(branch, z)) + gradients @ np.abs(z)
-    return np.asarray(8.0 * np.finfo(float).eps * size)
 
 
 def torques_of(train: Train, found: Equilibrium) -> dict[str, float]:

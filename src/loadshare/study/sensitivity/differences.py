@@ -15,8 +15,8 @@ import numpy as np
 
 from loadshare.errors import CaseError
 from loadshare.scene.scene import Array
-from loadshare.study.branch.system import BranchLost
 from loadshare.study.parameter import Value
+from loadshare.study.sensitivity.branch import BranchLost
 
 STEP = 1e-3
 """Step relative to the input's value: its fourth power, and round-off over it, are about 1e-12."""

@@ -20,13 +20,12 @@ from typing import Protocol
 
 import numpy as np
 
-from loadshare.contact.problem import ArcRow, Row
 from loadshare.errors import CaseError, Refused
-from loadshare.scene.scene import Array, Scene
-from loadshare.study.branch import Branch, Units
-from loadshare.study.branch.gauges import LOOSE, Gauge
-from loadshare.study.branch.system import BranchLost, identified
-from loadshare.study.differences import Derivative, Slope
+from loadshare.scene.scene import Array
+from loadshare.solver.hot import places as at
+from loadshare.study.follow.active import switch_names
+from loadshare.study.sensitivity.branch import Branch, BranchLost, Gauge, Setting
+from loadshare.study.sensitivity.differences import Derivative, Slope
 from loadshare.train.equilibrium import Equilibrium
 
 VERGE = 1e-9
@@ -47,14 +46,14 @@ _EPS = float(np.finfo(float).eps)
 _NOTHING = (CaseError, ValueError, BranchLost, Refused)
 
 
-Gauges = dict[tuple[str, str], Gauge]
+Gauges = dict[tuple[int, int], Gauge]
 
 
 class Varied(Protocol):
-    """An input at a position: the scene and its equations as the input varies."""
+    """An input at a position: the train and its equations as the input varies."""
 
-    def scene(self, amount: float) -> Scene:
-        """Return the scene with the input moved by an amount [SI]."""
+    def setting(self, amount: float) -> Setting:
+        """Return the train with the input moved by an amount [SI]."""
 
     def answer(self, amount: float) -> Equilibrium:
         """Return the certified equilibrium with the input moved by an amount [SI]."""
@@ -84,7 +83,7 @@ class Tangent:
     """
 
     def __init__(self, branch: Branch, z: Array) -> None:
-        self.matrix = branch.jacobian(z)
+        self.matrix = branch.jacobians(z[None])[0]
         size = len(self.matrix)
         largest = np.abs(self.matrix).max(axis=1, initial=0.0)
         scale = 1.0 / np.sqrt(np.where(largest > 0.0, largest, 1.0))
@@ -94,7 +93,7 @@ class Tangent:
         self.inverse = np.asarray(scale[:, None] * core * scale)
         self.unbalanced = _orthonormal(scale[:, None] * left[:, rank:], size)
         spans = _orthonormal(scale[:, None] * right[rank:].T, size)
-        self.loose = spans[: branch.scene.size]
+        self.loose = spans[: branch.n]
         self._branch, self._z = branch, z
 
     @cached_property
@@ -104,13 +103,8 @@ class Tangent:
         Unknowns are known up to round-off carried through the solve: what two of them share, as
         those on either side of a stiff contact do, moves them together.
         """
-        found = []
-        for step in (self.inverse * self._branch.rounding(self._z)).T:
-            try:
-                found.append(self._branch.jacobian(self._z + step) - self.matrix)
-            except BranchLost:
-                continue
-        return np.array(found).reshape(-1, *self.matrix.shape)
+        steps = (self.inverse * self._branch.rounding(self._z)[: self._branch.size]).T
+        return np.asarray(self._branch.jacobians(self._z + steps) - self.matrix)
 
     def turned(self, rate: Array) -> Array:
         """Bound on how far the equations' rates are known, as unknowns move at a rate (size,)."""
@@ -176,19 +170,23 @@ class Point:
     ----------
     branch : Branch
     z : ndarray
-    idle : frozenset of str
+    idle : frozenset of int
         Open contacts on the verge that may close: under a law that is infinitely soft at first they
         carry nothing, to first order.
     """
 
     branch: Branch
     z: Array
-    idle: frozenset[str] = frozenset()
+    idle: frozenset[int] = frozenset()
 
     @cached_property
     def tangent(self) -> Tangent:
         """Its linearised equations."""
         return Tangent(self.branch, self.z)
+
+    def gauges(self) -> Gauges:
+        """Return the gauges of all elements there."""
+        return self.branch.gauges(self.z)
 
 
 class Neighbourhood:
@@ -196,7 +194,7 @@ class Neighbourhood:
 
     Parameters
     ----------
-    scene : Scene
+    setting : Setting
     found : Equilibrium
         Certified.
 
@@ -208,18 +206,19 @@ class Neighbourhood:
         Elements that have neither gap nor force there, or stand at a corner of their law.
     """
 
-    def __init__(self, scene: Scene, found: Equilibrium) -> None:
-        self.units = Units.of(scene)
-        self._scene = scene
+    def __init__(self, setting: Setting, found: Equilibrium) -> None:
+        self._setting = setting
         self.own: Point | None = None
         self.verge: tuple[str, ...] = ()
         self._points: list[Point] = []
         try:
-            self.own = Point(*identified(scene, found, self.units))
+            self.own = Point(*setting.branch_of(found))
         except BranchLost:
             return
-        gauges = self.own.branch.gauges(self.own.z)
-        self.verge = tuple(dict.fromkeys(g.element for g in gauges if abs(g.value) <= VERGE))
+        names = switch_names(setting.elements)
+        near = [g for g in self.own.gauges().values() if abs(g.value) <= VERGE]
+        loose = self.own.tangent.loose
+        self.verge = tuple(dict.fromkeys(names[g.switch] for g in near if g.closing(loose) is None))
         self._points.append(self.own)
 
     def motion(self, sign: float, varied: Varied) -> Motion | None:
@@ -264,20 +263,16 @@ class Neighbourhood:
         verge = self._verge(point)
         if verge is None or not self._holds(point, sign, rate, change.step, varied, verge):
             return None
-        own = self.own.branch.active if self.own is not None else None
-        elements = own.changes(branch.active) if own is not None else ()
+        elements: tuple[str, ...] = ()
+        if self.own is not None:
+            elements = self.own.branch.active.changes(branch.active, self._setting.elements)
         one_sided = bool(verge or elements)
         return Motion(branch, z, tangent, rate, error, slope, elements, one_sided)
 
     @staticmethod
     def _verge(point: Point) -> Gauges | None:
         """Gauges that stand on the verge, undetermined ones with them; None if one is violated."""
-        nothing = np.zeros((point.branch.scene.size, 0))
-        gauges = {
-            key: g
-            for key, g in _by_key(point.branch.gauges(point.z, nothing)).items()
-            if g.element not in point.idle
-        }
+        gauges = {key: g for key, g in point.gauges().items() if g.switch not in point.idle}
         if any(g.value < -10.0 * VERGE for g in gauges.values()):
             return None
         return {key: g for key, g in gauges.items() if g.value <= 10.0 * VERGE}
@@ -289,16 +284,13 @@ class Neighbourhood:
         if not verge:
             return True
         branch, z = point.branch, point.z
-        nothing = np.zeros((branch.scene.size, 0))
         fastest = float(np.abs(rate).max(initial=0.0))
         step = min(step, WAY / fastest) if fastest else step
         along = []
         try:
             for k in (1.0, 2.0):
-                there = Branch(
-                    varied.scene(k * sign * step), branch.active, self.units, branch.tied
-                )
-                along.append(_by_key(there.gauges(z + k * sign * step * rate, nothing)))
+                there = Branch(varied.setting(k * sign * step), branch.active)
+                along.append(there.gauges(z + k * sign * step * rate))
         except _NOTHING:
             return False
         slack = SLIDES * fastest + ROUND_OFF / step
@@ -308,12 +300,10 @@ class Neighbourhood:
                 continue
             once, twice = (there[key].value for there in along)
             grows = (4.0 * once - twice - 3.0 * gauge.value) / (2.0 * step)
-            if gauge.gradient is not None:
-                row = gauge.gradient @ point.tangent.loose
-                if np.abs(row).max(initial=0.0) > LOOSE:
-                    tied.append((row, grows + slack))
-                    continue
-            if grows < -slack:
+            closing = gauge.closing(point.tangent.loose)
+            if closing is not None:
+                tied.append((closing, grows + slack))
+            elif grows < -slack:
                 return False
         return _has_room(tied)
 
@@ -321,14 +311,13 @@ class Neighbourhood:
         """Yield the sets that certified solves a little way to that side stand on."""
         for amount in self._amounts(sign, varied):
             try:
-                scene = varied.scene(amount)
-                branch, z = identified(scene, varied.answer(amount), self.units)
+                branch, z = varied.setting(amount).branch_of(varied.answer(amount))
             except _NOTHING:
                 continue
             # Under a law that is infinitely soft at first a contact carries either nothing, to
             # first order, or what nothing else can.
             soft = self._soft(branch)
-            for tied in (False, True) if soft else (False,):
+            for tied in (frozenset[int](), soft) if soft else (frozenset[int](),):
                 try:
                     yield self._back(branch, z, soft, tied, amount, varied)
                 except _NOTHING:
@@ -343,10 +332,8 @@ class Neighbourhood:
         slope, reach = change.to(sign), 4.0 * change.step
         if not isinstance(slope, Slope):
             return
-        nothing = np.zeros((branch.scene.size, 0))
-        before = _by_key(branch.gauges(z, nothing))
-        there = Branch(varied.scene(sign * change.step), branch.active, self.units, branch.tied)
-        after = _by_key(there.gauges(z, nothing))
+        before = branch.gauges(z)
+        after = Branch(varied.setting(sign * change.step), branch.active).gauges(z)
         shifts = [abs(after[k].value - g.value) for k, g in before.items() if k in after]
         shifts = [s for s in shifts if np.isfinite(s)]
         effect = float(np.abs(slope.value[: branch.size]).max(initial=0.0))
@@ -356,41 +343,35 @@ class Neighbourhood:
         for near in NEAR:
             yield sign * min(near / effect, reach)
 
-    def _soft(self, branch: Branch) -> frozenset[str]:
+    def _soft(self, branch: Branch) -> frozenset[int]:
         """Closed contacts that carry nothing at the value itself under a law soft at first."""
         assert self.own is not None
-        new = branch.active.closed - self.own.branch.active.closed
-        rows: tuple[Row | ArcRow, ...] = (*branch.scene.rows, *branch.scene.arcs)
-        return frozenset(r.name for r in rows if r.name in new and np.isinf(r.law.tangent(0.0)[0]))
+        springs, own = branch.equations.elements.springs, self.own.branch.equations
+        curved = (branch.equations.curved - springs).tolist()
+        return frozenset(k for k in curved if k >= 0 and own.code[k] == at.OPEN)
 
     def _back(
         self,
         branch: Branch,
         z: Array,
-        soft: frozenset[str],
-        tied: bool,
+        soft: frozenset[int],
+        tied: frozenset[int],
         amount: float,
         varied: Varied,
     ) -> Point:
         """Follow a set back to the value: three points on its branch, and Newton's method."""
-        held = soft if tied else frozenset[str]()
-        active = replace(branch.active, closed=branch.active.closed - soft | held)
-        forces = {n: f for n, (f, _) in branch.contacts(z).items()}
-        pulls, x = branch.pulls(z), branch.x(z)
-        here = Branch(self._scene, active, self.units, held)
+        idle = soft - tied
+        code = tuple(at.OPEN if k in idle else c for k, c in enumerate(branch.active.code))
+        active = replace(branch.active, code=code, tied=tied)
+        here = Branch(self._setting, active)
         places = []
         for share in (1.0, 0.5, 0.25):
-            there = Branch(varied.scene(share * amount), active, self.units, held)
-            z = there.solve(there.start(x, forces, pulls))
-            x = there.x(z)
+            there = Branch(varied.setting(share * amount), active)
+            z = there.solve(z[: there.n])
             places.append(z)
         first, second, third = places
-        z = here.solve(first / 3.0 - 2.0 * second + 8.0 / 3.0 * third)
-        return Point(here, z, soft - held)
-
-
-def _by_key(gauges: list[Gauge]) -> Gauges:
-    return {(g.element, g.to.label if g.to else ""): g for g in gauges}
+        z = here.solve((first / 3.0 - 2.0 * second + 8.0 / 3.0 * third)[: here.n])
+        return Point(here, z, idle)
 
 
 def _has_room(rows: list[tuple[Array, float]]) -> bool:

@@ -1,0 +1,140 @@
+"""The active set of an equilibrium: which contacts are closed, where radial elements stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.scene.elements import Elements
+from loadshare.scene.scene import Array, Scene
+from loadshare.solver.hot import places as at
+from loadshare.study.follow.numbers import Numbers
+from loadshare.train.equilibrium import Equilibrium
+
+Codes = NDArray[np.int8]
+
+CARRIES = 1e-11
+"""Force over the load from which on a contact counts as closed."""
+
+
+@dataclass(frozen=True, slots=True)
+class ActiveSet:
+    """Closed contacts and pieces of the radial laws.
+
+    Attributes
+    ----------
+    code : tuple of int
+        Of all elements; see `loadshare.solver.hot.places`.
+    pieces : tuple of int
+        On which piece of its table each tabulated contact stands.
+    tied : frozenset of int
+        Closed contacts, by number, that are held as if they were rigid: those that begin to carry
+        under a law which is infinitely soft at first (c > 0), where nothing else can.
+    """
+
+    code: tuple[int, ...]
+    pieces: tuple[int, ...] = ()
+    tied: frozenset[int] = frozenset()
+
+    def changes(self, other: ActiveSet, elements: Elements) -> tuple[str, ...]:
+        """Names of the elements whose state differs, contacts first."""
+        pairs = zip(self.code, other.code, strict=True)
+        changed = [k for k, (here, there) in enumerate(pairs) if here != there]
+        names, rows = switch_names(elements), elements.rows
+        return (
+            *sorted(names[k] for k in changed if k < rows),
+            *(names[k] for k in changed if k >= rows),
+        )
+
+
+def switch_names(elements: Elements) -> tuple[str, ...]:
+    """Names of contacts and radial elements, in the order of a code."""
+    return (*elements.row_names, *(radial.name for radial in elements.scene.radials))
+
+
+def coordinates(scene: Scene, found: Equilibrium) -> Array:
+    """Coordinates x [m] of an equilibrium."""
+    x = np.zeros(scene.size)
+    for gear, where in scene.displacement.items():
+        x[where] = scene.train.gears[gear].frame @ found.displacement[gear]
+    for gear, rotation in scene.rotation.items():
+        if rotation.index is not None:
+            x[rotation.index] = (found.rotation[gear] - rotation.constant) / rotation.rate
+    return x
+
+
+def read_code(elements: Elements, numbers: Numbers, found: Equilibrium, x: Array) -> Codes:
+    """Read which elements act from the forces and radii of an equilibrium.
+
+    Parameters
+    ----------
+    elements : Elements
+    numbers : Numbers
+        At one value.
+    found : Equilibrium
+        Certified.
+    x : ndarray, shape (n,)
+        Its coordinates, in the units of the elements.
+    """
+    pushes = {**found.flank_force, **found.ring_force}
+    force = np.array([pushes[name] for name in elements.row_names]) / elements.force
+    code = np.zeros(elements.switches, dtype=np.int8)
+    code[: elements.rows][force > CARRIES * max(1.0, force.max(initial=0.0))] = at.CLOSED
+    rows = slice(elements.springs, elements.springs + elements.rows)
+    transmitted = numbers.carried[0, :, rows] @ force
+    for j, radial in enumerate(elements.scene.radials):
+        column = elements.radial_column(j)
+        both = slice(column, column + 2)
+        radius = float(np.linalg.norm(numbers.vectors[0, both] @ x - numbers.gap[0, both]))
+        size = float(np.linalg.norm(found.radial_reaction[radial.name])) / elements.force
+        law = at.graph(numbers.radial[:, j], transmitted[[j]])
+        code[elements.rows + j] = _nearest(law, radius, size)
+    return code
+
+
+def _nearest(law: at.Graph, radius: float, size: float) -> int:
+    """Piece or step of a radial law that is nearest to a radius and force."""
+
+    def off(part: tuple[int, float, float, float, float, float]) -> float:
+        _, begin, end, low, high, slope = part
+        inner = min(max(radius, begin), end)
+        rise = slope * (inner - begin) if slope else 0.0
+        return float(np.hypot(radius - inner, size - min(max(size, low + rise), high + rise)))
+
+    return min(_parts(law), key=off)[0]
+
+
+def _parts(law: at.Graph) -> Iterator[tuple[int, float, float, float, float, float]]:
+    """Yield code, radii between, forces between at the first one, and slope: pieces, then steps."""
+    first, stick, bound, reach, last = (float(v[0]) for v in law[:5])
+    if np.isinf(stick):
+        yield at.STICK, 0.0, np.inf, 0.0, 0.0, first
+        return
+    if stick > 0.0:
+        yield at.STICK, 0.0, stick, 0.0, 0.0, first
+    if reach > stick:
+        # Inside a ring nothing acts; a spline without friction may have some beside.
+        yield at.SLIP if first > 0.0 else at.OPEN, stick, reach, bound, bound, 0.0
+    if np.isfinite(last):
+        yield at.STOP, reach, np.inf, bound, bound, last
+    if bound > first * stick:
+        yield at.CORNER if stick > 0.0 else at.PINNED, stick, stick, first * stick, bound, 0.0
+    if np.isinf(last):
+        yield at.WALL if reach > 0.0 else at.PINNED, reach, reach, bound, np.inf, 0.0
+
+
+def read_pieces(
+    elements: Elements, numbers: Numbers, code: tuple[int, ...], x: Array
+) -> tuple[int, ...]:
+    """Read on which piece of its table each closed tabulated contact stands, at one value."""
+    found, tabulated = [], numbers.tabulated[0]
+    for k in np.flatnonzero(tabulated >= 0).tolist():
+        if code[k - elements.springs] == at.CLOSED:
+            approach = float(numbers.vectors[0, k] @ x - numbers.gap[0, k])
+            points = numbers.tables[0, tabulated[k], 1]
+            last = int(np.isfinite(points).sum()) - 2
+            found.append(int(np.clip(np.searchsorted(points, approach) - 1, 0, last)))
+    return tuple(found)

@@ -1,0 +1,293 @@
+"""Forces that vary nonlinearly along stretches: how they enter, and by how much they do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from loadshare.scene.scene import Array
+from loadshare.solver.hot import places as at
+from loadshare.study.follow.equations import pressed
+from loadshare.study.follow.ranges import NODES, Range, sampled
+from loadshare.study.follow.stretches import Stretches
+
+
+class Force(NamedTuple):
+    """A force, or a condition, that depends on quantities V z nonlinearly.
+
+    Attributes
+    ----------
+    into : ndarray, shape (B, size)
+        A row of U: how it enters the equations.
+    slack : ndarray, shape (B, width)
+        A row of ρ: by how much its slopes with respect to the quantities vary.
+    rate, spread : ndarray, shape (B,)
+        Its derivative along the chord.
+    """
+
+    into: Array
+    slack: Array
+    rate: Array
+    spread: Array
+
+
+class Slope(NamedTuple):
+    """A contact's slope: by how much it varies, and its force's derivative along the chord."""
+
+    off: Array
+    rate: Array
+    spread: Array
+
+
+class Bound(NamedTuple):
+    """A friction bound.
+
+    Attributes
+    ----------
+    value : Range
+    felt : ndarray, shape (B, width)
+        Largest size of its slope with respect to the quantities.
+    varies : ndarray, shape (B, width)
+        By how much that varies.
+    """
+
+    value: Range
+    felt: Array
+    varies: Array
+
+
+class Push(NamedTuple):
+    """The force of an arc or radial element along its offset.
+
+    Attributes
+    ----------
+    value : Range
+        Along the chord.
+    rate, spread : ndarray, shape (B,)
+        Its derivative along the chord at a fixed offset.
+    extra : ndarray, shape (B,)
+        What the deviation of the unknowns adds to its range.
+    steep, off : ndarray, shape (B,)
+        Its slope with respect to the radius: largest size, and by how much it varies.
+    """
+
+    value: Range
+    rate: Array
+    spread: Array
+    extra: Array
+    steep: Array
+    off: Array
+
+
+def forces(s: Stretches, dev: Array) -> Iterator[Force]:
+    """Yield the forces that vary where quantities deviate from the chord by `dev` (B, width)."""
+    e = s.equations
+    slopes = varying_slopes(s, dev)
+    for k in np.flatnonzero(e.acts).tolist():
+        if k in slopes:
+            slope = slopes[k]
+            yield Force(_along(s, s.vectors[:, k]), _slack(s, k, slope.off), *slope[1:])
+    for k, where in s.turning():
+        yield from _turning_force(s, k, where, dev, slopes)
+    for k in e.radials:
+        stiff = s.sampled(s.state.laws[k].first)
+        if e.code[k] == at.STICK and stiff.off.any():
+            matrix, still = s.own(e.matrix(k, s.at_middle)), np.zeros(s.count)
+            for i in (0, 1):
+                slack = _slack(s, s.columns[k].start + i, stiff.off)
+                yield Force(_along(s, matrix[:, i]), slack, still, still)
+
+
+def _along(s: Stretches, vector: Array) -> Array:
+    """Row of U of a force that enters the balance along a vector (B, n)."""
+    row = np.zeros((s.count, s.equations.size))
+    row[:, : s.equations.n] = vector
+    return row
+
+
+def _slack(s: Stretches, columns: int | slice, slack: Array) -> Array:
+    """Row of ρ with respect to some of the quantities."""
+    found = np.zeros((s.count, s.width))
+    found[:, columns] = slack
+    return found
+
+
+# --- Contacts -----------------------------------------------------------------------------------
+
+
+def varying_slopes(s: Stretches, dev: Array) -> dict[int, Slope]:
+    """Contacts whose slope varies: by how much, and how their force changes on the chord."""
+    e, found = s.equations, {}
+    if len(e.curved):
+        every = _curved(s, dev)
+        for i, k in enumerate(e.curved.tolist()):
+            found[k] = Slope(*(part[:, i] for part in every))
+    bending, still = s.numbers.bending, np.zeros(s.count)
+    varies = (bending != bending[:1]).any(axis=0)
+    acting = {*range(e.elements.springs), *e.linear.tolist()}
+    for k in sorted(k for k in acting if varies[k]):
+        b = s.sampled(bending[:, k])
+        off = np.where(b.low > 0.0, 1.0 / b.low - 1.0 / b.high, np.inf)
+        found[k] = Slope(off, still, still)
+    return found
+
+
+def _curved(s: Stretches, dev: Array) -> Slope:
+    """Enclose slopes and derivatives of forces, δ = bF + cF^(2/3)."""
+    columns = s.equations.curved
+    approach, dev = s.approach[columns], dev[:, columns]
+    b, c = (s.sampled(v[:, columns]) for v in (s.numbers.bending, s.numbers.hertz))
+    low, high = approach.low - dev, approach.high + dev
+    nearest = np.where(low * high <= 0.0, 0.0, np.minimum(np.abs(low), np.abs(high)))
+    furthest = np.maximum(np.abs(low), np.abs(high))
+    least_force, least = pressed(b.high, c.high, nearest)
+    force, most = pressed(np.maximum(b.low, 0.0), np.maximum(c.low, 0.0), furthest)
+    force_middle, middle = pressed(b.middle, c.middle, approach.middle)
+    off = np.maximum(most - middle, middle - least)
+    moved, spread = _times(middle, off, approach.rate, approach.spread)
+    # What b and c themselves add: -F F' b' - F^(2/3) F' c', with the sign of F.
+    sign = np.sign(approach.middle)
+    crosses = low * high < 0.0
+    for part, power in ((b, 1.0), (c, 2.0 / 3.0)):
+        upper = np.abs(force) ** power * most
+        lower = np.where(crosses, -upper, np.abs(least_force) ** power * least)
+        here = np.abs(force_middle) ** power * middle
+        wide = np.maximum(upper - here, here - lower)
+        own, own_spread = _times(here, wide, part.rate, part.spread)
+        moved, spread = moved - sign * own, spread + own_spread
+    return Slope(off, moved, spread)
+
+
+def _times(one: Array, one_off: Array, other: Array, other_off: Array) -> tuple[Array, Array]:
+    """Product of two ranges given by middle and half width."""
+    off = np.abs(one) * other_off + one_off * (np.abs(other) + other_off)
+    return np.asarray(one * other), np.asarray(off)
+
+
+# --- Arcs and radial elements -------------------------------------------------------------------
+
+
+def friction_bound(s: Stretches, k: int, slopes: dict[int, Slope]) -> Bound:
+    """Friction bound of a radial element along the chord, and how it follows the contacts."""
+    e, j = s.equations, k - s.equations.radials.start
+    value = s.sampled(s.state.laws[k].bound)
+    given = s.split(s.numbers.radial[:, j])
+    felt, varies = np.zeros((s.count, s.width)), np.zeros((s.count, s.width))
+    per = np.where(np.isnan(given[:, 0, 3]), given[:, :, 4].max(axis=1), 0.0)
+    if not per.any():
+        return Bound(value, felt, varies)
+    arms = s.own(s.at_middle.carried)[:, j]
+    slope = np.abs(s.split(s.state.slope)).max(axis=1)
+    rate, spread = np.zeros(s.count), np.zeros(s.count)
+    torque = s.split(s.state.transmitted[:, j])
+    sign = np.sign(torque[:, NODES // 2])
+    for i in np.flatnonzero(e.acts).tolist():
+        if not arms[:, i].any():
+            continue
+        arm, bends = per * np.abs(arms[:, i]), i in slopes and i in e.curved
+        force = slopes[i] if bends else s.sampled(s.state.force[:, i])
+        if bends:
+            varies[:, i] = arm * force.off
+            felt[:, i] = arm * (slope[:, i] + force.off)
+        else:
+            felt[:, i] = arm * slope[:, i]
+        rate += per * sign * arms[:, i] * force.rate
+        spread += arm * force.spread
+    changing = s.sampled(s.numbers.radial[:, j, 4])
+    spread += (np.abs(changing.rate) + changing.spread) * np.abs(torque).max(axis=1)
+    spread = np.maximum(spread, np.abs(value.rate - rate) + value.spread)
+    # Where the torque changes its sign the bound has a kink.
+    kink = (torque.min(axis=1) <= 0.0) & (torque.max(axis=1) >= 0.0)
+    varies = np.where(kink[:, None] & (felt > 0.0), np.inf, varies)
+    return Bound(Range(value.nodes, rate, spread), felt, varies)
+
+
+def _turning_force(
+    s: Stretches, k: int, where: int | None, dev: Array, slopes: dict[int, Slope]
+) -> Iterator[Force]:
+    """Yield the components of a force that turns, and the condition that an unknown one meets."""
+    e, offset, along, here = s.equations, s.offsets[k], s.along[k], s.columns[k]
+    bound = None
+    if where is None and k in e.radials:
+        bound = friction_bound(s, k, slopes)
+    around, radius, turn = s.around(k, dev)
+    push = _push(s, k, where, dev, bound)
+    near = radius - around
+    largest = np.maximum(np.abs(push.value.low), np.abs(push.value.high)) + push.extra
+    across = largest / near
+    off = push.value.off + push.extra
+    across_off = off / near + np.abs(push.value.middle) * around / (near * radius)
+    slack = push.off + 2.0 * across_off + (push.steep + across) * 2.0 * turn
+    stiff = s.split(s.state.polars[k].stiffness)[:, NODES // 2]
+    rate = (stiff @ offset.rate[:, :, None])[:, :, 0] + push.rate[:, None] * along
+    bends = offset.spread.sum(axis=1)
+    moved = np.abs(offset.rate).sum(axis=1) + bends
+    spread = slack * moved + (push.steep + across) * bends
+    spread += push.spread + (np.abs(push.rate) + push.spread) * turn
+    every = _slack(s, here, slack[:, None])
+    if where is not None:
+        every[:, s.z_in + where] += turn
+    elif bound is not None:
+        every += bound.felt * turn[:, None] + bound.varies
+    matrix = s.own(e.matrix(k, s.at_middle))
+    for i in range(matrix.shape[1]):
+        yield Force(_along(s, matrix[:, i]), every, rate[:, i], spread)
+    if where is not None:
+        limit = _limit(s, k)
+        row = np.zeros((s.count, e.size))
+        row[:, where] = 1.0
+        straight = s.state.polars[k].sense * (along * offset.rate).sum(axis=1)
+        yield Force(
+            row,
+            _slack(s, here, turn[:, None]),
+            straight - limit.rate,
+            turn * moved + bends + limit.spread,
+        )
+
+
+def _limit(s: Stretches, k: int) -> Range:
+    """Radius at which a step stands; for an arc, minus its clearance's effect on the margin."""
+    e = s.equations
+    if k in e.arcs:
+        # The row is −margin = a − c − |d|.
+        a = k - e.arcs.start
+        nominal = s.split(s.numbers.nominal[:, a])
+        apart = np.sqrt((nominal * nominal).sum(axis=-1))
+        return sampled(s.split(s.numbers.clearance[:, a]) - apart)
+    law = s.state.laws[k]
+    return s.sampled(law.stick if e.code[k] == at.CORNER else law.reach)
+
+
+def _push(s: Stretches, k: int, where: int | None, dev: Array, bound: Bound | None) -> Push:
+    """Force of an arc or radial element along its offset."""
+    e, still = s.equations, np.zeros(s.count)
+    polar = s.state.polars[k]
+    if where is not None:
+        p = s.chord[where]
+        value = Range(polar.sense * p.nodes, polar.sense * p.rate, p.spread)
+        return Push(value, value.rate, value.spread, dev[:, s.z_in + where], still, still)
+    around, radius, _ = s.around(k, dev)
+    value, give = s.sampled(polar.size), s.sampled(polar.slope)
+    # The chord's own sagitta is far below the band of the offset; it is bounded by it.
+    sagitta = around**2 / radius
+    if bound is None:
+        clearance = s.sampled(s.numbers.clearance[:, k - e.arcs.start])
+        margin = s.sampled(s.state.margin[k])
+        rate = give.middle * clearance.rate + margin.middle * give.rate
+        spread = give.off * np.abs(clearance.rate) + give.most * clearance.spread
+        spread += margin.off * np.abs(give.rate) + margin.most * give.spread
+        extra = give.most * s.felt(k, dev) + give.most * sagitta
+        return Push(value, rate, spread, extra, give.most, give.off)
+    follows = (bound.felt * dev).sum(axis=1)
+    if e.code[k] == at.SLIP:
+        value = bound.value
+        return Push(value, value.rate, value.spread, follows, still, still)
+    reach = s.sampled(s.state.laws[k].reach)
+    past = np.abs(radius - reach.middle) + around + reach.off
+    rate = bound.value.rate + give.rate * (radius - reach.middle) - give.middle * reach.rate
+    spread = bound.value.spread + give.spread * past + give.most * reach.spread
+    spread += np.abs(give.rate) * (around + reach.off) + give.off * np.abs(reach.rate)
+    extra = follows + give.most * (s.felt(k, dev) + sagitta)
+    return Push(value, rate, spread, extra, give.most, give.off)

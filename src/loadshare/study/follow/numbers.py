@@ -1,0 +1,107 @@
+"""What the equations of a machine consist of, at many values of an input at once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.scene import assemble
+from loadshare.scene.data import data_of
+from loadshare.scene.elements import Elements, elements_of
+from loadshare.scene.scene import Array
+from loadshare.train import Train
+from loadshare.train.situations import Situations
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Numbers:
+    """What the equations of a machine consist of at S values, in the units of its elements.
+
+    Attributes
+    ----------
+    vectors : ndarray, shape (S or 1, m, n)
+        A.
+    load, gap, bending, hertz : ndarray, shape (S or 1, n), (S or 1, m) ...
+        f, g, b, c; see `loadshare.scene.data.Data`.
+    tabulated : ndarray of int, shape (S or 1, m)
+        Number of the table of every element, −1 without.
+    tables : ndarray, shape (S or 1, tables, 2, points)
+    nominal, shift, clearance : ndarray, shape (S or 1, arcs, 3), (S or 1, arcs, 3), (S or 1, arcs)
+    relative : ndarray, shape (S or 1, arcs, 3, n)
+    radial : ndarray, shape (S or 1, radials, 6)
+    carried : ndarray, shape (S or 1, radials, m)
+    """
+
+    vectors: Array
+    load: Array
+    gap: Array
+    bending: Array
+    hertz: Array
+    tabulated: NDArray[np.intp]
+    tables: Array
+    nominal: Array
+    shift: Array
+    clearance: Array
+    relative: Array
+    radial: Array
+    carried: Array
+
+    @classmethod
+    def of(cls, elements: Elements, situations: Situations) -> Numbers:
+        """Collect the numbers of a machine."""
+        data = data_of(elements, situations)
+        carried = data.carried.copy()
+        carried[_idle(elements, situations)] = 0.0
+        constant: dict[str, Any] = {
+            "vectors": elements.vectors,
+            "tabulated": data.tabulated,
+            "nominal": data.nominal,
+            "relative": data.relative,
+            "carried": carried,
+        }
+        names = [f.name for f in fields(cls) if f.name not in constant]
+        return cls(
+            **{name: value[None] for name, value in constant.items()},
+            **{name: getattr(data, name) for name in names},
+        )
+
+    @classmethod
+    def stacked(cls, parts: Sequence[Numbers]) -> Numbers:
+        """Return the numbers of several machines, one after another."""
+        names = [f.name for f in fields(cls)]
+        return cls(**{n: np.concatenate([getattr(p, n) for p in parts]) for n in names})
+
+    def take(self, rows: NDArray[np.intp] | slice) -> Numbers:
+        """Return the numbers at some of the values."""
+        every = {f.name: getattr(self, f.name) for f in fields(self)}
+        return Numbers(**{k: v[rows] if len(v) > 1 else v for k, v in every.items()})
+
+
+def _idle(elements: Elements, situations: Situations) -> list[int]:
+    """Radial elements of gears that no shaft and no load turns: no torque passes over them.
+
+    The torques of such a gear's meshes balance; their sum is round-off, whose sign says nothing.
+    """
+    train = situations.train
+    turned = {gear for s in train.shafts.values() for gear in (s.first, s.second)} | {train.output}
+    gears = list(train.gears)
+    turned |= {gears[k] for k in np.flatnonzero(np.any(situations.torque, axis=0))}
+    return [j for j, radial in enumerate(elements.scene.radials) if radial.gear not in turned]
+
+
+def elements_like(base: Elements, train: Train) -> Elements:
+    """Return the elements of a train that differs from another in an input, in its units.
+
+    Raises
+    ------
+    ValueError
+        If it has other elements.
+    """
+    mine = elements_of(assemble(train, 1))
+    if mine.kinds != base.kinds or mine.scene.coordinates != base.scene.coordinates:
+        raise ValueError("the parameter changes which elements there are")
+    return replace(mine, force=base.force, length=base.length)

@@ -1,0 +1,104 @@
+"""Stretches of one active set between solved points, and the quantities on which laws depend."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loadshare.scene.scene import Array
+from loadshare.solver.hot import places as at
+from loadshare.study.follow.equations import Equations
+from loadshare.study.follow.numbers import Numbers
+from loadshare.study.follow.ranges import NODES, Enclosure, Range, sampled
+
+
+class Stretches:
+    """Stretches of one set between solved points.
+
+    Parameters
+    ----------
+    equations : Equations
+    ends : ndarray, shape (B, 2, size)
+        Unknowns at both ends.
+    numbers : Numbers
+        At NODES equidistant values of each stretch, one stretch after another.
+
+    Attributes
+    ----------
+    width : int
+        Number of quantities V z on which laws depend: approaches, then offsets of arcs and radial
+        elements, then the unknowns themselves.
+    inputs : ndarray, shape (B, width, size)
+        V.
+    """
+
+    def __init__(self, equations: Equations, ends: Array, numbers: Numbers) -> None:
+        e = self.equations = equations
+        self.numbers, self.count = numbers, len(ends)
+        tau = np.linspace(0.0, 1.0, NODES)[:, None]
+        chord = (1.0 - tau) * ends[:, :1] + tau * ends[:, 1:]
+        self.flat = chord.reshape(-1, e.size)
+        self.chord = sampled(chord)
+        self.middle = np.arange(self.count) * NODES + NODES // 2
+        self.at_middle = numbers.take(self.middle)
+        self.vectors = self.own(self.at_middle.vectors)
+        self.columns: dict[int, slice] = {}
+        start = e.scalars
+        for k in (*e.arcs, *e.radials):
+            self.columns[k] = slice(start, start + (3 if k in e.arcs else 2))
+            start = self.columns[k].stop
+        self.z_in, self.width = start, start + e.size
+        self.inputs = np.zeros((self.count, self.width, e.size))
+        self.inputs[:, : e.scalars, : e.n] = self.vectors[:, : e.scalars]
+        for k, columns in self.columns.items():
+            self.inputs[:, columns, : e.n] = self.own(e.matrix(k, self.at_middle))
+        self.inputs[:, self.z_in :] = np.eye(e.size)
+        with np.errstate(all="ignore"):
+            self.state = e.state(self.flat, numbers)
+            self.approach = self.sampled(self.state.approach)
+            polars = self.state.polars
+            self.offsets = {k: self.sampled(p.offset) for k, p in polars.items()}
+            self.radii = {k: self.split(p.radius)[:, NODES // 2] for k, p in polars.items()}
+            self.along = {k: self.split(p.along)[:, NODES // 2] for k, p in polars.items()}
+
+    @classmethod
+    def at_points(cls, equations: Equations, z: Array, numbers: Numbers) -> Stretches:
+        """Return stretches without length at points z (S, size)."""
+        rows = np.repeat(np.arange(len(z)), NODES)
+        return cls(equations, np.stack([z, z], axis=1), numbers.take(rows))
+
+    def split(self, values: Array) -> Array:
+        """Return values of all nodes (B·NODES or 1, ...) as (B, NODES, ...)."""
+        shape = (self.count * NODES, *values.shape[1:])
+        return np.broadcast_to(values, shape).reshape(self.count, NODES, *values.shape[1:])
+
+    def sampled(self, values: Array) -> Range:
+        """Enclose a quantity known at all nodes (B·NODES or 1, ...)."""
+        return sampled(self.split(values))
+
+    def own(self, values: Array) -> Array:
+        """Return values (B or 1, ...) of the middles for every stretch."""
+        return np.broadcast_to(values, (self.count, *values.shape[1:]))
+
+    def turning(self) -> list[tuple[int, int | None]]:
+        """Arcs and radial elements whose force turns, and where it stands if it is unknown."""
+        e = self.equations
+        turning = (at.SLIP, at.STOP, at.WALL, at.CORNER)
+        acting = e.polar_at.items()
+        return [(k, w) for k, w in acting if k in e.arcs or int(e.code[k]) in turning]
+
+    def around(self, k: int, dev: Array) -> tuple[Array, Array, Array]:
+        """Distance of an offset from its middle, its radius there, and how far its way turns."""
+        off = self.offsets[k].off + dev[:, self.columns[k]]
+        around, radius = np.sqrt((off * off).sum(axis=1)), self.radii[k]
+        around = np.where(around < radius, around, np.inf)
+        return around, radius, 2.0 * around / radius
+
+    def felt(self, k: int, dev: Array) -> Array:
+        """Length of the deviation of an offset."""
+        part = dev[:, self.columns[k]]
+        return np.asarray(np.sqrt((part * part).sum(axis=1)))
+
+    def unknown(self, where: int, dev: Array, bend: Array) -> Enclosure:
+        """Enclose an unknown."""
+        inner = self.z_in + where
+        return Enclosure(self.chord[where], dev[:, inner], bend[:, inner])

@@ -1,0 +1,213 @@
+"""The equations of an active set at one value of an input, and how far it is from ending."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from loadshare.scene import assemble
+from loadshare.scene.elements import Elements, elements_of
+from loadshare.scene.scene import Array
+from loadshare.solver.hot import places as at
+from loadshare.study.follow.active import ActiveSet, coordinates, read_code, read_pieces
+from loadshare.study.follow.equations import Equations
+from loadshare.study.follow.gauges import gauges_at
+from loadshare.study.follow.numbers import Numbers, elements_like
+from loadshare.study.follow.stretches import Stretches
+from loadshare.train import Train
+from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.situations import situation_of
+
+LOOSE = 1e-9
+"""Approach per move that nothing resists, from which on a contact's approach is undetermined."""
+ROUNDINGS = 4.0
+"""Roundings that a term of the residual has behind it: radii, directions, sums."""
+_EPS = float(np.finfo(float).eps)
+
+
+class BranchLost(RuntimeError):  # noqa: N818 -- a finding, not a fault
+    """A branch has no point where it was looked for; the message says why."""
+
+
+@dataclass(frozen=True, eq=False)
+class Setting:
+    """A train at a position, as the equations of its active sets take it.
+
+    Attributes
+    ----------
+    train : Train
+    elements : Elements
+        Of the train at the input's own value: coordinates and units are the same at all values.
+    numbers : Numbers
+    """
+
+    train: Train
+    elements: Elements
+    numbers: Numbers
+
+    @classmethod
+    def at(cls, train: Train, position: int, base: Elements | None = None) -> Setting:
+        """Return a train at a position (1-based).
+
+        Parameters
+        ----------
+        train : Train
+        position : int
+        base : Elements, optional
+            Of the train at the input's own value; by default this is it.
+
+        Raises
+        ------
+        ValueError
+            If it has other elements than these.
+        """
+        own = elements_of(assemble(train, 1)) if base is None else elements_like(base, train)
+        return cls(train, base or own, Numbers.of(own, situation_of(train, position)))
+
+    @cached_property
+    def levers(self) -> Array:
+        """Torques of the meshes [N·m] per unit of every flank's force, shape (meshes, scalars)."""
+        scene, meshes = self.elements.scene, self.train.meshes.values()
+        columns = {row.name: self.elements.springs + k for k, row in enumerate(scene.rows)}
+        found = np.zeros((len(meshes), self.elements.springs + len(scene.rows)))
+        for row, mesh in zip(found, meshes, strict=True):
+            for drive in mesh.flanks:
+                row[columns[mesh.flank_name(drive)]] = mesh.lever(drive) * self.elements.force
+        return found
+
+    def branch_of(self, found: Equilibrium) -> tuple[Branch, Array]:
+        """Return the branch of a certified equilibrium, and its unknowns solved to round-off.
+
+        Raises
+        ------
+        BranchLost
+            If the equations of the active set do not reproduce the equilibrium.
+        """
+        branch = Branch(self, self.active_set(found))
+        return branch, branch.solve(self._x(found))
+
+    def active_set(self, found: Equilibrium) -> ActiveSet:
+        """Read the active set of a certified equilibrium."""
+        elements, numbers, x = self.elements, self.numbers, self._x(found)
+        code = tuple(read_code(elements, numbers, found, x).tolist())
+        return ActiveSet(code, read_pieces(elements, numbers, code, x))
+
+    def _x(self, found: Equilibrium) -> Array:
+        return coordinates(self.elements.scene, found) / self.elements.length
+
+
+class Gauge(NamedTuple):
+    """How far an element is from leaving its state [deflections or loads].
+
+    Attributes
+    ----------
+    switch : int
+    value : float
+    gradient : ndarray, shape (n,), or None
+        Of an open contact's approach with respect to the coordinates.
+    """
+
+    switch: int
+    value: float
+    gradient: Array | None
+
+    def closing(self, loose: Array) -> Array | None:
+        """How fast loose moves (n, d) close it; None where they leave it as it is."""
+        if self.gradient is None:
+            return None
+        rates = np.asarray(self.gradient @ loose)
+        return rates if np.abs(rates).max(initial=0.0) > LOOSE else None
+
+
+class Branch:
+    """The equations of an active set at one value of an input.
+
+    Parameters
+    ----------
+    setting : Setting
+    active : ActiveSet
+
+    Raises
+    ------
+    BranchLost
+        If a radial law lacks the step on which the set stands.
+    """
+
+    def __init__(self, setting: Setting, active: ActiveSet) -> None:
+        self.setting, self.active, self.numbers = setting, active, setting.numbers
+        e = self.equations = Equations(setting.elements, active, setting.numbers)
+        self.size, self.n = e.size, e.n
+        for j, k in enumerate(e.radials):
+            law = at.graph(self.numbers.radial[:, j], np.zeros(1))
+            rigid = bool(np.isinf(law.last[0]))
+            play = float((law.reach if rigid else law.stick)[0])
+            on_step = {at.PINNED: play == 0.0, at.WALL: play > 0.0}
+            if not on_step.get(int(e.code[k]), True):
+                raise BranchLost("a limit without play is another element than one with some")
+
+    def figures(self, z: Array) -> Array:
+        """Return G at unknowns z (size,), then the torque of every mesh [N·m].
+
+        Raises
+        ------
+        BranchLost
+            If a radial law would drop there.
+        """
+        state = self.equations.state(z[None], self.numbers)
+        if not all(law.valid.all() for law in state.laws.values()):
+            raise BranchLost("a spline's force would drop where it starts to slip")
+        residual = self.equations.residual(z[None], self.numbers, state)[0]
+        return np.concatenate([residual, self.setting.levers @ state.force[0]])
+
+    def jacobians(self, z: Array) -> Array:
+        """Return the derivative of G at points z (S, size)."""
+        return self.equations.jacobian(z, self.numbers)
+
+    def rounding(self, z: Array) -> Array:
+        """Bound on the round-off of these figures, from the sizes of their terms."""
+        state = self.equations.state(z[None], self.numbers)
+        sizes = self.equations.sizes(z[None], self.numbers, state)[0]
+        torques = np.abs(self.setting.levers @ state.force[0])
+        torques += np.abs(self.torque_gradients(z)) @ np.abs(z)
+        return _EPS * np.concatenate([ROUNDINGS * sizes, 2.0 * ROUNDINGS * torques])
+
+    def solve(self, x: Array) -> Array:
+        """Solve from coordinates near by.
+
+        Raises
+        ------
+        BranchLost
+            If there is no solution near them.
+        """
+        start = self.equations.start(x[None], self.numbers)
+        z, good = self.equations.solve(start, self.numbers)
+        if not good[0]:
+            raise BranchLost("the equations of the active set have no solution near by")
+        return np.asarray(z[0])
+
+    def torque_gradients(self, z: Array) -> Array:
+        """Derivatives (meshes, size) of the torques with respect to z."""
+        state = self.equations.state(z[None], self.numbers)
+        levers = self.setting.levers[None]
+        return np.asarray(self.equations.along_forces(levers, state, self.numbers)[0])
+
+    def gauges(self, z: Array) -> dict[tuple[int, int], Gauge]:
+        """Return the gauge of every element, by what it is and the state to which it would go."""
+        e = self.equations
+        with np.errstate(all="ignore"):
+            here = Stretches.at_points(e, z[None], self.numbers)
+            found = gauges_at(here)
+        gauges = {}
+        for gauge in found:
+            k, gradient = gauge.switch, None
+            if k in e.arcs and k not in e.polar_at:
+                gradient = -here.along[k][0] @ e.matrix(k, self.numbers)[0]
+            elif k < e.arcs.start and e.code[k] == at.OPEN:
+                gradient = here.vectors[0, e.elements.springs + k]
+            # What the coordinates cannot close is none.
+            if gradient is None or gradient.any():
+                gauges[k, gauge.to] = Gauge(k, float(gauge.first[0]), gradient)
+        return gauges
