@@ -16,8 +16,8 @@ from loadshare.report.figures.marks import (
     heading,
     padded,
     rimmed,
+    rules,
 )
-from loadshare.report.figures.rules import rules
 from loadshare.report.numbers import decimals
 from loadshare.report.palette import FAINT, INK, Look
 

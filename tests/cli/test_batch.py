@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 import loadshare as ls
-from loadshare.cli.batch import pool
-from loadshare.cli.batch.names import result_names
+from loadshare.cli.batch import work as pool
+from loadshare.cli.batch.work import result_names
 
 
 @pytest.fixture
@@ -192,7 +192,7 @@ def test_an_interrupted_batch_leaves_whole_files_and_goes_on(command, star, tmp_
 GATED = """
 import sys, time
 from pathlib import Path
-from loadshare.cli.batch import pool
+from loadshare.cli.batch import work as pool
 from loadshare.cli.batch.work import work
 
 def gated(task):
@@ -252,7 +252,7 @@ def test_a_process_that_dies_costs_only_its_own_case(star, tmp_path, environment
     script.write_text(
         """
 import os
-from loadshare.cli.batch import pool
+from loadshare.cli.batch import work as pool
 from loadshare.cli.batch.work import work
 
 def dying(task):

@@ -9,7 +9,7 @@ import pytest
 from tests.support import shipped
 
 import loadshare as ls
-from loadshare.report.figures.rest import direction_name, places_told
+from loadshare.report.words import direction_name, places_told
 
 
 def panels(figure, read):

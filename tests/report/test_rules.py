@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from loadshare.report.figures.rules import BREADTH, rules
+from loadshare.report.figures.marks import BREADTH, rules
 
 
 def sides(places: list[float]) -> list[str]:

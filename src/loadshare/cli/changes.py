@@ -1,12 +1,37 @@
-"""Changes to a case from the command line: ``--set KEY=VALUE``."""
+"""A case from the command line, with the changes that were asked for: ``KEY=VALUE``."""
 
 from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterable
-from typing import Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import typer
+
+if TYPE_CHECKING:
+    from loadshare.case import Case
+
+
+def open_case(file: Path, settings: Iterable[str] | None) -> Case:
+    """Return the case of a file, changed as the command line asks.
+
+    Parameters
+    ----------
+    file : Path
+    settings : iterable of str or None
+        As for `read_changes`.
+
+    Raises
+    ------
+    CaseError
+        With all problems of the case.
+    """
+    from loadshare.case import load_case
+
+    changes = read_changes(settings or ())
+    case = load_case(file)
+    return case.replace(changes) if changes else case
 
 
 def read_changes(settings: Iterable[str]) -> dict[str, Any]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from loadshare.cli.changes import read_changes
+from loadshare.cli.changes import open_case, read_changes
 from loadshare.cli.exits import UNUSABLE, counted, fail, problems_told, writing
 from loadshare.cli.options import CaseFile, changes, output
 from loadshare.errors import CaseError, LoadshareError, Problem
@@ -35,9 +36,8 @@ def draw(
 
     A case that cannot be used is drawn as far as it can be read.
     """
-    asked = read_changes(change or ())
     with problems_told():
-        figure, problems = _drawn(case, asked)
+        figure, problems = _drawn(case, change or ())
     with writing(file):
         try:
             figure.save(file)
@@ -49,7 +49,7 @@ def draw(
         fail([*map(str, problems), told], UNUSABLE)
 
 
-def _drawn(file: Path, changes: dict[str, object]) -> tuple[Figure, list[Problem]]:
+def _drawn(file: Path, settings: Sequence[str]) -> tuple[Figure, list[Problem]]:
     """Return the drawing of a case, and what is wrong with the case.
 
     Raises
@@ -57,16 +57,14 @@ def _drawn(file: Path, changes: dict[str, object]) -> tuple[Figure, list[Problem
     CaseError
         If nothing of it can be drawn.
     """
-    from loadshare.case import load_case
     from loadshare.case.reader import load_draft
     from loadshare.report.figures.train import train
     from loadshare.train import build_train
 
     try:
-        case = load_case(file)
-        case = case.replace(changes) if changes else case
+        case = open_case(file, settings)
     except CaseError as error:
-        draft = load_draft(file, changes)
+        draft = load_draft(file, read_changes(settings))
         if not draft.gears:
             raise
         return train(draft), list(error.problems)

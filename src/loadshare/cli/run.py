@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
-from loadshare.cli.changes import read_changes
+from loadshare.cli.changes import open_case
 from loadshare.cli.console import progress, say
 from loadshare.cli.exits import REFUSED, fail, problems_told, writing
 from loadshare.cli.files import write_document, write_text
@@ -60,15 +60,11 @@ def run(
     ] = None,
 ) -> None:
     """Solve a case and print load sharing, floats and certificate."""
-    from loadshare.case import load_case
-    from loadshare.cli.tables.heading import print_heading
-    from loadshare.cli.tables.result import print_result
+    from loadshare.cli.tables.result import print_heading, print_result
     from loadshare.train import build_train
 
-    asked = read_changes(change or ())
     with problems_told():
-        loaded = load_case(case)
-        loaded = loaded.replace(asked) if asked else loaded
+        loaded = open_case(case, change)
         train = build_train(loaded)
     wanted = _wanted(position, train.count)
     print_heading(loaded, str(case), train.count, wanted, change or ())

@@ -7,9 +7,8 @@ from typing import Annotated
 
 import typer
 
-from loadshare.cli.batch.names import SUMMARY, result_names
 from loadshare.cli.batch.summary import print_summary, summary_document
-from loadshare.cli.batch.work import GOOD, Outcome, Task
+from loadshare.cli.batch.work import GOOD, SUMMARY, Outcome, Task, outcomes, result_names
 from loadshare.cli.console import progress
 from loadshare.cli.exits import INTERRUPTED, REFUSED, fail, writing
 from loadshare.cli.files import write_document
@@ -44,8 +43,6 @@ def batch(
     interruption the same command goes on.
     """
     from loky import cpu_count
-
-    from loadshare.cli.batch.pool import outcomes
 
     found = find_cases(cases)
     tasks = [

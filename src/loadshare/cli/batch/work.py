@@ -1,14 +1,20 @@
-"""One case of a batch: whatever happens to it becomes an outcome."""
+"""The cases of a batch: each has a file of its own, and whatever happens to it is an outcome."""
 
 from __future__ import annotations
 
+import os
 import time
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import typer
+
 from loadshare._version import __version__
 from loadshare.errors import CaseError, Refused, ResultError
+from loadshare.processes import side_by_side
 
 if TYPE_CHECKING:
     from loadshare.case import Case
@@ -123,7 +129,7 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
 
 
 def _warnings(result: Result) -> tuple[str, ...]:
-    from loadshare.report.validity import advice
+    from loadshare.report.words import advice
 
     told = advice(result)
     return (f"warning: {told}",) if told else ()
@@ -155,3 +161,63 @@ def _kept(task: Task, case: Case, count: int) -> tuple[Result | None, tuple[str,
     asked = (case.hash, __version__, task.solver, task.method, task.tolerance)
     whole = stamp.positions == tuple(range(1, count + 1)) and stamp.reduce
     return (result if whole and found == asked else None), ()
+
+
+SUMMARY = "summary"
+"""Name that no case may take: the batch's own file bears it."""
+
+
+def result_names(cases: Sequence[Path]) -> list[str]:
+    """Return one name per case: that of its file, or its relative path if two are called alike.
+
+    Parameters
+    ----------
+    cases : sequence of Path
+        Different files.
+
+    Returns
+    -------
+    list of str
+        Different names, also on a file system that takes capitals for small letters.
+    """
+    absolute = [path.absolute() for path in cases]
+    root = os.path.commonpath([path.parent for path in absolute]) if absolute else ""
+    stems = Counter(path.stem.casefold() for path in cases)
+    taken = {SUMMARY}
+    names = []
+    for path in absolute:
+        name = path.stem
+        if stems[name.casefold()] > 1:
+            name = path.relative_to(root).with_suffix("").as_posix()
+        while name.casefold() in taken:
+            name += "_"
+        taken.add(name.casefold())
+        names.append(name)
+    return names
+
+
+def outcomes(tasks: Sequence[Task], jobs: int) -> Iterator[Outcome]:
+    """Do all tasks and yield their outcomes as they come.
+
+    Parameters
+    ----------
+    tasks : sequence of Task
+    jobs : int
+        Processes; with one, everything is done in this process.
+
+    Yields
+    ------
+    Outcome
+        One per task. A process that dies costs only the case on which it died.
+    """
+    if jobs == 1:
+        yield from map(work, tasks)
+        return
+    for task, outcome in side_by_side(work, tasks, jobs, _stopping):
+        yield outcome or Outcome(
+            task.name, str(task.case), "crashed", 0.0, messages=("its process died",)
+        )
+
+
+def _stopping() -> None:
+    typer.echo("Stopping; the cases under way are finished first.", err=True)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from loadshare.cli.changes import read_changes
+from loadshare.cli.changes import open_case
 from loadshare.cli.console import Tick, progress
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail, problems_told, writing
 from loadshare.cli.options import changes, ending, output
@@ -85,21 +85,6 @@ def end(lines: list[str]) -> None:
     """Leave with the code of a refusal where a study tells that it lacks an answer."""
     if lines:
         fail(lines, REFUSED)
-
-
-def open_case(file: Path, change: list[str] | None) -> Case:
-    """Return the case of a file, with what ``--with`` changes.
-
-    Raises
-    ------
-    CaseError
-        With all problems of the case.
-    """
-    from loadshare.case import load_case
-
-    case = load_case(file)
-    asked = read_changes(change or ())
-    return case.replace(asked) if asked else case
 
 
 def write_table(

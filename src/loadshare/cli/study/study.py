@@ -7,9 +7,10 @@ from typing import Annotated, Any
 
 import typer
 
+from loadshare.cli.changes import open_case
 from loadshare.cli.console import progress
 from loadshare.cli.options import CaseFile
-from loadshare.cli.study.common import Changes, answered, end, open_case
+from loadshare.cli.study.common import Changes, answered, end
 from loadshare.cli.study.compare import show_comparison
 from loadshare.cli.study.critical import show_critical, unconfirmed
 from loadshare.cli.study.fit import show_fit

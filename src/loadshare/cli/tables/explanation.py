@@ -12,7 +12,7 @@ from loadshare.cli.tables.table import show, table
 from loadshare.contact.plan import Role
 from loadshare.job.ladder import Answer
 from loadshare.report.numbers import fixed, small
-from loadshare.report.undetermined import range_told
+from loadshare.report.words import range_told
 from loadshare.solver import Record
 
 

@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Literal
 
+from rich.table import Table
 from rich.text import Text
 
-from loadshare.cli.console import say
+from loadshare.case import Case
+from loadshare.certify import FloatState
+from loadshare.cli.console import say, say_all
 from loadshare.cli.exits import counted
 from loadshare.cli.refusal import ranges
-from loadshare.cli.tables.floats import print_floats
-from loadshare.cli.tables.sharing import print_sharing
-from loadshare.cli.tables.table import show, texts
+from loadshare.cli.tables.table import fits, show, table, texts
 from loadshare.report import records
-from loadshare.report.numbers import significant, small
-from loadshare.report.table import Cell
-from loadshare.report.validity import advice
-from loadshare.results import Result
+from loadshare.report.numbers import NONE, decimals, fixed, significant, small
+from loadshare.report.records import Cell
+from loadshare.report.words import advice, undetermined_told
+from loadshare.results import Position, Result
 
+MOST = 6
+"""Positions that are shown side by side."""
+RESTS = "Floating gears: displacement x, y and margin [µm], reaction of the ring [N]"
 WORDS = ("figure", "unit", "where")
 
 
@@ -96,3 +103,142 @@ def _fields(result: Result, *fields: str) -> dict[str, str]:
     """Columns of these fields, and of the position where there are several."""
     many = ("position",) if len(result.positions) > 1 else ()
     return {field: field for field in (*fields, *many)}
+
+
+def print_heading(
+    case: Case,
+    file: str,
+    count: int,
+    wanted: Sequence[int],
+    changes: Iterable[str],
+) -> None:
+    """Print title, file, load and positions of a case.
+
+    Parameters
+    ----------
+    case : Case
+    file : str
+        As the user named it.
+    count : int
+        Positions of the case.
+    wanted : sequence of int
+        Positions that are solved.
+    changes : iterable of str
+        Changes made from the command line.
+    """
+    solved = counted(count, "position")
+    if len(wanted) < count:
+        solved = f"{ranges(list(wanted))} of {solved}"
+    say(case.title or case.name, style="bold")
+    say(file, whole=True)
+    for change in changes:
+        say(f"changed: {change}", whole=True)
+    say(f"{records.load_told(case)}; {solved}")
+    turning = any(errors.eccentricity is not None for errors in case.errors.values())
+    if turning and case.march is None and count > 1 and case.operating.rotation == "neglected":
+        say("Gears stand still over the mesh cycle: eccentricities keep their first direction")
+
+
+def print_sharing(result: Result) -> None:
+    """Print the torque of every mesh: alike everywhere, position by position, or summed up."""
+    alike, count = records.alike(result), len(result.positions)
+    shown = _table(result, "alike" if alike else "each")
+    if not alike and (count > MOST or not fits(shown)):
+        shown = _table(result, "summed")
+    show("Load sharing: torque on the driver [N·m]", shown)
+    notes = []
+    if count > 1:
+        notes.append(
+            "The same at all positions." if alike else "Ω is the largest over the positions."
+        )
+    if NONE in shown.columns[-1].cells:
+        notes.append(f"{NONE}: not in a stage, or without load.")
+    say_all([*notes, *_coast(result)])
+
+
+def _table(result: Result, columns: Literal["alike", "each", "summed"]) -> Table:
+    rows = list(records.torques(result, columns))
+    return texts(rows, {field: field for field in rows[0]}, words=("stage", "mesh"))
+
+
+def _coast(result: Result) -> list[str]:
+    """Say which meshes are squeezed: both their flanks carry load."""
+    places = records.torque_places(result)
+    most = {
+        mesh: max(p.coast_torque[mesh] for p in result.positions)
+        for mesh in result.positions[0].torque
+    }
+    return [
+        f"Mesh {mesh}: the coast flank carries up to {fixed(torque, places)} N·m; "
+        "the torque is the difference."
+        for mesh, torque in most.items()
+        if torque > 0.0
+    ]
+
+
+def print_floats(result: Result) -> None:
+    """Print where the floats rest, and what the forces leave open of that and of rotations."""
+    if result.positions[0].floats:
+        _print_rests(result.positions)
+    told = undetermined_told(result.positions)
+    note = "Of what is not determined, the least displacement is given."
+    say_all([*told, *([note] if told else [])])
+
+
+def _print_rests(positions: tuple[Position, ...]) -> None:
+    """Print the rest of every float: alike everywhere, position by position, or summed up."""
+    places = records.reaction_places(positions)
+    each = {g: [_rest(p, g, places) for p in positions] for g in positions[0].floats}
+    alike = all(rests.count(rests[0]) == len(rests) for rests in each.values())
+    heads = ["gear", "rests", "x", "y", "margin", "reaction", "spline"]
+    rows: list[tuple[str, ...]]
+    if alike:
+        rows = [(gear, *rests[0]) for gear, rests in each.items()]
+    elif len(positions) <= MOST:
+        heads.insert(1, "at")
+        rows = [
+            (gear, str(p.position), *rest)
+            for gear, rests in each.items()
+            for p, rest in zip(positions, rests, strict=True)
+        ]
+    else:
+        heads[2:4] = ["displacement"]
+        rows = [(gear, *_summed(positions, gear)) for gear in each]
+    if not any(f.spline for p in positions for f in p.floats.values()):
+        heads, rows = heads[:-1], [row[:-1] for row in rows]
+    show(RESTS, table(heads, rows, words=("gear", "rests", "spline")))
+    say_all(["The same at all positions."] if alike and len(positions) > 1 else [])
+
+
+def _rest(position: Position, gear: str, places: int) -> tuple[str, ...]:
+    cells = records.rest(position, gear, places).values()
+    return _state(position.floats[gear]), *(cell.text for cell in cells)
+
+
+def _state(rest: FloatState) -> str:
+    return f"{rest.state}: {rest.boundary}" if rest.boundary else rest.state
+
+
+def _summed(positions: tuple[Position, ...], gear: str) -> Iterator[str]:
+    rests = [p.floats[gear] for p in positions]
+    yield _shares(_state(r) for r in rests)
+    yield _span([1e6 * math.hypot(*p.displacement[gear]) for p in positions])
+    yield _span([1e6 * r.margin for r in rests if r.margin is not None])
+    yield _span([math.hypot(*r.reaction) for r in rests])
+    yield _shares(r.spline or NONE for r in rests)
+
+
+def _span(values: list[float]) -> str:
+    if not values:
+        return NONE
+    places = min(decimals(values), 3)
+    low, high = fixed(min(values), places), fixed(max(values), places)
+    return low if low == high else f"{low} … {high}"
+
+
+def _shares(states: Iterable[str]) -> str:
+    """Return states, each with at how many positions it is found if there are several."""
+    counts = Counter(states)
+    if len(counts) == 1:
+        return next(iter(counts))
+    return "\n".join(f"{state} ({count}×)" for state, count in counts.most_common())

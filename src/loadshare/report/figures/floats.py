@@ -11,14 +11,13 @@ from loadshare.certify import Touch
 from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
-from loadshare.report.figures.journey import Journey
 from loadshare.report.figures.labels import Labels
 from loadshare.report.figures.marks import Drawing, Panel, Point, Row, circle, hover, path_rows
-from loadshare.report.figures.region import Region
-from loadshare.report.figures.rest import boundary_name, direction_name, places_told
+from loadshare.report.figures.region import Journey, Region
 from loadshare.report.numbers import significant
 from loadshare.report.palette import FAINT, INK, SOFT, WARNING, Look, palette_of
 from loadshare.report.units import MICROMETRE, engineering
+from loadshare.report.words import boundary_name, direction_name, places_told
 from loadshare.results import Result
 from loadshare.train import Train
 

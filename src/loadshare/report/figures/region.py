@@ -1,4 +1,4 @@
-"""The region in which a float's centre may move, as outlines to be drawn.
+"""One float over the positions of a result, and the region in which its centre may move.
 
 All of it in metres, in the gear's transverse frame, the centre's own place being the origin. Arcs
 are the exact arcs of the rings, not the faces by which the solver approaches them.
@@ -9,11 +9,18 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import groupby
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
+from loadshare.certify import FloatState
+from loadshare.contact.radial import spline_law
 from loadshare.report.figures.marks import Point, circle
+from loadshare.report.numbers import significant
+from loadshare.report.units import MICROMETRE
+from loadshare.report.words import rest_told, spline_told
+from loadshare.results import Position, Result
 from loadshare.train import Train
 from loadshare.train.ring import DrumRing, RoundRing
 
@@ -104,21 +111,6 @@ def _disc(train: Train, ring: RoundRing) -> Region:
     return Region([outline], [Boundary("ring", outline, outward)])
 
 
-@dataclass(frozen=True, slots=True)
-class _Disc:
-    """Disc that a neighbour's ring keeps the centre out of: (along, across) and radius [m]."""
-
-    name: str
-    along: float
-    across: float
-    radius: float
-
-    def chord(self, across: float) -> float | None:
-        """Half the chord [m] on the line at `across`; None where the line misses the disc."""
-        left = self.radius**2 - (across - self.across) ** 2
-        return math.sqrt(left) if left > 0.0 else None
-
-
 def _drum(
     train: Train,
     ring: DrumRing,
@@ -126,81 +118,196 @@ def _drum(
     displacement: Mapping[str, tuple[float, float]],
     window: float,
 ) -> Region:
+    """Drum between the rings of two neighbours, line by line across it."""
     gear = train.gears[ring.gear]
     across = gear.frame @ ring.across
     along = np.array([across[1], -across[0]])
+
+    def path(us: Any, vs: Any) -> list[Point]:
+        points = np.multiply.outer(us, along) + np.multiply.outer(vs, across)
+        return [(float(x), float(y)) for x, y in points]
+
+    low, high = max(-ring.down, -window), min(ring.up, window)
+    lines = low + (high - low) * np.arange(ROWS) / (ROWS - 1)
+    whole = np.full(ROWS, window)
     situation = train.situation(position)
-    discs = []
+    arcs: list[tuple[str, float, np.ndarray]] = []
     for side, name in enumerate(ring.neighbours):
         exclusion = train.arc(ring, side, situation)
         moved = np.array(displacement[name]) @ train.gears[name].frame
         middle = gear.frame @ (moved - exclusion.start)
         radius = exclusion.distance - exclusion.clearance
-        discs.append(_Disc(f"arc {name}", float(middle @ along), float(middle @ across), radius))
-
-    def place(u: float, v: float) -> Point:
-        x, y = u * along + v * across
-        return float(x), float(y)
-
-    low, high = max(-ring.down, -window), min(ring.up, window)
-    rows = [_row(discs, low + (high - low) * k / (ROWS - 1), window) for k in range(ROWS)]
-    pieces: list[list[Point]] = []
-    for run in _runs(rows):
-        left = [place(r.left, r.across) for r in run]
-        right = [place(r.right, r.across) for r in run]
-        pieces.append([*left, *reversed(right), left[0]])
-    boundaries = []
-    for disc in discs:
-        on_left = disc.along < 0.0
-        path = [
-            place(r.left if on_left else r.right, r.across)
-            for r in rows
-            if r is not None and disc.name in (r.left_by, r.right_by)
-        ]
-        if path:
-            boundaries.append(Boundary(disc.name, path, place(-1.0 if on_left else 1.0, 0.0)))
+        u, v = middle @ along, middle @ across
+        left_over = radius**2 - (lines - v) ** 2
+        outward = -1.0 if u < 0.0 else 1.0
+        # A line that misses the neighbour's ring is bounded by the window alone.
+        edge = u - outward * np.sqrt(np.maximum(left_over, 0.0))
+        arcs.append((f"arc {name}", outward, np.where(left_over > 0.0, edge, outward * window)))
+    left, right = (
+        outward * np.min([whole, *(out * edge for _, out, edge in arcs if out == outward)], axis=0)
+        for outward in (-1.0, 1.0)
+    )
+    open_ = right - left >= -TOUCHING
+    at = {
+        name: open_ & (edge == (left if outward < 0.0 else right)) & (np.abs(edge) < window)
+        for name, outward, edge in arcs
+    }
+    closed = right < left
+    left[closed] = right[closed] = (left[closed] + right[closed]) / 2
+    boundaries = [
+        Boundary(
+            name,
+            path((left if outward < 0.0 else right)[at[name]], lines[at[name]]),
+            *path([outward], [0.0]),
+        )
+        for name, outward, _ in arcs
+        if at[name].any()
+    ]
     tick = 0.1 * window
-    for name, limit, row, sign in (
-        ("upper stop", ring.up, rows[-1], 1.0),
-        ("lower stop", -ring.down, rows[0], -1.0),
+    for name, limit, end, upward in (
+        ("upper stop", ring.up, -1, 1.0),
+        ("lower stop", -ring.down, 0, -1.0),
     ):
-        if row is not None and abs(limit) <= window:
+        if open_[end] and abs(limit) <= window:
             # Drawn a little beyond the drum: a drum without clearance has no width.
-            ends = (row.left - tick, row.right + tick)
-            path = [place(max(min(u, window), -window), limit) for u in ends]
-            boundaries.append(Boundary(name, path, place(0.0, sign)))
+            ends = np.clip([left[end] - tick, right[end] + tick], -window, window)
+            boundaries.append(Boundary(name, path(ends, [limit, limit]), *path([0.0], [upward])))
+    rows = np.flatnonzero(open_)
+    pieces = []
+    for run in np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1) if rows.size else ():
+        outline = path(left[run], lines[run]) + path(right[run][::-1], lines[run][::-1])
+        pieces.append([*outline, outline[0]])
     return Region(pieces, boundaries)
 
 
-@dataclass(frozen=True, slots=True)
-class _Row:
-    """Admissible stretch of a line across the drum, and what bounds it [m]."""
-
-    across: float
-    left: float
-    right: float
-    left_by: str
-    right_by: str
+MILLIMETRES = 75.0
+"""Width of a panel for which the enlargement is told [mm]."""
+WITHIN = 4.0
+"""A boundary up to so many times as far as the float moved is in the picture."""
+LEAST = 1e-9
+"""Half the side of a picture in which nothing has an extent [m]."""
 
 
-def _row(discs: list[_Disc], across: float, window: float) -> _Row | None:
-    left, right, left_by, right_by = -window, window, "", ""
-    for disc in discs:
-        half = disc.chord(across)
-        if half is None:
-            continue
-        if disc.along < 0.0 and disc.along + half > left:
-            left, left_by = disc.along + half, disc.name
-        elif disc.along >= 0.0 and disc.along - half < right:
-            right, right_by = disc.along - half, disc.name
-    if right - left < -TOUCHING:
-        return None
-    if right < left:
-        left = right = (left + right) / 2
-    return _Row(across, left, right, left_by, right_by)
+@dataclass(frozen=True)
+class Journey:
+    """One float over the positions; lengths in metres, in the gear's transverse frame.
+
+    Attributes
+    ----------
+    result : Result
+    train : Train
+    gear : str
+    """
+
+    result: Result
+    train: Train
+    gear: str
+
+    @property
+    def positions(self) -> tuple[Position, ...]:
+        """Positions of the result."""
+        return self.result.positions
+
+    @cached_property
+    def rests(self) -> list[FloatState]:
+        """Rest at each position."""
+        return [p.floats[self.gear] for p in self.positions]
+
+    @cached_property
+    def path(self) -> list[Point]:
+        """Place at each position."""
+        return [p.displacement[self.gear] for p in self.positions]
+
+    @cached_property
+    def hardest(self) -> int:
+        """Index of the position with the largest reaction of the ring."""
+        sizes = [math.hypot(*rest.reaction) for rest in self.rests]
+        return sizes.index(max(sizes))
+
+    @property
+    def hardest_rest(self) -> FloatState:
+        """Rest where the reaction of the ring is largest."""
+        return self.rests[self.hardest]
+
+    @cached_property
+    def region(self) -> Region | None:
+        """Region at the position with the largest reaction."""
+        here = self.positions[self.hardest]
+        return region(self.train, self.gear, here.position, here.displacement, 1.5 * self._reach)
+
+    @cached_property
+    def circles(self) -> dict[str, float]:
+        """Radii, within the picture, at which the spline changes its stage, by what they are."""
+        return {name: radius for name, radius in self._stages.items() if radius <= self._far}
+
+    @cached_property
+    def view(self) -> tuple[Point, float]:
+        """Middle and half the side of the square that shows it all."""
+        points = [*self.path, (0.0, 0.0)]
+        for piece in self.region.pieces if self.region else ():
+            points += piece
+        for radius in self.circles.values():
+            points += [(-radius, -radius), (radius, radius)]
+        lows = [min(p[k] for p in points) for k in (0, 1)]
+        highs = [max(p[k] for p in points) for k in (0, 1)]
+        # Room for arrows and words on all sides.
+        half = 0.68 * max(highs[0] - lows[0], highs[1] - lows[1])
+        return ((lows[0] + highs[0]) / 2, (lows[1] + highs[1]) / 2), max(half, LEAST)
+
+    @property
+    def told(self) -> list[str]:
+        """Where the float rests, and how the picture is drawn, in words."""
+        factor = MILLIMETRES / 1e3 / (2.0 * self.view[1])
+        enlarged = float(f"{factor:.2g}")
+        stages = [n if n in self.circles else f"{n} (not shown)" for n in self._stages]
+        outside = ", ".join(self._outside)
+        return [
+            *rest_told(self.rests, [p.position for p in self.positions]),
+            *spline_told(self.rests),
+            *([", ".join(stages)] if stages else []),
+            *([f"outside the picture: {outside}"] if outside else []),
+            f"enlarged about {enlarged:,.0f} : 1 at a width of {MILLIMETRES:g} mm",
+        ]
+
+    @cached_property
+    def _stages(self) -> dict[str, float]:
+        """Radii at which the spline changes its stage, at its least and its most friction."""
+        spline = self.train.splines.get(self.gear)
+        if spline is None:
+            return {}
+        bounds = [rest.friction or 0.0 for rest in self.rests]
+        radii: dict[str, float] = {}
+        for bound in dict.fromkeys((min(bounds), max(bounds))):
+            law = spline_law(spline.bending_stiffness, spline.stick_limit, spline.clearance, bound)
+            for k, piece in enumerate(law.pieces[1:], start=1):
+                what = {"slip": "slips beyond", "stop": "clearance used up at"}[piece.name]
+                radii[f"{what} {_length(law.start(k))}"] = law.start(k)
+        return radii
+
+    @cached_property
+    def _moved(self) -> float:
+        return max(math.hypot(*place) for place in self.path)
+
+    @cached_property
+    def _around(self) -> dict[str, float]:
+        """Distances of everything that bounds the float or marks a stage of its spline."""
+        return features(self.train, self.gear) | self._stages
+
+    @cached_property
+    def _far(self) -> float:
+        """Distance up to which what is around belongs in the picture."""
+        nearest = min((d for d in self._around.values() if d > 0.0), default=0.0)
+        return WITHIN * max(self._moved, nearest)
+
+    @cached_property
+    def _reach(self) -> float:
+        return max(self._moved, *(d for d in self._around.values() if d <= self._far), LEAST)
+
+    @property
+    def _outside(self) -> list[str]:
+        distances = features(self.train, self.gear)
+        return [f"{name} at {_length(d)}" for name, d in distances.items() if d > self._far]
 
 
-def _runs(rows: list[_Row | None]) -> list[list[_Row]]:
-    """Consecutive admissible rows."""
-    whole = groupby(rows, key=lambda row: row is not None)
-    return [[row for row in run if row is not None] for there, run in whole if there]
+def _length(value: float) -> str:
+    return f"{significant(MICROMETRE.of(value), 3)} µm"

@@ -14,8 +14,17 @@ import numpy as np
 from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
-from loadshare.report.figures.marks import Drawing, Row, axis, chart, curves, heading, hover, padded
-from loadshare.report.figures.rules import rules
+from loadshare.report.figures.marks import (
+    Drawing,
+    Row,
+    axis,
+    chart,
+    curves,
+    heading,
+    hover,
+    padded,
+    rules,
+)
 from loadshare.report.palette import WARNING, Look, Palette, ends_from_names, look
 from loadshare.report.units import Unit, engineering
 

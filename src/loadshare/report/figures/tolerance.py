@@ -11,8 +11,7 @@ import numpy as np
 from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks as drawn
-from loadshare.report.figures.marks import Drawing, Row, axis, chart, heading, hover
-from loadshare.report.figures.rules import rules
+from loadshare.report.figures.marks import Drawing, Row, axis, chart, heading, hover, rules
 from loadshare.report.numbers import significant
 from loadshare.report.palette import COLOURS, INK
 

@@ -26,10 +26,10 @@ from loadshare.report.figures.marks import (
     hover,
     path_rows,
 )
-from loadshare.report.figures.rest import direction_name
 from loadshare.report.numbers import significant
 from loadshare.report.palette import INK, SOFT, WARNING, Palette
 from loadshare.report.units import MILLIMETRE
+from loadshare.report.words import direction_name
 from loadshare.train import build_train
 from loadshare.train.gear import Vector, transverse_frame
 

@@ -5,27 +5,27 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from loadshare.report import records
-from loadshare.report.figures.rest import places_told, rest_told
 from loadshare.report.numbers import NONE, fixed, small
-from loadshare.report.table import Cell, Table, chosen, columns
-from loadshare.report.undetermined import undetermined_told
-from loadshare.report.validity import advice
+from loadshare.report.records import Cell, Table, table
+from loadshare.report.words import advice, places_told, rest_told, undetermined_told
 from loadshare.results import Result
 
+OMEGAS = dict.fromkeys(("over stage", "Ω stage"), "Ω over stage mean") | dict.fromkeys(
+    ("over group", "Ω pair"), "Ω over group mean"
+)
+"""Titles of the columns of both coefficients."""
 FOLDED = 24
 """Rows from which a table is shown only when asked for."""
 
 
 def omega_table(result: Result) -> Table:
     """Largest Ω of every stage and of the system, and where it is reached."""
-    words = ("stage", "reached at", "reached at, group mean")
-    rows = chosen(
-        records.omegas(result), "stage", "stage at", "group at", "over stage", "over group"
-    )
-    return Table(
+    return table(
         "Load-sharing coefficient Ω, largest over branches and positions",
-        columns(words, ("Ω over stage mean", "Ω over group mean")),
-        [[cell if cell.text else Cell(NONE) for cell in row] for row in rows],
+        records.omegas(result),
+        ("stage", "stage at", "group at"),
+        ("over stage", "over group"),
+        OMEGAS | {"stage at": "reached at", "group at": "reached at, group mean"},
     )
 
 
@@ -33,66 +33,61 @@ def torque_table(result: Result) -> Table:
     """Torque of every mesh, summed up over the positions, and its largest Ω."""
     level = records.alike(result)
     torques = ("torque",) if level else ("least", "mean", "most")
-    fields = ("mesh", "stage", *torques, "Ω stage", "Ω pair")
-    rows = chosen(records.torques(result, "alike" if level else "summed"), *fields)
-    rows = [[cell if cell.text else Cell(NONE) for cell in row] for row in rows]
+    rows = list(records.torques(result, "alike" if level else "summed"))
+    figures = (*torques, "Ω stage", "Ω pair")
     notes = []
     if level and len(result.positions) > 1:
         notes.append("The same at all positions.")
     elif not level:
         notes.append("Ω is the largest over the positions.")
-    if any(cell.text == NONE for row in rows for cell in row):
+    if any(row[name].text in ("", NONE) for row in rows for name in ("mesh", "stage", *figures)):
         notes.append(f"{NONE}: not in a stage, or without load.")
     if not result.positions[0].floats:
         notes += _undetermined(result)
-    figures = (*(f"{t} [N·m]" for t in torques), "Ω over stage mean", "Ω over group mean")
-    return Table(
-        "Torque on the driver of every mesh", columns(("mesh", "stage"), figures), rows, notes
-    )
+    heads = OMEGAS | {t: f"{t} [N·m]" for t in torques}
+    title = "Torque on the driver of every mesh"
+    return table(title, rows, ("mesh", "stage"), figures, heads, notes)
 
 
 def position_table(result: Result) -> Table:
     """Torque and coefficients of every mesh at every position."""
     places = records.torque_places(result)
     rows = [
-        [
-            Cell(mesh),
-            Cell(str(p.position), p.position),
-            Cell(fixed(torque, places), torque),
-            Cell(fixed(p.coast_torque[mesh], places), p.coast_torque[mesh]),
-            *(records.largest([shares.get(mesh)]) for shares in (p.share, p.pair_share)),
-        ]
+        {
+            "mesh": Cell(mesh),
+            "position": Cell(str(p.position), p.position),
+            "torque [N·m]": Cell(fixed(torque, places), torque),
+            "coast flank [N·m]": Cell(fixed(p.coast_torque[mesh], places), p.coast_torque[mesh]),
+            "Ω stage": records.largest([p.share.get(mesh)]),
+            "Ω group": records.largest([p.pair_share.get(mesh)]),
+        }
         for p in result.positions
         for mesh, torque in p.torque.items()
     ]
-    figures = ("position", "torque [N·m]", "coast flank [N·m]", "Ω stage", "Ω group")
-    return Table("Every position", columns(("mesh",), figures), rows, folded=len(rows) > FOLDED)
+    return table("Every position", rows, ("mesh",), list(rows[0])[1:], most=FOLDED)
 
 
 def float_table(result: Result) -> Table:
     """Where every float rests; positions at which nothing differs stand in one row."""
     places = records.reaction_places(result.positions)
-    rows = []
+    rows: list[records.Record] = []
     for gear in result.positions[0].floats:
-        alike: dict[tuple[str, ...], list[tuple[int, records.Record]]] = {}
+        alike: dict[tuple[str, ...], tuple[records.Record, list[int]]] = {}
         for p in result.positions:
-            here = records.rest(p, gear, places)
             (rests, *_) = rest_told([p.floats[gear]], [p.position])
-            texts = (rests, *(cell.text for cell in here.values()))
-            alike.setdefault(texts, []).append((p.position, here))
-        for (rests, *_), where in alike.items():
-            numbers = [position for position, _ in where]
-            (figures,) = chosen([where[0][1]], "x", "y", "margin", "reaction")
-            spline = where[0][1]["spline"]
-            at = Cell(places_told(numbers), numbers[0])
-            rows.append([Cell(gear), Cell(rests), spline, at, *figures])
-    heads = ("position", "x [µm]", "y [µm]", "margin [µm]", "reaction [N]")
-    return Table(
+            row = {"gear": Cell(gear), "rests": Cell(rests), **records.rest(p, gear, places)}
+            same = alike.setdefault(tuple(cell.text for cell in row.values()), (row, []))
+            same[1].append(p.position)
+        rows += [row | {"position": Cell(places_told(k), k[0])} for row, k in alike.values()]
+    units = {"x": "µm", "y": "µm", "margin": "µm", "reaction": "N"}
+    return table(
         "Floating gears",
-        columns(("gear", "rests", "spline"), heads),
         rows,
+        ("gear", "rests", "spline"),
+        ("position", *units),
+        {name: f"{name} [{unit}]" for name, unit in units.items()},
         _undetermined(result),
-        folded=len(rows) > FOLDED,
+        FOLDED,
     )
 
 
@@ -112,23 +107,24 @@ def validity_table(result: Result) -> Table:
         "far that holds.",
         *([f"Warning: {told}"] if told else []),
     ]
-    return Table(
+    return table(
         "Displacements: the largest, and the bounds of the geometry",
-        columns(("figure", "where"), ("value", "warning above", "refused from", "position")),
-        chosen(
-            records.measures(result), "figure", "where", "value", "warning", "refusal", "position"
-        ),
+        records.measures(result),
+        ("figure", "where"),
+        ("value", "warning", "refusal", "position"),
+        {"warning": "warning above", "refusal": "refused from"},
         notes,
     )
 
 
 def certificate_table(result: Result) -> Table:
     """Worst value of every residual over the positions."""
-    return Table(
+    return table(
         "Certificate: the worst residuals",
-        columns(("figure", "where", "unit"), ("value", "scaled", "position")),
-        chosen(records.residuals(result), "figure", "where", "unit", "value", "scaled", "position"),
-        [
+        records.residuals(result),
+        ("figure", "where", "unit"),
+        ("value", "scaled", "position"),
+        notes=[
             "Recomputed from the answer and the physics alone; a scaled residual is a part of the "
             f"case's load or deflection. Allowed: {result.stamp.tolerance:.0e}.",
             "Every torque lies within "

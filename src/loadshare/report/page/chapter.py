@@ -17,7 +17,7 @@ from loadshare.report.figures.train import train as draw
 from loadshare.report.numbers import NONE, omega, small
 from loadshare.report.page import answers
 from loadshare.report.page.inputs import input_tables
-from loadshare.report.table import Cell, Table, columns
+from loadshare.report.records import Cell, Table, table
 from loadshare.results import Result
 
 CERTIFIED, PARTLY, REFUSED, UNUSABLE = "certified", "partly refused", "refused", "cannot be used"
@@ -191,16 +191,17 @@ def overview(chapters: list[Chapter]) -> Table:
     rows = []
     for number, one in enumerate(chapters, start=1):
         means = (one.result.omega, one.result.pair_omega) if one.result else ()
-        shares = [mean["system"] for mean in means] or [None, None]
+        stage, group = [mean["system"] for mean in means] or [None, None]
         worst = one.result.certificate.worst if one.result else None
         rows.append(
-            [
-                Cell(f"{number}", number),
-                Cell(one.title, link=f"#case-{number}"),
-                Cell(one.outcome),
-                *(Cell(omega(share), share) for share in shares),
-                Cell(NONE if worst is None else small(worst), worst),
-            ]
+            {
+                "number": Cell(f"{number}", number),
+                "case": Cell(one.title, link=f"#case-{number}"),
+                "outcome": Cell(one.outcome),
+                "Ω over stage mean": Cell(omega(stage), stage),
+                "Ω over group mean": Cell(omega(group), group),
+                "worst residual": Cell(NONE if worst is None else small(worst), worst),
+            }
         )
-    figures = ("Ω over stage mean", "Ω over group mean", "worst residual")
-    return Table("All cases", columns(("number", "case", "outcome"), figures), rows)
+    fields = list(rows[0])
+    return table("All cases", rows, fields[:3], fields[3:])

@@ -1,4 +1,4 @@
-"""Where a float rests, in words."""
+"""What was found, in words."""
 
 from __future__ import annotations
 
@@ -7,8 +7,10 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from loadshare.certify import FloatState
+from loadshare.certify.validity import TOLD
 from loadshare.report.numbers import runs, significant
 from loadshare.report.units import engineering
+from loadshare.results import Position, Result
 
 ALONG = 1e-9
 """How far a direction may be from an axis and still be called by its name."""
@@ -87,3 +89,49 @@ def direction_name(vector: Iterable[float]) -> str:
         if abs(abs(component) - 1.0) <= ALONG:
             return axis if component > 0.0 else f"−{axis}"
     return "(" + ", ".join(f"{round(v, 2) + 0.0:g}" for v in components) + ")"
+
+
+DIGITS = 5
+"""Significant digits of a range's ends."""
+
+
+def undetermined_told(positions: Sequence[Position]) -> list[str]:
+    """Return a line for every range, with the coordinates that have it; none if all is determined.
+
+    Over several positions a coordinate is told from the least to the largest of all its values.
+    """
+    groups: dict[str, list[str]] = {}
+    for name in dict.fromkeys(name for p in positions for name in p.undetermined):
+        ranges = [p.undetermined[name] for p in positions if name in p.undetermined]
+        told = range_told(name, min(r[0] for r in ranges), max(r[1] for r in ranges))
+        if len(ranges) < len(positions):
+            told += f", at {len(ranges)} of {len(positions)} positions"
+        groups.setdefault(told, []).append(name)
+    return [f"{', '.join(names)}: not determined, {told}" for told, names in groups.items()]
+
+
+def range_told(name: str, low: float, high: float) -> str:
+    """Return a coordinate's range: ``−50 … 50 µm``, ``from −12 µrad on``, ``without limit``."""
+    unit = engineering((low, high), "rad" if name.endswith("rotation") else "m")
+    least, largest = (significant(unit.of(end), DIGITS).replace("-", "−") for end in (low, high))
+    if math.isinf(low) and math.isinf(high):
+        return "without limit"
+    if math.isinf(high):
+        return f"from {least} {unit.name} on"
+    if math.isinf(low):
+        return f"up to {largest} {unit.name}"
+    return f"{least} … {largest} {unit.name}"
+
+
+def advice(result: Result) -> str:
+    """What to think of displacements above the bound of a warning; empty if there are none."""
+    names = dict.fromkeys(n for p in result.positions for n in p.validity.warned)
+    if not names:
+        return ""
+    where = ", ".join(runs(p.position for p in result.positions if p.validity.warned))
+    told = "; ".join(TOLD[name] for name in names)
+    noun = "positions" if len(result.positions) > 1 else "position"
+    return (
+        f"displacements are large for the geometry in which they were found ({noun} {where}: "
+        f"{told}); figures may be off by some per cent"
+    )
