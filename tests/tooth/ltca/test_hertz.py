@@ -5,18 +5,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
-
-from loadshare.tooth.contact.hertz import (
+from tests.tooth.ltca.hertz import (
     PointContact,
-    axis_ratio,
     compression,
     compression_tangent,
-    contact_modulus,
-    half_width,
-    width_factor,
+    strip_shape,
+    surfaces,
 )
-from loadshare.tooth.contact.strips import StripLine, strip_shape
-from loadshare.tooth.contact.surface import Surface
+
+from loadshare.tooth.contact.hertz import axis_ratio, contact_modulus, half_width, width_factor
+from loadshare.tooth.contact.strips import StripLine
 
 STEEL = ((206e9, 206e9), (0.3, 0.3))
 E_STAR = contact_modulus(*STEEL)
@@ -131,7 +129,7 @@ def test_a_long_row_of_strips_is_the_compression_to_the_depth():
         depth=(np.full(n, depth), np.full(n, depth)),
     )
     force = q * line.length
-    moved = (Surface(((line,),)).compliance(force[None], np.zeros(1))[0][0] - line.removed) @ force
+    moved = surfaces([line]).compliance(force[None])[0][0] @ force
     width = float(half_width(q, 90.0, E_STAR))
     closed = 2.0 * float(compression(q, width, depth, 206e9, 0.3))
     # The plane formula reads the depth's field at the edge of a contact of width b, the strips at
@@ -144,13 +142,11 @@ def test_strip_tangent_is_the_derivative_of_the_yielding():
     n = 9
     line = StripLine(np.full(n, 4e-4), np.full(n, 90.0), np.full(n, 20.0), *STEEL)
     force = 50.0 + 10.0 * np.arange(n) % 37
-    surface = Surface(((line,),))
-    tangent = surface.compliance(force[None], np.zeros(1))[1][0]
+    surface = surfaces([line])
+    tangent = surface.compliance(force[None])[1][0]
     numeric = np.empty((n, n))
     for j, step in enumerate(1e-3 * np.eye(n)):
-        up, down = (
-            surface.compliance(f[None], np.zeros(1))[0][0] @ f for f in (force + step, force - step)
-        )
+        up, down = (surface.compliance(f[None])[0][0] @ f for f in (force + step, force - step))
         numeric[:, j] = (up - down) / 2e-3
     # The table's slope is good to 1e-7 of a strip's own compliance.
     np.testing.assert_allclose(tangent, numeric, atol=1e-6 * tangent.max())
@@ -169,7 +165,7 @@ def test_surfaces_of_lines_are_those_of_their_strips(load):
     force = load * rng.uniform(0.5, 1.5, 29)
     # A second position with one of the lines fills up with points that yield nothing.
     both = np.stack([force, np.where(np.arange(29) < 17, force, 0.0)])
-    secant, tangent = Surface((lines, lines[:1])).compliance(both, np.zeros(2))
+    secant, tangent = surfaces(lines, lines[:1]).compliance(both)
     np.testing.assert_array_equal(secant[1, :17, :17], secant[0, :17, :17])
     assert not secant[1, 17:].any()
     assert not secant[1, :, 17:].any()

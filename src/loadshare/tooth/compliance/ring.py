@@ -19,7 +19,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import ceil, pi
-from typing import NamedTuple
 
 import numpy as np
 
@@ -116,19 +115,19 @@ class Ring:
 
     @cached_property
     def _harmonics(self) -> Array:
-        """Displacements u_r, u_θ (first index) for tractions σ, τ of every order (2, 2, n)."""
-        from loadshare.tooth.compliance.compiled_ring import harmonics
+        """Displacements u_r, u_θ (first index) for tractions σ, τ of every order (2, 2, n).
 
-        found = np.empty((2, 2, len(self._orders)))
-        numbers = RingNumbers(
-            loaded=float(self.loaded),
-            held=float(self.held),
-            width=float(self.width),
-            poisson=float(self.poisson),
-            in_plane_stress=float(self._in_plane_stress),
-            felt=FELT,
-        )
-        harmonics(numbers, found)
+        Poisson's strain across the width is held back where a harmonic reaches less deep than half
+        the width, and free where it reaches deeper: plane strain and plane stress.
+        """
+        n, ratio, nu = self._orders, self.held / self.loaded, self.poisson
+        deep = self.loaded / n > 0.5 * self.width
+        felt = ~deep & (n * abs(np.log(ratio)) < -0.5 * np.log(FELT))
+        solid = ~(deep | felt)
+        found = np.empty((2, 2, len(n)))
+        found[..., deep] = _displacements(n[deep], ratio, self._in_plane_stress) / (1.0 - nu**2)
+        found[..., felt] = _displacements(n[felt], ratio, nu)
+        found[..., solid] = _displacements(n[solid], ratio, nu, count=2)
         return found
 
     @property
@@ -148,12 +147,47 @@ class Ring:
         return scale * twisted, scale * swollen
 
 
-class RingNumbers(NamedTuple):
-    """A ring, as compiled code reads it."""
+def _displacements(n: Array, ratio: float, poisson: float, count: int = 4) -> Array:
+    """Displacements u_r, u_θ at radius 1 for tractions σ, τ there of orders n (2, 2, n).
 
-    loaded: float
-    held: float
-    width: float
-    poisson: float
-    in_plane_stress: float
-    felt: float
+    The ring is held at the radius `ratio`; with two fields, that circle is out of reach.
+    """
+    near = _fields(n, 1.0, ratio, poisson, count)
+    equations = near[2:]
+    if count == 4:
+        equations = np.concatenate([near[2:], _fields(n, ratio, ratio, poisson, count)[:2]])
+    # Fields of equal size, for what comes from the held circle is faint.
+    size = np.abs(equations).max(axis=0)
+    tractions = np.eye(count, 2)
+    shares = np.linalg.solve(np.moveaxis(equations / size, -1, 0), tractions)
+    return np.moveaxis(np.moveaxis(near[:2] / size, -1, 0) @ shares, 0, -1)
+
+
+def _fields(n: Array, radius: float, ratio: float, poisson: float, count: int) -> Array:
+    """Fields of orders n at a radius: u_r, u_θ and the tractions σ, τ on the loaded side (4, …, n).
+
+    Displacements are in units of (1 − ν²)/E. Of the first `count` fields, two fade from radius 1
+    into the ring, the others from the held circle towards it.
+    """
+    kappa, outwards, one = 3.0 - 4.0 * poisson, ratio < 1.0, np.ones_like(n)
+    grow = (n + 1.0, kappa - n - 1.0, kappa + n + 1.0), (n - 1.0, one, -one)
+    fade = (1.0 - n, kappa - 1.0 + n, n - 1.0 - kappa), (-1.0 - n, one, one)
+    side = (1.0 if outwards else -1.0) / radius
+    found = np.empty((4, count, len(n)))
+    for k in range(count):
+        fading = (k < 2) != outwards
+        power, u, v = fade[k % 2] if fading else grow[k % 2]
+        size = (radius if k < 2 else radius / ratio) ** power
+        u, v = u * size, v * size
+        u_slope, v_slope = power * u, power * v
+        if fading and k % 2 == 0:
+            # Both r^(1 − n) and r^(n − 1) are translations for n = 1; the force needs a logarithm.
+            first, turn = n == 1.0, 2.0 * kappa * np.log(radius)
+            u, v = np.where(first, turn - 1.0, u), np.where(first, -turn - 1.0, v)
+            u_slope = np.where(first, 2.0 * kappa, u_slope)
+            v_slope = np.where(first, -2.0 * kappa, v_slope)
+        dilation = poisson / (1.0 - 2.0 * poisson) * (u_slope + u + n * v)
+        found[0, k], found[1, k] = u / (1.0 - poisson), v / (1.0 - poisson)
+        found[2, k] = side * (dilation + u_slope)
+        found[3, k] = 0.5 * side * (v_slope - v - n * u)
+    return found

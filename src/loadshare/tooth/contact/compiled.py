@@ -1,6 +1,6 @@
 """Contacts one after another, compiled with Numba: surfaces, exchange of points, Newton's method.
 
-What the numbers mean is told where the arrays are made: `surface` for the strips, `programme` for
+What the numbers mean is told where the arrays are made: `problem` for the strips, `programme` for
 the programme. All of it stands in this one file, because Numba looks at no other to tell whether
 what it keeps on disk is still valid; limits are handed over for the same reason.
 Arrays are copied by loops: a slice on the left would take
@@ -34,13 +34,6 @@ def shape(tau, table):  # type: ignore[no-untyped-def]
     g = v0 + s * (m0 + s * (lean + s * bend))
     slope = (m0 + s * (2.0 * lean + 3.0 * s * bend)) / step
     return faded * g, faded * slope
-
-
-@compiled
-def shapes(tau, table, value, slope):  # type: ignore[no-untyped-def]
-    """`shape` at many places (n,)."""
-    for k in range(len(tau)):
-        value[k], slope[k] = shape(tau[k], table)
 
 
 @compiled

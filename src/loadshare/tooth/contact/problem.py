@@ -1,4 +1,4 @@
-"""The contact problem of one meshing position, in SI units.
+r"""The contact problem of one meshing position, in SI units.
 
 Unknown are the forces p ≥ 0 [N] on the points of all lines and the approach Z [m] of the two
 gears. With u(p) the yielding of teeth and surfaces, w the unloaded gap and P the load,
@@ -6,6 +6,15 @@ gears. With u(p) the yielding of teeth and surfaces, w the unloaded gap and P th
     d = u(p) + w − Z ≥ 0,    p ≥ 0,    p·d = 0,    Σ p = P.
 
 Source: formulation, section 9.
+
+Far from a strip its width hardly matters. There the displacement of
+:mod:`loadshare.tooth.contact.strips` is the series
+
+.. math:: g(\tau) = \ln\tau + \text{const} + \sum_{k\ge1} c_k\tau^{-2k},\qquad
+    c_k = \frac{(-1)^{k+1}}{2k(k+1)}\left[\frac{(2k)!}{4^k (k!)^2}\right]^2
+
+(asinh expanded under its integral), so that between two points it is a polynomial in the strip's
+b² with coefficients that geometry fixes. Only next to a strip g itself is needed.
 """
 
 from __future__ import annotations
@@ -15,16 +24,21 @@ from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from math import comb, pi
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.tooth.contact.strips import FAINT, StripLine
-from loadshare.tooth.contact.surface import Surface
+from loadshare.tooth.contact.strips import FAINT, StripLine, StripTable, strip_table
 from loadshare.tooth.geometry.body import Array
 
 FAR_OFF = 1.0
 """Gap [m] of points that only fill up a batch: they never close."""
+TERMS = 5
+"""Powers of b² that are kept."""
+FAR = 4.0
+"""Distance, in half-widths, from which they are good to 4e-11."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +94,23 @@ class ContactProblem:
         return np.asarray(self.alone.yielded(force[None])[0])
 
 
+class Strips(NamedTuple):
+    """Strips of M positions, N of each, as compiled code reads them.
+
+    Lines are numbered within a position and do not feel one another here: that is what the bulk
+    compliance is for. What only fills a position up has the number −1.
+    """
+
+    number: Array  # (M, N)
+    place: Array  # (M, N) along the line [m]
+    half: Array  # (M, N): half of the length [m]
+    scale: Array  # (M, N): displacement per force and unit of g [m/N]
+    square: Array  # (M, N): b² per force [m²/N]
+    series: Array  # (M, TERMS + 1, N, N): coefficients of b²ᵏ [m/N]
+    far: float
+    table: StripTable
+
+
 class ContactBatch:
     """Contact problems of K positions, stacked so that one pass serves all.
 
@@ -96,51 +127,73 @@ class ContactBatch:
         Points of each problem; they come first.
     gap : array (K, N)
         [m].
+    names : tuple of str
+    which : array (K,) of int
+        Numbers of the problems among the M that the batch was made of.
     fixed : array (M, N, N)
-        The part of the compliance [m/N] that does not depend on the load, of the M problems that
-        the batch was made of.
-    surface : Surface
-        What the surfaces yield.
+        The part of their compliance [m/N] that does not depend on the load.
+    strips : Strips
+        What their surfaces yield.
     """
 
     def __init__(self, problems: Sequence[ContactProblem]) -> None:
+        from loadshare.tooth.contact.compiled import expand
+
         self.count = np.array([len(problem.gap) for problem in problems])
-        largest = int(self.count.max())
-        self.gap = np.full((len(problems), largest), FAR_OFF)
-        self.fixed = np.zeros((len(problems), largest, largest))
+        self.names = tuple(problem.name for problem in problems)
+        self.which = np.arange(len(problems))
+        positions, points = len(problems), int(self.count.max())
+        self.gap = np.full((positions, points), FAR_OFF)
+        self.fixed = np.zeros((positions, points, points))
+        strips = np.zeros((5, positions, points))
+        strips[0] = -1.0
         for k, (problem, count) in enumerate(zip(problems, self.count, strict=True)):
             self.gap[k, :count] = problem.gap
             self.fixed[k, :count, :count] = problem.fixed
-        self.surface = Surface([problem.lines for problem in problems])
-        self.names = tuple(problem.name for problem in problems)
-
-    @property
-    def which(self) -> NDArray[np.int64]:
-        """Numbers (K,) of the problems in `fixed`."""
-        return self.surface.which
+            for number, (line, part) in enumerate(zip(problem.lines, problem.parts, strict=True)):
+                strips[:, k, part] = _strips(number, line)
+        series = np.empty((positions, TERMS + 1, points, points))
+        lines, place, half, scale, square = strips
+        self.strips = Strips(lines, place, half, scale, square, series, FAR, strip_table())
+        expand(self.strips, COEFFICIENTS, series)
 
     def rows(self, chosen: NDArray[np.int64]) -> ContactBatch:
         """Some of the problems, or some of them several times."""
         part = copy(self)
-        part.count, part.gap = self.count[chosen], self.gap[chosen]
-        part.surface = self.surface.rows(chosen)
+        part.count, part.gap, part.which = self.count[chosen], self.gap[chosen], self.which[chosen]
         part.names = tuple(self.names[k] for k in chosen)
         return part
 
     def compliance(self, force: Array) -> tuple[Array, Array]:
         """Secant and tangent compliance (K, N, N) [m/N] at the forces (K, N) [N]."""
+        from loadshare.tooth.contact.compiled import surfaces
+
+        force = np.array(force, float, order="C")
         least = FAINT * np.sum(np.maximum(force, 0.0), axis=1)
-        secant, tangent = self.surface.compliance(force, least)
+        secant, tangent = np.empty((2, *force.shape, force.shape[1]))
+        surfaces(self.strips, self.which, force, least, secant, tangent)
         fixed = self.fixed[self.which]
-        secant += fixed
-        tangent += fixed
-        return secant, tangent
+        return secant + fixed, tangent + fixed
 
     def yielded(self, force: Array) -> Array:
         """u(p) (K, N) [m]."""
-        return times(self.compliance(force)[0], force)
+        return np.asarray((self.compliance(force)[0] @ force[..., None])[..., 0])
 
 
-def times(matrices: Array, vectors: Array) -> Array:
-    """Products (K, N) of stacked matrices and vectors."""
-    return np.asarray((matrices @ vectors[..., None])[..., 0])
+COEFFICIENTS = np.array(
+    [1.0]
+    + [
+        -((-1.0) ** k) * (comb(2 * k, k) / 4.0**k) ** 2 / (2.0 * k * (k + 1.0))
+        for k in range(1, TERMS + 1)
+    ]
+)
+"""Of the series above; the first is the logarithm's."""
+
+
+def _strips(number: int, line: StripLine) -> Array:
+    """Number of the line, place, half length, scale and b² per force of its strips (5, n)."""
+    # b² per force: half-width of line contact at the strip's load per length.
+    square = line.widths(np.ones_like(line.length)) ** 2
+    scale = 1.0 / (pi * line.effective * line.length)
+    numbers = np.full_like(line.length, number)
+    return np.stack([numbers, line.place, 0.5 * line.length, scale, square])

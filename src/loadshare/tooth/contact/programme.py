@@ -31,9 +31,8 @@ from loadshare.contact.inner import solve_programme
 from loadshare.contact.programme import Programme
 from loadshare.errors import Refused
 from loadshare.tooth.contact.certificate import ContactCertificate, certify_contacts
-from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
+from loadshare.tooth.contact.problem import ContactBatch, ContactProblem, Strips
 from loadshare.tooth.contact.strips import FAINT
-from loadshare.tooth.contact.surface import Strips
 from loadshare.tooth.geometry.body import Array
 
 Mask = NDArray[np.bool_]
@@ -123,9 +122,8 @@ def solve_contacts(
         force = warm * (load / np.sum(warm, axis=1))[:, None]
     found = _Found.begun(force, warm is not None)
     of, linear = _Batch(batch.which, load, batch.gap, batch.fixed), _Linear.empty(force.shape[1])
-    strips = batch.surface.strips
     circling = -1
-    while (circling := _settle(strips, of, found, linear, circling)) >= 0:
+    while (circling := _settle(batch.strips, of, found, linear, circling)) >= 0:
         try:
             linear.answer(batch.count[circling], load[circling], force[circling], solver)
         except Refused as refusal:

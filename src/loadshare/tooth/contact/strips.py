@@ -69,18 +69,6 @@ def strip_table() -> StripTable:
     return StripTable(FIRST, LAST, values, tau * _slope(tau))
 
 
-def strip_shape(tau: Array) -> tuple[Array, Array]:
-    """g(τ), odd, and τ g'(τ), odd; from a cubic table good to about 1e-9.
-
-    Below the table's first knot (τ = 1e-7) both go to 0 in proportion to τ.
-    """
-    from loadshare.tooth.contact.compiled import shapes
-
-    value, slope = np.empty((2, tau.size))
-    shapes(tau.ravel(), strip_table(), value, slope)
-    return value.reshape(tau.shape), slope.reshape(tau.shape)
-
-
 @dataclass(frozen=True, eq=False)
 class StripLine:
     """The local contact of one line.

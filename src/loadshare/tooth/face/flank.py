@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
 from loadshare.tooth.face.gear import FaceGear
 from loadshare.tooth.geometry.body import Array
-from loadshare.tooth.geometry.flank import Patch, patch
+from loadshare.tooth.geometry.flank import Patch, patch, solve_2
 
 # A Newton step below this [rad] is the last: what is left is about its square, below round-off.
 LAST_TURN = 1e-8
+STEPS = 30
+
+Place: TypeAlias = tuple[Array, Array]
 
 
 @dataclass(frozen=True)
@@ -41,7 +45,7 @@ class FaceFlank:
     gear: FaceGear
     side: int = -1
 
-    def patch(self, a: Array, b: Array, turn: Array | float) -> Patch:
+    def patch(self, a: Array | float, b: Array, turn: Array | float) -> Patch:
         """Points of the flank at ξ = `a` and Φ = `b` [rad]; see `HelicoidFlank.patch`."""
         from loadshare.tooth.geometry.compiled import faces
 
@@ -75,36 +79,39 @@ class FaceFlank:
         roll, phi : array
             NaN where the flank has no such point.
         """
-        from loadshare.tooth.geometry.compiled import at_blank
-
-        gear = self.gear
-        lengths, depths = (np.array(x, float) for x in np.broadcast_arrays(length, depth))
         with np.errstate(invalid="ignore"):
-            start = np.arccos(gear.axial_scale / lengths)
-            roll = (depths / gear.shaper.base_radius - np.cos(start)) / np.sin(start)
-        roll, phi = roll.ravel(), self.side * start.ravel()
-        at_blank(self.numbers, lengths.ravel(), depths.ravel(), roll, phi, _LIMITS)
-        return roll.reshape(lengths.shape), phi.reshape(lengths.shape)
+            start = np.arccos(self.gear.axial_scale / length)
+            roll = (depth / self.gear.shaper.base_radius - np.cos(start)) / np.sin(start)
+        roll, phi = np.broadcast_arrays(roll, self.side * start)
+        for _ in range(STEPS):
+            at, slopes = self._blank(roll, phi)
+            step = solve_2(*slopes, at[0] - length, at[1] - depth)
+            roll, phi = roll - step[0], phi - step[1]
+            if not np.any(np.abs(step) > LAST_TURN):
+                break
+        return roll, phi
 
     def at_length(self, length: Array, roll: Array | float) -> Array:
         """Base-tangent angle Φ of the points with a given shaper roll at lengths of the blank."""
-        from loadshare.tooth.geometry.compiled import at_length
-
-        lengths, rolls = (np.array(x, float) for x in np.broadcast_arrays(length, roll))
         with np.errstate(invalid="ignore"):
-            phi = self.side * np.arccos(self.gear.axial_scale / lengths).ravel()
-        at_length(self.numbers, lengths.ravel(), rolls.ravel(), phi, _LIMITS)
-        return phi.reshape(lengths.shape)
+            phi = self.side * np.arccos(self.gear.axial_scale / length)
+        for _ in range(STEPS):
+            at, slopes = self._blank(roll, phi)
+            step = (at[0] - length) / slopes[0][1]
+            phi = phi - step
+            if not np.any(np.abs(step) > LAST_TURN):
+                break
+        return phi
 
-
-class _Limits(NamedTuple):
-    """When compiled code stops; handed over, for it would keep an old limit."""
-
-    steps: int
-    last: float
-
-
-_LIMITS = _Limits(30, LAST_TURN)
+    def _blank(self, roll: Array | float, phi: Array) -> tuple[Place, tuple[Place, Place]]:
+        """Length and depth of the blank [m], and of either its slopes over ξ and Φ."""
+        patch = self.patch(roll, phi, 0.0)
+        point, rays = patch.point, patch.rays
+        radius = np.hypot(point[..., 0], point[..., 1])
+        out = (rays[..., 0] * point[..., 0] + rays[..., 1] * point[..., 1]) / radius
+        sine, cosine = math.sin(self.gear.shaft_angle), math.cos(self.gear.shaft_angle)
+        along, down = out * sine + rays[..., 2] * cosine, out * cosine - rays[..., 2] * sine
+        return self.gear.blank(point), ((along[0], along[1]), (down[0], down[1]))
 
 
 class FaceNumbers(NamedTuple):

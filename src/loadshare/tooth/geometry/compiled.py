@@ -130,54 +130,6 @@ def faces(gear, roll, phi, turn, points):  # type: ignore[no-untyped-def]
 
 
 @compiled
-def at_blank(gear, length, depth, roll, phi, limits):  # type: ignore[no-untyped-def]
-    """Newton's method for parameters (n,) of points at lengths and depths of the blank."""
-    for k in range(len(length)):
-        for _ in range(limits.steps):
-            at, over_roll, over_phi = _blank(gear, roll[k], phi[k])
-            along, down = at[0] - length[k], at[1] - depth[k]
-            area = over_roll[0] * over_phi[1] - over_phi[0] * over_roll[1]
-            first = (over_phi[1] * along - over_phi[0] * down) / area
-            second = (over_roll[0] * down - over_roll[1] * along) / area
-            roll[k] -= first
-            phi[k] -= second
-            if not abs(first) + abs(second) > limits.last:
-                break
-
-
-@compiled
-def at_length(gear, length, roll, phi, limits):  # type: ignore[no-untyped-def]
-    """Newton's method for angles Φ (n,) of points at lengths of the blank."""
-    for k in range(len(length)):
-        for _ in range(limits.steps):
-            at, _, over_phi = _blank(gear, roll[k], phi[k])
-            step = (at[0] - length[k]) / over_phi[0]
-            phi[k] -= step
-            if not abs(step) > limits.last:
-                break
-
-
-@compiled
-def _blank(gear, roll, phi):  # type: ignore[no-untyped-def]
-    """Length and depth of the blank [m], then the slopes of both over ξ, and over Φ."""
-    s, base, cosine, sine = -gear.side, gear.base, np.cos(phi), np.sin(phi)
-    towards = base * (cosine - s * roll * sine)
-    tangential, axial = base * (sine + s * roll * cosine), gear.scale / cosine
-    # Components in the gear's frame, first of the point, then of its derivatives.
-    c, n = gear.axes[0, 0], gear.axes[0, 2]
-    x, y, z = c * towards + n * axial, tangential, c * axial - n * towards
-    radius = np.hypot(x, y)
-    out = (s * base * cosine * y - c * s * base * sine * x) / radius
-    up = n * s * base * sine
-    over_roll = n * out + c * up, c * out - n * up
-    drawn = axial * sine / cosine
-    out = ((n * drawn - c * tangential) * x + towards * y) / radius
-    up = c * drawn + n * tangential
-    over_phi = n * out + c * up, c * out - n * up
-    return (n * radius + c * z, c * radius - n * z), over_roll, over_phi
-
-
-@compiled
 def find(flanks, start, turns, known, stations, last, limits, found):  # type: ignore[no-untyped-def]
     """Unknowns (m, n, 5) of valleys at stations (m, n), NaN where there are none."""
     own, other, work, step = np.empty((6, 3)), np.empty((6, 3)), np.empty((7, 3)), np.empty(5)
