@@ -14,10 +14,9 @@ from loadshare.report.numbers import significant
 from loadshare.report.palette import look
 from loadshare.report.units import MICRORADIAN, Unit
 from loadshare.tooth.analysis.result import Ltca
+from loadshare.tooth.analysis.tables import STIFFNESS_LOADS
 
 WIDTH, HEIGHT = 400, 240
-STIFFNESS_LOADS = (1.0, 0.95, 0.9)
-"""Parts of the rated torque at which the stiffness is shown."""
 ERROR_LOADS = (1.0, 0.5, 0.1)
 """Parts of the rated torque at which the transmission error is shown."""
 UNLOADED = "no load"

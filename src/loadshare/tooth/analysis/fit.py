@@ -5,9 +5,7 @@ Source: formulation, section 3.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 
@@ -88,14 +86,8 @@ def fit_law(torque: Array, angle: Array) -> LawFit:
 
 def _bounded(terms: Array, angle: Array) -> Array:
     """Least squares with the last two coefficients not below zero."""
+    from scipy.optimize import lsq_linear
+
     scale = float(np.abs(angle).max()) or 1.0
-
-    def tried() -> Iterable[tuple[float, Array]]:
-        for keep_b, keep_c in product((True, False), repeat=2):
-            kept = [0] + [1] * keep_b + [2] * keep_c
-            found = np.zeros(3)
-            found[kept] = np.linalg.lstsq(terms[:, kept], angle / scale, rcond=None)[0] * scale
-            if found[1] >= 0.0 and found[2] >= 0.0:
-                yield float(np.linalg.norm(terms @ found - angle)), found
-
-    return min(tried(), key=lambda one: one[0])[1]
+    bounds = [-np.inf, 0.0, 0.0], np.inf
+    return np.asarray(lsq_linear(terms, angle / scale, bounds, method="bvls").x * scale)

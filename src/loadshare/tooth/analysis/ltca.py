@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from math import ceil
+from operator import attrgetter
 from typing import Literal
 
 import numpy as np
@@ -32,6 +33,8 @@ POINTS: dict[str, int] = {"finite elements": 32, "slices": 16}
 BATCH = 2**16
 """Entries of the compliance matrices of positions that are solved at once: a few megabytes."""
 Model = Literal["finite elements", "slices"]
+DRIVER, DRIVEN = attrgetter("driver_uw"), attrgetter("driven_uw")
+"""Points of a contact line on either flank."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,7 +196,7 @@ def contact_problems(
             )
     driver, driven = (
         tuple(tuple(Flank(line.pair * step, at(line)) for line in p.lines) for p in positions)
-        for step, at in ((1, _driver_uw), (pair.driven_step, _driven_uw))
+        for step, at in ((1, DRIVER), (pair.driven_step, DRIVEN))
     )
     bulks = zip(compliance.driver.bulks(driver), compliance.driven.bulks(driven), strict=True)
     strips = _strips(pair, [line for position in positions for line in position.lines], compliance)
@@ -208,14 +211,6 @@ def contact_problems(
     )
 
 
-def _driver_uw(line: ContactLine) -> Array:
-    return line.driver_uw
-
-
-def _driven_uw(line: ContactLine) -> Array:
-    return line.driven_uw
-
-
 def _strips(
     pair: GearPair, lines: Sequence[ContactLine], compliance: PairCompliance
 ) -> Iterator[StripLine]:
@@ -227,7 +222,7 @@ def _strips(
     )
     depths = (
         np.split(gear.depth(np.concatenate([at(line) for line in lines])), ends)
-        for gear, at in ((compliance.driver, _driver_uw), (compliance.driven, _driven_uw))
+        for gear, at in ((compliance.driver, DRIVER), (compliance.driven, DRIVEN))
     )
     factors = np.split(width_factor(along, across), ends)
     for line, factor, *depth in zip(lines, factors, *depths, strict=True):

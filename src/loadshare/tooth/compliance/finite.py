@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from loadshare.tooth.compliance.block import BlockMesh, Divisions, block_mesh
-from loadshare.tooth.compliance.interface import Flank
+from loadshare.tooth.compliance.interface import Compliance, Flank
 from loadshare.tooth.compliance.middle import MiddleSurface, under
 from loadshare.tooth.compliance.sheet import Sheet
 from loadshare.tooth.compliance.solid import Solid, build_solid
@@ -18,7 +18,7 @@ REACH = 4.0
 """Distance from the loaded tooth to the cut, in rim depths."""
 
 
-class FiniteElements:
+class FiniteElements(Compliance):
     """Bending, shear, root and rim of one gear from quadratic hexahedra.
 
     Tooth 0 stands in the middle of `teeth` teeth, whose rim goes on without teeth on either side;
@@ -75,8 +75,12 @@ class FiniteElements:
         self._feet = self.middle.feet(self._flank.places, side)
         self._influence = self._solve(mesh, solid)
 
-    def bulk(self, flanks: tuple[Flank, ...]) -> Array:
-        """See :meth:`loadshare.tooth.compliance.interface.Compliance.bulk`."""
+    def bulks(self, positions: Sequence[tuple[Flank, ...]]) -> list[Array]:
+        """See :meth:`loadshare.tooth.compliance.interface.Compliance.bulks`."""
+        return [self._between(flanks) for flanks in positions]
+
+    def _between(self, flanks: tuple[Flank, ...]) -> Array:
+        """Compliance between all points of flanks."""
         weights = [self._flank.weights(f.uw) for f in flanks]
         ends = np.cumsum([0] + [w.shape[0] for w in weights])
         total = np.zeros((ends[-1], ends[-1]))
@@ -88,14 +92,6 @@ class FiniteElements:
                     total[ends[i] : ends[i + 1], ends[j] : ends[j + 1]] = part
         # Reading at a depth leaves a small skew part, which Betti's theorem says is not real.
         return 0.5 * (total + total.T)
-
-    def bulks(self, positions: Sequence[tuple[Flank, ...]]) -> list[Array]:
-        """See :meth:`loadshare.tooth.compliance.interface.Compliance.bulks`."""
-        return [self.bulk(flanks) for flanks in positions]
-
-    def depth(self, uw: Array) -> Array:
-        """See :meth:`loadshare.tooth.compliance.interface.Compliance.depth`."""
-        return np.asarray(self._flank.weights(uw) @ self._feet.depth)
 
     def _solve(self, mesh: BlockMesh, solid: Solid) -> dict[int, Array]:
         """Displacement of every foot on tooth k, along its normal, for loads on tooth 0."""

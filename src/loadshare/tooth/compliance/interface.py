@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
+import numpy as np
+
+from loadshare.tooth.compliance.middle import Foot
+from loadshare.tooth.compliance.sheet import Sheet
 from loadshare.tooth.geometry.body import Array
 
 
@@ -25,7 +29,7 @@ class Flank:
     uw: Array
 
 
-class Compliance(Protocol):
+class Compliance(ABC):
     """Compliance of one gear without the neighbourhood of its contacts.
 
     A force on a flank point acts along the flank's normal, into the tooth. What it moves is read
@@ -35,15 +39,23 @@ class Compliance(Protocol):
     (:mod:`loadshare.tooth.contact.strips`). This is Weber and Banaschek's division.
     """
 
+    _flank: Sheet
+    """Points of the flank that were loaded, and what lies between them."""
+    _feet: Foot
+    """Where their normals meet the middle surface."""
+
     def bulk(self, flanks: tuple[Flank, ...]) -> Array:
         """Compliance (N, N) [m/N] between all points of all flanks, in their order; symmetric.
 
         Entry (i, j) is the displacement of the middle surface under point i, along the inward
         normal there, for a unit force on point j.
         """
+        return self.bulks((flanks,))[0]
 
-    def bulks(self, positions: Sequence[tuple[Flank, ...]]) -> Sequence[Array]:
+    @abstractmethod
+    def bulks(self, positions: Sequence[tuple[Flank, ...]]) -> list[Array]:
         """`bulk` of the flanks of every position."""
 
     def depth(self, uw: Array) -> Array:
         """Distance (n,) [m] from flank points (n, 2) to the middle surface, along the normal."""
+        return np.asarray(self._flank.weights(uw) @ self._feet.depth)

@@ -72,10 +72,6 @@ class MiddleSurface:
     def _floor(self) -> float | None:
         return floor_of(self.body) if self.body.shape == "face" else None
 
-    def flank(self, uw: Array, side: int) -> Array:
-        """Points (n, 3) of the flank `side` [m]."""
-        return self.body.outline(uw[:, 0], uw[:, 1], side)
-
     def surface(self, zw: Array) -> tuple[Array, Array, Array]:
         """Points (n, 3) [m] of the middle surface, and their derivatives over z and w."""
         over_z, over_w = (

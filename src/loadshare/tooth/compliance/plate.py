@@ -159,7 +159,7 @@ class Plate:
         place, slope = self.middle.height(z)
         f, df = _legendre(place, self._degrees[0])
         df *= slope[:, None]
-        g, dg = _legendre_at_gauss(self._degrees[1])
+        g, dg = _legendre(w, self._degrees[1])
 
         # Fields: deflection v, rotation p about the tooth line, rotation q about the height, with
         # the strain energy ½ bend (p_z² + q_w² + 2ν p_z q_w + ½(1 − ν)(p_w + q_z)²) and
@@ -215,12 +215,6 @@ def _legendre(place: Array, degree: int) -> tuple[Array, Array]:
     """Legendre polynomials (n, degree + 1) at places 0 to 1, and their slopes."""
     values = np.asarray(legvander(2.0 * place - 1.0, degree), np.float64)
     return values, 2.0 * values[:, :degree] @ _legder(degree)
-
-
-@cache
-def _legendre_at_gauss(degree: int) -> tuple[Array, Array]:
-    """The same at the Gauss points over the width, `OVER` more than the degree."""
-    return _legendre(_gauss(0.0, 1.0, degree + OVER)[0], degree)
 
 
 @cache

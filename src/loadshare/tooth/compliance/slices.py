@@ -24,7 +24,7 @@ from functools import cache, cached_property
 
 import numpy as np
 
-from loadshare.tooth.compliance.interface import Flank
+from loadshare.tooth.compliance.interface import Compliance, Flank
 from loadshare.tooth.compliance.middle import waist_of
 from loadshare.tooth.compliance.plate import ROOT_TANGENT, Plate, root_compliance
 from loadshare.tooth.compliance.ring import Ring
@@ -38,7 +38,7 @@ ROUND = 40.0
 """Radius, in depths, of the ring that stands for the flat body of a face gear."""
 
 
-class Slices:
+class Slices(Compliance):
     """Bending, shear, compression, root and body of one gear by closed forms.
 
     Parameters
@@ -69,10 +69,6 @@ class Slices:
         self._loads = np.hstack([self._on_plate(), self._at_root()])
         self._moved = cache(self._through_body)
 
-    def bulk(self, flanks: tuple[Flank, ...]) -> Array:
-        """See :meth:`loadshare.tooth.compliance.interface.Compliance.bulk`."""
-        return self.bulks((flanks,))[0]
-
     def bulks(self, positions: Sequence[tuple[Flank, ...]]) -> list[Array]:
         """See :meth:`loadshare.tooth.compliance.interface.Compliance.bulks`."""
         uw = np.concatenate([flank.uw for flanks in positions for flank in flanks])
@@ -93,10 +89,6 @@ class Slices:
                 total += carried @ moved @ carried.T
             found.append(0.5 * (total + total.T))
         return found
-
-    def depth(self, uw: Array) -> Array:
-        """See :meth:`loadshare.tooth.compliance.interface.Compliance.depth`."""
-        return np.asarray(self._flank.weights(uw) @ self._feet.depth)
 
     def _on_plate(self) -> Array:
         """Height, w, and parts across and along the tooth (nodes, 4) of unit forces on the flank.

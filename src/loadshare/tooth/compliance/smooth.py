@@ -120,11 +120,6 @@ class SmoothMiddle(MiddleSurface):
         over_z = np.where(sunk > 0.0, -down / (1.0 + self.waist), at.middle_u)
         return at.middle + sunk * down, over_z, at.middle_w
 
-    def flank(self, uw: Array, side: int) -> Array:
-        """See :meth:`MiddleSurface.flank`."""
-        at = self.sample(uw)
-        return at.middle + side * at.half
-
     def facing(self, uw: Array, side: int) -> tuple[Array, Array]:
         """See :meth:`MiddleSurface.facing`."""
         at = self.sample(uw)

@@ -89,10 +89,6 @@ class ContactProblem:
         secant, tangent = self.alone.compliance(force[None])
         return secant[0], tangent[0]
 
-    def yielded(self, force: Array) -> Array:
-        """u(p) (N,) [m]."""
-        return np.asarray(self.alone.yielded(force[None])[0])
-
 
 class Strips(NamedTuple):
     """Strips of M positions, N of each, as compiled code reads them.

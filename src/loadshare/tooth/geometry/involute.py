@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from scipy.optimize import brentq
+
 
 def inv(angle: float) -> float:
     """Involute of a pressure angle [rad]: tan α − α."""
@@ -25,14 +27,8 @@ def inverse_inv(value: float) -> float:
     """
     if value < 0.0:
         raise ValueError(f"inv α = {value:.6g} is negative; no pressure angle has it")
-    if value == 0.0:
-        return 0.0
-    # In t = tan α the equation t − atan t = value is convex and rising, so that Newton's method
-    # comes down to the root from any start above it; both bounds on the start lie above.
-    tangent = value + math.pi / 2 if value > 1.0 else (3.0 * value) ** (1 / 3) * (1.0 + value)
-    for _ in range(60):
-        step = (tangent - math.atan(tangent) - value) * (1.0 + tangent**2) / tangent**2
-        tangent -= step
-        if abs(step) <= 4e-16 * tangent:
-            break
-    return math.atan(tangent)
+    # In t = tan α the equation is t − atan t = value; both bounds on the root lie above it.
+    highest = value + math.pi / 2 if value > 1.0 else (3.0 * value) ** (1 / 3) * (1.0 + value)
+    highest *= 2.0  # beyond round-off
+    found = brentq(lambda t: t - math.atan(t) - value, 0.0, highest, xtol=1e-300, rtol=1e-15)
+    return math.atan(found)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loadshare.tooth.geometry.body import Array
-from loadshare.tooth.geometry.flank import dot, principal_directions, relative_curvature, unit
+from loadshare.tooth.geometry.flank import principal_directions, relative_curvature, unit
 from loadshare.tooth.geometry.gap import LAST_STEP, least_gap
 from loadshare.tooth.unloaded.positions import GearPair, touching
 
@@ -133,33 +133,16 @@ def _newton(pair: GearPair, pairs: Array, unknowns: Array, driver: Array, driven
         own = pair.driver_patch(pairs, (a, b), driver + turn)
         other = pair.driven_patch(pairs, (c, d), driven)
         first = unit(own.rays[0])
-        second = np.cross(own.normal, first)
-        columns = [*own.rays, *-other.rays, _about_z(own.point)]
-        changes = [*own.bends, *other.bends, _about_z(own.normal)]
-        opening = own.normal + other.normal
-        matrix = np.stack(
-            [
-                np.concatenate(
-                    [
-                        column,
-                        # In metres too, so that the rows weigh alike.
-                        pair.arm * dot(change, first)[..., None],
-                        pair.arm * dot(change, second)[..., None],
-                    ],
-                    axis=-1,
-                )
-                for column, change in zip(columns, changes, strict=True)
-            ],
-            axis=-1,
-        )
-        right = np.concatenate(
-            [
-                other.point - own.point,
-                -pair.arm * dot(opening, first)[..., None],
-                -pair.arm * dot(opening, second)[..., None],
-            ],
-            axis=-1,
-        )
+        # In metres too, so that the rows weigh alike.
+        across = pair.arm * np.stack([first, np.cross(own.normal, first)], axis=-1)
+
+        def equations(apart: Array, opening: Array, across: Array = across) -> Array:
+            return np.concatenate([apart, (opening[..., None, :] @ across)[..., 0, :]], axis=-1)
+
+        moves = np.stack([*own.rays, *-other.rays, _about_z(own.point)])
+        bends = np.stack([*own.bends, *other.bends, _about_z(own.normal)])
+        matrix = np.moveaxis(equations(moves, bends), 0, -1)
+        right = equations(other.point - own.point, -(own.normal + other.normal))
         scale = np.sqrt((matrix**2).sum(axis=-2))
         step = np.linalg.pinv(matrix / scale[..., None, :], rcond=1e-9) @ right[..., None]
         unknowns = unknowns + step[..., 0] / scale
