@@ -25,6 +25,8 @@ FURTHER = (1.0, 2.5, 4.0)
 """Gaps that are tried, over the one wanted."""
 RIM = 1.0
 """Room around a label that others leave free [px]."""
+CLEAR = 2.0
+"""Room above and below a label that lines should leave free, for letters that reach further [px]."""
 STEP = 3.0
 """Distance between the points by which a line is felt [px]."""
 MOST = 400
@@ -151,7 +153,9 @@ class Labels:
         left, low, right, high = box
         cost = 300.0 * sum(_overlap(box, other) for other in self._taken)
         x, y = self._felt.T
-        cost += int(np.count_nonzero((left <= x) & (x <= right) & (low <= y) & (y <= high)))
+        above = CLEAR / self.pixels
+        over = (left <= x) & (x <= right) & (low - above <= y) & (y <= high + above)
+        cost += int(np.count_nonzero(over))
         beyond = (
             *(self._low[0] - left, self._low[1] - low),
             *(right - self._high[0], high - self._high[1]),

@@ -10,7 +10,7 @@ import altair as alt
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.branches import stages_of
-from loadshare.report.figures.marks import Drawing, Row, channels, chart, heading, hover
+from loadshare.report.figures.marks import Drawing, Row, axis, channels, chart, heading, hover
 from loadshare.report.palette import SOFT, palette_of
 from loadshare.report.units import Unit, engineering
 from loadshare.results import Result
@@ -105,9 +105,11 @@ def _scaled(row: Row, torque: Unit, angle: Unit) -> Row:
 def _panel(
     curves: list[Row], points: list[Row], by_mesh: dict[str, Any], torque: Unit, angle: Unit
 ) -> Drawing:
+    # The axes end where the laws do: a figure at the very end would push the panel's title up.
+    reach, top = (max(row[name] for row in curves) for name in ("torque", "angle"))
     title = torque.title("torque on the driver")
-    x = alt.X("torque:Q", title=title, axis=alt.Axis(tickCount=6))
-    y = alt.Y("angle:Q", title=angle.title("deformation at the driver"))
+    x = axis(alt.X, "torque:Q", title, [0.0, reach], tickCount=6)
+    y = axis(alt.Y, "angle:Q", angle.title("deformation at the driver"), [0.0, top])
     lines = chart(curves).mark_line(color=SOFT, strokeWidth=1, opacity=0.7)
     told = hover(
         "mesh:N",

@@ -174,7 +174,7 @@ def _inputs(one: xr.Dataset) -> Drawing:
     domain = [called[order] for order in orders]
     y = alt.Y("input:N", sort=shown, title=None, axis=alt.Axis(domain=False, ticks=False))
     base = chart(rows).encode(y=y, yOffset=alt.YOffset("order:N", sort=domain))
-    bounds = [end for end in ("low", "high") if end in rows[0]]
+    bounds = [end for end in ("low", "high") if any(end in row for row in rows)]
     told = hover(
         "input:N",
         ("order:N", "its part"),
