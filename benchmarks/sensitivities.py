@@ -103,7 +103,7 @@ def differenced(
     None where there is no equilibrium to that side, or differences do not converge.
     """
     train = build_train(case)
-    cycle = train.situation(position).mesh_position
+    cycle = train.mesh_positions(position)
     value = item.value
 
     def laid(number: float) -> Array | None:

@@ -142,7 +142,7 @@ def disagreement(train: Train, one: Equilibrium, other: Equilibrium) -> tuple[fl
 def potential(train: Train, found: Equilibrium) -> float:
     """Potential energy of an answer [J], from its displacements alone."""
     state = State(train, found)
-    energy = [-t * found.rotation[g] for g, t in state.situation.torque.items()]
+    energy = [-t * found.rotation[g] for g, t in state.situation.torques.items()]
     energy += [push.law.energy(push.approach) for push in state.pushes]
     energy += [pull.law.energy(float(np.linalg.norm(pull.offset))) for pull in state.pulls]
     for name, wind, _ in state.winds():

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from loadshare.train import Train
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
+from loadshare.train.situations import situation_of
 
 Array = NDArray[np.float64]
 
@@ -125,9 +126,9 @@ class Balance:
         return tuple(made), np.array(parts).T.reshape(len(self.lever), len(made))
 
     def _flanks(self, add) -> None:  # type: ignore[no-untyped-def]
-        situation = self.train.situation(self.claim.index)
+        positions = self.train.mesh_positions(self.claim.index)
         for mesh in self.train.meshes.values():
-            law = mesh.law(situation.mesh_position[mesh.name])
+            law = mesh.law(positions[mesh.name])
             for drive in mesh.flanks:
                 force = self.claim.flank_force[mesh.flank_name(drive)]
                 push = mesh.drive_normal if drive else mesh.coast_normal
@@ -140,7 +141,7 @@ class Balance:
                 )
 
     def _rings(self, add) -> None:  # type: ignore[no-untyped-def]
-        situation = self.train.situation(self.claim.index)
+        situation = situation_of(self.train, self.claim.index)
         moved = self.claim.displacement
         for ring in self.train.drums:
             contacts = {
@@ -148,7 +149,7 @@ class Balance:
                 ring.stop_names[1]: {ring.gear: ring.across},
             }
             for side, neighbour in enumerate(ring.neighbours):
-                arc = self.train.arc(ring, side, situation)
+                arc = situation.arc(ring, side)
                 away = arc.normal(moved[ring.gear] - moved[neighbour])
                 contacts[ring.arc_name(neighbour)] = {ring.gear: away, neighbour: -away}
             soft = 0.0 if math.isinf(ring.stiffness) else 1.0 / ring.stiffness
@@ -203,7 +204,7 @@ class Balance:
         """Largest unbalanced force [N] of the claim, over its largest force: this file's test."""
         columns, matrix = self.columns
         load = np.zeros(len(self.lever))
-        for gear, torque in self.train.situation(self.claim.index).torque.items():
+        for gear, torque in situation_of(self.train, self.claim.index).torques.items():
             if (gear, "turn") in self.rows:
                 row = self.rows[gear, "turn"]
                 load[row] += torque / self.lever[row]

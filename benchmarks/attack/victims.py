@@ -18,6 +18,7 @@ from loadshare.case import Case
 from loadshare.results.claim import claim_of
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.situations import situation_of
 
 CASES = Path(__file__).parents[2] / "cases"
 SHIPPED = (
@@ -62,7 +63,7 @@ class Victim:
             for mesh in self.train.meshes.values()
             for d in mesh.flanks
         )
-        outside = self.train.situation(self.answer.index).torque.values()
+        outside = situation_of(self.train, self.answer.index).torques.values()
         return max(*flanks, *map(abs, outside))
 
     def errors(self, found: Equilibrium) -> dict[str, float]:

@@ -160,7 +160,7 @@ class Form:
         flanks = {r.name for r in scene.rows if r.kind.endswith("flank")}
         rings = [r.name for r in scene.rows if r.kind == "stop"] + [a.name for a in scene.arcs]
         return Equilibrium(
-            index=scene.situation.index,
+            index=scene.position,
             rotation={g: scene.angle(g, full) for g in train.gears},
             displacement={g: scene.moved(g, full) for g in train.gears},
             flank_force={n: max(carried.get(n, 0.0), 0.0) for n in flanks},

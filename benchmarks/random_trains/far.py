@@ -13,6 +13,7 @@ from benchmarks.reference import NoReference, Reference, reference
 from loadshare.train import Train
 from loadshare.train.gear import Vector
 from loadshare.train.mesh import Mesh
+from loadshare.train.situations import situation_of
 
 FAR = 1e-2
 """Displacement or compression, over the smallest base radius, from which on neither is small."""
@@ -47,7 +48,7 @@ def is_far(train: Train, index: int, exact: Reference) -> bool:
 
 def compressions(train: Train, index: int, exact: Reference) -> list[float]:
     """Compression of every flank [m]."""
-    at = train.situation(index).mesh_position
+    at = train.mesh_positions(index)
     return [
         mesh.law(at[name]).compression(max(exact.force[mesh.flank_name(drive)], 0.0))
         for name, mesh in train.meshes.items()
@@ -79,10 +80,10 @@ def neglected(train: Train, index: int, exact: Reference) -> float:
 
     The deflection is the largest compression, gap taken up, or error. Face gears are left out.
     """
-    here = train.situation(index)
-    lengths = [float(np.linalg.norm(c)) for c in here.offset.values()]
+    lengths = np.linalg.norm(situation_of(train, index).offset[0], axis=1).tolist()
+    positions = train.mesh_positions(index)
     for mesh, drive, force in _pressed(train, exact):
-        at = here.mesh_position[mesh.name]
+        at = positions[mesh.name]
         lengths += [mesh.law(at).compression(force), abs(mesh.gap(at, drive))]
     missed = max((string.missed for string in _strings(train, index, exact)), default=0.0)
     return missed / (max(lengths, default=0.0) or math.inf)
@@ -107,9 +108,9 @@ def _pressed(train: Train, exact: Reference) -> Iterator[tuple[Mesh, bool, float
 
 def _strings(train: Train, index: int, exact: Reference) -> Iterator[_String]:
     """Strings between the base circles of pressed flanks."""
-    here, still = train.situation(index), np.zeros(2)
+    here, still = situation_of(train, index), np.zeros(2)
     moved = {
-        name: here.offset[name] + exact.displacement.get(name, still) @ gear.frame
+        name: here.offset_of(name) + exact.displacement.get(name, still) @ gear.frame
         for name, gear in train.gears.items()
     }
     for mesh, drive, _ in _pressed(train, exact):

@@ -11,7 +11,8 @@ import numpy as np
 from benchmarks.reference.elements import Contact, ExactArc, Graph, Row, Yield
 from loadshare.contact.law import Law, PowerLaw, TableLaw
 from loadshare.train.ring import DrumRing, RoundRing
-from loadshare.train.train import Situation, Train
+from loadshare.train.situations import Situations
+from loadshare.train.train import Train
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,13 +52,15 @@ class Machine:
     length: float
 
 
-def machine(train: Train, situation: Situation, arithmetic: Any, softening: float = 0.0) -> Machine:
+def machine(
+    train: Train, situation: Situations, arithmetic: Any, softening: float = 0.0
+) -> Machine:
     """Write a train at one position in an arithmetic; the train's doubles are taken exactly.
 
     Parameters
     ----------
     train : Train
-    situation : Situation
+    situation : Situations
     arithmetic : mpmath context
     softening : float
         Stiffness added to every coordinate and compliance added to every wall, dimensionless: a
@@ -68,7 +71,7 @@ def machine(train: Train, situation: Situation, arithmetic: Any, softening: floa
 
 class _Writer:
     def __init__(
-        self, train: Train, situation: Situation, arithmetic: Any, softening: float
+        self, train: Train, situation: Situations, arithmetic: Any, softening: float
     ) -> None:
         self.train, self.situation, self.of = train, situation, arithmetic.mpf
         self.arithmetic, self.softening = arithmetic, arithmetic.mpf(softening)
@@ -83,11 +86,11 @@ class _Writer:
                 self.moves[name] = len(names)
                 names += [f"gear {name} x", f"gear {name} y"]
         self.names = tuple(names)
-        pushes = [abs(t) / train.gears[g].base_radius for g, t in situation.torque.items()]
+        pushes = [abs(t) / train.gears[g].base_radius for g, t in situation.torques.items()]
         self.force = max(pushes, default=0.0) or 1.0
+        self.positions = train.mesh_positions(situation.position)
         yields = [
-            m.law(situation.mesh_position[m.name]).compression(self.force)
-            for m in train.meshes.values()
+            m.law(self.positions[m.name]).compression(self.force) for m in train.meshes.values()
         ]
         self.length = float(np.median(yields))
 
@@ -145,7 +148,7 @@ class _Writer:
 
     def _load(self) -> dict[int, Any]:
         load: dict[int, Any] = {}
-        for gear, torque in self.situation.torque.items():
+        for gear, torque in self.situation.torques.items():
             if gear in self.turns:
                 radius = self.of(self.train.gears[gear].base_radius)
                 load[self.turns[gear]] = self.of(torque) / radius / self.of(self.force)
@@ -184,7 +187,7 @@ class _Writer:
     def _flanks(self) -> list[Contact]:
         rows: list[Contact] = []
         for mesh in self.train.meshes.values():
-            position = self.situation.mesh_position[mesh.name]
+            position = self.positions[mesh.name]
             law = self._law(mesh.law(position))
             for drive in mesh.flanks:
                 on_driver, on_driven, normal = mesh.direction(drive)
@@ -195,7 +198,7 @@ class _Writer:
                         gradient[self.turns[gear]] = self.of(arm) / radius
                 gradient |= self._shift(mesh.driver, normal)
                 gradient |= self._shift(mesh.driven, normal, -1)
-                offsets = [self.situation.offset[g] for g in (mesh.driver, mesh.driven)]
+                offsets = [self.situation.offset_of(g) for g in (mesh.driver, mesh.driven)]
                 constant = self._dot(normal, offsets[0]) - self._dot(normal, offsets[1])
                 constant -= self.of(mesh.gap(position, drive))
                 rows.append(
@@ -226,7 +229,7 @@ class _Writer:
         between = self._across([self.of(a) - self.of(b) for a, b in ends], axis)
         nominal = self.arithmetic.sqrt(sum(v * v for v in between))
         if ring.with_errors:
-            own, other = (self.situation.offset[g].tolist() for g in (ring.gear, neighbour))
+            own, other = (self.situation.offset_of(g).tolist() for g in (ring.gear, neighbour))
             shift = [self.of(a) - self.of(b) for a, b in zip(own, other, strict=True)]
             between = [a + b for a, b in zip(between, self._across(shift, axis), strict=True)]
         length = self.of(self.length)

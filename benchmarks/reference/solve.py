@@ -13,7 +13,8 @@ from benchmarks.reference.machine import Machine, machine
 from benchmarks.reference.settle import NoReference, Settled, loose_directions, settle
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
-from loadshare.train.train import Situation, Train
+from loadshare.train.situations import Situations, situation_of
+from loadshare.train.train import Train
 
 __all__ = ["NoReference", "Reference", "reference"]
 
@@ -103,7 +104,7 @@ def settled_in_digits(
     """
     import mpmath
 
-    situation = train.situation(index)
+    situation = situation_of(train, index)
     exact = mpmath.MPContext()
     exact.dps = DIGITS
     fine = machine(train, situation, exact)
@@ -111,7 +112,7 @@ def settled_in_digits(
     return fine, settle(fine, start, exact.mpf(TOLERANCE), exact.mpf(10) ** -50)
 
 
-def _found(train: Train, situation: Situation) -> Guess:
+def _found(train: Train, situation: Situations) -> Guess:
     """Settle in double precision, over softened trains if it does not go directly."""
     import mpmath
 

@@ -17,7 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.train.ring import DrumRing, RoundRing
-from loadshare.train.train import Situation, Train
+from loadshare.train.situations import Situations, situation_of
+from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
 
@@ -55,7 +56,7 @@ def truth_of(train: Train, index: int = 1) -> Truth:
     ValueError
         If it is a matter of round-off.
     """
-    situation = train.situation(index)
+    situation = situation_of(train, index)
     imbalance, gears = _imbalance(train, situation)
     overlap, rings = _overlap(train, situation)
     for figure, what in ((imbalance, "imbalance"), (overlap, "overlap")):
@@ -69,7 +70,7 @@ def truth_of(train: Train, index: int = 1) -> Truth:
     return Truth(True, (), f"imbalance {imbalance:.0e}, overlap {overlap:.0e}")
 
 
-def _imbalance(train: Train, situation: Situation) -> tuple[float, tuple[str, ...]]:
+def _imbalance(train: Train, situation: Situations) -> tuple[float, tuple[str, ...]]:
     """Smallest unbalanced part of the load, and the gears that it pushes away."""
     rows: dict[tuple[str, int], int] = {}
     for name, gear in train.gears.items():
@@ -118,12 +119,12 @@ def _imbalance(train: Train, situation: Situation) -> tuple[float, tuple[str, ..
                 column(-math.inf, (name, axis, 1.0))
         if isinstance(ring, DrumRing):
             for side, neighbour in enumerate(ring.neighbours):
-                normal = train.arc(ring, side, situation).normal(np.zeros(3))
+                normal = situation.arc(ring, side).normal(np.zeros(3))
                 column(0.0, *push(name, normal), *push(neighbour, -normal))
             for sign in (1.0, -1.0):
                 column(0.0, *push(name, -sign * ring.across))
     load = np.zeros(len(rows))
-    for name, torque in situation.torque.items():
+    for name, torque in situation.torques.items():
         if (name, 2) in rows:
             load[rows[name, 2]] += torque / train.gears[name].base_radius
     size = float(np.abs(load).max(initial=0.0))
@@ -155,7 +156,7 @@ def _least_gap(matrix: Array, right: Array, lower: Array) -> tuple[float, Array]
     return left, np.asarray(answer.eqlin.marginals)
 
 
-def _overlap(train: Train, situation: Situation) -> tuple[float, tuple[str, ...]]:
+def _overlap(train: Train, situation: Situations) -> tuple[float, tuple[str, ...]]:
     """By how much the rigid limits exclude each other, and the rings that do."""
     where = {n: 2 * k for k, n in enumerate(n for n, g in train.gears.items() if g.moves)}
     rows: list[Array] = []
@@ -182,7 +183,7 @@ def _overlap(train: Train, situation: Situation) -> tuple[float, tuple[str, ...]
                 limit(ring.gear, ring.radius + float(along @ ring.offset), (name, along))
             continue
         for side, neighbour in enumerate(ring.neighbours):
-            arc = train.arc(ring, side, situation)
+            arc = situation.arc(ring, side)
             normal, bound = arc.face(np.zeros(3))
             reach = max(reach, ROUNDING * arc.distance)
             limit(ring.gear, bound, (name, -normal), (neighbour, normal))

@@ -22,7 +22,8 @@ from loadshare.contact.radial import RadialLaw, round_ring_law
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
 from loadshare.train.memory import SlipFriction, SlipStop
-from loadshare.train.train import Situation, Spline, Train
+from loadshare.train.situations import Situations, situation_of
+from loadshare.train.train import Spline, Train
 
 EPS = float(np.finfo(float).eps)
 """Round-off of a length, relative to it."""
@@ -102,9 +103,9 @@ class State:
     answer: Equilibrium
 
     @cached_property
-    def situation(self) -> Situation:
+    def situation(self) -> Situations:
         """What the position brings."""
-        return self.train.situation(self.answer.index)
+        return situation_of(self.train, self.answer.index)
 
     def moved(self, gear: str) -> Vector:
         """Displacement p (3,) [m]."""
@@ -116,12 +117,13 @@ class State:
         return (*self._flanks(), *self._ring_contacts())
 
     def _flanks(self) -> Iterator[Push]:
-        phi, offset = self.answer.rotation, self.situation.offset
+        phi, offset_of = self.answer.rotation, self.situation.offset_of
+        positions = self.train.mesh_positions(self.answer.index)
         for mesh in self.train.meshes.values():
-            errors = offset[mesh.driver] - offset[mesh.driven]
+            errors = offset_of(mesh.driver) - offset_of(mesh.driven)
             relative = self.moved(mesh.driver) - self.moved(mesh.driven) + errors
             turned = (phi[mesh.driver], phi[mesh.driven])
-            position = self.situation.mesh_position[mesh.name]
+            position = positions[mesh.name]
             for drive in mesh.flanks:
                 name = mesh.flank_name(drive)
                 yield Push(
@@ -140,7 +142,7 @@ class State:
         for ring in self.train.drums:
             law = RIGID if math.isinf(ring.stiffness) else PowerLaw(1.0 / ring.stiffness)
             for side, neighbour in enumerate(ring.neighbours):
-                arc = self.train.arc(ring, side, self.situation)
+                arc = self.situation.arc(ring, side)
                 relative = self.moved(ring.gear) - self.moved(neighbour)
                 normal, margin = arc.normal(relative), arc.margin(relative)
                 name = ring.arc_name(neighbour)
@@ -175,7 +177,7 @@ class State:
         """Every exclusion arc: its name, itself, and the relative displacement of its gears [m]."""
         for ring in self.train.drums:
             for side, neighbour in enumerate(ring.neighbours):
-                arc = self.train.arc(ring, side, self.situation)
+                arc = self.situation.arc(ring, side)
                 yield ring.arc_name(neighbour), arc, self.moved(ring.gear) - self.moved(neighbour)
 
     def squeezes(self, band: float) -> dict[str, float]:
@@ -194,7 +196,7 @@ class State:
             gives_way = any(self.train.gears[n].moves for n in ring.neighbours)
             if gives_way or not math.isinf(ring.stiffness):
                 continue
-            arcs = [self.train.arc(ring, side, self.situation) for side in (0, 1)]
+            arcs = [self.situation.arc(ring, side) for side in (0, 1)]
             wedge = float(np.linalg.norm(sum(a.normal(np.zeros(3)) for a in arcs)))
             squeeze = min(forces[ring.arc_name(n)] for n in ring.neighbours)
             distance = min(a.distance for a in arcs)
@@ -271,7 +273,7 @@ class State:
     def moment(self) -> dict[str, float]:
         """Moment [N·m] on every gear of the load, its flanks and elastic shafts."""
         train, answer = self.train, self.answer
-        moment = {g: self.situation.torque.get(g, 0.0) for g in train.gears}
+        moment = {g: self.situation.torques[g] for g in train.gears}
         for mesh in train.meshes.values():
             for drive in mesh.flanks:
                 force = answer.flank_force[mesh.flank_name(drive)]
@@ -336,7 +338,7 @@ class State:
         """
         gears = self.train.gears
         forces = [abs(f) for f in self.answer.flank_force.values()]
-        forces += [abs(t) / gears[g].base_radius for g, t in self.situation.torque.items()]
+        forces += [abs(t) / gears[g].base_radius for g, t in self.situation.torques.items()]
         return max(forces, default=0.0) or 1.0
 
     @cached_property
@@ -348,7 +350,7 @@ class State:
         closed = [p for p in self._flanks() if p.force > 0.0]
         lengths = [p.law.compression(p.force) for p in closed]
         lengths += [abs(p.at_rest) for p in closed]
-        lengths += [float(np.linalg.norm(c)) for c in self.situation.offset.values()]
+        lengths += np.linalg.norm(self.situation.offset[0], axis=1).tolist()
         return max(lengths, default=0.0) or 1e-6
 
 
@@ -462,7 +464,7 @@ def energy_gap(state: State) -> dict[str, float]:
     Bearings and rings may hold far more energy against one another than the load brings in.
     """
     primal, dual = [], []
-    for gear, torque in state.situation.torque.items():
+    for gear, torque in state.situation.torques.items():
         primal.append(-torque * state.answer.rotation[gear])
     for push in state.pushes:
         primal.append(push.law.energy(push.approach))

@@ -255,7 +255,7 @@ def test_a_gear_beyond_its_neighbour():
     for row, (ring, side) in enumerate(places):
         moved = spoilt.displacement[row]
         gear, neighbour = order.index(ring.gear), order.index(ring.neighbours[side])
-        way = train.arc(ring, side, train.situation(1)).start + moved[gear] - moved[neighbour]
+        way = situation_of(train, 1).arc(ring, side).start + moved[gear] - moved[neighbour]
         moved[gear] -= 2.0 * way
     agree(train, [1] * len(places), situations.take(rows), spoilt)
     many = alike(train, situations.take(rows), spoilt)

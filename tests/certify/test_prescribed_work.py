@@ -65,14 +65,14 @@ def flank_work(flank: str, part: str) -> Work:
     """F times gap, backlash or errors along the line of action."""
 
     def work(train: Train, found: Equilibrium) -> float:
-        here = train.situation(found.index)
+        here = situation_of(train, found.index)
         mesh = next(m for m in train.meshes.values() for d in m.flanks if m.flank_name(d) == flank)
         drive = flank == mesh.flank_name(True)
         lengths = {
-            "gap": mesh.gap(here.mesh_position[mesh.name], True),
+            "gap": mesh.gap(train.mesh_positions(found.index)[mesh.name], True),
             "backlash": mesh.backlash,
             "error": mesh.direction(drive)[2]
-            @ (here.offset[mesh.driver] - here.offset[mesh.driven]),
+            @ (here.offset_of(mesh.driver) - here.offset_of(mesh.driven)),
         }
         return found.flank_force[flank] * float(lengths[part])
 
@@ -86,7 +86,7 @@ def contact_work(contact: str, length: float) -> Work:
 
 def drawn_arc_work(train: Train, found: Equilibrium) -> float:
     """Force of the arc towards gear 6 times what the errors shift it along its normal."""
-    arc = train.arc(train.rings["4"], 1, train.situation(found.index))
+    arc = situation_of(train, found.index).arc(train.rings["4"], 1)
     push = found.ring_force[train.rings["4"].arc_name("6")]
     return push * float(arc.normal(np.zeros(3)) @ arc.shift)
 

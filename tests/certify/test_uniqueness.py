@@ -17,6 +17,7 @@ from loadshare.certify.uniqueness import uniqueness
 from loadshare.job.search import search
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.situations import situation_of
 
 A1, A2 = 0.16, 0.25
 SPRING, WALL = 2.0e6, 1.0e10
@@ -166,7 +167,7 @@ def test_many_answers_say_what_single_ones_say():
     train, forces = known.train, known.equilibrium.ring_force
     largest = max(
         sum(
-            forces[r.arc_name(n)] / train.arc(r, side, train.situation(1)).distance
+            forces[r.arc_name(n)] / situation_of(train, 1).arc(r, side).distance
             for side, n in enumerate(r.neighbours)
         )
         for r in train.drums

@@ -18,6 +18,7 @@ from benchmarks import families
 from loadshare.certify import Certificate, certify
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.situations import situation_of
 
 SCENARIOS = {
     "drum ring": lambda: shipped("fgfbstts/limit_ring"),
@@ -145,7 +146,7 @@ def beyond_the_neighbour(train: Train, found: Equilibrium) -> Iterator[Wrong]:
     """The limited gear is mirrored at its neighbour, where the arc's inequality holds."""
     for ring in train.drums:
         for side, neighbour in enumerate(ring.neighbours):
-            arc = train.arc(ring, side, train.situation(found.index))
+            arc = situation_of(train, found.index).arc(ring, side)
             relative = found.displacement[ring.gear] - found.displacement[neighbour]
             far = found.displacement[ring.gear] - 2.0 * (arc.start + relative)
             answer = spoilt(found, "displacement", {ring.gear: far})

@@ -28,6 +28,7 @@ from loadshare.solver.hot import places, vectorised
 from loadshare.solver.hot.exchange import Found, exchange, first_sets
 from loadshare.solver.hot.state import at_rest
 from loadshare.train import Train, build_train
+from loadshare.train.situations import situation_of
 
 CASES = {
     "limit ring": lambda: shipped("fgfbstts/limit_ring"),
@@ -278,10 +279,8 @@ def test_the_positions_that_have_an_answer_are_kept():
     train = build_train(case)
     room = []
     for index in range(1, train.count + 1):
-        here = train.situation(index)
-        room.append(
-            sum(train.arc(train.rings["4"], side, here).margin(np.zeros(3)) for side in (0, 1))
-        )
+        here = situation_of(train, index)
+        room.append(sum(here.arc(train.rings["4"], side).margin(np.zeros(3)) for side in (0, 1)))
     with pytest.raises(Refused) as refused:
         ls.solve(case)
     kept = [p.position for p in refused.value.partial.positions]
@@ -330,7 +329,7 @@ def test_a_float_between_opposed_arcs_rolls_or_is_refused():
     case = beside_the_line()
     train = build_train(case)
     ring = train.rings["4"]
-    arcs = [train.arc(ring, side, train.situation(1)) for side in (0, 1)]
+    arcs = [situation_of(train, 1).arc(ring, side) for side in (0, 1)]
     wedge = float(np.linalg.norm(sum(a.normal(np.zeros(3)) for a in arcs)))
     assert 1e-8 < wedge < 1e-5
     for solver in ("auto", "clarabel"):

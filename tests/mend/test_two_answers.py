@@ -15,6 +15,7 @@ from loadshare.job.machine import Machine, engine_named
 from loadshare.scene import assemble
 from loadshare.solver import Options, solve_scene
 from loadshare.train import build_train
+from loadshare.train.situations import situation_of
 
 HERE = Path(__file__).parent
 CASES = ("two_answers", "two_answers_base")
@@ -27,7 +28,7 @@ def train_of(name):
 def on_its_own_side(train, answer):
     (ring,) = train.drums
     for side, neighbour in enumerate(ring.neighbours):
-        arc = train.arc(ring, side, train.situation(1))
+        arc = situation_of(train, 1).arc(ring, side)
         assert not arc.beyond(answer.displacement[ring.gear] - answer.displacement[neighbour])
 
 

@@ -13,6 +13,7 @@ from tests.support import round_ring, shipped
 
 from loadshare.report.figures.region import region
 from loadshare.train import build_train
+from loadshare.train.situations import situation_of
 
 STILL = dict.fromkeys(map(str, range(1, 11)), (0.0, 0.0))
 
@@ -26,12 +27,12 @@ def exact_margin(train, gear, point, displacement, position=1):
     """Smallest distance of a displacement to the ring's boundaries [m], from the train's arcs."""
     ring, frame = train.rings[gear], train.gears[gear].frame
     moved = np.array(point) @ frame
-    situation = train.situation(position)
+    situation = situation_of(train, position)
     across = float(ring.across @ moved)
     margins = [ring.up - across, ring.down + across]
     for side, name in enumerate(ring.neighbours):
         neighbour = np.array(displacement[name]) @ train.gears[name].frame
-        margins.append(train.arc(ring, side, situation).margin(moved - neighbour))
+        margins.append(situation.arc(ring, side).margin(moved - neighbour))
     return min(margins)
 
 

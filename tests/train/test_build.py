@@ -15,6 +15,7 @@ import loadshare as ls
 from benchmarks import families
 from loadshare.contact.arc import Arc
 from loadshare.train import build_train
+from loadshare.train.situations import situation_of
 
 # --- Senses and ratios ---
 
@@ -157,8 +158,8 @@ def test_the_face_of_an_arc_touches_it_and_leaves_it_quadratically():
 
 def test_a_mesh_cycle_turns_the_input_by_one_pitch():
     train = build_train(shipped("fgfbstts/base").replace({"gears.1.teeth": 25}))
-    assert [train.situation(k).mesh_position["6-10"] for k in (1, 2, 5)] == [0, 1, 4]
-    turned = train.situation(3).rotation["1"]
+    assert [train.mesh_positions(k)["6-10"] for k in (1, 2, 5)] == [0, 1, 4]
+    turned = train.rotations(3)["1"]
     assert turned == pytest.approx(2 * math.pi / 25 * 2 / 5)
 
 
@@ -172,7 +173,7 @@ def test_the_teeth_of_any_gear_of_the_first_stage_tell_the_cycle_of_the_input(ge
     assert train.cycle == "1"
     pitch = 2 * math.pi / teeth * radii[gear] / radii["1"]
     turned = {n: 0.4 * pitch * train.gears[n].ratio for n in radii}
-    assert train.situation(3).rotation == pytest.approx(turned, rel=1e-14)
+    assert train.rotations(3) == pytest.approx(turned, rel=1e-14)
 
 
 def test_teeth_of_a_later_stage_alone_make_its_tooth_the_cycle():
@@ -182,7 +183,7 @@ def test_teeth_of_a_later_stage_alone_make_its_tooth_the_cycle():
     assert train.cycle == "4"
     assert train.gears["1"].teeth is None
     assert train.gears["6"].teeth == pytest.approx(227 * 114.75 / 382.9862)
-    assert train.situation(3).rotation["10"] == pytest.approx(2 * math.pi / 227 * 0.4)
+    assert train.rotations(3)["10"] == pytest.approx(2 * math.pi / 227 * 0.4)
 
 
 @pytest.mark.parametrize("gear", ["1", "2", "4", "6", "10"])
@@ -190,9 +191,9 @@ def test_eccentricities_turn_whichever_gear_has_the_teeth(gear):
     eccentric = {"errors": {"6": {"eccentricity": {"amount": "50 um"}}}}
     case = shipped("fgfbstts/base").replace(eccentric | {f"gears.{gear}.teeth": 30})
     train = build_train(case)
-    angle = [math.atan2(*train.situation(k).offset["6"][1::-1]) for k in range(1, 6)]
+    angle = [math.atan2(*situation_of(train, k).offset_of("6")[1::-1]) for k in range(1, 6)]
     steps = np.diff(angle) / train.gears["6"].sense
-    assert steps == pytest.approx(np.full(4, train.situation(2).rotation["6"]))
+    assert steps == pytest.approx(np.full(4, train.rotations(2)["6"]))
     assert steps[0] > 1e-3
 
 
@@ -210,10 +211,12 @@ def test_a_neglected_rotation_leaves_eccentricities_where_they_are():
     assert train.cycle is None
     for gear in train.gears:
         np.testing.assert_array_equal(
-            train.situation(4).offset[gear], train.situation(1).offset[gear]
+            situation_of(train, 4).offset_of(gear), situation_of(train, 1).offset_of(gear)
         )
     turning = build_train(case.replace({"operating.rotation": "teeth"}))
-    assert turning.situation(4).offset["1"] != pytest.approx(turning.situation(1).offset["1"])
+    assert situation_of(turning, 4).offset_of("1") != pytest.approx(
+        situation_of(turning, 1).offset_of("1")
+    )
 
 
 def test_a_march_turns_its_gear_through_whole_revolutions():
@@ -224,7 +227,7 @@ def test_a_march_turns_its_gear_through_whole_revolutions():
     for index in (1, 7, 24):
         angle = -math.radians(15.0) * (index - 1)
         expected = 50e-6 * np.array([math.cos(angle), math.sin(angle), 0.0])
-        assert train.situation(index).offset["8"] == pytest.approx(expected, abs=1e-19)
+        assert situation_of(train, index).offset_of("8") == pytest.approx(expected, abs=1e-19)
 
 
 def test_a_mesh_with_teeth_stands_where_its_driver_has_turned():
@@ -233,15 +236,14 @@ def test_a_mesh_with_teeth_stands_where_its_driver_has_turned():
     """
     train = build_train(shipped("fgfbstts/all_elements"))
     for index in range(1, train.count + 1):
-        situation = train.situation(index)
-        cycles = situation.rotation["4"] * 27 / (2 * math.pi)
-        assert situation.mesh_position["4-6"] == math.floor((cycles % 1.0) * 5 + 1e-9) % 5
+        cycles = train.rotations(index)["4"] * 27 / (2 * math.pi)
+        assert train.mesh_positions(index)["4-6"] == math.floor((cycles % 1.0) * 5 + 1e-9) % 5
 
 
 @pytest.mark.parametrize("index", [0, 6, -1])
 def test_there_is_no_such_position(index):
     with pytest.raises(IndexError, match="positions 1 to 5"):
-        build_train(shipped("fgfbstts/base")).situation(index)
+        situation_of(build_train(shipped("fgfbstts/base")), index)
 
 
 def test_installation_errors_and_eccentricities_are_offsets():
@@ -252,4 +254,4 @@ def test_installation_errors_and_eccentricities_are_offsets():
     }
     case = shipped("fgfbstts/base").replace({"errors": {"6": errors}, "gears.1.teeth": 25})
     train = build_train(case)
-    assert train.situation(1).offset["6"] == pytest.approx([3e-6, 6e-6, 0.0])
+    assert situation_of(train, 1).offset_of("6") == pytest.approx([3e-6, 6e-6, 0.0])

@@ -90,12 +90,19 @@ def test_the_arrays_tell_what_the_train_tells():
     """Every number again, by the train's own methods, on the case with every element."""
     train = build_train(shipped("fgfbstts/all_elements"))
     for index in (1, 4):
-        found, here = row(situation_of(train, index), 0), train.situation(index)
-        for g, gear in enumerate(train.gears):
-            np.testing.assert_array_equal(found["offset"][g], here.offset[gear])
-            assert found["torque"][g] == here.torque.get(gear, 0.0)
+        found, here = row(situation_of(train, index), 0), situation_of(train, index)
+        turned, places = train.rotations(index), train.mesh_positions(index)
+        for g, (name, gear) in enumerate(train.gears.items()):
+            offset = np.zeros(3)
+            if name in train.offsets:
+                offset = train.offsets[name].at(gear, turned[name])
+            np.testing.assert_array_equal(found["offset"][g], offset)
+            np.testing.assert_array_equal(here.offset_of(name), offset)
+            driving = train.input_torque[0] if name == train.input else 0.0
+            torque = train.external.get(name, 0.0) + driving
+            assert found["torque"][g] == here.torques[name] == torque
         for m, mesh in enumerate(train.meshes.values()):
-            place = here.mesh_position[mesh.name]
+            place = places[mesh.name]
             law = mesh.law(place)
             assert (found["bending"][m], found["hertz"][m]) == (law.b, law.c)
             assert (found["gap"][m], found["backlash"][m]) == (mesh.gap(place, True), mesh.backlash)
@@ -109,8 +116,9 @@ def test_the_arrays_tell_what_the_train_tells():
                 0.0 if math.isinf(ring.stiffness) else pytest.approx(1.0 / ring.stiffness)
             )
             for side in (0, 1):
-                arc = train.arc(ring, side, here)
+                arc = here.arc(ring, side)
                 np.testing.assert_array_equal(found["arc_shift"][d, side], arc.shift)
+                assert arc.clearance == ring.clearances[side]
 
 
 def test_arcs_follow_the_errors_where_rings_are_measured_without_them():

@@ -263,7 +263,7 @@ def climb(
 
 def _refuse_if_none(scene: Scene, overlap: float = OVERLAP) -> None:
     """Refuse a position that is shown to have no equilibrium, and name what is in the way."""
-    here = f"position {scene.situation.index}:"
+    here = f"position {scene.position}:"
     against = contradiction(scene, overlap)
     if against:
         raise Refused(

@@ -49,9 +49,7 @@ def least_places(
         Where the bounds of those that moved stand.
     """
     scenes = {row: scene_of(row) for row in rows}
-    claimed = {
-        row: found.equilibria.one(row, scene.situation.index) for row, scene in scenes.items()
-    }
+    claimed = {row: found.equilibria.one(row, scene.position) for row, scene in scenes.items()}
     least = {row: of_least_norm(scenes[row], claimed[row]) for row in rows}
     moved = [row for row in rows if least[row].displacement is not claimed[row].displacement]
     if not moved:

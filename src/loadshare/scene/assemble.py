@@ -13,12 +13,13 @@ from loadshare.scene.coordinates import Coordinates, coordinates_of
 from loadshare.scene.scene import GearRadial, Scene
 from loadshare.train.memory import SlipFriction, SlipStop
 from loadshare.train.ring import DrumRing
-from loadshare.train.train import Situation, Train
+from loadshare.train.situations import Situations, situation_of
+from loadshare.train.train import Train
 
 
 def assemble(train: Train, index: int) -> Scene:
     """Assemble the scene of position `index` (1-based) of a train."""
-    situation = train.situation(index)
+    situation = situation_of(train, index)
     at = coordinates_of(train)
     stiffness, load = _linear_part(train, situation, at)
     return Scene(
@@ -46,10 +47,10 @@ def _idle(train: Train) -> list[tuple[str, str]]:
     ]
 
 
-def _linear_part(train: Train, situation: Situation, at: Coordinates) -> tuple[Array, Array]:
+def _linear_part(train: Train, situation: Situations, at: Coordinates) -> tuple[Array, Array]:
     """H from elastic shafts and supports, f from external torques and clocking."""
     stiffness, load = np.zeros((at.size, at.size)), np.zeros(at.size)
-    for gear, torque in situation.torque.items():
+    for gear, torque in situation.torques.items():
         r = at.rotation[gear]
         if r.index is not None:
             load[r.index] += torque * r.rate
@@ -74,13 +75,14 @@ def _linear_part(train: Train, situation: Situation, at: Coordinates) -> tuple[A
     return stiffness, load
 
 
-def _flanks(train: Train, situation: Situation, at: Coordinates) -> list[Row]:
+def _flanks(train: Train, situation: Situations, at: Coordinates) -> list[Row]:
     """Rows of all flanks that can touch."""
     rows = []
+    positions = train.mesh_positions(situation.position)
     for mesh in train.meshes.values():
-        position = situation.mesh_position[mesh.name]
+        position = positions[mesh.name]
         relative = at.moved(mesh.driver) - at.moved(mesh.driven)
-        errors = situation.offset[mesh.driver] - situation.offset[mesh.driven]
+        errors = situation.offset_of(mesh.driver) - situation.offset_of(mesh.driven)
         constants = (at.rotation[mesh.driver].constant, at.rotation[mesh.driven].constant)
         for drive in mesh.flanks:
             on_driver, on_driven, normal = mesh.direction(drive)
@@ -96,13 +98,13 @@ def _flanks(train: Train, situation: Situation, at: Coordinates) -> list[Row]:
     return rows
 
 
-def _arcs(train: Train, situation: Situation, at: Coordinates) -> tuple[ArcRow, ...]:
+def _arcs(train: Train, situation: Situations, at: Coordinates) -> tuple[ArcRow, ...]:
     """Exclusion arcs of all drums."""
     arcs = []
     for ring in train.drums:
         for side, neighbour in enumerate(ring.neighbours):
             relative = at.moved(ring.gear) - at.moved(neighbour)
-            arc = train.arc(ring, side, situation)
+            arc = situation.arc(ring, side)
             sagitta = max(ring.up, ring.down) ** 2 / (2.0 * arc.distance)
             arcs.append(ArcRow(ring.arc_name(neighbour), arc, relative, _wall(ring), sagitta))
     return tuple(arcs)

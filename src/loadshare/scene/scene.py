@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from statistics import median
 
 import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.contact.problem import ContactProblem, Radial
-from loadshare.train.train import Situation, Train
+from loadshare.train.situations import Situations
+from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
 
@@ -72,16 +74,24 @@ class Scene(ContactProblem):
 
     radials: tuple[GearRadial, ...]
     train: Train
-    situation: Situation
+    situation: Situations
     rotation: dict[str, Rotation]
     displacement: dict[str, slice]
     removed: tuple[tuple[str, str], ...]
 
+    @property
+    def position(self) -> int:
+        """Position (1-based)."""
+        return self.situation.position
+
+    @cached_property
+    def torques(self) -> dict[str, float]:
+        """External torques [N·m], by gear."""
+        return self.situation.torques
+
     def force_unit(self) -> float:
         """Force that the scene is measured by [N]: the largest external push, or 1 N at rest."""
-        pushes = [
-            abs(t) / self.train.gears[g].base_radius for g, t in self.situation.torque.items()
-        ]
+        pushes = [abs(t) / self.train.gears[g].base_radius for g, t in self.torques.items()]
         return max(pushes, default=0.0) or 1.0
 
     def length_unit(self) -> float:
@@ -99,7 +109,7 @@ class Scene(ContactProblem):
 
     def first_torques(self) -> dict[str, float]:
         """Return the whole input torque over every spline [N·m], to begin with."""
-        driving, gears = self.situation.torque[self.train.input], self.train.gears
+        driving, gears = self.torques[self.train.input], self.train.gears
         return {r.name: driving / gears[r.gear].ratio for r in self.radials}
 
     def angle(self, gear: str, x: Array) -> float:

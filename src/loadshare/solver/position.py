@@ -67,7 +67,7 @@ def solve_scene(
         except Unsolved as failure:
             wider = _wider(scene, plan)
             if wider is None:
-                raise Refused(f"position {scene.situation.index}: {failure}") from failure
+                raise Refused(f"position {scene.position}: {failure}") from failure
             plan = wider
             continue
         margins = _margins(scene, plan, settled)
@@ -103,7 +103,7 @@ def _settle(
     try:
         return _once(scene, plan, solver, options, options.method, known), options.method
     except ValueError as error:
-        raise Refused(f"position {scene.situation.index}: {error}") from error
+        raise Refused(f"position {scene.position}: {error}") from error
     except Unsolved:
         if other is None or all(r.law.is_linear for r in scene.rows):
             raise
@@ -174,7 +174,7 @@ def equilibrium_of(scene: Scene, settled: Settled) -> Equilibrium:
     contacts = [r.name for r in scene.rows if r.kind == "stop"] + [a.name for a in scene.arcs]
     reactions = {r.name: -pulls[r.name] @ train.gears[r.gear].frame for r in scene.radials}
     return Equilibrium(
-        index=scene.situation.index,
+        index=scene.position,
         rotation={g: scene.angle(g, found.x) for g in train.gears},
         displacement={g: scene.moved(g, found.x) for g in train.gears},
         flank_force={n: max(settled.forces.get(n, 0.0), 0.0) for n in sorted(flanks)},
@@ -206,7 +206,7 @@ def _without_noise(scene: Scene, settled: Settled) -> Settled:
 
     They would be the largest of the case otherwise, and everything would be measured by them.
     """
-    if any(scene.situation.torque.values()):
+    if any(scene.torques.values()):
         return settled
     stiffest = [abs(r.gap) / b for r in scene.rows if (b := r.law.secant(1.0)) > 0.0]
     noise = NOISE * max(stiffest, default=0.0)

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-import numpy as np
-
 from loadshare.case import Case, load_case
 from loadshare.tooth import resolve
+from loadshare.train.situations import VARYING, situation_of
 from loadshare.train.train import Train
 
 
@@ -29,11 +28,5 @@ def alike(trains: Iterable[Train], positions: Iterable[int]) -> list[list[int]]:
 
 def _situation(train: Train, position: int) -> tuple[object, ...]:
     """What a position brings, as something to compare."""
-    situation = train.situation(position)
-    meshes = tuple(
-        (mesh.law(at), *(mesh.gap(at, drive) for drive in mesh.flanks))
-        for name, mesh in train.meshes.items()
-        for at in (situation.mesh_position[name],)
-    )
-    offsets = tuple(np.asarray(c).tobytes() for c in situation.offset.values())
-    return meshes, offsets, tuple(sorted(situation.torque.items()))
+    situation = situation_of(train, position)
+    return tuple(getattr(situation, name).tobytes() for name in VARYING)

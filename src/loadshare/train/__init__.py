@@ -5,6 +5,6 @@ right of this room reads a :class:`~loadshare.train.train.Train` and never a cas
 """
 
 from loadshare.train.build import build_train
-from loadshare.train.train import Situation, Train
+from loadshare.train.train import Train
 
-__all__ = ["Situation", "Train", "build_train"]
+__all__ = ["Train", "build_train"]

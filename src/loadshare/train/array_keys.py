@@ -2,7 +2,7 @@
 
 Such a key moves right-hand sides, bounds or compliances (errors, loads, clearances, gaps,
 stiffnesses of what is elastic anyway). Any other key decides which elements there are, or where
-they push, and changes the machine itself. What a key writes into the arrays stands in `edits`.
+they push, and changes the machine itself.
 """
 
 from __future__ import annotations

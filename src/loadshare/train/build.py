@@ -1,10 +1,15 @@
-"""From a case to a train: everything in SI, geometry settled once."""
+"""From a case to a train: everything in SI, geometry settled once.
+
+A number may be an array of S values, one per sample (see `samples`): what stands here is written so
+that it does for both.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -14,12 +19,47 @@ from loadshare.case.power_flow import against_the_names
 from loadshare.case.teeth import tooth_counts
 from loadshare.contact.law import Law, PowerLaw, TableLaw
 from loadshare.errors import CaseError, Problem
-from loadshare.train.gear import Gear, Vector, transverse_frame
+from loadshare.train.gear import Gear, Vector, cross, transverse_frame
 from loadshare.train.kinematics import Kinematics, settle
 from loadshare.train.mesh import Contact, Mesh, contact_of
-from loadshare.train.offset import Offset
+from loadshare.train.offset import Offset, polar
 from loadshare.train.ring import DrumRing, Ring, RoundRing, transverse
 from loadshare.train.train import Shaft, Spline, Stage, Train
+
+Element = TypeVar("Element")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pair:
+    """Geometry of a mesh.
+
+    Attributes
+    ----------
+    driver, driven : Gear
+    normals : (ndarray, ndarray)
+        n and n'.
+    turned : bool
+        See `Mesh`.
+    """
+
+    driver: Gear
+    driven: Gear
+    normals: tuple[Vector, Vector]
+    turned: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Geometry:
+    """What samples that share a machine have in common.
+
+    Attributes
+    ----------
+    gears : mapping of str to Gear
+    pairs : mapping of mesh to Pair
+    """
+
+    gears: Mapping[str, Gear]
+    pairs: Mapping[str, Pair]
 
 
 def build_train(case: spec.Case) -> Train:
@@ -39,22 +79,82 @@ def build_train(case: spec.Case) -> Train:
         If gears turn against each other or the train would lock, or a ring's float cannot be
         derived; all problems are listed.
     """
+    case = with_laws(case)
+    return train_of(case, geometry_of(case))
+
+
+def with_laws(case: spec.Case) -> spec.Case:
+    """Return the case, its mesh laws computed where it asks for them."""
     if any(mesh.geometry or mesh.law_file for mesh in case.meshes.values()):
         from loadshare.tooth import resolve
 
-        case = resolve(case)
+        return resolve(case)
+    return case
+
+
+def geometry_of(case: spec.Case) -> Geometry:
+    """Settle the geometry of a case.
+
+    Raises
+    ------
+    CaseError
+        As `build_train`.
+    """
     kinematics = _kinematics(case)
     problems = [case.problem(c.key, c.message) for c in kinematics.conflicts]
     if problems:
         raise CaseError(problems)
     gears = _with_teeth(kinematics.gears, case)
-    meshes = _meshes(case, gears, kinematics.contacts)
-    rings: dict[str, Ring] = {}
-    for name, ring in case.rings.items():
+    return Geometry(gears, _pairs(case, gears, kinematics.contacts))
+
+
+def train_of(
+    case: spec.Case, geometry: Geometry, base: tuple[spec.Case, Train] | None = None
+) -> Train:
+    """Turn a case into a train of a geometry that is settled.
+
+    Parameters
+    ----------
+    case : spec.Case
+    geometry : Geometry
+    base : (spec.Case, Train), optional
+        Another case and its train, which has all elements of which the two cases say the same.
+
+    Raises
+    ------
+    CaseError
+        If a ring's float cannot be derived.
+    """
+
+    def elements(
+        section: str, convert: Callable[[str, Any], Element], known: str = ""
+    ) -> dict[str, Element]:
+        """Elements of a section, those anew that the base does not have."""
+        now = getattr(case, section)
+        if base is None:
+            return {name: convert(name, item) for name, item in now.items()}
+        before, there = getattr(base[0], section), getattr(base[1], known or section)
+        return {
+            name: there[name] if item is before[name] else convert(name, item)
+            for name, item in now.items()
+        }
+
+    problems: list[Problem] = []
+
+    def ring_of(name: str, ring: spec.Ring) -> Ring | None:
         try:
-            rings[name] = _ring(name, ring, gears, meshes)
+            return _ring(name, ring, gears, meshes)
         except ValueError as error:
             problems.append(_ring_problem(case, name, str(error)))
+            return None
+
+    held = elements(
+        "gears", lambda name, _: replace(geometry.gears[name], support=_support(case, name))
+    )
+    # In the order of the walk from the input gear.
+    gears = {name: held[name] for name in geometry.gears}
+    meshes = elements("meshes", lambda name, mesh: _mesh(name, mesh, geometry.pairs[name]))
+    rings = elements("rings", ring_of)
     if problems:
         raise CaseError(problems)
     operating = case.operating
@@ -62,10 +162,10 @@ def build_train(case: spec.Case) -> Train:
         name=case.name,
         gears=gears,
         meshes=meshes,
-        shafts={n: _shaft(n, s) for n, s in case.shafts.items()},
-        splines={n: _spline(n, s) for n, s in case.splines.items()},
-        rings=rings,
-        offsets={n: _offset(e, gears[n]) for n, e in case.errors.items()},
+        shafts=elements("shafts", _shaft),
+        splines=elements("splines", _spline),
+        rings={name: ring for name, ring in rings.items() if ring is not None},
+        offsets=elements("errors", lambda name, e: _offset(e, gears[name]), "offsets"),
         stages=tuple(
             Stage(n, tuple(s.meshes), tuple(s.groups or (s.meshes,)))
             for n, s in case.stages.items()
@@ -83,7 +183,7 @@ def build_train(case: spec.Case) -> Train:
 def _kinematics(case: spec.Case) -> Kinematics:
     running = 1 if case.operating.running == "counter-clockwise" else -1
     centres = centres_of(case.gears)
-    unsettled = {n: _gear(case, n, g, centres[n], running) for n, g in case.gears.items()}
+    unsettled = {n: _gear(n, g, centres[n], running) for n, g in case.gears.items()}
     return settle(
         unsettled,
         {n: (m.driver, m.driven) for n, m in case.meshes.items()},
@@ -102,13 +202,7 @@ def _with_teeth(gears: Mapping[str, Gear], case: spec.Case) -> dict[str, Gear]:
     return {name: replace(gear, teeth=counts.get(name)) for name, gear in gears.items()}
 
 
-def _gear(
-    case: spec.Case,
-    name: str,
-    gear: spec.Gear,
-    centre: tuple[float, float, float],
-    running: int,
-) -> Gear:
+def _gear(name: str, gear: spec.Gear, centre: tuple[float, float, float], running: int) -> Gear:
     axis = np.array(axis_of(gear))
     return Gear(
         name=name,
@@ -119,24 +213,25 @@ def _gear(
         base_radius=gear.acting_radius,
         sense=running,
         teeth=gear.teeth,
-        support=_support(gear, name in case.splines or name in case.rings),
+        support=None,
         ratio=1.0,
     )
 
 
 def _vector(lengths: tuple[spec.Quantity, ...]) -> Vector:
-    return np.array([q.si for q in lengths] + [0.0] * (3 - len(lengths)))
+    """Three components, the last of them 0 where it is not given."""
+    components = [*(q.si for q in lengths), 0.0][:3]
+    return np.stack(np.broadcast_arrays(*components), axis=-1)
 
 
-def _support(gear: spec.Gear, held_otherwise: bool) -> Vector | None:
-    support = gear.support
+def _support(case: spec.Case, name: str) -> Vector | None:
+    support = case.gears[name].support
     if support is None:
-        return np.zeros(2) if held_otherwise else None
+        return np.zeros(2) if name in case.splines or name in case.rings else None
     if isinstance(support, str):
         return np.zeros(2) if support == "free" else None
-    if isinstance(support, tuple):
-        return np.array([k.si for k in support])
-    return np.full(2, support.si)
+    both = support if isinstance(support, tuple) else (support, support)
+    return np.stack([k.si for k in both], axis=-1)
 
 
 def _each(
@@ -147,46 +242,45 @@ def _each(
     return value if isinstance(value, tuple) else (value,)
 
 
-def _meshes(
+def _pairs(
     case: spec.Case, gears: Mapping[str, Gear], contacts: Mapping[str, Contact]
-) -> dict[str, Mesh]:
+) -> dict[str, Pair]:
     """Meshes with the flanks that the torque presses, whichever way it runs through them."""
     against = all(against_the_names(case.operating, case.meshes, case.shafts) or (False,))
     found = {}
     for name, mesh in case.meshes.items():
-        if against and not mesh.given("backlash", "normal_backlash"):
-            other = contact_of(gears[mesh.driven], gears[mesh.driver])
-            found[name] = _mesh(name, mesh, (gears[mesh.driven], gears[mesh.driver]), other, True)
-        else:
-            pair = gears[mesh.driver], gears[mesh.driven]
-            found[name] = _mesh(name, mesh, pair, contacts[name], False)
+        driver, driven, contact = gears[mesh.driver], gears[mesh.driven], contacts[name]
+        turned = against and not mesh.given("backlash", "normal_backlash")
+        if turned:
+            driver, driven = driven, driver
+            contact = contact_of(driver, driven)
+        normals = [contact.normal(mesh.pressure_angle.si, drive) for drive in (True, False)]
+        found[name] = Pair(driver, driven, (normals[0], normals[1]), turned)
     return found
 
 
-def _mesh(
-    name: str, mesh: spec.Mesh, pair: tuple[Gear, Gear], contact: Contact, turned: bool
-) -> Mesh:
-    driver, driven = pair
-    angle = mesh.pressure_angle.si
+def _mesh(name: str, mesh: spec.Mesh, pair: Pair) -> Mesh:
     if mesh.normal_backlash is not None:
         backlash = mesh.normal_backlash.si
     elif mesh.backlash is not None:
-        backlash = mesh.backlash.si * math.cos(angle) * math.cos(mesh.helix_angle.si)
+        angles = mesh.pressure_angle.si, mesh.helix_angle.si
+        backlash = mesh.backlash.si * math.cos(angles[0]) * math.cos(angles[1])
     else:
         backlash = math.inf
-    r = driven.base_radius if turned else driver.base_radius
+    radii = pair.driver.base_radius, pair.driven.base_radius
+    r = radii[1] if pair.turned else radii[0]
     gap = mesh.law.a if mesh.gap is None and mesh.law is not None else mesh.gap
     return Mesh(
         name=name,
-        driver=driver.name,
-        driven=driven.name,
-        radii=(driver.base_radius, driven.base_radius),
-        drive_normal=contact.normal(angle, drive=True),
-        coast_normal=contact.normal(angle, drive=False),
+        driver=pair.driver.name,
+        driven=pair.driven.name,
+        radii=radii,
+        drive_normal=pair.normals[0],
+        coast_normal=pair.normals[1],
         laws=_laws(mesh, r),
         gaps=(0.0,) if gap is None else tuple(r * g.si for g in _each(gap)),
         backlash=backlash,
-        turned=turned,
+        turned=pair.turned,
     )
 
 
@@ -237,7 +331,7 @@ def _ring(name: str, ring: spec.Ring, gears: Mapping[str, Gear], meshes: dict[st
         return RoundRing(name, ring.radius.si, offset, stiffness)
     first, second = (gears[n] for n in ring.neighbours or ())
     along = transverse(second.centre - first.centre, gear.axis)
-    across = np.cross(gear.axis, along / np.linalg.norm(along))
+    across = cross(gear.axis, along / np.linalg.norm(along))
     clearance = _each(ring.clearance)
     if isinstance(ring.float_, spec.Backlashes):
         up, down = (
@@ -303,14 +397,11 @@ def _ring_problem(case: spec.Case, name: str, message: str) -> Problem:
 def _offset(errors: spec.Errors, gear: Gear) -> Offset:
     installation = np.zeros(3)
     if isinstance(errors.installation, spec.Offset):
-        turned = errors.installation.direction.si
-        installation = errors.installation.amount.si * (
-            np.array([math.cos(turned), math.sin(turned)]) @ gear.frame
-        )
+        amount, direction = errors.installation.amount.si, errors.installation.direction.si
+        installation = polar(amount, direction) @ gear.frame
     elif errors.installation is not None:
         installation = _vector(errors.installation)
-    amplitude, angle = 0.0, 0.0
-    if errors.eccentricity is not None:
-        amplitude = errors.eccentricity.amount.si
-        angle = errors.eccentricity.direction.si + errors.eccentricity.phase.si
-    return Offset(installation, amplitude, angle)
+    given = errors.eccentricity
+    if given is None:
+        return Offset(installation, 0.0, 0.0)
+    return Offset(installation, given.amount.si, given.direction.si + given.phase.si)

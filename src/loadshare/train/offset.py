@@ -6,7 +6,6 @@ installation error is a fixed vector; a manufacturing eccentricity turns with it
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,5 +34,9 @@ class Offset:
     def at(self, gear: Gear, rotation: float) -> Vector:
         """Offset (3,) [m] of `gear` turned by `rotation` [rad] in its running sense."""
         turned = gear.sense * rotation + self.angle
-        direction = np.array([math.cos(turned), math.sin(turned)]) @ gear.frame
-        return self.installation + self.eccentricity * direction
+        return np.asarray(self.installation + polar(self.eccentricity, turned) @ gear.frame)
+
+
+def polar(amount: float, direction: float) -> Vector:
+    """Vector (2,) of a size and a direction [rad]."""
+    return np.stack([amount * np.cos(direction), amount * np.sin(direction)], axis=-1)

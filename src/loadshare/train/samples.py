@@ -10,17 +10,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from loadshare import case as spec
+from loadshare.case.element import Element
 from loadshare.case.keys import Path, dotted
 from loadshare.train.array_keys import array_unit
-from loadshare.train.build import build_train
+from loadshare.train.build import Geometry, geometry_of, train_of, with_laws
 from loadshare.train.columns import Column, columns_of
-from loadshare.train.edits import Edits
-from loadshare.train.situations import Situations, arcs_from, situation_of
+from loadshare.train.situations import Situations, situations_of
 from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
@@ -34,6 +35,7 @@ class Samples:
     ----------
     case : Case
         The case with the first sample's values; gives whatever no column gives.
+    geometry : Geometry
     train : Train
         Built from it.
     columns : tuple of Column
@@ -43,6 +45,7 @@ class Samples:
     """
 
     case: spec.Case
+    geometry: Geometry
     train: Train
     columns: tuple[Column, ...]
     values: Mapping[Path, Array]
@@ -63,19 +66,13 @@ class Samples:
 
     def situations(self, index: int) -> Situations:
         """Return the situations at position `index` (1-based) of all samples."""
-        base = situation_of(self.train, index)
-        arrays: dict[str, Array] = {}
-        for field, edits in self._edits.at(index):
-            arrays[field] = np.repeat(getattr(base, field), self.count, axis=0)
-            for where, values in edits:
-                arrays[field][(slice(None), *where)] = values  # type: ignore[index]
-        if "offset" in arrays:
-            arrays["arc_shift"] = arcs_from(self.train, arrays["offset"])
-        return replace(base, count=self.count, **arrays)  # type: ignore[arg-type]
+        found = situations_of(self._varied, index)
+        return replace(found, train=self.train, count=self.count)
 
     @cached_property
-    def _edits(self) -> Edits:
-        return Edits(self.case, self.train, self.values, self.count)
+    def _varied(self) -> Train:
+        """The train whose numbers are those of all samples."""
+        return train_of(_with(self.case, self.values), self.geometry, (self.case, self.train))
 
 
 def samples_of(
@@ -109,10 +106,31 @@ def samples_of(
     groups = []
     for rows in _groups(others, len(columns[0].values)):
         mine = tuple(replace(c, values=c.values[rows]) for c in columns)
-        base = first.replace({dotted(c.path): c.text(0) for c in mine})
+        base = with_laws(first.replace({dotted(c.path): c.text(0) for c in mine}))
+        geometry = geometry_of(base)
         values = {path: si[rows] for path, si in arrays.items()}
-        groups.append((rows, Samples(base, build_train(base), mine, values)))
+        group = Samples(base, geometry, train_of(base, geometry), mine, values)
+        groups.append((rows, group))
     return groups
+
+
+def _with(part: Any, values: Mapping[Path, Any]) -> Any:
+    """Return a part of a case with arrays [SI] in place of the numbers at some key paths."""
+    if () in values:
+        return (
+            spec.Quantity(part.text, values[()]) if isinstance(part, spec.Quantity) else values[()]
+        )
+    below: dict[str | int, dict[Path, Any]] = {}
+    for path, array in values.items():
+        below.setdefault(path[0], {})[path[1:]] = array
+    if isinstance(part, Element):
+        named = {field.alias or name: name for name, field in type(part).model_fields.items()}
+        names = {named[str(step)]: inner for step, inner in below.items()}
+        changes = {name: _with(getattr(part, name), inner) for name, inner in names.items()}
+        return part.model_copy(update=changes)
+    if isinstance(part, Mapping):
+        return {**part, **{step: _with(part[step], inner) for step, inner in below.items()}}
+    return tuple(_with(v, below[k]) if k in below else v for k, v in enumerate(part))
 
 
 def _check(case: spec.Case, columns: Sequence[Column], arrays: Mapping[Path, Array]) -> None:

@@ -15,9 +15,11 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from loadshare.contact.arc import Arc
 from loadshare.contact.law import PowerLaw, TableLaw
+from loadshare.train.ring import DrumRing, transverse
 from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
@@ -99,6 +101,31 @@ class Situations:
         arrays: dict[str, Any] = {name: function(getattr(self, name)) for name in VARYING}
         return replace(self, **arrays)
 
+    @property
+    def position(self) -> int:
+        """Position (1-based) of the first sample."""
+        return int(self.index[0])
+
+    @property
+    def torques(self) -> dict[str, float]:
+        """External torques of the first sample [N·m], by gear."""
+        return dict(zip(self.train.gears, self.torque[0].tolist(), strict=True))
+
+    def offset_of(self, gear: str) -> Array:
+        """Centre offset (3,) [m] of a gear in the first sample."""
+        return np.asarray(self.offset[0, self.train.order[gear]])
+
+    def arc(self, ring: DrumRing, side: int) -> Arc:
+        """Exclusion arc of a drum ring towards its neighbour number `side`, in the first sample."""
+        train = self.train
+        d = [r.gear for r in train.drums].index(ring.gear)
+        gear, neighbour = train.gears[ring.gear], train.gears[ring.neighbours[side]]
+        return Arc(
+            transverse(gear.centre - neighbour.centre, gear.axis),
+            self.arc_shift[0, d, side],
+            float(self.arc_clearance[0, d, side]),
+        )
+
     def _arrays(self) -> dict[str, Any]:
         return {name: getattr(self, name) for name in ("index", *VARYING)}
 
@@ -109,47 +136,54 @@ VARYING = tuple(f.name for f in fields(Situations) if f.name not in ("train", "c
 
 @lru_cache(maxsize=64)
 def situation_of(train: Train, index: int) -> Situations:
-    """Return the situation of a train at position `index` (1-based), as a single sample."""
-    here = train.situation(index)
-    drums, rounds = train.drums, train.rounds
-    laws = [m.law(here.mesh_position[m.name]) for m in train.meshes.values()]
+    """Return the situation of a train at position `index` (1-based), kept for the next time."""
+    return situations_of(train, index)
+
+
+def situations_of(train: Train, index: int) -> Situations:
+    """Return what a train brings at position `index` (1-based).
+
+    One row for all samples where no number of the train is an array, S rows where some are.
+
+    Raises
+    ------
+    IndexError
+        If there is no such position.
+    """
+    rotation = train.rotations(index)
+    position = train.mesh_positions(index, rotation)
+    drums, rounds, meshes = train.drums, train.rounds, train.meshes
+    laws = [m.law(position[n]) for n, m in meshes.items()]
     powers = [law if isinstance(law, PowerLaw) else PowerLaw(0.0) for law in laws]
-    arcs = [[train.arc(r, side, here) for side in (0, 1)] for r in drums]
-    splines = train.splines.values()
-    return Situations(
-        train=train,
-        count=1,
-        index=np.array([index]),
-        offset=_row([here.offset[g] for g in train.gears], 3),
-        torque=_row([here.torque.get(g, 0.0) for g in train.gears]),
-        gap=_row([m.gap(here.mesh_position[m.name], True) for m in train.meshes.values()]),
-        backlash=_row([m.backlash for m in train.meshes.values()]),
-        bending=_row([p.b for p in powers]),
-        hertz=_row([p.c for p in powers]),
-        table=_tables([law if isinstance(law, TableLaw) else None for law in laws]),
-        clocking=_row([s.clocking for s in train.shafts.values()]),
-        torsion=_row([s.stiffness for s in train.shafts.values()]),
-        support=_row([_support(g.support) for g in train.gears.values()], 2),
-        arc_shift=_row([[a.shift for a in pair] for pair in arcs], 2, 3),
-        arc_clearance=_row([r.clearances for r in drums], 2),
-        stop=_row([(r.up, r.down) for r in drums], 2),
-        wall=_row([0.0 if math.isinf(r.stiffness) else 1.0 / r.stiffness for r in drums]),
-        round_radius=_row([r.radius for r in rounds]),
-        round_stiffness=_row([r.stiffness for r in rounds]),
-        spline=_row(
-            [
-                (
-                    s.bending_stiffness,
-                    math.nan if s.stick_limit is None else s.stick_limit,
-                    s.clearance,
-                    math.nan if s.friction_force is None else s.friction_force,
-                    s.friction_per_torque,
-                )
-                for s in splines
-            ],
-            5,
-        ),
+    still = np.zeros(3)
+    offset = _table(
+        [
+            train.offsets[n].at(g, rotation[n]) if n in train.offsets else still
+            for n, g in train.gears.items()
+        ],
+        3,
     )
+    arrays = {
+        "offset": offset,
+        "torque": _table([_torque(train, g, index) for g in train.gears]),
+        "gap": _table([m.gap(position[n], True) for n, m in meshes.items()]),
+        "backlash": _table([m.backlash for m in meshes.values()]),
+        "bending": _table([p.b for p in powers]),
+        "hertz": _table([p.c for p in powers]),
+        "table": _tables([law if isinstance(law, TableLaw) else None for law in laws]),
+        "clocking": _table([s.clocking for s in train.shafts.values()]),
+        "torsion": _table([s.stiffness for s in train.shafts.values()]),
+        "support": _table([_support(g.support) for g in train.gears.values()], 2),
+        "arc_shift": arcs_from(train, offset),
+        "arc_clearance": _pairs([r.clearances for r in drums]),
+        "stop": _pairs([(r.up, r.down) for r in drums]),
+        "wall": _table([0.0 if math.isinf(r.stiffness) else 1.0 / r.stiffness for r in drums]),
+        "round_radius": _table([r.radius for r in rounds]),
+        "round_stiffness": _table([r.stiffness for r in rounds]),
+        "spline": _splines(train),
+    }
+    count = max(map(len, arrays.values()))
+    return Situations(train=train, count=count, index=np.array([index]), **arrays)
 
 
 def stack(situations: Sequence[Situations]) -> Situations:
@@ -181,7 +215,7 @@ def stack(situations: Sequence[Situations]) -> Situations:
 
 def arcs_from(train: Train, offset: Array) -> Array:
     """Return the shifts of every drum's arcs (S or 1, drums, 2, 3) [m] at given centre offsets."""
-    order = {g: k for k, g in enumerate(train.gears)}
+    order = train.order
     some = any(r.with_errors for r in train.drums)
     shifts = np.zeros((len(offset) if some else 1, len(train.drums), 2, 3))
     for d, ring in enumerate(train.drums):
@@ -193,8 +227,47 @@ def arcs_from(train: Train, offset: Array) -> Array:
     return shifts
 
 
-def _row(values: Sequence[object], *inner: int) -> Array:
-    return np.array(values, dtype=float).reshape(1, len(values), *inner)
+def _table(values: Sequence[ArrayLike], *inner: int) -> Array:
+    """Put numbers or vectors side by side, or arrays of S of them, (S or 1, values, *inner)."""
+    varying = {
+        k: v for k, v in enumerate(values) if isinstance(v, np.ndarray) and v.ndim > len(inner)
+    }
+    firsts = [varying[k][0] if k in varying else v for k, v in enumerate(values)]
+    table = np.array(firsts, dtype=float).reshape(1, len(values), *inner)
+    if varying:
+        table = np.repeat(table, max(map(len, varying.values())), axis=0)
+    for k, array in varying.items():
+        table[:, k] = array
+    return table
+
+
+def _pairs(values: Sequence[tuple[float, float]]) -> Array:
+    """Put pairs of numbers side by side, shape (S or 1, pairs, 2)."""
+    table = _table([number for pair in values for number in pair])
+    return table.reshape(len(table), len(values), 2)
+
+
+def _torque(train: Train, gear: str, index: int) -> float:
+    """External torque on a gear [N·m]."""
+    external = train.external.get(gear, 0.0)
+    if gear != train.input:
+        return external
+    return external + train.input_torque[(index - 1) % len(train.input_torque)]
+
+
+def _splines(train: Train) -> Array:
+    rows = [
+        (
+            s.bending_stiffness,
+            math.nan if s.stick_limit is None else s.stick_limit,
+            s.clearance,
+            math.nan if s.friction_force is None else s.friction_force,
+            s.friction_per_torque,
+        )
+        for s in train.splines.values()
+    ]
+    table = _table([number for row in rows for number in row])
+    return table.reshape(len(table), len(rows), 5)
 
 
 def _support(support: Array | None) -> Array:

@@ -1,4 +1,4 @@
-"""The machine as a whole, and its situation at one meshing position."""
+"""The machine as a whole."""
 
 from __future__ import annotations
 
@@ -7,14 +7,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-import numpy as np
-
-from loadshare.contact.arc import Arc
 from loadshare.contact.radial import RadialLaw, spline_law
 from loadshare.train.gear import Gear, Vector
 from loadshare.train.mesh import Mesh
 from loadshare.train.offset import Offset
-from loadshare.train.ring import DrumRing, Ring, RoundRing, transverse
+from loadshare.train.ring import DrumRing, Ring, RoundRing
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,34 +100,12 @@ class Stage:
     groups: tuple[tuple[str, ...], ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Situation:
-    """What changes from position to position.
-
-    Attributes
-    ----------
-    index : int
-        1-based position.
-    mesh_position : mapping of str to int
-        0-based position in the mesh cycle of each mesh.
-    rotation : mapping of str to float
-        Angle by which each gear has turned [rad].
-    offset : mapping of str to ndarray (3,)
-        Centre offsets c [m].
-    torque : mapping of str to float
-        External torques [N·m], positive in the running sense.
-    """
-
-    index: int
-    mesh_position: Mapping[str, int]
-    rotation: Mapping[str, float]
-    offset: Mapping[str, Vector]
-    torque: Mapping[str, float]
-
-
 @dataclass(frozen=True, eq=False)
 class Train:
     """A gear train in SI units: geometry, laws, errors and operating point.
+
+    Where samples share a machine, numbers that vary are arrays of S values; what such a train is
+    for is to be turned into `Situations`.
 
     Attributes
     ----------
@@ -183,6 +158,11 @@ class Train:
         return self.positions if self.march is None else self.march[2]
 
     @cached_property
+    def order(self) -> dict[str, int]:
+        """Number of every gear."""
+        return {name: k for k, name in enumerate(self.gears)}
+
+    @cached_property
     def floating(self) -> tuple[str, ...]:
         """Gears whose rest position is reported: free ones, those on a spline, those in a ring."""
         return tuple(
@@ -209,13 +189,11 @@ class Train:
         known = (name for name, gear in self.gears.items() if gear.teeth is not None)
         return next(known, None) if self.rotating else None
 
-    def situation(self, index: int) -> Situation:
-        """Describe position `index` (1-based).
+    def rotations(self, index: int) -> dict[str, float]:
+        """Angle [rad] by which every gear has turned at position `index` (1-based).
 
-        In a mesh cycle every mesh stands at the same position and the gears turn by one pitch of
-        the gear `cycle` over the cycle. In a march the gears turn through whole revolutions; a mesh
-        whose teeth are known stands at the position that its rotation reaches. Others have one law
-        for all positions.
+        In a mesh cycle the gears turn by one pitch of the gear `cycle` over the cycle. In a march
+        they turn through whole revolutions.
 
         Raises
         ------
@@ -230,21 +208,18 @@ class Train:
         else:
             gear, revolutions, steps = self.march
             turned = 2.0 * math.pi * revolutions * step / steps / self.gears[gear].ratio
-        rotation = {name: turned * gear.ratio for name, gear in self.gears.items()}
-        still = np.zeros(3)
-        torque = dict(self.external)
-        driving = self.input_torque[step % len(self.input_torque)]
-        torque[self.input] = torque.get(self.input, 0.0) + driving
-        return Situation(
-            index=index,
-            mesh_position={m: self._mesh_position(m, step, rotation) for m in self.meshes},
-            rotation=rotation,
-            offset={
-                name: self.offsets[name].at(gear, rotation[name]) if name in self.offsets else still
-                for name, gear in self.gears.items()
-            },
-            torque=torque,
-        )
+        return {name: turned * gear.ratio for name, gear in self.gears.items()}
+
+    def mesh_positions(
+        self, index: int, rotation: Mapping[str, float] | None = None
+    ) -> dict[str, int]:
+        """Position in its cycle (0-based) at which every mesh stands at position `index` (1-based).
+
+        In a mesh cycle every mesh stands at the same one. In a march a mesh whose teeth are known
+        stands at the position that its rotation reaches; others have one law for all positions.
+        """
+        rotation = rotation or self.rotations(index)
+        return {m: self._mesh_position(m, index - 1, rotation) for m in self.meshes}
 
     @cached_property
     def _pitch(self) -> float:
@@ -284,13 +259,3 @@ class Train:
             [N]; a flank that is not named carries nothing.
         """
         return sum(a * flank_force.get(name, 0.0) for name, a in self.levers(gear).items())
-
-    def arc(self, ring: DrumRing, side: int, situation: Situation) -> Arc:
-        """Exclusion arc of a drum ring towards its neighbour number `side` (0 or 1)."""
-        gear, neighbour = self.gears[ring.gear], self.gears[ring.neighbours[side]]
-        nominal = transverse(gear.centre - neighbour.centre, gear.axis)
-        shift = np.zeros(3)
-        if ring.with_errors:
-            apart = situation.offset[gear.name] - situation.offset[neighbour.name]
-            shift = transverse(apart, gear.axis)
-        return Arc(nominal, shift, ring.clearances[side])

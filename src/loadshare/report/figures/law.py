@@ -61,7 +61,7 @@ def law(result: Result, train: Train) -> Figure:
 def _working(result: Result, train: Train) -> Iterator[Row]:
     """Drive-flank torque [N·m] and deformation at the driver [rad] of every mesh and position."""
     for p in result.positions:
-        at = train.situation(p.position).mesh_position
+        at = train.mesh_positions(p.position)
         for name, net in p.torque.items():
             torque = abs(net) if train.meshes[name].turned else net + p.coast_torque[name]
             angle = _deformation(train.meshes[name], at[name], torque)

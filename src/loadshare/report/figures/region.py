@@ -23,6 +23,7 @@ from loadshare.report.words import rest_told, spline_told
 from loadshare.results import Position, Result
 from loadshare.train import Train
 from loadshare.train.ring import DrumRing, RoundRing
+from loadshare.train.situations import situation_of
 
 ROWS = 121
 """Lines across a drum on which its width is computed."""
@@ -130,10 +131,10 @@ def _drum(
     low, high = max(-ring.down, -window), min(ring.up, window)
     lines = low + (high - low) * np.arange(ROWS) / (ROWS - 1)
     whole = np.full(ROWS, window)
-    situation = train.situation(position)
+    situation = situation_of(train, position)
     arcs: list[tuple[str, float, np.ndarray]] = []
     for side, name in enumerate(ring.neighbours):
-        exclusion = train.arc(ring, side, situation)
+        exclusion = situation.arc(ring, side)
         moved = np.array(displacement[name]) @ train.gears[name].frame
         middle = gear.frame @ (moved - exclusion.start)
         radius = exclusion.distance - exclusion.clearance

@@ -43,7 +43,7 @@ class Variation:
     ) -> None:
         self._trains, self.value, self.position = trains, value, position
         self._elements = elements
-        self.cycle = trains(value.number).situation(position).mesh_position
+        self.cycle = trains(value.number).mesh_positions(position)
         self._setting = lru_cache(maxsize=None)(self._at)
         self._changes: dict[tuple[ActiveSet, bytes], Derivative] = {}
 
@@ -94,8 +94,8 @@ class Variation:
         """Meshes that pass to another place of their cycle right beside the value."""
         least = min(step, BESIDE * max(abs(self.value.si), step))
         for amount in (step, least):
-            there = self._trains(self._number(sign * amount)).situation(self.position)
-            passing = tuple(m for m, k in there.mesh_position.items() if k != self.cycle[m])
+            there = self._trains(self._number(sign * amount)).mesh_positions(self.position)
+            passing = tuple(m for m, k in there.items() if k != self.cycle[m])
             if not passing:
                 return ()
         return passing
