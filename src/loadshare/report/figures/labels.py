@@ -26,7 +26,7 @@ FURTHER = (1.0, 2.5, 4.0)
 RIM = 1.0
 """Room around a label that others leave free [px]."""
 CLEAR = 2.0
-"""Room above and below a label that lines should leave free, for letters that reach further [px]."""
+"""Room above and below a label that lines leave free, for letters that reach further [px]."""
 STEP = 3.0
 """Distance between the points by which a line is felt [px]."""
 MOST = 400
