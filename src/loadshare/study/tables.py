@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -128,60 +129,45 @@ def sensitivity_dataset(found: Sensitivity) -> xr.Dataset:
     keys = [item.key for item in found.inputs]
     kinks = {kink.position for kink in found.kinks}
     some = next(iter(found.rates.values()), None)
-    meshes = list(some.torque) if some else []
     gears = list(some.displacement) if some else []
-    stages = list(next(iter(found.omega.values()), {}))
+    coords: dict[str, Any] = {
+        "position": list(found.positions),
+        "input": keys,
+        "side": list(SIDES),
+        "mesh": list(some.torque) if some else [],
+        "gear": gears,
+        "component": list(COMPONENTS),
+        "stage": list(next(iter(found.omega.values()), {})),
+    }
 
-    def rates(position: int, key: str, side: str, name: str) -> dict[str, Any]:
-        here = found.rates[position, key, side]
-        of_error = name.endswith("_error")
-        chosen: dict[str, Any] = getattr(
-            here.error if of_error else here, name[:-6] if of_error else name
-        )
-        return chosen
+    each = ("position", "input", "side")
 
-    def over(name: str, labels: list[str]) -> np.ndarray:
-        rows = [
-            [[[rates(k, key, side, name)[n] for n in labels] for side in SIDES] for key in keys]
-            for k in found.positions
-        ]
-        tail = (2,) if name.startswith("displacement") else ()
-        shape = (len(found.positions), len(keys), len(SIDES), len(labels), *tail)
-        return np.array(rows, dtype=float).reshape(shape)
+    def laid(name: str, ending: str, *dims: str) -> tuple[Any, ...]:
+        rows = []
+        for at in product(*(coords[d] for d in dims if d in each)):
+            if "position" in dims:
+                here = found.rates[at]
+                by_name = getattr(here.error if ending else here, name)
+            else:
+                by_name = getattr(found, name + ending)[at]
+            rows.append(list(by_name.values()))
+        values = np.array(rows, dtype=float).reshape([len(coords[d]) for d in dims])
+        unit = VARIABLES[name].units if name in VARIABLES else "1"
+        return dims, values, {"units": f"{unit} per SI unit of the input"}
 
-    def largest(name: str) -> np.ndarray:
-        table = getattr(found, name)
-        rows = [[[table[key, side][s] for s in stages] for side in SIDES] for key in keys]
-        return np.array(rows, dtype=float).reshape((len(keys), len(SIDES), len(stages)))
-
-    on_mesh = ("position", "input", "side", "mesh")
-    on_gear = ("position", "input", "side", "gear", "component")
-    on_stage = ("input", "side", "stage")
-    per = "per SI unit of the input"
     figures = (
-        *((name, on_mesh, VARIABLES[name].units) for name in ("torque", "share", "pair_share")),
-        ("displacement", on_gear, VARIABLES["displacement"].units),
-        ("omega", on_stage, "1"),
-        ("pair_omega", on_stage, "1"),
+        *((name, *each, "mesh") for name in ("torque", "share", "pair_share")),
+        ("displacement", *each, "gear", "component"),
+        *((name, *each[1:], "stage") for name in ("omega", "pair_omega")),
     )
     return xr.Dataset(
         {
-            of: (
-                dims,
-                largest(of) if dims is on_stage else over(of, gears if dims is on_gear else meshes),
-                {"units": f"{unit} {per}"},
-            )
-            for name, dims, unit in figures
-            for of in (name, f"{name}_error")
+            name + ending: laid(name, ending, *dims)
+            for name, *dims in figures
+            for ending in ("", "_error")
         },
         coords={
-            "position": list(found.positions),
-            "input": keys,
-            "side": list(SIDES),
-            "mesh": meshes,
-            "gear": gears,
-            "component": list(COMPONENTS),
-            "stage": stages,
+            **coords,
             "value": ("input", [item.value.number for item in found.inputs]),
             "unit": ("input", [item.value.unit for item in found.inputs]),
             "factor": ("input", [item.value.factor for item in found.inputs]),

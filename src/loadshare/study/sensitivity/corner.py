@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -124,22 +124,30 @@ class Corner:
                 floating = self._floating(varied, sign * step)
             return self._rates(self._moved(motion, floating)), shared
         try:
-            torque, displacement = differenced(self._answer, varied, sign, step)
+            told = self._differenced(varied, sign, step)
         except NoDifference as why:
             self._remark(key, side, f"has no derivative when it is {_word(side)}: {why}")
             return self._nothing(), False
         self._remark(key, side, f"differenced when it is {_word(side)}: no active set was proved")
-        order = list(self.train.meshes)
-        error = np.array([torque[m][1] for m in order])
-        loose = self._loose()
-        told = Motions(
-            np.array([torque[m][0] for m in order]),
-            error,
-            lambda weights: np.abs(weights) @ error,
-            {g: np.where(loose[g], np.nan, rate) for g, (rate, _) in displacement.items()},
-            {g: np.where(loose[g], np.nan, off) for g, (_, off) in displacement.items()},
-        )
         return self._rates(told), False
+
+    def _differenced(self, varied: Variation, sign: float, step: float | None) -> Motions:
+        """Torques and displacements by differences of certified solves."""
+        count = len(self.train.meshes)
+        rates, errors = differenced(self._answer, varied, sign, step)
+        moved: dict[str, Array] = {}
+        error: dict[str, Array] = {}
+        for k, (gear, loose) in enumerate(self._loose().items()):
+            here = slice(count + 2 * k, count + 2 * k + 2)
+            moved[gear] = np.where(loose, np.nan, rates[here])
+            error[gear] = np.where(loose, np.nan, errors[here])
+        return Motions(
+            rates[:count],
+            errors[:count],
+            lambda weights: np.abs(weights) @ errors[:count],
+            moved,
+            error,
+        )
 
     def _moved(self, motion: Motion, floating: Iterable[str]) -> Motions:
         """Torques and displacements of a motion, beside which some coordinates float."""
@@ -162,22 +170,15 @@ class Corner:
         )
 
     def _rates(self, told: Motions) -> Rates:
-        meshes = list(self.train.meshes)
         stages = self.train.stages
-        share, share_error = self._shares(told, [s.meshes for s in stages])
-        pair, pair_error = self._shares(told, [g for s in stages for g in s.groups])
-        return Rates(
-            dict(zip(meshes, told.torque.tolist(), strict=True)),
-            share,
-            pair,
-            told.displacement,
-            Rates(
-                dict(zip(meshes, told.torque_error.tolist(), strict=True)),
-                share_error,
-                pair_error,
-                told.displacement_error,
-            ),
+        groupings = [[s.meshes for s in stages], [g for s in stages for g in s.groups]]
+        (share, share_error), (pair, pair_error) = (self._shares(told, g) for g in groupings)
+        torque, torque_error = (
+            dict(zip(self.train.meshes, values.tolist(), strict=True))
+            for values in (told.torque, told.torque_error)
         )
+        error = Rates(torque_error, share_error, pair_error, told.displacement_error)
+        return Rates(torque, share, pair, told.displacement, error)
 
     def _shares(
         self, told: Motions, groups: list[tuple[str, ...]]
@@ -231,8 +232,8 @@ class Corner:
             name: np.full(2, np.nan if gear.moves else 0.0)
             for name, gear in self.train.gears.items()
         }
-        none = Rates(dict(nothing), dict(nothing), dict(nothing), dict(moved))
-        return Rates(nothing, dict(nothing), dict(nothing), moved, none)
+        none = Rates(nothing, nothing, nothing, moved)
+        return replace(none, error=none)
 
     def _remark(self, key: str, side: str, message: str) -> None:
         self.remarks.append(Remark(key, self.position, side, message))

@@ -28,9 +28,6 @@ SOLVED = 1e-12
 SAFE = 3.0
 """Error over the distance of two neighbouring limits."""
 
-Figures = dict[str, tuple[float, float]]
-Moves = dict[str, tuple[Array, Array]]
-
 
 class NoDifference(RuntimeError):  # noqa: N818 -- a finding, not a fault
     """There is no certified equilibrium to a side; the message says why."""
@@ -38,8 +35,8 @@ class NoDifference(RuntimeError):  # noqa: N818 -- a finding, not a fault
 
 def differenced(
     here: Equilibrium, varied: Variation, sign: float, step: float | None
-) -> tuple[Figures, Moves]:
-    """Return the derivatives of torques and displacements to one side, and their errors.
+) -> tuple[Array, Array]:
+    """Return derivatives to one side, and their errors: of torques, then of displacements.
 
     Parameters
     ----------
@@ -55,8 +52,7 @@ def differenced(
     NoDifference
         If there is no certified equilibrium to that side, however near.
     """
-    train = varied.setting(0.0).train
-    start = _laid(train, here)
+    start = _laid(varied.setting(0.0).train, here)
     first = 4.0 * step if step is not None else FIRST * (abs(varied.value.si) or 1e-3)
     slopes: list[tuple[Array, Array]] = []
     why = ""
@@ -74,14 +70,7 @@ def differenced(
         slopes.append(((there - start) * sign / amount, noise))
     if len(slopes) < 3:
         raise NoDifference(why or "its equilibrium cannot be told from steps that near")
-    best, error = _limit(slopes)
-    count = len(train.meshes)
-    torque = {m: (float(best[k]), float(error[k])) for k, m in enumerate(train.meshes)}
-    moves = {
-        g: (best[count + 2 * k : count + 2 * k + 2], error[count + 2 * k : count + 2 * k + 2])
-        for k, g in enumerate(train.gears)
-    }
-    return torque, moves
+    return _limit(slopes)
 
 
 def _unsettled(slopes: list[tuple[Array, Array]]) -> bool:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from functools import lru_cache
+from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,14 +18,19 @@ from loadshare.results.share import coefficients
 from loadshare.study.positions import loaded
 from loadshare.study.sensitivity.corner import Corner
 from loadshare.study.sensitivity.inputs import inputs_of
-from loadshare.study.sensitivity.result import SIDES, Kink, Rates, Sensitivity
+from loadshare.study.sensitivity.result import SIDES, Input, Kink, Rates, Sensitivity
 from loadshare.train import Train, build_train
 
 TIE = 1e-9
 """Shares that differ by no more are both the largest."""
 
-Slope = tuple[float, float, float]
-"""A share, its derivative, and the stated error of that."""
+
+class Slope(NamedTuple):
+    """The largest share of a stage, its derivative, and the stated error of that."""
+
+    share: float
+    rate: float
+    error: float
 
 
 def sensitivity(
@@ -71,57 +77,63 @@ def sensitivity(
     case = loaded(case)
     train = build_train(case)
     chosen = wanted_positions(train, positions)
-    named = inputs is not None
-    found = inputs_of(case, inputs)
     corners = [Corner(train, position) for position in chosen]
     rates: dict[tuple[int, str, str], Rates] = {}
-    skipped: list[tuple[str, str]] = []
-    usable = []
-    for done, item in enumerate(found, start=1):
+    usable, skipped = [], []
+    wanted = inputs_of(case, inputs)
+    for done, item in enumerate(wanted, start=1):
         if progress is not None:
-            progress(done, len(found))
-        trains = lru_cache(maxsize=None)(
-            lambda number, item=item: build_train(
-                case.replace({item.key: item.value.at(number).text})
-            )
-        )
+            progress(done, len(wanted))
         try:
-            for corner in corners:
-                sides = corner.rates(trains, item.value, item.key)
-                rates |= {(corner.position, item.key, s): r for s, r in sides.items()}
+            rates |= _rates(case, corners, item)
         except CaseError as refusal:
-            if named:
+            if inputs is not None:
                 raise
             skipped.append((item.key, refusal.problems[0].message))
-            continue
-        usable.append(item)
+        else:
+            usable.append(item)
     largest = {
-        (kind, item.key, side): _largest(train, corners, rates, item.key, side, kind)
+        kind: {
+            (item.key, side): _largest(train, corners, rates, item.key, side, kind)
+            for item in usable
+            for side in SIDES
+        }
         for kind in ("share", "pair_share")
-        for item in usable
-        for side in SIDES
     }
 
-    def told(kind: str, part: int) -> dict[tuple[str, str], dict[str, float]]:
+    def figures(kind: str, part: str) -> dict[tuple[str, str], dict[str, float]]:
         return {
-            (key, side): {stage: figures[part] for stage, figures in by_stage.items()}
-            for (of, key, side), by_stage in largest.items()
-            if of == kind
+            at: {stage: getattr(slope, part) for stage, slope in slopes.items()}
+            for at, slopes in largest[kind].items()
         }
 
     return Sensitivity(
         inputs=tuple(usable),
         positions=tuple(chosen),
         rates=rates,
-        omega=told("share", 1),
-        pair_omega=told("pair_share", 1),
-        omega_error=told("share", 2),
-        pair_omega_error=told("pair_share", 2),
+        omega=figures("share", "rate"),
+        pair_omega=figures("pair_share", "rate"),
+        omega_error=figures("share", "error"),
+        pair_omega_error=figures("pair_share", "error"),
         kinks=tuple(Kink(c.position, elements) for c in corners if (elements := c.on_the_verge)),
         error={item.key: _error(rates, item.key, chosen) for item in usable},
         remarks=tuple(r for c in corners for r in c.remarks),
         skipped=tuple(skipped),
     )
+
+
+def _rates(case: Case, corners: Iterable[Corner], item: Input) -> dict[tuple[int, str, str], Rates]:
+    """Differentiate all positions by an input."""
+
+    @cache
+    def trains(number: float) -> Train:
+        return build_train(case.replace({item.key: item.value.at(number).text}))
+
+    return {
+        (corner.position, item.key, side): rates
+        for corner in corners
+        for side, rates in corner.rates(trains, item.value, item.key).items()
+    }
 
 
 def _error(rates: dict[tuple[int, str, str], Rates], key: str, positions: Sequence[int]) -> float:
@@ -148,7 +160,7 @@ def _largest(
             shares = coefficients(corner.torque, groups)
             here = rates[corner.position, key, side]
             slopes, errors = getattr(here, kind), getattr(here.error, kind)
-            near += [(s, slopes[m], errors[m]) for m, s in shares.items() if s is not None]
+            near += [Slope(s, slopes[m], errors[m]) for m, s in shares.items() if s is not None]
         found[stage.name] = _steepest(near, side)
     found["system"] = _steepest(list(found.values()), side)
     return found
@@ -157,9 +169,9 @@ def _largest(
 def _steepest(near: list[Slope], side: str) -> Slope:
     """Return the largest share, its derivative and its error; of equals, the largest beyond."""
     if not near:
-        return np.nan, np.nan, np.nan
+        return Slope(np.nan, np.nan, np.nan)
     top = max(share for share, _, _ in near)
     equal = [(slope, error) for share, slope, error in near if share >= top - TIE]
     slopes = [slope for slope, _ in equal]
     steepest = max(slopes) if side == "rising" else min(slopes)
-    return top, steepest, max(error for _, error in equal)
+    return Slope(top, steepest, max(error for _, error in equal))

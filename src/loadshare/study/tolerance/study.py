@@ -7,6 +7,7 @@ import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +37,7 @@ from loadshare.study.tolerance.result import (
 )
 from loadshare.study.tolerance.statistics import Summary, exceedance, summary
 from loadshare.study.tolerance.worst import WorstCase, check_worst, worst_case
-from loadshare.train import Train, build_train
+from loadshare.train import build_train
 
 NAME = "tolerance"
 """Of a study that is asked in Python alone."""
@@ -85,48 +86,25 @@ def tolerance(
     ----------
     case : Case or path
     inputs : mapping of str to dict or Spread, optional
-        How inputs scatter, by key, as ``[study.NAME.inputs]`` in a case file has it. A star in a
-        key gives each key a draw of its own; keys joined by ``=`` take the same value.
+        How inputs scatter, by key, as ``[study.NAME.inputs]`` in a case file has it.
     study : str, optional
         Study of the case that gives whatever is not given here; by default its only one of this
         kind, where `inputs` is not given.
-    groups : sequence of dict or Group, optional
-        Correlated inputs, as ``{"inputs": […], "correlation": 0.8}``.
-    samples : int, optional
-        By default 16384.
-    seed : int, optional
-        By default 0.
-    sampling : {"random", "sobol"}, optional
-        Independent samples, or 16 scrambled Sobol sequences in turn; then a multiple of 16 samples.
-    limit : float, optional
-        Ω that should not be exceeded.
-    indices : int, optional
-        Rows of the design for the shares of variance, by default 1024: every row is solved for each
-        independent input and twice more. 0 leaves the shares out.
-    quantiles : sequence of float, optional
-        By default 0.5, 0.9, 0.95, 0.99 and 0.999.
-    positions : sequence of int, optional
-        1-based positions; all by default.
+    groups, samples, seed, sampling, limit, indices, quantiles, positions : optional
+        As the keys of ``[study.NAME]``. By default 16384 samples, seed 0, "random" sampling, 1024
+        rows for the shares of variance, and quantiles 0.5, 0.9, 0.95, 0.99 and 0.999.
     worst : bool
         Look for the worst case within the tolerances as well.
     out : path, optional
-        Folder for the samples, ``part-000000.parquet`` and so on. Without one they are kept as long
-        as the answer is.
+        Folder for the samples; without one they are kept as long as the answer is.
     scheduler : str, optional
         Address of a Dask scheduler; its workers then solve the samples.
-    workers : int
-        Processes on this machine. A small study is solved in this one.
-    chunk : int
-        Blocks of 4096 samples in a part; one part per worker is lost if a run is killed.
+    workers, chunk : int
+        Processes on this machine; blocks of 4096 samples in a part, the unit of work and files.
     engine : {"auto", "compiled", "vectorised"}
         As for `solve_many`.
     progress : Progress, optional
         Called after every part with samples done and in all, those for the shares included.
-
-    Returns
-    -------
-    Tolerance
-        Samples without a certified answer are counted, with their messages, and in no statistic.
 
     Raises
     ------
@@ -146,36 +124,22 @@ def tolerance(
     >>> found.of("system", "group").exceedance.value
     0.2734375
     """
-    case, name = _asked(
-        loaded(case),
-        study,
-        {
-            "inputs": inputs,
-            "groups": groups,
-            "samples": samples,
-            "seed": seed,
-            "sampling": sampling,
-            "limit": limit,
-            "indices": indices,
-            "quantiles": quantiles,
-            "positions": positions,
-        },
-    )
-    block = case.study[name]
+    given: dict[str, Any] = {"inputs": inputs, "groups": groups, "quantiles": quantiles}
+    given |= {"samples": samples, "seed": seed, "sampling": sampling}
+    given |= {"limit": limit, "indices": indices, "positions": positions}
+    case, name = _asked(loaded(case), study, given)
     job = _job(case, name, chunk, engine)
-    if out is not None:
-        folder = Folder(Path(out), job)
-        _solve(folder, scheduler, workers, progress)
-        return _found(folder, block, worst)
-    path = Path(tempfile.mkdtemp(prefix="loadshare-"))
+    path = Path(tempfile.mkdtemp(prefix="loadshare-") if out is None else out)
     try:
         folder = Folder(path, job)
         _solve(folder, scheduler, workers, progress)
-        found = _found(folder, block, worst)
+        found = _Reader(folder, case.study[name]).found(worst)
     except BaseException:
-        shutil.rmtree(path, ignore_errors=True)
+        if out is None:
+            shutil.rmtree(path, ignore_errors=True)
         raise
-    remove_with(found, path)
+    if out is None:
+        remove_with(found, path)
     return found
 
 
@@ -276,76 +240,75 @@ def _solved(
     return solve_parts(folder, missing, max(workers, 1))
 
 
-def _found(folder: Folder, block: Study, worst: bool) -> Tolerance:
-    """Read the statistics from the parts."""
-    job, train = folder.job, folder.job.solver.train
-    levels = block.quantiles or LEVELS
-    replicated = job.settings["sampling"] == "sobol"
+class _Reader:
+    """Reads the statistics of a study from its parts."""
 
-    def told(column: str) -> Summary | None:
-        return summary(folder.column(column), levels, replicated)
+    def __init__(self, folder: Folder, block: Study) -> None:
+        self.folder, self.limit = folder, block.limit
+        self.settings, self.train = folder.job.settings, folder.job.solver.train
+        self.levels = block.quantiles or LEVELS
+        self.replicated = self.settings["sampling"] == "sobol"
 
-    certified = folder.column("certified")
-    messages = folder.column("message")[~certified]
-    gone = 0
-    if job.settings["indices"]:
-        gone = int((~folder.column("certified", INDICES)).sum())
-    torque = {mesh: told(f"torque.{mesh} [N*m]") for mesh in train.meshes}
-    residual, apart = folder.column("residual"), _apart(folder)
-    return Tolerance(
-        case=job.name,
-        inputs=job.inputs,
-        settings=job.settings,
-        limit=block.limit,
-        samples=len(certified),
-        refused=int((~certified).sum()),
-        messages=counted([str(text).splitlines()[0] for text in messages]),
-        omega=tuple(_omega(folder, train, levels, block.limit)),
-        torque={mesh: found for mesh, found in torque.items() if found is not None},
-        floats=tuple(_floats(folder, train, levels)),
-        design_refused=gone,
-        overs=tuple(KINDS[kind] for kind in apart),
-        worst=_worst(folder, apart) if worst else (),
-        residual=float(np.nanmax(residual)) if certified.any() else float("nan"),
-        folder=folder,
-    )
+    def found(self, worst: bool) -> Tolerance:
+        """Return all that was found."""
+        folder, job = self.folder, self.folder.job
+        certified, residual = folder.column("certified"), folder.column("residual")
+        messages = folder.column("message")[~certified]
+        gone = 0
+        if self.settings["indices"]:
+            gone = int((~folder.column("certified", INDICES)).sum())
+        torque = {mesh: self._summary(f"torque.{mesh} [N*m]") for mesh in self.train.meshes}
+        apart = _apart(folder)
+        return Tolerance(
+            case=job.name,
+            inputs=job.inputs,
+            settings=job.settings,
+            limit=self.limit,
+            samples=len(certified),
+            refused=int((~certified).sum()),
+            messages=counted([str(text).splitlines()[0] for text in messages]),
+            omega=tuple(self._omega()),
+            torque={mesh: found for mesh, found in torque.items() if found is not None},
+            floats=tuple(self._floats()),
+            design_refused=gone,
+            overs=tuple(KINDS[kind] for kind in apart),
+            worst=_worst(folder, apart) if worst else (),
+            residual=float(np.nanmax(residual)) if certified.any() else float("nan"),
+            folder=folder,
+        )
 
+    def _summary(self, column: str) -> Summary | None:
+        return summary(self.folder.column(column), self.levels, self.replicated)
 
-def _omega(
-    folder: Folder, train: Train, levels: Sequence[float], limit: float | None
-) -> Iterator[OmegaStatistics]:
-    replicated = folder.job.settings["sampling"] == "sobol"
-    for kind, over in KINDS.items():
-        for stage in [*(s.name for s in train.stages), SYSTEM]:
-            values = folder.column(f"{kind}.{stage}")
-            found = summary(values, levels, replicated)
-            if found is not None:
-                above = None if limit is None else exceedance(values, limit, replicated)
-                parts = _shares(folder, f"{kind}.{stage}")
-                yield OmegaStatistics(over, stage, found, above, parts)
+    def _omega(self) -> Iterator[OmegaStatistics]:
+        stages = [*(s.name for s in self.train.stages), SYSTEM]
+        for (kind, over), stage in product(KINDS.items(), stages):
+            column = f"{kind}.{stage}"
+            found, above = self._summary(column), None
+            if found is None:
+                continue
+            if self.limit is not None:
+                above = exceedance(self.folder.column(column), self.limit, self.replicated)
+            yield OmegaStatistics(over, stage, found, above, self._shares(column))
 
+    def _shares(self, column: str) -> tuple[Share, ...]:
+        rows = self.settings["indices"]
+        if not rows:
+            return ()
+        figures = self.folder.column(column, INDICES).reshape(-1, rows)
+        return shares(figures, self.folder.job.inputs.unit_names, self.settings["seed"])
 
-def _shares(folder: Folder, column: str) -> tuple[Share, ...]:
-    settings, inputs = folder.job.settings, folder.job.inputs
-    if not settings["indices"]:
-        return ()
-    figures = folder.column(column, INDICES).reshape(-1, settings["indices"])
-    return shares(figures, inputs.unit_names, settings["seed"])
-
-
-def _floats(folder: Folder, train: Train, levels: Sequence[float]) -> Iterator[FloatStatistics]:
-    replicated = folder.job.settings["sampling"] == "sobol"
-    for gear in train.floating:
-        way = summary(folder.column(f"float.{gear} [m]"), levels, replicated)
-        if way is None:
-            continue
-        force, pressed = None, None
-        if gear in train.rings:
-            values = folder.column(f"boundary_force.{gear} [N]")
-            force = summary(values, levels, replicated)
-            known = values[~np.isnan(values)]
-            pressed = float((known > PRESSED * max(known.max(), 1e-300)).mean())
-        yield FloatStatistics(gear, way, force, pressed)
+    def _floats(self) -> Iterator[FloatStatistics]:
+        for gear in self.train.floating:
+            way, force, pressed = self._summary(f"float.{gear} [m]"), None, None
+            if way is None:
+                continue
+            if gear in self.train.rings:
+                column = f"boundary_force.{gear} [N]"
+                force, values = self._summary(column), self.folder.column(column)
+                known = values[~np.isnan(values)]
+                pressed = float((known > PRESSED * max(known.max(), 1e-300)).mean())
+            yield FloatStatistics(gear, way, force, pressed)
 
 
 def _worst(folder: Folder, kinds: Sequence[str]) -> tuple[WorstCase, ...]:
