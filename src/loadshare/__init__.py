@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from loadshare.case import Case, load_case
     from loadshare.case.schema import case_schema
     from loadshare.job import explain, solve
+    from loadshare.job.formulation import formulate
     from loadshare.job.many import solve_many
     from loadshare.job.search import search
     from loadshare.report.plots import plot
@@ -41,6 +42,7 @@ _LAZY = {
     "critical": "loadshare.study.critical",
     "explain": "loadshare.job",
     "fit": "loadshare.study.fit",
+    "formulate": "loadshare.job.formulation",
     "load_case": "loadshare.case",
     "load_result": "loadshare.results",
     "march": "loadshare.study.march",
@@ -68,6 +70,7 @@ __all__ = [
     "critical",
     "explain",
     "fit",
+    "formulate",
     "load_case",
     "load_result",
     "march",

@@ -71,6 +71,18 @@ def solve_programme(
     return Inner(*exact, f"{backend.name} + exact")
 
 
+def solve_near(programme: Programme, point: Point) -> tuple[Point, ActiveSet]:
+    """Solve a programme exactly, given an answer of a few digits.
+
+    Raises
+    ------
+    Unsolved
+        If the programme contradicts itself or no consistent active set is found.
+    """
+    exact = solve_exact(programme, identify(programme, point), point)
+    return exact or solve_proximal(programme, point, None)
+
+
 def _without_guess(programme: Programme, start: Point | None, via: str, work: Work | None) -> Inner:
     """Solve where no active set could be read from a back-end's answer, or there is none."""
     return Inner(*solve_proximal(programme, start, work), f"{via}proximal + exact")

@@ -13,6 +13,7 @@ makes light load converge.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,7 +22,7 @@ from loadshare.contact.backends.backend import Backend
 from loadshare.contact.energy import potential
 from loadshare.contact.findings import Unsolved, Work
 from loadshare.contact.inner import Inner, solve_programme
-from loadshare.contact.law import PowerLaw
+from loadshare.contact.law import Law, PowerLaw
 from loadshare.contact.plan import Linearisation, Plan, Role, Units, programme
 from loadshare.contact.problem import ContactProblem
 from loadshare.contact.programme import Array, Point
@@ -153,10 +154,20 @@ def _compliances(
     problem: ContactProblem, forces: dict[str, float], method: str
 ) -> dict[str, tuple[float, float]]:
     """Linear stand-ins of the laws: secants through the origin (Picard) or tangents (Newton)."""
-    laws = {r.name: r.law for r in problem.rows} | {a.name: a.law for a in problem.arcs}
     if method == "picard":
-        return {n: (law.secant(forces[n]), 0.0) for n, law in laws.items()}
-    return {n: law.tangent(forces[n]) for n, law in laws.items()}
+        return {n: (law.secant(forces[n]), 0.0) for n, law in _laws(problem).items()}
+    return tangents(problem, forces)
+
+
+def tangents(
+    problem: ContactProblem, forces: Mapping[str, float]
+) -> dict[str, tuple[float, float]]:
+    """Tangent compliances of the laws of all rows and arcs at some forces, and their offsets."""
+    return {n: law.tangent(forces[n]) for n, law in _laws(problem).items()}
+
+
+def _laws(problem: ContactProblem) -> dict[str, Law]:
+    return {r.name: r.law for r in problem.rows} | {a.name: a.law for a in problem.arcs}
 
 
 def _forces(names: tuple[str, ...], point: Point, units: Units) -> dict[str, float]:

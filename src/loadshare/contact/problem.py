@@ -27,6 +27,9 @@ from loadshare.contact.radial import RadialLaw
 
 Array = NDArray[np.float64]
 
+ROUNDING = 1e-12
+"""Eigenvalue of a stiffness, over its largest entry, that is zero."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Row:
@@ -167,6 +170,42 @@ class ContactProblem:
     def size(self) -> int:
         """Number of coordinates."""
         return len(self.coordinates)
+
+    def check(self) -> None:
+        """Check that the arrays belong together.
+
+        Raises
+        ------
+        ValueError
+            With all problems, one a line.
+        """
+        n, wrong = self.size, []
+        shapes = [("stiffness", self.stiffness, (n, n)), ("load", self.load, (n,))]
+        shapes += [(f"vector of {r.name}", r.vector, (n,)) for r in self.rows]
+        shapes += [(f"relative of {a.name}", a.relative, (3, n)) for a in self.arcs]
+        shapes += [(f"matrix of {r.name}", r.matrix, (2, n)) for r in self.radials]
+        shapes += [(f"centre of {r.name}", r.centre, (2,)) for r in self.radials]
+        for what, array, shape in shapes:
+            if np.shape(array) != shape:
+                wrong.append(f"{what}: shape {np.shape(array)}, wanted {shape}")
+            elif not np.isfinite(array).all():
+                wrong.append(f"{what}: holds what is no finite number")
+        if not wrong and not np.array_equal(self.stiffness, self.stiffness.T):
+            wrong.append("stiffness: is not symmetric")
+        elif (
+            not wrong
+            and n
+            and np.linalg.eigvalsh(self.stiffness)[0]
+            < -ROUNDING * np.abs(self.stiffness).max(initial=0.0)
+        ):
+            wrong.append("stiffness: has a negative eigenvalue, so springs would push")
+        names = [*self.coordinates, *(r.name for r in self.rows), *(a.name for a in self.arcs)]
+        names += [r.name for r in self.radials]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        wrong += [f"{name}: two elements or coordinates have this name" for name in twice]
+        wrong += [f"gap of {r.name}: {r.gap}" for r in self.rows if not np.isfinite(r.gap)]
+        if wrong:
+            raise ValueError("\n".join(wrong))
 
     @cached_property
     def condensation(self) -> Condensation:

@@ -252,7 +252,7 @@ def climb(
         certificate = certify(train, equilibrium, tolerance)
         if certificate.passed:
             return Answer(train, equilibrium, certificate, record, rung)
-        first = first or _uncertified(index, certificate)
+        first = first or uncertified(index, certificate)
         if not options.polish:
             break
     _refuse_if_none(scene)
@@ -312,7 +312,8 @@ def displaced(answer: Answer) -> Refused | None:
     return Refused(told, {name: m.value for name, m in beyond.items()})
 
 
-def _uncertified(index: int, certificate: Certificate) -> Refused:
+def uncertified(index: int, certificate: Certificate) -> Refused:
+    """Return the refusal of an answer whose certificate does not pass."""
     failing = certificate.failing
     told = "; ".join(
         f"{name.replace('_', ' ')} {r.value:.3g} {r.unit} at {r.where} "

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from loadshare.contact.backends.backend import KINDS_QP, Backend, BackendFailure
-from loadshare.contact.backends.conic import conic_form
+from loadshare.contact.forms import quadratic_form
 from loadshare.contact.programme import Point, Programme
 
 
@@ -19,17 +19,14 @@ class Osqp:
         """See :meth:`loadshare.contact.backends.backend.Backend.solve`."""
         import osqp
 
-        form = conic_form(programme)
-        equalities = int(sum(size for kind, size in form.cones if kind == "zero"))
-        lower = np.full(len(form.bounds), -np.inf)
-        lower[:equalities] = form.bounds[:equalities]
+        form = quadratic_form(programme)
         solver = osqp.OSQP()
         solver.setup(
             form.quadratic,
             form.linear,
             form.matrix,
-            lower,
-            form.bounds,
+            form.lower,
+            form.upper,
             verbose=False,
             polishing=True,
             eps_abs=1e-9,

@@ -1,0 +1,213 @@
+"""Contact problems that are written by hand: solved, and judged from the arrays alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from loadshare.contact.backends.backend import backend
+from loadshare.contact.findings import Unsolved
+from loadshare.contact.outer import Settled, settle
+from loadshare.contact.plan import Plan
+from loadshare.contact.problem import Array, ContactProblem
+from loadshare.contact.radial import RadialLaw
+from loadshare.contact.record import Options
+from loadshare.errors import Refused
+
+TOLERANCE = 1e-9
+"""Largest residual, in forces and lengths of the problem."""
+ROUNDING = 1e-12
+"""Offset, in lengths of the problem, that has no direction."""
+LOOSE = 1e-9
+"""Part of a coordinate in a move that nothing resists from which on it is undetermined."""
+
+
+@dataclass(frozen=True, slots=True)
+class Residuals:
+    """What a claimed answer leaves of the equations, in forces and lengths of the problem.
+
+    Attributes
+    ----------
+    balance : float
+        Of forces along the coordinates.
+    law : float
+        Between what contacts and graphs yield and what their laws say; overlap of open contacts.
+    sign : float
+        Forces that pull.
+    """
+
+    balance: float
+    law: float
+    sign: float
+
+    @property
+    def worst(self) -> float:
+        """The largest; NaN counts as infinite."""
+        every = (self.balance, self.law, self.sign)
+        return max((v if v == v else np.inf) for v in every)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ContactAnswer:
+    """Answer of a contact problem, in the problem's own units.
+
+    Attributes
+    ----------
+    problem : ContactProblem
+    place : mapping of coordinate to float
+    force : mapping of row or arc to float
+        ≥ 0.
+    pull : mapping of radial element to ndarray, shape (2,)
+        Force along its offset.
+    undetermined : frozenset of str
+        Coordinates that the forces leave open; the place given is one of many.
+    residuals : Residuals
+        Found from the problem and the figures above, not from any solver.
+    """
+
+    problem: ContactProblem
+    place: Mapping[str, float]
+    force: Mapping[str, float]
+    pull: Mapping[str, Array]
+    undetermined: frozenset[str]
+    residuals: Residuals
+
+    @property
+    def passed(self) -> bool:
+        """Whether it is an equilibrium to `TOLERANCE`."""
+        return self.residuals.worst <= TOLERANCE
+
+
+def solve_contact(
+    problem: ContactProblem, *, solver: str = "clarabel", method: str = "newton"
+) -> ContactAnswer:
+    """Solve a contact problem and judge the answer.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    solver : {"clarabel", "osqp", "cvxpy"}
+        What identifies the active set, which is then solved exactly.
+    method : {"newton", "picard", "power"}
+        How nonlinear laws are settled.
+
+    Returns
+    -------
+    ContactAnswer
+        With `passed` true.
+
+    Raises
+    ------
+    ValueError
+        If the arrays do not belong together; the message names them.
+    Refused
+        If no equilibrium was found.
+    """
+    problem.check()
+    options = Options(solver=solver, method=method)
+    plan, last = Plan.full(problem), "nothing was tried"
+    for way in dict.fromkeys((method, "newton", "picard")):
+        try:
+            settled = settle(problem, plan, backend(solver), replace(options, method=way), way)
+        except Unsolved as failure:
+            last = str(failure)
+            continue
+        answer = _answer(problem, settled)
+        if answer.passed:
+            return answer
+        last = f"residual {answer.residuals.worst:.2g} of 1e-9 allowed"
+    raise Refused(f"no equilibrium of the contact problem was found: {last}")
+
+
+def residuals(
+    problem: ContactProblem, x: Array, force: Mapping[str, float], pull: Mapping[str, Array]
+) -> Residuals:
+    """Judge a claimed answer of a contact problem from its arrays alone.
+
+    Parameters
+    ----------
+    problem : ContactProblem
+    x : ndarray, shape (n,)
+    force : mapping of row or arc to float
+    pull : mapping of radial element to ndarray, shape (2,)
+        Force along its offset.
+    """
+    rows = problem.rows_at(x)
+    forces = np.array([force.get(r.name, 0.0) for r in rows])
+    pushed = [row.vector * f for row, f in zip(rows, forces, strict=True)]
+    pulls = {r.name: np.asarray(pull.get(r.name, np.zeros(2))) for r in problem.radials}
+    pushed += [r.matrix.T @ pulls[r.name] for r in problem.radials]
+    left = problem.stiffness @ x - problem.load + sum(pushed, np.zeros(problem.size))
+    unit = max([problem.force_unit(), *np.abs(forces).tolist()])
+    length = problem.length_unit()
+    approach = [float(row.vector @ x) - row.gap for row in rows]
+    off = [
+        d - row.law.compression(f) if f > 0.0 else max(d, 0.0)
+        for row, d, f in zip(rows, approach, forces.tolist(), strict=True)
+    ]
+    graphs = [
+        _off_graph(r.matrix @ x - r.centre, pulls[r.name], r.law(r.torque(force)), unit, length)
+        for r in problem.radials
+    ]
+    return Residuals(
+        balance=float(np.abs(left).max(initial=0.0)) / unit,
+        law=max([float(np.abs(off).max(initial=0.0)) / length, *graphs]),
+        sign=float(-forces.min(initial=0.0)) / unit,
+    )
+
+
+def _off_graph(offset: Array, pull: Array, law: RadialLaw, unit: float, length: float) -> float:
+    """Distance of a radial element from its graph, in forces and lengths of the problem.
+
+    Beside that, what of its force does not point along the offset, at rest in any direction.
+    """
+    radius, size = float(np.linalg.norm(offset)), float(np.linalg.norm(pull))
+    across = 0.0
+    if size > 0.0 and radius > ROUNDING * length:
+        across = float(np.linalg.norm(pull - size * offset / radius))
+    nearest = np.inf
+    for k, piece in enumerate(law.pieces):
+        start = law.start(k)
+        inner = min(max(radius - start, 0.0), piece.length)
+        force = piece.force + (piece.stiffness * inner if piece.stiffness else 0.0)
+        nearest = min(nearest, max(abs(radius - start - inner) / length, abs(size - force) / unit))
+    for k in range(len(law.pieces) + 1):
+        low, high = law.step(k)
+        if high > low and np.isfinite(start := law.start(k)):
+            force = min(max(size, low), high)
+            nearest = min(nearest, max(abs(radius - start) / length, abs(size - force) / unit))
+    return max(nearest, across / unit)
+
+
+def _answer(problem: ContactProblem, settled: Settled) -> ContactAnswer:
+    """Turn what was settled into an answer and judge it."""
+    force = {r.name: max(settled.forces.get(r.name, 0.0), 0.0) for r in problem.rows_at(settled.x)}
+    pull = dict(settled.radial_forces)
+    for radial in problem.radials:
+        if radial.name not in pull:
+            first = settled.laws[radial.name].pieces[0]
+            offset = radial.matrix @ settled.x - radial.centre
+            pull[radial.name] = np.asarray(first.stiffness * offset)
+    place = dict(zip(problem.coordinates, settled.x.tolist(), strict=True))
+    loose = _undetermined(problem, settled.x, force, pull)
+    found = residuals(problem, settled.x, force, pull)
+    return ContactAnswer(problem, place, force, pull, loose, found)
+
+
+def _undetermined(
+    problem: ContactProblem, x: Array, force: Mapping[str, float], pull: Mapping[str, Array]
+) -> frozenset[str]:
+    """Coordinates that move along what no spring and no acting contact resists."""
+    acting = [row.vector for row in problem.rows_at(x) if force[row.name] > 0.0]
+    for radial in problem.radials:
+        if pull[radial.name].any():
+            acting += list(radial.matrix)
+    resisting = np.array([*problem.stiffness, *acting]).reshape(-1, problem.size)
+    sizes = np.linalg.norm(resisting, axis=1)
+    resisting = resisting[sizes > 0.0] / sizes[sizes > 0.0, None]
+    _, values, right = np.linalg.svd(resisting, full_matrices=True)
+    rank = int((values > LOOSE * values.max(initial=0.0)).sum())
+    moved = np.abs(right[rank:]).max(axis=0, initial=0.0)
+    return frozenset(c for c, v in zip(problem.coordinates, moved, strict=True) if v > LOOSE)

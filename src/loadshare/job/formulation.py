@@ -1,0 +1,177 @@
+"""A case's programme, for those who want to solve it themselves or to see what is solved."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from loadshare.case import Case
+from loadshare.certify import certify
+from loadshare.contact.backends.conic import ConicForm, conic_form
+from loadshare.contact.findings import Unsolved
+from loadshare.contact.forms import (
+    ComplementarityForm,
+    QuadraticForm,
+    complementarity_form,
+    quadratic_form,
+)
+from loadshare.contact.inner import solve_near
+from loadshare.contact.outer import Settled, tangents
+from loadshare.contact.plan import Linearisation, Plan, Units, programme
+from loadshare.contact.programme import Point, Programme
+from loadshare.errors import Refused
+from loadshare.job.ladder import Answer, uncertified
+from loadshare.job.positions import explain
+from loadshare.scene import Scene
+from loadshare.solver.position import coordinates_of, equilibrium_of
+
+if TYPE_CHECKING:
+    from loadshare.contact.backends.cvxpy_ import CvxpyForm
+
+LEAST = 1e-3
+"""Force, in loads, at which the law of a contact that carries less is taken as its tangent."""
+READ = "read back"
+"""Rung of an answer that somebody else's solver found."""
+
+
+@dataclass(frozen=True, eq=False)
+class Formulation:
+    """The programme of a case at one position, and the way back from its answer.
+
+    Attributes
+    ----------
+    programme : Programme
+        Dimensionless: named unknowns, rows and cones.
+    units : Units
+        Newtons and metres of its numbers.
+    removed : tuple of (str, str)
+        What is not in it, and why; each was verified at the equilibrium.
+    scene : Scene
+        The whole contact problem, in newtons and metres, nothing left out.
+    plan : Plan
+    at : Linearisation
+        Tangents of nonlinear laws and faces of arcs: those of the equilibrium.
+    answer : Answer
+        The certified equilibrium.
+    """
+
+    programme: Programme
+    units: Units
+    removed: tuple[tuple[str, str], ...]
+    scene: Scene
+    plan: Plan
+    at: Linearisation
+    answer: Answer
+
+    def qp(self) -> QuadraticForm:
+        """Return min ½zᵀPz + qᵀz with l ≤ Az ≤ u.
+
+        Raises
+        ------
+        ValueError
+            If there are radial elements or exact Hertz laws, which no QP has.
+        """
+        return quadratic_form(self.programme)
+
+    def lcp(self) -> ComplementarityForm:
+        """Return w = Mz + q ≥ 0 with z ≥ 0 and zᵀw = 0.
+
+        Raises
+        ------
+        ValueError
+            As `qp`.
+        """
+        return complementarity_form(self.programme)
+
+    def conic(self) -> ConicForm:
+        """Return min ½zᵀPz + qᵀz with Az + s = b and s in a product of cones."""
+        return conic_form(self.programme)
+
+    def cvxpy(self) -> CvxpyForm:
+        """Return the programme as a CVXPY problem."""
+        from loadshare.contact.backends.cvxpy_ import cvxpy_form
+
+        return cvxpy_form(self.programme)
+
+    def read(self, point: Point) -> Answer:
+        """Turn an answer of the programme into a certified equilibrium.
+
+        The active set is read from it and solved exactly, so that an answer of a few digits is
+        enough.
+
+        Parameters
+        ----------
+        point : Point
+            As the `point` of any of the forms gives it.
+
+        Raises
+        ------
+        Refused
+            If no consistent active set is found, or the certificate does not pass.
+        """
+        try:
+            found, _ = solve_near(self.programme, point)
+        except Unsolved as failure:
+            raise Refused(f"position {self.scene.situation.index}: {failure}") from failure
+        units = self.units
+        forces = found.forces * units.force / units.row_norms
+        pulls = found.cone_forces * units.force
+        settled = Settled(
+            units.condensation.expand(found.x * units.length),
+            dict(zip(self.programme.names, forces.tolist(), strict=True)),
+            {c.name: p for c, p in zip(self.programme.cones, pulls, strict=True)},
+            dict(self.at.radial_laws),
+            self.programme.kind,
+            (),
+        )
+        train, equilibrium = self.scene.train, equilibrium_of(self.scene, settled)
+        certificate = certify(train, equilibrium)
+        if not certificate.passed:
+            raise uncertified(self.scene.situation.index, certificate)
+        return Answer(train, equilibrium, certificate, self.answer.record, READ)
+
+
+def formulate(
+    case: Case | str | Path,
+    position: int = 1,
+    *,
+    reduce: bool = True,
+    exact_hertz: bool = False,
+) -> Formulation:
+    """Write the programme whose answer is the equilibrium of a case.
+
+    The case is solved first. The programme is convex: arcs of limit rings stand in it as their
+    tangent faces at the equilibrium, nonlinear laws as their tangents, friction that follows a
+    torque as the bound at that torque. So its answer is the equilibrium itself.
+
+    Parameters
+    ----------
+    case : Case, str or Path
+    position : int
+        1-based.
+    reduce : bool
+        Leave out what cannot matter, with the reason in `removed`; or write everything.
+    exact_hertz : bool
+        Keep laws b F + c F^(2/3) as they are, as power cones.
+
+    Returns
+    -------
+    Formulation
+
+    Raises
+    ------
+    CaseError, Refused, ValueError
+        As :func:`loadshare.solve`.
+    """
+    answer = explain(case, position, solver="clarabel", reduce=reduce)
+    scene, found, record = answer.scene, answer.equilibrium, answer.record
+    forces = {**found.flank_force, **found.ring_force}
+    least = LEAST * scene.force_unit()
+    at = Linearisation(
+        coordinates_of(scene, found),
+        tangents(scene, {n: f or least for n, f in forces.items()}),
+        {r.name: r.law(r.torque(forces)) for r in scene.radials},
+    )
+    written, units = programme(scene, record.plan, at, exact_hertz=exact_hertz)
+    return Formulation(written, units, record.removed, scene, record.plan, at, answer)

@@ -1,0 +1,145 @@
+"""Contact problems without gears against closed forms, and what their residuals judge."""
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from loadshare.contact import (
+    RIGID,
+    Arc,
+    ArcRow,
+    ContactProblem,
+    Piece,
+    PowerLaw,
+    Radial,
+    RadialLaw,
+    Row,
+    residuals,
+    solve_contact,
+)
+from loadshare.errors import Refused
+
+METHODS = ("newton", "picard")
+
+
+def block(load: float, law: PowerLaw = RIGID, spring: float = 1e6) -> ContactProblem:
+    """A block of one coordinate between two stops 1 mm away, on a spring."""
+    stops = (
+        Row("right stop", "stop", np.array([1.0]), 1e-3, law),
+        Row("left stop", "stop", np.array([-1.0]), 1e-3, law),
+    )
+    return ContactProblem(("x",), np.array([[spring]]), np.array([load]), stops)
+
+
+def disc(load: tuple[float, float], law: RadialLaw) -> ContactProblem:
+    """A disc without springs in a drum."""
+    inside = Radial("drum", np.eye(2), np.zeros(2), law)
+    return ContactProblem(("x", "y"), np.zeros((2, 2)), np.array(load), radials=(inside,))
+
+
+@pytest.mark.parametrize("solver", ["clarabel", "osqp", "cvxpy"])
+@pytest.mark.parametrize("load", [400.0, 3000.0, -3000.0, 1000.0])
+def test_a_block_on_two_rigid_stops(load: float, solver: str) -> None:
+    found = solve_contact(block(load), solver=solver)
+    x = max(-1e-3, min(1e-3, load / 1e6))
+    assert found.passed
+    assert found.place["x"] == pytest.approx(x, rel=1e-12)
+    assert found.force["right stop"] == pytest.approx(max(load - 1e3, 0.0), abs=1e-9)
+    assert found.force["left stop"] == pytest.approx(max(-load - 1e3, 0.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_block_on_a_hertz_contact(method: str) -> None:
+    """With F = b x + c x^(2/3) of the overlap and the spring, by bisection."""
+    law = PowerLaw(2e-9, 3e-8)
+    found = solve_contact(block(5e3, law), method=method)
+    low, high = 0.0, 5e3
+    for _ in range(200):
+        force = 0.5 * (low + high)
+        x = 1e-3 + law.compression(force)
+        low, high = (force, high) if 1e6 * x + force < 5e3 else (low, force)
+    assert found.force["right stop"] == pytest.approx(force, rel=1e-12)
+
+
+def test_a_disc_leans_on_its_drum_where_the_load_points() -> None:
+    drum = RadialLaw((Piece(0.0, 0.0, 2e-3, "inside"), Piece(0.0, 1e7, math.inf, "wall")))
+    found = solve_contact(disc((300.0, 400.0), drum))
+    radius = 2e-3 + 500.0 / 1e7
+    assert found.place == pytest.approx({"x": 0.6 * radius, "y": 0.8 * radius}, rel=1e-12)
+    assert found.pull["drum"] == pytest.approx([300.0, 400.0], rel=1e-12)
+    assert not found.undetermined
+
+
+def test_a_disc_on_a_slope_of_friction() -> None:
+    """Friction of 10 N from the first, then 1e5 N/m: it stays under 8 N and moves under 50 N."""
+    law = RadialLaw((Piece(10.0, 1e5, math.inf, "slip"),))
+    rests, moves = solve_contact(disc((8.0, 0.0), law)), solve_contact(disc((30.0, 40.0), law))
+    assert rests.place == pytest.approx({"x": 0.0, "y": 0.0}, abs=1e-15)
+    assert rests.pull["drum"] == pytest.approx([8.0, 0.0])
+    assert moves.place == pytest.approx({"x": 0.6 * 4e-4, "y": 0.8 * 4e-4}, rel=1e-12)
+
+
+def test_an_arc_turns_its_face() -> None:
+    """A body pressed onto a round neighbour, held sideways by a spring: by the angle it rolls."""
+    arc = Arc(np.array([0.1, 0.0, 0.0]), np.zeros(3), 1e-3)
+    relative = np.vstack([np.eye(2), np.zeros((1, 2))])
+    rolls = ArcRow("arc", arc, relative, RIGID, 0.0)
+    spring = np.diag([0.0, 1e6])
+    problem = ContactProblem(("x", "y"), spring, np.array([-1e3, 500.0]), arcs=(rolls,))
+    found = solve_contact(problem)
+    x, y, force = found.place["x"], found.place["y"], found.force["arc"]
+    way = np.array([0.1 + x, y])
+    assert np.linalg.norm(way) == pytest.approx(0.099, rel=1e-12)
+    assert force * way / 0.099 + [-1e3, 500.0 - 1e6 * y] == pytest.approx([0.0, 0.0], abs=1e-8)
+    assert y > 5e-4
+
+
+def test_what_nothing_holds_is_named() -> None:
+    stop = (Row("stop", "stop", np.array([1.0, 0.0]), 0.0, RIGID),)
+    found = solve_contact(ContactProblem(("x", "y"), np.zeros((2, 2)), np.array([5.0, 0.0]), stop))
+    assert found.undetermined == {"y"}
+
+
+def test_what_has_no_equilibrium_is_refused() -> None:
+    free = ContactProblem(("x",), np.zeros((1, 1)), np.array([1.0]))
+    with pytest.raises(Refused, match="no equilibrium"):
+        solve_contact(free)
+
+
+@pytest.mark.parametrize(
+    ("part", "value", "told"),
+    [
+        ("stiffness", np.array([[-1.0]]), "negative eigenvalue"),
+        ("stiffness", np.eye(2), r"shape \(2, 2\), wanted \(1, 1\)"),
+        ("load", np.array([np.nan]), "no finite number"),
+        ("coordinates", ("right stop",), "two elements or coordinates"),
+    ],
+)
+def test_arrays_that_do_not_belong_together_are_named(part, value, told) -> None:
+    with pytest.raises(ValueError, match=told):
+        solve_contact(dataclasses.replace(block(1.0), **{part: value}))
+
+
+@pytest.mark.parametrize(
+    ("x", "force", "part"),
+    [
+        (1e-3, {"right stop": 1900.0}, "balance"),
+        (1.1e-3, {"right stop": 1900.0}, "law"),
+        (4e-3, {"left stop": -1000.0}, "sign"),
+    ],
+)
+def test_wrong_answers_do_not_pass(x: float, force: dict[str, float], part: str) -> None:
+    judged = residuals(block(3000.0), np.array([x]), force, {})
+    assert getattr(judged, part) > 1e-3
+    right = residuals(block(3000.0), np.array([1e-3]), {"right stop": 2000.0}, {})
+    assert right.worst < 1e-12
+
+
+def test_a_force_across_the_offset_does_not_pass() -> None:
+    drum = RadialLaw((Piece(0.0, 0.0, 2e-3, "inside"),))
+    problem = disc((0.0, 500.0), drum)
+    judged = residuals(problem, np.array([2e-3, 0.0]), {}, {"drum": np.array([0.0, 500.0])})
+    assert judged.balance < 1e-12
+    assert judged.law > 0.1

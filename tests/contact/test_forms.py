@@ -1,0 +1,99 @@
+"""The forms of a programme, solved by others, give the certified equilibrium again."""
+
+from itertools import product
+
+import clarabel
+import numpy as np
+import osqp
+import pytest
+from scipy.sparse import triu
+
+import loadshare as ls
+from loadshare.contact.forms import ComplementarityForm
+
+SPLIT = "cases/branches/split_torque_2.toml"
+RING = "cases/fgfbstts/limit_ring.toml"
+EVERY = "cases/fgfbstts/all_elements.toml"
+
+
+def same(formulation, answer) -> None:
+    true = formulation.answer.equilibrium
+    for name, force in true.flank_force.items():
+        scale = max(true.flank_force.values())
+        assert answer.equilibrium.flank_force[name] == pytest.approx(force, abs=1e-11 * scale)
+    assert answer.certificate.passed
+
+
+def forced(form: ComplementarityForm) -> np.ndarray:
+    """Solve a small complementarity problem by trying every set of contacts."""
+    size = len(form.vector)
+    for acting in product([False, True], repeat=size):
+        on = np.flatnonzero(acting)
+        z = np.zeros(size)
+        block = form.matrix[np.ix_(on, on)]
+        z[on] = -np.linalg.lstsq(block, form.vector[on], rcond=None)[0]
+        w = form.matrix @ z + form.vector
+        if (z >= -1e-9).all() and (w >= -1e-9).all() and abs(w[on]).max(initial=0.0) < 1e-9:
+            return z
+    raise AssertionError("no set of contacts fits")
+
+
+@pytest.mark.parametrize("reduce", [True, False])
+def test_a_qp_by_osqp(reduce: bool) -> None:
+    formulation = ls.formulate(SPLIT, reduce=reduce)
+    form = formulation.qp()
+    solver = osqp.OSQP()
+    solver.setup(
+        form.quadratic, form.linear, form.matrix, form.lower, form.upper, verbose=False,
+        eps_abs=1e-7, eps_rel=1e-7, max_iter=200_000,
+    )  # fmt: skip
+    answer = solver.solve(raise_error=False)
+    assert len(form.variables) == len(form.linear)
+    assert len(form.rows) == len(formulation.programme.names)
+    same(formulation, formulation.read(form.point(answer.x, answer.y)))
+
+
+def test_a_complementarity_problem_by_trying_every_set() -> None:
+    formulation = ls.formulate(SPLIT)
+    form = formulation.lcp()
+    assert len(form.unknowns) == len(form.vector)
+    assert np.linalg.eigvalsh(form.matrix + form.matrix.T)[0] > -1e-12
+    same(formulation, formulation.read(form.point(forced(form))))
+
+
+@pytest.mark.parametrize("exact_hertz", [False, True])
+def test_cones_by_clarabel(exact_hertz: bool) -> None:
+    formulation = ls.formulate(RING, 2, exact_hertz=exact_hertz)
+    form = formulation.conic()
+    kinds = {"zero": clarabel.ZeroConeT, "nonnegative": clarabel.NonnegativeConeT}
+    kinds["second-order"] = clarabel.SecondOrderConeT
+    cones = [
+        clarabel.PowerConeT(size) if kind == "power" else kinds[kind](int(size))
+        for kind, size in form.cones
+    ]
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    answer = clarabel.DefaultSolver(
+        triu(form.quadratic, format="csc"), form.linear, form.matrix, form.bounds, cones, settings
+    ).solve()
+    same(formulation, formulation.read(form.point(np.array(answer.x), np.array(answer.z))))
+
+
+def test_cvxpy() -> None:
+    formulation = ls.formulate(RING)
+    form = formulation.cvxpy()
+    form.problem.solve(solver="CLARABEL")
+    same(formulation, formulation.read(form.point()))
+
+
+def test_what_is_left_out_is_named_with_its_reason() -> None:
+    lean, whole = ls.formulate(EVERY), ls.formulate(EVERY, reduce=False)
+    left = dict(lean.removed)
+    assert set(whole.programme.names) > set(lean.programme.names)
+    for name in set(whole.programme.names) - set(lean.programme.names):
+        assert left[name]
+
+
+def test_no_qp_of_a_spline() -> None:
+    with pytest.raises(ValueError, match=r"spline .* second-order cones"):
+        ls.formulate(EVERY, reduce=False).qp()
