@@ -113,7 +113,7 @@ class Formulation:
         try:
             found, _ = solve_near(self.programme, point)
         except Unsolved as failure:
-            raise Refused(f"position {self.scene.situation.index}: {failure}") from failure
+            raise Refused(f"position {self.answer.equilibrium.index}: {failure}") from failure
         units = self.units
         forces = found.forces * units.force / units.row_norms
         pulls = found.cone_forces * units.force
@@ -128,7 +128,7 @@ class Formulation:
         train, equilibrium = self.scene.train, equilibrium_of(self.scene, settled)
         certificate = certify(train, equilibrium)
         if not certificate.passed:
-            raise uncertified(self.scene.situation.index, certificate)
+            raise uncertified(equilibrium.index, certificate)
         return Answer(train, equilibrium, certificate, self.answer.record, READ)
 
 
