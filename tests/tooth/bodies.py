@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loadshare.tooth.unloaded.contact import ContactLine, MeshPosition
+from loadshare.tooth.unloaded.positions import ContactLine, MeshPosition
 
 
 @dataclass(frozen=True)

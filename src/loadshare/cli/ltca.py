@@ -57,7 +57,7 @@ def ltca(
     The folder receives law.toml, which a mesh of a case can name as its law_file, table.csv,
     lines.csv, and pictures as SVG, PNG and HTML.
     """
-    from loadshare.tooth.law.cached import kept_law
+    from loadshare.tooth.law.folder import kept_law
     from loadshare.tooth.pair.file import load_pair
 
     load = _torque(torque)

@@ -5,9 +5,8 @@ import pytest
 from scipy.sparse import csr_matrix
 
 from loadshare.tooth.compliance.block import BlockMesh
-from loadshare.tooth.compliance.layered import LayeredFactor
 from loadshare.tooth.compliance.sheet import Sheet
-from loadshare.tooth.compliance.solid import build_solid
+from loadshare.tooth.compliance.solid import LayeredFactor, build_solid
 
 STEEL = 206e9
 

@@ -8,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.tooth.geometry.samples import face_gear, face_pair, gear, pair
 
-from loadshare.tooth.cylindrical.body import HelicoidBody
-from loadshare.tooth.cylindrical.root import root_curve
+from loadshare.tooth.cylindrical.body import HelicoidBody, root_curve
 from loadshare.tooth.face.body import FaceBody
 from loadshare.tooth.unloaded.positions import position
 

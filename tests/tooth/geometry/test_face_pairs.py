@@ -7,8 +7,8 @@ import pytest
 from tests.tooth.geometry.samples import face_gear, face_pair
 
 from loadshare.tooth.cylindrical.gear import Modification
-from loadshare.tooth.face.flank import FaceFlank
-from loadshare.tooth.face.limits import (
+from loadshare.tooth.face.flank import (
+    FaceFlank,
     planar_pointing_limit,
     pointing_limit,
     regularity,

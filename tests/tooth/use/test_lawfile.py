@@ -1,14 +1,17 @@
 """Law files and the cache in which they are kept."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from platformdirs import user_cache_path
 from tests.tooth.use.pairs import SPUR, written
 
+from loadshare import tooth
 from loadshare.errors import CaseError
 from loadshare.tooth.law import folder as cache
-from loadshare.tooth.law.cached import computed_law, known_law
 from loadshare.tooth.law.file import law_of, law_text, load_law, parsed_law
+from loadshare.tooth.law.folder import computed_law, known_law
 from loadshare.tooth.pair.file import load_pair
 
 
@@ -85,6 +88,12 @@ def test_other_code_is_another_entry(spur, monkeypatch):
     computed_law(pair)
     monkeypatch.setattr(cache, "code_hash", lambda: "another")
     assert known_law(pair) is None
+
+
+def test_all_code_of_the_room_counts():
+    room = Path(tooth.__file__).parent
+    assert cache.code_hash() == cache.code_hash(room)
+    assert cache.code_hash(room / "contact") != cache.code_hash(room)
 
 
 def test_a_cache_that_cannot_be_written_is_done_without(spur, tmp_path, monkeypatch):

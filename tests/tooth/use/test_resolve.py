@@ -6,8 +6,8 @@ from tests.tooth.use.pairs import CASE, FACE, PAIRS, SPUR, written
 from loadshare.case import Case, load_case
 from loadshare.errors import CaseError
 from loadshare.tooth import resolve
-from loadshare.tooth.law.cached import known_law
 from loadshare.tooth.law.file import law_text
+from loadshare.tooth.law.folder import known_law
 from loadshare.tooth.pair.file import PairFile, load_pair
 
 

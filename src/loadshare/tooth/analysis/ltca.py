@@ -23,8 +23,7 @@ from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
 from loadshare.tooth.contact.programme import Contact, solve_contacts
 from loadshare.tooth.contact.strips import StripLine
 from loadshare.tooth.geometry.body import Array
-from loadshare.tooth.unloaded.contact import ContactLine, MeshPosition
-from loadshare.tooth.unloaded.positions import GearPair
+from loadshare.tooth.unloaded.positions import ContactLine, GearPair, MeshPosition
 
 LOADS = (0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 1.0)
 """Parts of the rated torque: those of the fit, others to see its misfit, and the seed's three."""

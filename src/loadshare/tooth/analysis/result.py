@@ -10,7 +10,7 @@ import numpy as np
 from loadshare.tooth.analysis.fit import FIT_LOADS, LawFit, fit_law
 from loadshare.tooth.contact.programme import Contact
 from loadshare.tooth.geometry.body import Array
-from loadshare.tooth.unloaded.contact import ContactLine, MeshPosition
+from loadshare.tooth.unloaded.positions import ContactLine, MeshPosition
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -153,13 +153,14 @@ def _displacements(n: Array, ratio: float, poisson: float, count: int = 4) -> Ar
     The ring is held at the radius `ratio`; with two fields, that circle is out of reach.
     """
     near = _fields(n, 1.0, ratio, poisson, count)
-    equations = near[2:]
-    if count == 4:
-        equations = np.concatenate([near[2:], _fields(n, ratio, ratio, poisson, count)[:2]])
+    if count == 2:
+        (a, b), (c, d) = near[2:]
+        shares = np.array([[d, -b], [-c, a]]) / (a * d - b * c)
+        return np.asarray(np.einsum("uf...,ft...->ut...", near[:2], shares))
+    equations = np.concatenate([near[2:], _fields(n, ratio, ratio, poisson, count)[:2]])
     # Fields of equal size, for what comes from the held circle is faint.
     size = np.abs(equations).max(axis=0)
-    tractions = np.eye(count, 2)
-    shares = np.linalg.solve(np.moveaxis(equations / size, -1, 0), tractions)
+    shares = np.linalg.solve(np.moveaxis(equations / size, -1, 0), np.eye(4, 2))
     return np.moveaxis(np.moveaxis(near[:2] / size, -1, 0) @ shares, 0, -1)
 
 

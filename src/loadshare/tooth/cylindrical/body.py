@@ -1,17 +1,21 @@
-"""The solid tooth of a cylindrical gear."""
+"""The solid tooth of a cylindrical gear, and its root between tooth space and involute."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.interpolate import PchipInterpolator
 
 from loadshare.tooth.cylindrical.gear import HelicoidGear
-from loadshare.tooth.cylindrical.root import Curve, root_curve
 from loadshare.tooth.geometry.body import Array, ToothBody
+
+Curve: TypeAlias = Callable[[Array], Array]
 
 
 @dataclass(frozen=True)
@@ -69,3 +73,101 @@ class HelicoidBody(ToothBody):
             "root": reach * (a - gear.form_roll),
             "face": 0.5 * gear.face_width - np.abs(b),
         }
+
+
+def root_curve(gear: HelicoidGear) -> Curve:
+    """Transverse root curve of tooth 0 on its side +1, at ζ = 0.
+
+    Parameters
+    ----------
+    gear : HelicoidGear
+        A gear without undercut.
+
+    Returns
+    -------
+    callable
+        From v in [0, 1] to complex points x + iy [m]: 0 in the middle of the space, 1 where the
+        involute begins, by length of the curve.
+    """
+    curve = _filleted(gear) if gear.internal else _generated(gear)
+    return _by_length(curve)
+
+
+def rack_tip_half_width(gear: HelicoidGear) -> float:
+    """Half the width of the flat on the generating rack's tip, normal section [m].
+
+    Negative where the tip radius is too large for the rack's tooth.
+    """
+    corner_depth = gear.dedendum - gear.tip_radius
+    slope = math.tan(gear.pressure_angle)
+    radius_share = gear.tip_radius / math.cos(gear.pressure_angle)
+    return gear.module * (math.pi / 4 - corner_depth * slope - radius_share)
+
+
+def fillet_angle(gear: HelicoidGear) -> float:
+    """Polar angle of the centre of an internal gear's root fillet, from tooth 0 [rad]."""
+    beside = gear.form_roll - gear.tip_radius * gear.module / gear.base_radius
+    return gear.base_half_angle + gear.form_roll - math.atan(beside)
+
+
+def _generated(gear: HelicoidGear) -> Curve:
+    """Root circle for −1 ≤ t ≤ 0, trochoid of the rack's tip radius for 0 ≤ t ≤ 1.
+
+    The rack rolls on the reference circle. A point of its tip, whose normal makes the angle τ with
+    the direction of depth, generates when that normal passes through the pitch point; in the
+    transverse section of a helical gear the tip is an ellipse.
+    """
+    cos_helix = math.cos(gear.helix_angle)
+    corner = gear.tip_radius * gear.module
+    corner_x = rack_tip_half_width(gear) / cos_helix
+    corner_y = (gear.profile_shift - gear.dedendum) * gear.module + corner
+    last = 0.5 * math.pi - gear.pressure_angle
+    half_pitch = math.pi / gear.teeth
+
+    def curve(t: Array) -> Array:
+        tau = last * np.maximum(t, 0.0)
+        x = corner_x + corner * np.sin(tau) / cos_helix
+        y = corner_y - corner * np.cos(tau)
+        beside = -y * np.tan(tau) * cos_helix
+        angle = half_pitch + (beside - x) / gear.radius - np.arctan2(beside, y + gear.radius)
+        angle = np.where(t < 0.0, half_pitch + (angle - half_pitch) * (1.0 + t), angle)
+        points: Array = np.hypot(beside, y + gear.radius) * np.exp(1j * angle)
+        return points
+
+    return curve
+
+
+def _filleted(gear: HelicoidGear) -> Curve:
+    """Root circle for −1 ≤ t ≤ 0, an arc tangent to it and to the involute for 0 ≤ t ≤ 1."""
+    corner = gear.tip_radius * gear.module
+    centre_angle = fillet_angle(gear)
+    end = gear.base_half_angle + gear.form_roll - 0.5 * math.pi
+    half_pitch = math.pi / gear.teeth
+
+    def curve(t: Array) -> Array:
+        turn = np.where(t < 0.0, half_pitch + (centre_angle - half_pitch) * (1.0 + t), centre_angle)
+        facing = turn + (end - centre_angle) * np.maximum(t, 0.0)
+        points: Array = (gear.root - corner) * np.exp(1j * turn) + corner * np.exp(1j * facing)
+        return points
+
+    return curve
+
+
+def _by_length(curve: Curve) -> Curve:
+    """Change a curve's parameter from −1 ≤ t ≤ 1 to the share of its length."""
+    grid = np.concatenate([[-1.0], np.linspace(0.0, 1.0, 65)])
+    chord = np.abs(np.diff(curve(grid)))
+    chord[0] = abs(curve(np.zeros(1))[0]) * abs(np.angle(curve(grid[:1]) / curve(grid[1:2]))[0])
+    length = np.concatenate([[0.0], np.cumsum(chord)])
+    flat = length[1] <= 1e-9 * length[-1]
+    if flat:
+        grid, length = grid[1:], length[1:] - length[1]
+    share = length / length[-1]
+    fillet = PchipInterpolator(share if flat else share[1:], grid if flat else grid[1:])
+    start = 0.0 if flat else share[1]
+
+    def by_share(v: Array) -> Array:
+        on_circle = v / start - 1.0 if start > 0.0 else v
+        return curve(np.where(v < start, on_circle, fillet(np.clip(v, start, 1.0))))
+
+    return by_share

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator
 
 from loadshare.errors import Problem
+from loadshare.tooth.cylindrical.body import fillet_angle, rack_tip_half_width
 from loadshare.tooth.cylindrical.gear import HelicoidGear
-from loadshare.tooth.cylindrical.root import fillet_angle, rack_tip_half_width
 from loadshare.tooth.geometry.involute import inverse_inv
 from loadshare.tooth.problems import Check, failed, millimetres, plain, problem
 

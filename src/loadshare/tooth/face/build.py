@@ -12,8 +12,8 @@ from loadshare.tooth.cylindrical.checks import (
     pressure_angle_check,
 )
 from loadshare.tooth.cylindrical.gear import HelicoidGear
+from loadshare.tooth.face.flank import pointing_limit, undercut_limit
 from loadshare.tooth.face.gear import FaceGear, Shaper
-from loadshare.tooth.face.limits import pointing_limit, undercut_limit
 from loadshare.tooth.face.pair import FaceGearPair, FaceMisalignment
 from loadshare.tooth.geometry.involute import inv
 from loadshare.tooth.problems import (

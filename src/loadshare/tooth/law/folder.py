@@ -1,7 +1,8 @@
-"""A folder in which computed texts are kept from run to run, by the hash of what they follow from.
+"""The law of a pair, computed, or kept from an earlier run.
 
-The first line of an entry is the digest of the rest; what does not match it is as good as absent,
-so a damaged entry is computed again and never believed.
+Entries of the folder go by the hash of what they follow from. The first line of an entry is the
+digest of the rest; what does not match it is as good as absent, so a damaged entry is computed
+again and never believed.
 """
 
 from __future__ import annotations
@@ -9,14 +10,59 @@ from __future__ import annotations
 import hashlib
 import os
 import tempfile
+from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from platformdirs import user_cache_path
 
+from loadshare._version import __version__
+from loadshare.tooth.law.file import MeshLaw, law_of, law_text, parsed_law
+
+if TYPE_CHECKING:
+    from loadshare.tooth.analysis.result import Ltca
+    from loadshare.tooth.pair.file import PairFile
+
 VARIABLE = "LOADSHARE_CACHE"
 """Environment variable that names another folder."""
+
+Tick = Callable[[int, int], None]
+
+
+def known_law(pair: PairFile) -> MeshLaw | None:
+    """Law that the cache holds for a pair, if it does."""
+    text = read_entry(_key(pair))
+    return None if text is None else parsed_law(text)
+
+
+def computed_law(pair: PairFile, progress: Tick | None = None) -> MeshLaw:
+    """Analyse a pair, and keep and return its law.
+
+    Parameters
+    ----------
+    pair : PairFile
+    progress : callable, optional
+        As for :meth:`PairFile.analyse`.
+
+    Raises
+    ------
+    Refused
+        If a position has no certified contact.
+    """
+    return kept_law(pair, pair.analyse(progress))
+
+
+def kept_law(pair: PairFile, found: Ltca) -> MeshLaw:
+    """Return the law of an analysis, and keep it in the cache."""
+    law = law_of(pair, found)
+    write_entry(_key(pair), law_text(law))
+    return law
+
+
+def _key(pair: PairFile) -> str:
+    return key_of(__version__, pair.hash)
 
 
 def cache_folder() -> Path:
@@ -55,9 +101,8 @@ def write_entry(key: str, text: str) -> None:
 
 
 @cache
-def code_hash() -> str:
+def code_hash(room: Path = Path(__file__).parents[1]) -> str:
     """SHA-256 of the sources of this room: another method gives another entry."""
-    room = Path(__file__).parent
     found = hashlib.sha256()
     for file in sorted(room.rglob("*.py")):
         found.update(file.relative_to(room).as_posix().encode())

@@ -107,7 +107,7 @@ def _read(
 
 def _laws(pairs: dict[str, PairFile], progress: Tick | None) -> dict[str, MeshLaw]:
     """Laws by the hash of their pair: those of the cache, and the others computed."""
-    from loadshare.tooth.law.cached import computed_law, known_law
+    from loadshare.tooth.law.folder import computed_law, known_law
 
     found = {key: known_law(pair) for key, pair in pairs.items()}
     missing = [key for key, law in found.items() if law is None]

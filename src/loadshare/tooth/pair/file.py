@@ -20,13 +20,17 @@ from loadshare.case.words import as_given, choices, did_you_mean
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.tooth.analysis.ltca import LOADS, POINTS, Model, ltca, pair_compliance
 from loadshare.tooth.analysis.result import Ltca
+from loadshare.tooth.cylindrical.build import helicoid_pair
+from loadshare.tooth.cylindrical.gear import HelicoidGear, Modification
 from loadshare.tooth.cylindrical.pair import HelicoidPair, Misalignment
+from loadshare.tooth.face.build import face_gear_pair
+from loadshare.tooth.face.gear import FaceGear, Shaper
 from loadshare.tooth.face.pair import FaceGearPair, FaceMisalignment
-from loadshare.tooth.pair.build import built
 from loadshare.tooth.pair.model import (
     ABOUT,
     CONTENTS,
     Analysis,
+    Cylindrical,
     FaceGearContent,
     HelicoidContent,
 )
@@ -83,9 +87,10 @@ class PairFile:
         train that angle is a consequence of the errors of the gears, which the case states; the
         law holds what is left, so that it is not counted twice.
         """
-        if self.geometry.misalignment == type(self.geometry.misalignment)():
+        none: Any = type(self.geometry.misalignment)()
+        if self.geometry.misalignment == none:
             return 0.0
-        aligned = _aligned(self.geometry)
+        aligned = replace(self.geometry, misalignment=none)
         phases = [k / self.analysis.positions for k in range(self.analysis.positions)]
         leads = [
             transmission_error(self.geometry, phase) - transmission_error(aligned, phase)
@@ -228,7 +233,58 @@ def _placed(problem: Problem, data: Mapping[str, Any], origin: Origin) -> Proble
     return here if here.given else replace(here, given=as_given(problem.given).strip('"'))
 
 
-def _aligned(geometry: HelicoidPair | FaceGearPair) -> HelicoidPair | FaceGearPair:
-    if isinstance(geometry, HelicoidPair):
-        return replace(geometry, misalignment=Misalignment())
-    return replace(geometry, misalignment=FaceMisalignment())
+def built(content: HelicoidContent | FaceGearContent) -> HelicoidPair | FaceGearPair:
+    """Put the two gears of a pair file in mesh.
+
+    Parameters
+    ----------
+    content : HelicoidContent or FaceGearContent
+
+    Raises
+    ------
+    CaseError
+        With everything that is wrong with the gears or with their mesh.
+    """
+    return _helicoid(content) if isinstance(content, HelicoidContent) else _face(content)
+
+
+def _helicoid(content: HelicoidContent) -> HelicoidPair:
+    helices: dict[str, Any] = {
+        "helices": content.helices,
+        "helix_gap": content.helix_gap.si if content.helices == 2 else 0.0,
+    }
+    driver = _gear(content.driver, helices)
+    kind = -1 if content.driver.internal != content.driven.internal else 1
+    # What the driven gear leaves out is what fits its driver.
+    fitting = {
+        "module": driver.module,
+        "pressure_angle": driver.pressure_angle,
+        "helix_angle": -kind * driver.helix_angle,
+    }
+    driven = _gear(content.driven, fitting | helices)
+    distance = content.centre_distance
+    return helicoid_pair(
+        driver, driven, distance.si if distance else None, Misalignment(**_si(content.misalignment))
+    )
+
+
+def _face(content: FaceGearContent) -> FaceGearPair:
+    pinion, said = _gear(content.driver, {}), content.driven
+    cutter = said.shaper
+    shift = pinion.profile_shift if cutter.profile_shift is None else cutter.profile_shift
+    shaper = Shaper(pinion.module, cutter.teeth, pinion.pressure_angle, shift, cutter.addendum)
+    gear = FaceGear(**(_si(said) | {"shaper": shaper}))
+    return face_gear_pair(pinion, gear, FaceMisalignment(**_si(content.misalignment)))
+
+
+def _gear(said: Cylindrical, fitting: dict[str, Any]) -> HelicoidGear:
+    """A gear; `fitting` gives what it leaves out."""
+    values = _si(said)
+    values["modification"] = Modification(**values["modification"])
+    return HelicoidGear(**(fitting | values))
+
+
+def _si(element: Any) -> dict[str, Any]:
+    """The values of an element in SI units, without what it leaves out."""
+    found: dict[str, Any] = element.model_dump(mode="json", exclude_none=True, context="SI")
+    return found

@@ -9,7 +9,7 @@ import numpy as np
 from loadshare.errors import Problem
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.cylindrical.pair import HelicoidPair
-from loadshare.tooth.face.limits import tip_half_angle
+from loadshare.tooth.face.flank import tip_half_angle
 from loadshare.tooth.face.pair import FaceGearPair
 from loadshare.tooth.problems import millimetres, plain, problem
 from loadshare.tooth.unloaded.touch import contact_points

@@ -1,11 +1,11 @@
-"""Positions of the mesh cycle: where flanks first touch, and how far apart they are elsewhere."""
+"""A pair of gears at positions of the mesh cycle: where flanks first touch, gaps elsewhere."""
 
 from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -16,7 +16,6 @@ from loadshare.tooth.geometry.body import Array, ToothBody
 from loadshare.tooth.geometry.flank import Patch, cross, dot, relative_curvature, unit
 from loadshare.tooth.geometry.gap import FEWEST, Extents, NoContactError, Trace, least_gap
 from loadshare.tooth.problems import plain, problem
-from loadshare.tooth.unloaded.contact import ContactLine, MeshPosition
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -33,6 +32,74 @@ LOOKED_AT = 16
 
 Place: TypeAlias = tuple[Array, Array]
 """Surface parameters of points on a flank."""
+
+
+@dataclass(frozen=True, eq=False)
+class ContactLine:
+    """One pair of teeth at one meshing position.
+
+    The line is the straight contact line of the plane of action for cylindrical gears, the line
+    through the contact ellipse along its major axis where contact is localised.
+
+    Parameters
+    ----------
+    pair : int
+        Index of the pair of teeth. Pair 0 meets at the pitch point at phase 0, and pair k is on
+        tooth k of the driver: it meets earlier the larger k is.
+    points : array (n, 3)
+        Points on the driver's flank, in the middle of n equal parts of the line, fixed frame [m].
+    normals : array (n, 3)
+        Unit vectors from the driver into the driven tooth.
+    length : array (n,)
+        Length of line that each point stands for [m]; the sum is the length of the line.
+    gap : array (n,)
+        Distance of the unloaded flanks along the normal [m] when the driver has the transmission
+        error of the position: 0 where the flanks first touch (which need not be one of the
+        points), positive elsewhere.
+    curvature : array (n,)
+        Relative curvature across the line [1/m], positive where the flanks part.
+    curvature_along : array (n,)
+        Relative curvature along the line [1/m]; 0 for an unmodified cylindrical pair.
+    driver_uw, driven_uw : array (n, 2)
+        Flank coordinates of the points for `ToothBody.outline`.
+    """
+
+    pair: int
+    points: Array
+    normals: Array
+    length: Array
+    gap: Array
+    curvature: Array
+    curvature_along: Array
+    driver_uw: Array
+    driven_uw: Array
+
+
+@dataclass(frozen=True, eq=False)
+class MeshPosition:
+    """All that touches, or nearly touches, at one position of the mesh cycle.
+
+    Parameters
+    ----------
+    index : int
+        Number of the position within the cycle, from 0; 0 for a position asked for on its own.
+    phase : float
+        0 ≤ phase < 1 of the mesh cycle; the driver turns by one pitch per cycle.
+    driver_rotation, driven_rotation : float
+        Angles about the gears' own axes [rad]; the driver's includes `transmission_error`.
+    transmission_error : float
+        Angle by which the driver is ahead of the ideal pair when the first flanks touch, the
+        driven gear held where the ideal pair would have it [rad].
+    lines : tuple of ContactLine
+        Every pair whose line has a part on both active flanks, by rising pair index.
+    """
+
+    index: int
+    phase: float
+    driver_rotation: float
+    driven_rotation: float
+    transmission_error: float
+    lines: tuple[ContactLine, ...]
 
 
 class GearPair(ABC):
@@ -194,24 +261,18 @@ def positions(
     along = unit(trace.tangent)
     across = cross(trace.driver.normal, along)
     length = part[:, None] * np.sqrt(dot(trace.tangent, trace.tangent))
-    curvature = relative_curvature(trace.driver, trace.driven, across)
-    curvature_along = relative_curvature(trace.driver, trace.driven, along)
-    driver_uw = _located(pair.driver, trace.driver.point, found.driver)
-    driven_uw = _located(pair.driven, trace.driven.point, found.driven)
-    lines = [
-        ContactLine(
-            int(number),
-            trace.driver.point[i],
-            trace.driver.normal[i],
-            length[i],
-            trace.gap[i],
-            curvature[i],
-            curvature_along[i],
-            driver_uw[i],
-            driven_uw[i],
-        )
-        for i, number in enumerate(found.pairs)
-    ]
+    columns = (
+        trace.driver.point,
+        trace.driver.normal,
+        length,
+        trace.gap,
+        relative_curvature(trace.driver, trace.driven, across),
+        relative_curvature(trace.driver, trace.driven, along),
+        _located(pair.driver, trace.driver.point, found.driver),
+        _located(pair.driven, trace.driven.point, found.driven),
+    )
+    rows = zip(found.pairs, *columns, strict=True)
+    lines = [ContactLine(int(number), *parts) for number, *parts in rows]
     made = []
     for k, phase in enumerate(phases):
         own = np.flatnonzero(found.position == k)

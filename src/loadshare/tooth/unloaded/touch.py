@@ -106,24 +106,15 @@ def contact_points(pair: GearPair, phase: float) -> tuple[ContactPoint, ...]:
     greatest = relative_curvature(own, other, minor)
     margins = {name: margin[:, 0] for name, margin in pair.margins((a, b), (c, d)).items()}
 
-    points = []
-    for i, number in enumerate(lines.pairs):
+    edges = []
+    for i in range(len(lines.pairs)):
         nearest = min(float(margin[i]) for margin in margins.values())
         edge = next(name for name, margin in margins.items() if margin[i] <= nearest + SAME_EDGE)
-        points.append(
-            ContactPoint(
-                int(number),
-                float(error[0] + lead[i, 0]),
-                own.point[i, 0],
-                own.normal[i, 0],
-                major[i, 0],
-                minor[i, 0],
-                float(least[i, 0]),
-                float(greatest[i, 0]),
-                edge if at_edge[i] else "",
-            )
-        )
-    return tuple(points)
+        edges.append(edge if at_edge[i] else "")
+    vectors = (part[:, 0] for part in (own.point, own.normal, major, minor))
+    numbers = [part[:, 0].tolist() for part in (error[0] + lead, least, greatest)]
+    rows = zip(lines.pairs.tolist(), numbers[0], *vectors, *numbers[1:], edges, strict=True)
+    return tuple(ContactPoint(int(number), *parts) for number, *parts in rows)
 
 
 def _newton(pair: GearPair, pairs: Array, unknowns: Array, driver: Array, driven: Array) -> Array:
