@@ -179,3 +179,12 @@ def test_arrays_and_progress():
     assert arrays["slip"].dims == ("position", "spline", "component")
     assert arrays["revolutions"].values.tolist() == [0.0, 0.125, 0.25, 0.375]
     assert float(arrays["dissipated"].sum()) == pytest.approx(found.dissipated)
+
+
+def test_a_march_whose_displacements_are_too_large_is_refused():
+    """As `solve` refuses the same case without memory."""
+    heavy = floating(**{"operating.power": "4e7 kW"})
+    with pytest.raises(ls.Refused, match="displacements are too large"):
+        ls.solve(heavy)
+    with pytest.raises(ls.Refused, match="displacements are too large"):
+        ls.march(heavy)

@@ -18,7 +18,7 @@ from loadshare.case import Case
 from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import CaseError, Refused
 from loadshare.job import Progress
-from loadshare.job.ladder import Answer
+from loadshare.job.ladder import Answer, displaced
 from loadshare.job.positions import result_of
 from loadshare.results import Result
 from loadshare.study.answers import BACKEND
@@ -124,7 +124,8 @@ def march(
     CaseError
         If the case has no march and none is given, or cannot be used.
     Refused
-        If a step has no certified equilibrium. The steps before it are in its ``partial``.
+        If a step has no certified equilibrium, or one with displacements that are too large for the
+        geometry. The steps before it are in its ``partial``.
 
     Examples
     --------
@@ -154,6 +155,9 @@ def _marched(case: Case, train: Train, progress: Progress | None) -> March:
         remembering = train.remembering(before)
         try:
             answer = stepped(remembering, index)
+            refused = displaced(answer)
+            if refused is not None:
+                raise refused
         except Refused as refusal:
             if answers:
                 refusal.partial = result_of(case, train, answers, BACKEND, TOLERANCE, steps)
