@@ -5,6 +5,8 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from loadshare.contact import (
     RIGID,
@@ -143,3 +145,48 @@ def test_a_force_across_the_offset_does_not_pass() -> None:
     judged = residuals(problem, np.array([2e-3, 0.0]), {}, {"drum": np.array([0.0, 500.0])})
     assert judged.balance < 1e-12
     assert judged.law > 0.1
+
+
+@st.composite
+def problems(draw: st.DrawFn) -> ContactProblem:
+    """Springs, compliant contacts of every law, and drums, in up to five coordinates."""
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    n, m, k = draw(st.integers(2, 5)), draw(st.integers(1, 6)), draw(st.integers(0, 2))
+    root = rng.normal(size=(n, n))
+    rows = tuple(
+        Row(
+            f"contact {e}",
+            "stop",
+            rng.normal(size=n),
+            float(rng.normal()),
+            PowerLaw(rng.uniform(0.1, 1.0), rng.choice([0.0, 0.5])),
+        )
+        for e in range(m)
+    )
+    wall = (Piece(0.0, 0.0, 0.4, "inside"), Piece(0.3, 2.0, math.inf, "wall"))
+    radials = tuple(
+        Radial(f"drum {j}", rng.normal(size=(2, n)), rng.normal(size=2), RadialLaw(wall))
+        for j in range(k)
+    )
+    names = tuple(f"x{i}" for i in range(n))
+    return ContactProblem(names, root @ root.T, 3.0 * rng.normal(size=n), rows, (), radials)
+
+
+@given(problems(), st.integers(0, 2**32 - 1))
+def test_an_answer_has_the_least_energy(problem: ContactProblem, seed: int) -> None:
+    """Formulation, section 4: the equilibrium of a convex problem is the minimum of its energy."""
+
+    def energy(x: np.ndarray) -> float:
+        total = 0.5 * x @ problem.stiffness @ x - problem.load @ x
+        total += sum(r.law.energy(float(r.vector @ x) - r.gap) for r in problem.rows)
+        for radial in problem.radials:
+            radius = float(np.linalg.norm(radial.matrix @ x - radial.centre))
+            total += radial.law(0.0).energy(radius)
+        return float(total)
+
+    found = solve_contact(problem)
+    x = np.array(list(found.place.values()))
+    here, rng = energy(x), np.random.default_rng(seed)
+    for size in (1.0, 1e-2, 1e-4):
+        for _ in range(5):
+            assert energy(x + size * rng.normal(size=len(x))) >= here - 1e-12 * (1.0 + abs(here))
