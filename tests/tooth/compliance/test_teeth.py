@@ -15,7 +15,7 @@ from loadshare.tooth.compliance.finite import FiniteElements
 from loadshare.tooth.compliance.interface import Flank
 from loadshare.tooth.compliance.middle import MiddleSurface
 from loadshare.tooth.compliance.slices import Slices
-from loadshare.tooth.contact.hertz import contact_modulus, half_width
+from loadshare.tooth.contact.strips import contact_modulus, half_width
 
 BODY = SpurTooth(teeth=25, module=5e-3, face_width=50e-3, rim=0.035)
 MESH = Divisions(across=4, flank=4, fillet=1, root=2, rim=3, width=3)

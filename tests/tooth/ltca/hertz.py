@@ -10,9 +10,8 @@ from math import pi
 import numpy as np
 
 from loadshare.tooth.contact.compiled import shape
-from loadshare.tooth.contact.hertz import axis_ratio
 from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
-from loadshare.tooth.contact.strips import strip_table
+from loadshare.tooth.contact.strips import axis_ratio, strip_table
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,10 +13,9 @@ from loadshare.contact.backends.backend import SOLVERS, backend
 from loadshare.errors import Refused
 from loadshare.tooth.contact import programme as contact_programme
 from loadshare.tooth.contact.certificate import certify_contact
-from loadshare.tooth.contact.hertz import contact_modulus, half_width
 from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
 from loadshare.tooth.contact.programme import by_interface, exchange, solve_contact, solve_contacts
-from loadshare.tooth.contact.strips import StripLine
+from loadshare.tooth.contact.strips import StripLine, contact_modulus, half_width
 
 STEEL = ((206e9, 206e9), (0.3, 0.3))
 E_STAR = contact_modulus(*STEEL)

@@ -13,8 +13,13 @@ from tests.tooth.ltca.hertz import (
     surfaces,
 )
 
-from loadshare.tooth.contact.hertz import axis_ratio, contact_modulus, half_width, width_factor
-from loadshare.tooth.contact.strips import StripLine
+from loadshare.tooth.contact.strips import (
+    StripLine,
+    axis_ratio,
+    contact_modulus,
+    half_width,
+    width_factor,
+)
 
 STEEL = ((206e9, 206e9), (0.3, 0.3))
 E_STAR = contact_modulus(*STEEL)

@@ -40,7 +40,7 @@ def stiffness(found: Ltca, title: str) -> Figure:
     values = {_name(part): found.secant(part) for part in STIFFNESS_LOADS}
     rated = values[_name(1.0)]
     unit = stiffness_unit(rated)
-    panel = _panel(found.phase, values, unit, "mesh stiffness at the driver", "torque")
+    panel = _panel(found.phase, values, unit, "mesh stiffness at the driver")
     said = [
         title,
         f"at T = {significant(found.rated)} N·m from {significant(unit.of(rated.min()))} to "
@@ -75,8 +75,8 @@ def transmission_error(found: Ltca, title: str) -> Figure:
     values[UNLOADED] = found.unloaded_error
     varying = {name: angles - angles.mean() for name, angles in values.items()}
     both = alt.hconcat(
-        _panel(found.phase, values, MICRORADIAN, "lead of the driver", "torque"),
-        _panel(found.phase, varying, MICRORADIAN, "the same less its mean", "torque"),
+        _panel(found.phase, values, MICRORADIAN, "lead of the driver"),
+        _panel(found.phase, varying, MICRORADIAN, "the same less its mean"),
     )
     swing = np.ptp(values[_name(1.0)])
     said = [
@@ -87,9 +87,7 @@ def transmission_error(found: Ltca, title: str) -> Figure:
     return marks.figure("transmission_error", both, "Transmission error", said)
 
 
-def _panel(
-    phase: np.ndarray, values: Mapping[str, np.ndarray], unit: Unit, what: str, by: str
-) -> Drawing:
+def _panel(phase: np.ndarray, values: Mapping[str, np.ndarray], unit: Unit, what: str) -> Drawing:
     """Lines over the cycle, by name."""
     rows = list(_rows(phase, values, unit))
     looks = {name: look(k) for k, name in enumerate(values)}
@@ -99,8 +97,8 @@ def _panel(
     title = unit.title(what)
     y = axis(alt.Y, "y:Q", title, padded(min(every), max(every), least))
     x = axis(alt.X, "x:Q", "phase of the mesh cycle", [0, 1])
-    told = hover(("name:N", by), ("x:Q", "phase", ".3~f"), ("y:Q", title, ".5~g"))
-    drawn = curves(rows, "name", looks, by, x=x, y=y, tooltip=told)
+    told = hover(("name:N", "torque"), ("x:Q", "phase", ".3~f"), ("y:Q", title, ".5~g"))
+    drawn = curves(rows, "name", looks, "torque", x=x, y=y, tooltip=told)
     return alt.layer(*drawn).properties(width=WIDTH, height=HEIGHT)
 
 

@@ -18,10 +18,9 @@ from loadshare.errors import Refused
 from loadshare.tooth.analysis.fit import FIT_LOADS
 from loadshare.tooth.analysis.result import LineLoad, Ltca
 from loadshare.tooth.compliance.interface import Compliance, Flank
-from loadshare.tooth.contact.hertz import width_factor
 from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
 from loadshare.tooth.contact.programme import Contact, solve_contacts
-from loadshare.tooth.contact.strips import StripLine
+from loadshare.tooth.contact.strips import StripLine, width_factor
 from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.unloaded.positions import ContactLine, GearPair, MeshPosition
 

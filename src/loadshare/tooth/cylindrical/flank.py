@@ -66,7 +66,6 @@ class HelicoidFlank:
             half_angle=gear.base_half_angle,
             sine=math.sin(angle),
             cosine=math.cos(angle),
-            plain=gear.modification.none,
             taken=gear.taken,
         )
 
@@ -81,5 +80,4 @@ class HelicoidNumbers(NamedTuple):
     half_angle: float
     sine: float
     cosine: float
-    plain: bool
     taken: Taken

@@ -43,12 +43,6 @@ class Modification:
     end_relief: float = 0.0
     end_relief_length: float = 0.0
 
-    @property
-    def none(self) -> bool:
-        """Whether nothing is taken off."""
-        amounts = self.tip_relief, self.profile_crowning, self.lead_crowning, self.end_relief
-        return not any(amounts)
-
 
 class Taken(NamedTuple):
     """A modification laid on a usable flank, as compiled code reads it.

@@ -21,8 +21,7 @@ from loadshare.tooth.face.gear import FaceGear
 from loadshare.tooth.geometry.body import Array, Placement, about_y
 from loadshare.tooth.geometry.gap import Extents
 from loadshare.tooth.geometry.involute import inv, inverse_inv
-from loadshare.tooth.geometry.span import span
-from loadshare.tooth.geometry.valley import Flanks, Known, Valleys, anchor
+from loadshare.tooth.geometry.valley import Flanks, Known, Valleys, anchor, span
 from loadshare.tooth.unloaded.positions import GearPair, between
 
 Roll = TypeVar("Roll", float, Array)

@@ -56,17 +56,6 @@ def helicoid(gear, roll, axial, turn, point):  # type: ignore[no-untyped-def]
     # Components along e_r, e_t and e_z, which turn with φ: the generator of the helicoid is
     # (0, sin β_b, cos β_b), the plain normal s (0, cos β_b, −sin β_b).
     across, up, arc = s * cosine, -s * sine, -per_roll * radius * roll
-    if gear.plain:
-        reach = radius * roll
-        _put(point, 0, radius, arc, axial)
-        _put(point, 1, 0.0, across, up)
-        # Along ξ only e_r changes the point, along ζ also the generator does.
-        _put(point, 2, reach, 0.0, 0.0)
-        _put(point, 3, twist * per_roll * reach, sine / cosine, 1.0)
-        _put(point, 4, -per_roll * across, 0.0, 0.0)
-        _put(point, 5, -twist * across, 0.0, 0.0)
-        _spin(point, phi)
-        return
     taken, by_roll, by_roll2 = profile(gear.taken, radius * roll)
     by_roll, by_roll2 = radius * by_roll, radius**2 * by_roll2
     more, by_axial, by_axial2 = lead(gear.taken, axial)
