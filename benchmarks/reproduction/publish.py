@@ -18,7 +18,7 @@ from benchmarks.reproduction import (
 from benchmarks.reproduction.chapter import Chapter
 from benchmarks.reproduction.page import PICTURES, page
 from benchmarks.reproduction.seed import Seed
-from loadshare.results.files import write_atomically
+from loadshare.results.writing import write_atomically
 
 PAGE = "reproduction.md"
 

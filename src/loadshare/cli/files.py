@@ -19,7 +19,7 @@ def write_text(path: Path, text: str) -> None:
     text : str
     """
     # Imported late: results bring numpy with them, which --help does not need.
-    from loadshare.results.files import write_atomically
+    from loadshare.results.writing import write_atomically
 
     write_atomically(path, text)
 

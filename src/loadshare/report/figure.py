@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 from loadshare.errors import LoadshareError
 from loadshare.report.palette import FAINT, INK, SOFT
-from loadshare.results.files import write_atomically
+from loadshare.report.vega import vega_lite_version
+from loadshare.results.writing import write_atomically
 
 if TYPE_CHECKING:
     import altair as alt
@@ -163,10 +164,3 @@ class Figure:
     def _repr_mimebundle_(self, *_: object, **__: object) -> dict[str, Any]:
         """Show the picture in a notebook, which draws SVG without any extension."""
         return {"image/svg+xml": self.to_svg()}
-
-
-def vega_lite_version() -> str:
-    """Version of Vega-Lite, such as "6.4", in which Altair writes its charts."""
-    import altair as alt
-
-    return ".".join(str(alt.SCHEMA_VERSION).removeprefix("v").split(".")[:2])

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from loadshare.certify import Certificate
-from loadshare.results.result import Position, Result
+if TYPE_CHECKING:
+    from loadshare.certify import Certificate
+    from loadshare.results.result import Position, Result
 
 FORMAT = 2
 """Of the files that are written; it changes with what a file holds."""

@@ -252,13 +252,13 @@ class Result:
 
     def to_json(self, path: str | Path | None = None) -> str:
         """JSON text of the result; written to `path` as well, if given."""
-        from loadshare.results.files import write_json
+        from loadshare.results.writing import write_json
 
         return write_json(self, path)
 
     def to_netcdf(self, path: str | Path) -> None:
         """Write the labelled arrays, and the whole result with them, to a netCDF file."""
-        from loadshare.results.files import write_netcdf
+        from loadshare.results.writing import write_netcdf
 
         write_netcdf(self, path)
 

@@ -126,14 +126,14 @@ class Sweep:
 
     def to_netcdf(self, path: str | FilePath) -> None:
         """Write the labelled arrays to a netCDF file."""
-        from loadshare.results.files import write_atomically
+        from loadshare.results.writing import write_atomically
 
         arrays = self.dataset
         write_atomically(FilePath(path), lambda file: arrays.to_netcdf(file, engine="h5netcdf"))
 
     def to_csv(self, path: str | FilePath) -> None:
         """Write the table to a CSV file."""
-        from loadshare.results.files import write_atomically
+        from loadshare.results.writing import write_atomically
 
         table = self.to_frame()
         write_atomically(FilePath(path), lambda file: table.to_csv(file, index=False))

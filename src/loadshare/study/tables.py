@@ -124,8 +124,6 @@ def sensitivity_dataset(found: Sensitivity) -> xr.Dataset:
     """
     import xarray as xr
 
-    from loadshare.study.sensitivity import SIDES
-
     keys = [item.key for item in found.inputs]
     kinks = {kink.position for kink in found.kinks}
     some = next(iter(found.rates.values()), None)
@@ -133,7 +131,7 @@ def sensitivity_dataset(found: Sensitivity) -> xr.Dataset:
     coords: dict[str, Any] = {
         "position": list(found.positions),
         "input": keys,
-        "side": list(SIDES),
+        "side": list(found.sides),
         "mesh": list(some.torque) if some else [],
         "gear": gears,
         "component": list(COMPONENTS),

@@ -95,7 +95,7 @@ def write_table(
     """Write what was found, if asked for, as a table or labelled arrays by the file's ending."""
     if file is None:
         return
-    from loadshare.results.files import write_atomically
+    from loadshare.results.writing import write_atomically
 
     def write(path: Path) -> None:
         if file.suffix == ".nc" and dataset is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
-from loadshare.report.figure import vega_lite_version
+from loadshare.report.vega import vega_lite_version
 
 if TYPE_CHECKING:
     from jinja2 import Environment

@@ -13,7 +13,7 @@ from loadshare.case import Case
 from loadshare.report.page.answers import effort_told
 from loadshare.report.page.chapter import Chapter, chapter, chapter_of_file, overview
 from loadshare.report.page.offline import render
-from loadshare.results.files import write_atomically
+from loadshare.results.writing import write_atomically
 
 PACKAGES = ("numpy", "scipy", "clarabel", "altair", "vl-convert-python")
 """Packages on which figures and pictures depend."""

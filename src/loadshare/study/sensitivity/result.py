@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from loadshare.scene.scene import Array
 from loadshare.study.parameter import Value
@@ -109,8 +109,11 @@ class Sensitivity:
         Derivatives that do not exist or leave something out, by name.
     skipped : tuple of (str, str)
         Inputs that cannot be varied on their own, and why.
+    sides : tuple of str
+        "falling" and "rising".
     """
 
+    sides: ClassVar[tuple[str, ...]] = SIDES
     inputs: tuple[Input, ...]
     positions: tuple[int, ...]
     rates: dict[tuple[int, str, str], Rates]

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from loadshare.errors import LoadshareError
-from loadshare.results.files import write_atomically
+from loadshare.results.writing import write_atomically
 from loadshare.study.tolerance.job import SAMPLES, STAMP, Job, Part
 
 if TYPE_CHECKING:
