@@ -73,13 +73,7 @@ def tooth_counts(
                 count = counts.setdefault(other, expected)
                 if abs(count - expected) > TEETH_TOLERANCE * expected:
                     misfits.append(Misfit(other, told, expected))
-                settled[other] = (
-                    (told, density)
-                    if given[other] is None
-                    else (
-                        other,
-                        count / radii[other],
-                    )
-                )
+                follows = given[other] is None
+                settled[other] = (told, density) if follows else (other, count / radii[other])
                 queue.append(other)
     return counts, tuple(misfits)

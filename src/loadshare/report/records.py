@@ -191,6 +191,17 @@ def torques(result: Result, columns: Literal["alike", "each", "summed"]) -> Iter
         }
 
 
+def torque_notes(result: Result, rows: Iterable[Record]) -> list[str]:
+    """Notes below the torques of the meshes."""
+    notes = []
+    if len(result.positions) > 1:
+        told = "The same at all positions.", "Ω is the largest over the positions."
+        notes.append(told[0] if alike(result) else told[1])
+    if any(row["Ω pair"].text == NONE for row in rows):
+        notes.append(f"{NONE}: not in a stage, or without load.")
+    return notes
+
+
 def largest(shares: Iterable[float | None]) -> Cell:
     """Largest Ω of those that are known."""
     value = max((s for s in shares if s is not None), default=None)

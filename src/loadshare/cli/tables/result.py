@@ -5,9 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from typing import Literal
 
-from rich.table import Table
 from rich.text import Text
 
 from loadshare.case import Case
@@ -53,15 +51,11 @@ def print_omega(result: Result) -> None:
     if not result.stages:
         say("\nNo stages are named, so there is no load-sharing coefficient.")
         return
-    heads = ("stage", "over stage mean", "reached at", "over group mean", "at")
-    made = texts(
-        records.omegas(result),
-        dict(
-            zip(("stage", "over stage", "stage at", "over group", "group at"), heads, strict=True)
-        ),
-        words=("stage", "reached at", "at"),
-    )
-    made.columns[-1].header = "reached at"
+    fields = ("stage", "over stage", "stage at", "over group", "group at")
+    made = texts(records.omegas(result), fields, words=("stage", "stage at", "group at"))
+    heads = ("stage", "over stage mean", "reached at", "over group mean", "reached at")
+    for column, head in zip(made.columns, heads, strict=True):
+        column.header = head
     show("Load-sharing coefficient Ω: largest over branches and positions", made)
 
 
@@ -99,10 +93,9 @@ def print_certificate(result: Result, wanted: int) -> None:
     say(f"{told[0].upper()}{told[1:]}.")
 
 
-def _fields(result: Result, *fields: str) -> dict[str, str]:
+def _fields(result: Result, *fields: str) -> tuple[str, ...]:
     """Columns of these fields, and of the position where there are several."""
-    many = ("position",) if len(result.positions) > 1 else ()
-    return {field: field for field in (*fields, *many)}
+    return (*fields, "position") if len(result.positions) > 1 else fields
 
 
 def print_heading(
@@ -141,24 +134,14 @@ def print_heading(
 
 def print_sharing(result: Result) -> None:
     """Print the torque of every mesh: alike everywhere, position by position, or summed up."""
-    alike, count = records.alike(result), len(result.positions)
-    shown = _table(result, "alike" if alike else "each")
-    if not alike and (count > MOST or not fits(shown)):
-        shown = _table(result, "summed")
-    show("Load sharing: torque on the driver [N·m]", shown)
-    notes = []
-    if count > 1:
-        notes.append(
-            "The same at all positions." if alike else "Ω is the largest over the positions."
-        )
-    if NONE in shown.columns[-1].cells:
-        notes.append(f"{NONE}: not in a stage, or without load.")
-    say_all([*notes, *_coast(result)])
-
-
-def _table(result: Result, columns: Literal["alike", "each", "summed"]) -> Table:
-    rows = list(records.torques(result, columns))
-    return texts(rows, {field: field for field in rows[0]}, words=("stage", "mesh"))
+    alike = records.alike(result)
+    rows = list(records.torques(result, "alike" if alike else "each"))
+    made = texts(rows, rows[0], words=("stage", "mesh"))
+    if not alike and (len(result.positions) > MOST or not fits(made)):
+        rows = list(records.torques(result, "summed"))
+        made = texts(rows, rows[0], words=("stage", "mesh"))
+    show("Load sharing: torque on the driver [N·m]", made)
+    say_all([*records.torque_notes(result, rows), *_coast(result)])
 
 
 def _coast(result: Result) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable
 from typing import TYPE_CHECKING
 
 from loadshare.cli.console import console, say
@@ -62,6 +62,6 @@ def fits(made: Table) -> bool:
     return screen.measure(made, options=endless).maximum <= screen.width
 
 
-def texts(records: Iterable[Record], heads: Mapping[str, str], words: Iterable[str]) -> Table:
-    """Return a table of some fields of records, under these heads."""
-    return table(heads.values(), ([r[f].text for f in heads] for r in records), words)
+def texts(records: Iterable[Record], fields: Collection[str], words: Iterable[str]) -> Table:
+    """Return a table of some fields of records, each under its name."""
+    return table(fields, ([record[f].text for f in fields] for record in records), words)

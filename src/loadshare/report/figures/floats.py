@@ -94,7 +94,7 @@ class _Panel(Panel):
         layers = [
             *self._region(),
             *self._circles(),
-            self._origin(),
+            *self._origin(),
             *self._reaction(),
             *self._names(),
             # On top: what lies over a point would keep the pointer from it.
@@ -106,9 +106,6 @@ class _Panel(Panel):
 
     def _here(self, points: list[Point]) -> list[Point]:
         return [(self.unit.of(x), self.unit.of(y)) for x, y in points]
-
-    def _clipped(self, rows: list[Row], by: str = "", tooltip: Any = None, **style: Any) -> Drawing:
-        return self.line(rows, by, tooltip, clip=True, **style)
 
     def _feel(self) -> None:
         """Tell the labels what is drawn, before any is placed."""
@@ -124,9 +121,11 @@ class _Panel(Panel):
         region: Region | None = self.journey.region
         if region is None:
             return []
-        outlines: list[Row] = []
-        for number, piece in enumerate(region.pieces):
-            outlines += path_rows(self._here(piece), piece=number)
+        outlines = [
+            row
+            for number, piece in enumerate(region.pieces)
+            for row in path_rows(self._here(piece), piece=number)
+        ]
         touches = {boundary_name(t.name): t for t in self.journey.hardest_rest.boundaries}
         lines: list[Row] = []
         for boundary in region.boundaries:
@@ -135,29 +134,27 @@ class _Panel(Panel):
         told = hover(
             "boundary:N", ("margin:Q", "margin [µm]", ".3f"), ("force:Q", "force [N]", ".2f")
         )
-        area = self._clipped(outlines, "piece", filled=True, color=FAINT, stroke=FAINT)
-        return [area, self._clipped(lines, "boundary", told, color=INK, strokeWidth=1.6)]
+        area = self.line(outlines, "piece", clip=True, filled=True, color=FAINT, stroke=FAINT)
+        edges = self.line(lines, "boundary", told, clip=True, color=INK, strokeWidth=1.6)
+        return [*area, *edges]
 
     def _circles(self) -> list[Any]:
-        rows: list[Row] = []
-        for name, radius in self.journey.circles.items():
-            rows += path_rows(self._here(circle((0.0, 0.0), radius)), circle=name)
-        if not rows:
-            return []
-        return [
-            self._clipped(
-                rows, "circle", ["circle:N"], color=SOFT, strokeWidth=1.2, strokeDash=[5, 3]
-            )
+        rows = [
+            row
+            for name, radius in self.journey.circles.items()
+            for row in path_rows(self._here(circle((0.0, 0.0), radius)), circle=name)
         ]
+        style = {"clip": True, "color": SOFT, "strokeWidth": 1.2, "strokeDash": [5, 3]}
+        return self.line(rows, "circle", ["circle:N"], **style)
 
-    def _origin(self) -> Any:
+    def _origin(self) -> list[Any]:
         """Cross at the centre's place without displacement."""
         arm = 0.04 * self.half
         rows = [
             *path_rows([(-arm, 0.0), (arm, 0.0)], bar=1),
             *path_rows([(0.0, -arm), (0.0, arm)], bar=2),
         ]
-        return self._clipped(rows, "bar", color=SOFT, strokeWidth=1)
+        return self.line(rows, "bar", clip=True, color=SOFT, strokeWidth=1)
 
     def _path(self) -> list[Any]:
         journey = self.journey
@@ -190,8 +187,8 @@ class _Panel(Panel):
         )
         look = self.look
         return [
-            self._clipped(rows, color=look.colour, strokeWidth=1, opacity=0.6),
-            self.points(rows, told, filled=True, color=look.colour, shape=look.shape, size=55),
+            *self.line(rows, clip=True, color=look.colour, strokeWidth=1, opacity=0.6),
+            *self.points(rows, told, filled=True, color=look.colour, shape=look.shape, size=55),
         ]
 
     def _shaft(self) -> list[Point]:
@@ -206,10 +203,8 @@ class _Panel(Panel):
         return marks.arrow((x, y), tip, 0.08 * self.half)
 
     def _reaction(self) -> list[Any]:
-        shaft = self._shaft()
-        if not shaft:
-            return []
-        return [self._clipped(path_rows(shaft), color=WARNING, strokeWidth=2, strokeCap="round")]
+        shaft = path_rows(self._shaft())
+        return self.line(shaft, clip=True, color=WARNING, strokeWidth=2, strokeCap="round")
 
     def _names(self) -> list[Any]:
         """Words in the picture, the most telling first: they find the best places."""

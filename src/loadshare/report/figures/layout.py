@@ -10,8 +10,7 @@ import numpy as np
 
 from loadshare.case import Gear, Mesh
 from loadshare.case.checks.meshing import TOLERANCE
-from loadshare.case.content import Content
-from loadshare.case.draft import Draft
+from loadshare.case.content import Sections
 from loadshare.case.place import axis_of, centres_of
 from loadshare.train import Train
 from loadshare.train.gear import Vector, transverse_frame
@@ -116,7 +115,7 @@ class Layout:
     shafts: tuple[tuple[str, str], ...]
 
 
-def layout_of(case: Content | Draft, train: Train | None) -> Layout:
+def layout_of(case: Sections, train: Train | None) -> Layout:
     """Arrange a case for a drawing.
 
     Parameters
@@ -138,13 +137,10 @@ def layout_of(case: Content | Draft, train: Train | None) -> Layout:
     return Layout(bodies, tuple(_pairs(case.meshes, bodies, train)), shafts)
 
 
-def _body(
-    case: Content | Draft, name: str, gear: Gear, centre: Vector, train: Train | None
-) -> Body:
-    operating = case.operating
-    role = ""
-    if operating is not None:
-        role = {operating.input: "input", operating.output: "output"}.get(name, "")
+def _body(case: Sections, name: str, gear: Gear, centre: Vector, train: Train | None) -> Body:
+    roles = (
+        {case.operating.input: "input", case.operating.output: "output"} if case.operating else {}
+    )
     rims = tuple(q.si for q in (gear.inner_radius, gear.outer_radius) if q is not None)
     support = gear.support
     if support == "free" or (support is None and (name in case.splines or name in case.rings)):
@@ -160,7 +156,7 @@ def _body(
         rims=rims,
         sense=train.gears[name].sense if train else 0,
         held=held,
-        role=role,
+        role=roles.get(name, ""),
     )
 
 

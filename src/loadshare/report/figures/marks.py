@@ -269,17 +269,19 @@ class Panel:
             )
         )
 
-    def line(self, rows: Sequence[Row], by: str = "", tooltip: Any = None, **style: Any) -> Drawing:
-        """Return paths as a layer, one for each value of the field `by`."""
+    def line(
+        self, rows: Sequence[Row], by: str = "", tooltip: Any = None, **style: Any
+    ) -> list[Drawing]:
+        """Return paths as a layer, one for each value of the field `by`; no layer without rows."""
         told = {"detail": f"{by}:N"} if by else {}
         told |= {"tooltip": tooltip} if tooltip else {}
-        return chart(rows).mark_line(**style).encode(x=self.x, y=self.y, order="order:Q", **told)
+        drawn = chart(rows).mark_line(**style)
+        return [drawn.encode(x=self.x, y=self.y, order="order:Q", **told)] if rows else []
 
-    def points(self, rows: Sequence[Row], tooltip: Any, **style: Any) -> Drawing:
-        """Return points as a layer."""
-        return (
-            chart(rows).mark_point(opacity=1, **style).encode(x=self.x, y=self.y, tooltip=tooltip)
-        )
+    def points(self, rows: Sequence[Row], tooltip: Any, **style: Any) -> list[Drawing]:
+        """Return points as a layer; no layer without rows."""
+        drawn = chart(rows).mark_point(opacity=1, **style)
+        return [drawn.encode(x=self.x, y=self.y, tooltip=tooltip)] if rows else []
 
 
 BESIDE = {

@@ -10,7 +10,7 @@ import altair as alt
 import numpy as np
 
 from loadshare.case import Case
-from loadshare.case.draft import Draft
+from loadshare.case.content import Sections
 from loadshare.errors import CaseError, LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
@@ -30,7 +30,7 @@ from loadshare.report.numbers import significant
 from loadshare.report.palette import INK, SOFT, WARNING, Palette
 from loadshare.report.units import MILLIMETRE
 from loadshare.report.words import direction_name
-from loadshare.train import build_train
+from loadshare.train import Train, build_train
 from loadshare.train.gear import Vector, transverse_frame
 
 WIDTH, HEIGHT = 620.0, 560.0
@@ -52,7 +52,7 @@ OUTSIDE = 1.07
 """Radius of an internal gear's bent arrow over its largest radius: inside it are the pinions."""
 
 
-def train(case: Case | Draft) -> Figure:
+def train(case: Sections) -> Figure:
     """Draw the train to scale, in mm.
 
     Parameters
@@ -96,9 +96,7 @@ def train(case: Case | Draft) -> Figure:
     return marks.figure("train", alt.vconcat(*panels), "The train", told)
 
 
-def _train_of(case: Case | Draft) -> Any:
-    from loadshare.case import Case
-
+def _train_of(case: Sections) -> Train | None:
     if not isinstance(case, Case):
         return None
     try:
@@ -204,9 +202,8 @@ class _View(Panel):
                     told = f"gear {body.name}, {what}: radius {MILLIMETRE.of(radius):.4f} mm"
                     rows += path_rows(points, circle=told)
                     self.labels.avoid(points)
-                if rows:
-                    (tip,) = hover("circle:N")
-                    layers.append(self.line(rows, "circle", tip, **stroke, **style))
+                (tip,) = hover("circle:N")
+                layers += self.line(rows, "circle", tip, **stroke, **style)
         return layers
 
     def _radii(self, body: Body) -> tuple[dict[str, float], dict[str, float]]:
@@ -245,9 +242,11 @@ class _View(Panel):
             ("needed:Q", "distance needed [mm]", ".4f"),
         )
         return [
-            self.line(own, "part", None if kind == "shaft" else told, **CENTRE_LINES[kind])
+            layer
             for kind, own in rows.items()
-            if own
+            for layer in self.line(
+                own, "part", None if kind == "shaft" else told, **CENTRE_LINES[kind]
+            )
         ]
 
     def _between(self, first: str, second: str) -> list[Point]:
@@ -274,7 +273,7 @@ class _View(Panel):
             shaft = arrow(tail, tip, head)
             rows += path_rows(shaft, part=pair.name)
             self.labels.avoid(shaft)
-        return [self.line(rows, "part", color=INK, strokeWidth=1.5)] if rows else []
+        return self.line(rows, "part", color=INK, strokeWidth=1.5)
 
     def _senses(self) -> list[Any]:
         layers: list[Any] = []
@@ -290,9 +289,7 @@ class _View(Panel):
             shown = [*points, *arrow(points[-9], points[-1], head)[1:]]
             self.labels.avoid(shown)
             colour = self.palette.gear(body.name).colour
-            layers.append(
-                self.line(path_rows(shown, part=1), "part", color=colour, strokeWidth=1.8)
-            )
+            layers += self.line(path_rows(shown, part=1), "part", color=colour, strokeWidth=1.8)
         return layers
 
     def _centres(self) -> list[Any]:
@@ -300,12 +297,9 @@ class _View(Panel):
         layers: list[Any] = []
         for held, shape in HELD.items():
             rows = [self._centre(body) for body in self.bodies if body.held == held]
-            if rows:
-                # A floating centre is a ring; white inside, so that hovering finds it.
-                style = {"fill": "white" if held == FLOATS else INK, "stroke": INK}
-                layers.append(
-                    self.points(rows, told, shape=shape, size=60, strokeWidth=1.4, **style)
-                )
+            # A floating centre is a ring; white inside, so that hovering finds it.
+            style = {"fill": "white" if held == FLOATS else INK, "stroke": INK}
+            layers += self.points(rows, told, shape=shape, size=60, strokeWidth=1.4, **style)
         return layers
 
     def _centre(self, body: Body) -> Row:

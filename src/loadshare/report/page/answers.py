@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from loadshare.report import records
-from loadshare.report.numbers import NONE, fixed, small
+from loadshare.report.numbers import fixed, small
 from loadshare.report.records import Cell, Table, table
 from loadshare.report.words import advice, places_told, rest_told, undetermined_told
 from loadshare.results import Result
@@ -35,13 +35,7 @@ def torque_table(result: Result) -> Table:
     torques = ("torque",) if level else ("least", "mean", "most")
     rows = list(records.torques(result, "alike" if level else "summed"))
     figures = (*torques, "Ω stage", "Ω pair")
-    notes = []
-    if level and len(result.positions) > 1:
-        notes.append("The same at all positions.")
-    elif not level:
-        notes.append("Ω is the largest over the positions.")
-    if any(row[name].text in ("", NONE) for row in rows for name in ("mesh", "stage", *figures)):
-        notes.append(f"{NONE}: not in a stage, or without load.")
+    notes = records.torque_notes(result, rows)
     if not result.positions[0].floats:
         notes += _undetermined(result)
     heads = OMEGAS | {t: f"{t} [N·m]" for t in torques}
