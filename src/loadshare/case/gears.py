@@ -14,9 +14,9 @@ from loadshare.case.quantity import (
     Angle,
     Distance,
     Length,
+    PositiveStiffness,
     Quantity,
     Radius,
-    Stiffness,
 )
 
 Components = Annotated[tuple[Length, ...], Field(min_length=2, max_length=3), Tag(LIST)]
@@ -76,7 +76,7 @@ class Gear(Element):
                 STIFFNESS.bounded(above=0).or_words("rigid", "free"),
                 Tag(VALUE),
             ]
-            | Annotated[tuple[Stiffness, Stiffness], Tag(LIST)],
+            | Annotated[tuple[PositiveStiffness, PositiveStiffness], Tag(LIST)],
             shaped('"rigid", "free", a stiffness such as "5.5e8 N/m", or a list of 2 of them'),
         ]
         | None

@@ -25,9 +25,9 @@ from loadshare.case.quantity import (
     Angle,
     Distance,
     Length,
+    PositiveStiffness,
     Quantity,
     Radius,
-    Stiffness,
 )
 
 Load = Annotated[Quantity, FORCE.bounded(at_least=0)]
@@ -51,7 +51,7 @@ class Shaft(Element):
 class Spline(Element):
     """A clearance spline on a gear: it sticks, then slips, then its clearance is used up."""
 
-    bending_stiffness: Stiffness
+    bending_stiffness: PositiveStiffness
     """Bending stiffness of the spline shaft, K_w [force/length]."""
 
     clearance: Distance

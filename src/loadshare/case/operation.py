@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from loadshare.case.element import Count, Element, PerPosition, Positive, Rule, values
-from loadshare.case.quantity import ANGULAR_SPEED, POWER, Quantity, Torque
+from loadshare.case.quantity import ANGULAR_SPEED, Power, Quantity, Torque
 
 
 class Operating(Element):
@@ -26,7 +26,7 @@ class Operating(Element):
     torque: PerPosition[Torque] | None = None
     """Input torque [torque], one value or one per position; negative where the input brakes."""
 
-    power: PerPosition[Annotated[Quantity, POWER]] | None = None
+    power: PerPosition[Power] | None = None
     """Input power [power], one value or one per position; goes with `speed`."""
 
     speed: Annotated[Quantity, ANGULAR_SPEED.bounded(above=0)] | None = None
