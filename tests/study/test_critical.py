@@ -1,6 +1,7 @@
 """Critical values: against closed forms, independent solves, and scans of certified active sets."""
 
 from dataclasses import asdict, replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -264,9 +265,8 @@ def test_no_set_is_proved_to_hold_over_its_events():
     values = [61.1, 61.15, 68.9, 68.95]
     points = search.points(np.array(values))
     assert len({p.active for p in points}) == 1
-    stretches = list(zip(points, points[1:], values, values[1:], strict=False))
-    left = search._proved_alike(stretches)
-    assert [s[2] for s in left] == [61.15]
+    left = search._proved_alike(list(pairwise(points)))
+    assert [first.value for first, _ in left] == [61.15]
 
 
 def test_a_ring_without_play_pins_its_gear_only_there():

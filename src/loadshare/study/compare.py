@@ -107,19 +107,14 @@ class Comparison:
         """The comparison as a table."""
         import pandas as pd
 
-        return pd.DataFrame(
-            {
-                "measurement": [d.target.measurement for d in self.deviations],
-                "quantity": [d.target.quantity for d in self.deviations],
-                "where": [d.target.where for d in self.deviations],
-                "position": [d.target.position for d in self.deviations],
-                "measured": [d.target.value for d in self.deviations],
-                "uncertainty": [d.target.uncertainty for d in self.deviations],
-                "computed": [d.computed for d in self.deviations],
-                "difference": [d.difference for d in self.deviations],
-                "deviations": [d.deviations for d in self.deviations],
-            }
-        )
+        of_target = ("measurement", "quantity", "where", "position")
+        rows = [
+            {name: getattr(d.target, name) for name in of_target}
+            | {"measured": d.target.value, "uncertainty": d.target.uncertainty}
+            | {name: getattr(d, name) for name in ("computed", "difference", "deviations")}
+            for d in self.deviations
+        ]
+        return pd.DataFrame(rows)
 
 
 def compare(case: Case | str | FilePath, *, progress: Progress | None = None) -> Comparison:
@@ -222,6 +217,6 @@ def slope(target: Target, result: Result, rate: Callable[[int, str], Mapping[str
         return float(np.mean([rate(p.position, target.quantity)[target.where] for p in at]))
     kind = "pair_share" if target.quantity == "pair_omega" else "share"
     meshes = [m for s, own in result.stages.items() if target.where in (s, "system") for m in own]
-    places = [(getattr(p, kind)[m] or 0.0, p.position, m) for p in at for m in meshes]
-    _, position, mesh = max(places)
+    largest = [(getattr(p, kind)[m] or 0.0, p.position, m) for p in at for m in meshes]
+    _, position, mesh = max(largest)
     return float(rate(position, kind)[mesh])

@@ -54,7 +54,7 @@ class Critical:
     events : tuple of Event
         By position, then by value.
     unproved : tuple of Unproved
-        Where there may be events that are not told; everywhere else there are none.
+        Where there may be further events; everywhere else there are none.
     """
 
     parameter: Parameter
@@ -75,9 +75,8 @@ class Critical:
         words: dict[float, dict[str, None]] = {}
         for event in here:
             what = f"gear {event.gear}" if event.gear else event.element
-            told = f"{what}: {event.kind}"
-            words.setdefault(event.value, {})[told] = None
-        return tuple((value, "; ".join(told)) for value, told in words.items())
+            words.setdefault(event.value, {})[f"{what}: {event.kind}"] = None
+        return tuple((value, "; ".join(events)) for value, events in words.items())
 
     def of(self, kind: str = "", gear: str | None = None) -> tuple[Event, ...]:
         """Events of a kind, of a gear, or both."""
@@ -146,7 +145,9 @@ def critical(
         found = [e for change in search.changes for e in events_of(line, group[0], change)]
         for position in group:
             events += [replace(event, position=position) for event in found]
-            unproved += [Unproved(position, g.start, g.stop, g.why) for g in search.gaps]
+            unproved += [
+                Unproved(position, gap.first.value, gap.last.value, gap.why) for gap in search.gaps
+            ]
         done += len(group)
         if progress is not None:
             progress(done, len(chosen))

@@ -21,6 +21,7 @@ from loadshare.study.parameter import (
     STUDY,
     Parameter,
     Value,
+    applied,
     grid,
     named,
     read_parameter,
@@ -175,7 +176,7 @@ def fit(
         assert refusal is not None
         raise refusal
     _, best = min(reached, key=lambda r: r[0])
-    return problem.told(best, tuple(chis))
+    return problem.fitted(best, tuple(chis))
 
 
 class _Problem:
@@ -235,10 +236,7 @@ class _Problem:
 
     def applied(self, u: Array) -> Case:
         """Return the case at a point."""
-        changes: dict[str, object] = {}
-        for parameter, number in zip(self.parameters, self.numbers(u), strict=True):
-            changes |= parameter.changes(float(number))
-        return self.case.replace(changes)
+        return applied(self.case, self.parameters, self.numbers(u))
 
     def solved(self, u: Array) -> tuple[Case, Result]:
         """Return the case and its certified result at a point; the last one is kept."""
@@ -295,7 +293,7 @@ class _Problem:
         """Put what the method left a hair inside a bound onto it."""
         return np.where(u < AT_BOUND, 0.0, np.where(u > 1.0 - AT_BOUND, 1.0, u))
 
-    def told(self, u: Array, chis: tuple[float, ...]) -> Fit:
+    def fitted(self, u: Array, chis: tuple[float, ...]) -> Fit:
         """Return the fit at a point."""
         case, result = self.solved(u)
         jacobian = self.jacobian(u)
@@ -303,8 +301,8 @@ class _Problem:
         full = np.zeros(len(self.parameters))
         full[: len(sizes)] = sizes
         loose = full <= TELL_APART * max(float(full.max(initial=0.0)), 1e-300)
-        kept = right[~loose]
-        covariance = kept.T @ np.diag(full[~loose] ** -2.0) @ kept
+        known = right[~loose]
+        covariance = known.T @ np.diag(full[~loose] ** -2.0) @ known
         names = [p.name for p in self.parameters]
         groups = _groups(right[loose])
         warnings = [
@@ -321,23 +319,11 @@ class _Problem:
         spread = np.sqrt(np.diag(covariance))
         with np.errstate(invalid="ignore"):
             correlation = covariance / np.outer(spread, spread)
-        numbers, start = self.numbers(u), self.own()
-        unknowns = []
-        for k, parameter in enumerate(self.parameters):
-            at_bound = bool(u[k] <= 0.0 or u[k] >= 1.0)
-            if at_bound:
-                warnings.append(f"{parameter.name} stands at its bound.")
-            unknowns.append(
-                Unknown(
-                    parameter,
-                    float(self.low[k]),
-                    float(self.high[k]),
-                    float(start[k]),
-                    float(numbers[k]),
-                    float(spread[k]),
-                    at_bound,
-                )
-            )
+        columns = (self.low, self.high, self.own(), self.numbers(u), spread)
+        at_bound = ((u <= 0.0) | (u >= 1.0)).tolist()
+        figures = zip(*(column.tolist() for column in columns), at_bound, strict=True)
+        unknowns = [Unknown(p, *of) for p, of in zip(self.parameters, figures, strict=True)]
+        warnings += [f"{u.parameter.name} stands at its bound." for u in unknowns if u.at_bound]
         deviations = tuple(Deviation(t, computed(t, result)) for t in self.targets)
         return Fit(
             case=case,
@@ -371,12 +357,12 @@ def _groups(loose: Array) -> list[list[int]]:
         Orthonormal directions that change no figure. Their projector, unlike themselves, does not
         depend on how they were chosen.
     """
+    from scipy.sparse.csgraph import connected_components
+
     shared = np.abs(loose.T @ loose)
-    groups: list[list[int]] = []
-    for k in range(len(shared)):
-        near = [g for g in groups if any(shared[k, m] > TELL_APART for m in g)]
-        # However small its part, an input that has one is not determined: another can move it.
-        if shared[k, k] > TELL_APART**2:
-            groups = [g for g in groups if g not in near]
-            groups.append(sorted([*(m for g in near for m in g), k]))
-    return groups
+    # However small its part, an input that has one is not determined: another can move it.
+    left_open = np.flatnonzero(np.diag(shared) > TELL_APART**2)
+    count, group = connected_components(
+        shared[np.ix_(left_open, left_open)] > TELL_APART, directed=False
+    )
+    return sorted((left_open[group == g].tolist() for g in range(count)), key=max)

@@ -118,10 +118,13 @@ def _followed(train: Train, index: int) -> Answer | None:
             inverse = _broyden(inverse, bounds - before[0], off - before[1])
         before = bounds, off
         bounds = np.maximum(bounds + inverse @ off, 0.0)
+    return _judged(train, found, answer.record, f"{answer.rung}, friction followed")
+
+
+def _judged(train: Train, found: Equilibrium, record: Record, rung: str) -> Answer | None:
+    """Return an equilibrium as an answer if its certificate passes."""
     certificate = certify(train, found, TOLERANCE)
-    if not certificate.passed:
-        return None
-    return Answer(train, found, certificate, answer.record, f"{answer.rung}, friction followed")
+    return Answer(train, found, certificate, record, rung) if certificate.passed else None
 
 
 def _bounded(train: Train, bounds: Mapping[str, float]) -> Train:
@@ -167,16 +170,12 @@ def _searched(train: Train, index: int) -> Answer | None:
         kind="force method",
         iterations=(),
     )
-    equilibrium = equilibrium_of(scene, settled)
-    certificate = certify(train, equilibrium, TOLERANCE)
-    if not certificate.passed:
-        return None
     plan = Plan.full(scene)
     record = Record(
         SEARCHED, "force", settled.kind, (), plan, int(found.turns[0]), scene.removed,
         scene.coordinates,
     )  # fmt: skip
-    return Answer(train, equilibrium, certificate, record, SEARCHED)
+    return _judged(train, equilibrium_of(scene, settled), record, SEARCHED)
 
 
 def _all_but_free(train: Train, index: int) -> Answer | None:
@@ -206,10 +205,7 @@ def _all_but_free(train: Train, index: int) -> Answer | None:
         reactions[spline.stop_name] = stop - friction if pushes else np.zeros(3)
         reactions[spline.name] = friction
     equilibrium = replace(found, radial_reaction={**found.radial_reaction, **reactions})
-    certificate = certify(train, equilibrium, TOLERANCE)
-    if not certificate.passed:
-        return None
-    return Answer(train, equilibrium, certificate, answer.record, f"{answer.rung}, friction added")
+    return _judged(train, equilibrium, answer.record, f"{answer.rung}, friction added")
 
 
 def _in_turn(train: Train, index: int) -> Answer | None:
@@ -234,11 +230,7 @@ def _in_turn(train: Train, index: int) -> Answer | None:
         change = max(float(np.linalg.norm(other[g] - slips[g])) for g in gears)
         far = max(float(np.linalg.norm(found.displacement[g])) for g in gears)
         if change <= ROUND_OFF * far:
-            split = _split(train, found, gears, slips)
-            certificate = certify(train, split, TOLERANCE)
-            if not certificate.passed:
-                return None
-            return Answer(train, split, certificate, record, "slips in turn")
+            return _judged(train, _split(train, found, gears, slips), record, "slips in turn")
         slips = other
     return None
 
@@ -309,12 +301,12 @@ def _held(
         except Refused:
             continue
         split = _split(train, found, gears, _before(train))
-        certificate = certify(train, split, TOLERANCE)
-        if certificate.passed:
+        answer = _judged(train, split, record, rung + ", slip held" * bool(gears))
+        if answer is not None:
             ranges = of_least_norm(assemble(train, index), split).undetermined
             split = replace(split, undetermined=ranges)
             certificate = certify(train, split, TOLERANCE)
-            return Answer(train, split, certificate, record, rung + ", slip held" * bool(gears))
+            return replace(answer, equilibrium=split, certificate=certificate)
     return None
 
 
@@ -331,17 +323,17 @@ def _without_slip(scene: Scene, gears: tuple[str, ...], slips: Mapping[str, Vect
         before = train.gears[gear].frame @ slips[gear]
         first = scene.coordinates.index(f"spline {gear} slip x")
         gone |= {first: float(before[0]), first + 1: float(before[1])}
-    kept = np.array([k for k in range(scene.size) if k not in gone])
+    others = np.array([k for k in range(scene.size) if k not in gone])
     lost, values = np.array(list(gone)), np.array(list(gone.values()))
 
     def cut(array: Array) -> Array:
-        return np.asarray(array[..., kept])
+        return np.asarray(array[..., others])
 
     return replace(
         scene,
-        coordinates=tuple(scene.coordinates[k] for k in kept),
-        stiffness=scene.stiffness[np.ix_(kept, kept)],
-        load=scene.load[kept] - scene.stiffness[np.ix_(kept, lost)] @ values,
+        coordinates=tuple(scene.coordinates[k] for k in others),
+        stiffness=scene.stiffness[np.ix_(others, others)],
+        load=scene.load[others] - scene.stiffness[np.ix_(others, lost)] @ values,
         rows=tuple(replace(r, vector=cut(r.vector)) for r in scene.rows),
         arcs=tuple(replace(a, relative=cut(a.relative)) for a in scene.arcs),
         radials=tuple(

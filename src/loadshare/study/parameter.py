@@ -132,19 +132,23 @@ class Parameter:
     keys: tuple[str, ...]
     unit: str
 
-    def applied(self, case: Case, number: float) -> Case:
-        """Return the case with the value at every key.
-
-        Raises
-        ------
-        CaseError
-            If the case cannot be used with it.
-        """
-        return case.replace(self.changes(number))
-
     def changes(self, number: float) -> dict[str, Any]:
         """Return the changes that `Case.replace` takes."""
         return dict.fromkeys(self.keys, Value(float(number), self.unit).text)
+
+
+def applied(case: Case, parameters: Iterable[Parameter], numbers: Iterable[float]) -> Case:
+    """Return the case with the values of several parameters.
+
+    Raises
+    ------
+    CaseError
+        If the case cannot be used with them.
+    """
+    changes: dict[str, Any] = {}
+    for parameter, number in zip(parameters, numbers, strict=True):
+        changes |= parameter.changes(number)
+    return case.replace(changes)
 
 
 def read_parameter(case: Case, key: str | Sequence[str], unit: str) -> Parameter:

@@ -14,7 +14,7 @@ from loadshare.case import Case
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.job import Progress, solve
 from loadshare.pictures import picture
-from loadshare.study.parameter import STUDY, Parameter, grid, named, read_parameter
+from loadshare.study.parameter import STUDY, Parameter, applied, grid, named, read_parameter
 from loadshare.study.positions import loaded
 from loadshare.train import build_train
 
@@ -196,7 +196,7 @@ def sweep(
     total = prod(len(values) for values in grids)
     for values in product(*grids):
         try:
-            changed = _changed(case, chosen, values)
+            changed = applied(case, chosen, values)
             points.append(_solved(changed, values, positions, near))
             near = changed
         except CaseError as error:
@@ -223,13 +223,6 @@ def _check_apart(parameters: Sequence[Parameter]) -> None:
 def _count(case: Case, points: Sequence[Point]) -> int:
     found = [len(p.result.positions) for p in points if p.result is not None]
     return max(found, default=build_train(case).count)
-
-
-def _changed(case: Case, parameters: Sequence[Parameter], values: tuple[float, ...]) -> Case:
-    changes: dict[str, object] = {}
-    for parameter, value in zip(parameters, values, strict=True):
-        changes |= parameter.changes(value)
-    return case.replace(changes)
 
 
 def _solved(

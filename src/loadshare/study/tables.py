@@ -61,17 +61,17 @@ def sweep_dataset(sweep: Sweep) -> xr.Dataset:
         stacked = np.array(arrays).reshape(shape + variable.shape)
         data[str(name)] = ((*dims, *map(str, variable.dims)), stacked, variable.attrs)
     stages = list(first.omega)
-    for name, told in (("omega", "stage mean"), ("pair_omega", "group mean")):
+    for name, label in (("omega", "stage mean"), ("pair_omega", "group mean")):
         filled = [[_figure(r, name, stage) for stage in stages] for r in results]
-        attrs = {"units": "1", "long_name": f"largest load-sharing coefficient, {told}"}
+        attrs = {"units": "1", "long_name": f"largest load-sharing coefficient, {label}"}
         data[name] = ((*dims, "stage"), np.array(filled).reshape((*shape, len(stages))), attrs)
     floats = [str(name) for name in model["float"].values]
-    for name, told in (("rest", "where the float rests"), ("spline", "stage of the spline")):
+    for name, label in (("rest", "where the float rests"), ("spline", "stage of the spline")):
         filled_words = [
             [[_word(r, k, g, name) for g in floats] for k in positions] for r in results
         ]
         stacked = np.array(filled_words, dtype=str).reshape((*shape, len(positions), len(floats)))
-        data[name] = ((*dims, "position", "float"), stacked, {"long_name": told})
+        data[name] = ((*dims, "position", "float"), stacked, {"long_name": label})
     coords |= {str(n): model[n].values for n in model.coords} | {"stage": stages}
     return xr.Dataset(data, coords=coords, attrs=attributes)
 

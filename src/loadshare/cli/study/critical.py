@@ -47,16 +47,16 @@ def critical(
 def unconfirmed(found: Critical) -> list[str]:
     """Return what is to be said of what was not proved; nothing if all was."""
     count = sum(not event.confirmed for event in found.events)
-    told = [f"{counted(count, 'event')} of {len(found.events)} not confirmed."] if count else []
+    lines = [f"{counted(count, 'event')} of {len(found.events)} not confirmed."] if count else []
     named = sorted({(u.start, u.stop, u.why) for u in found.unproved})
     unit = f" {found.parameter.unit}" if found.parameter.unit else ""
-    told += [
+    lines += [
         f"Not proved to hold no other event: {start:.12g} to {stop:.12g}{unit} ({why})."
         for start, stop, why in named[:SHOWN]
     ]
     if len(named) > SHOWN:
-        told.append(f"{counted(len(named) - SHOWN, 'further interval')} not proved.")
-    return told
+        lines.append(f"{counted(len(named) - SHOWN, 'further interval')} not proved.")
+    return lines
 
 
 def events_frame(found: Critical) -> pd.DataFrame:

@@ -82,6 +82,6 @@ def show_fit(found: Fit) -> None:
         show("Correlations", made)
     show_comparison(found.comparison)
     if len(found.starts) > 1:
-        told = ", ".join("failed" if math.isnan(chi) else f"{chi:.4g}" for chi in found.starts)
-        say(f"χ² from each starting point: {told}")
+        reached = ", ".join("failed" if math.isnan(chi) else f"{chi:.4g}" for chi in found.starts)
+        say(f"χ² from each starting point: {reached}")
     say_all(f"WARNING  {warning}" for warning in found.warnings)

@@ -101,12 +101,12 @@ def _remarks(found: Sensitivity, keys: set[str]) -> list[str]:
     for remark in found.remarks:
         if remark.key in keys:
             positions.setdefault((remark.key, remark.message), []).append(remark.position)
-    told = []
+    lines = []
     for (key, message), at in positions.items():
-        places = sorted(set(at))
-        where = "" if len(places) == len(found.positions) else f" at {', '.join(map(str, places))}"
-        told.append(f"{key}{where}: {message}.")
-    return told
+        known = sorted(set(at))
+        where = "" if len(known) == len(found.positions) else f" at {', '.join(map(str, known))}"
+        lines.append(f"{key}{where}: {message}.")
+    return lines
 
 
 def _apart(found: Sensitivity, item: Input) -> bool:

@@ -20,7 +20,7 @@ from loadshare.solver.hot import vectorised
 from loadshare.study.answers import certified
 from loadshare.study.follow.active import Codes, coordinates, read_code
 from loadshare.study.follow.numbers import Numbers, elements_like
-from loadshare.study.parameter import Parameter, Value
+from loadshare.study.parameter import Parameter, Value, applied
 from loadshare.train import Train, build_train
 from loadshare.train.columns import Column
 from loadshare.train.samples import Samples, samples_of
@@ -48,6 +48,14 @@ class Solved:
     worst: float
 
 
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """A value without a point, and why."""
+
+    value: float
+    why: str
+
+
 class Line:
     """A case along a parameter.
 
@@ -72,7 +80,7 @@ class Line:
 
     def train(self, value: float) -> Train:
         """Build the train at a value."""
-        return build_train(self.parameter.applied(self.case, value))
+        return build_train(applied(self.case, [self.parameter], [value]))
 
     def _array_like(self, start: float, stop: float) -> Samples | None:
         """Samples that share one machine; None where the parameter changes the machine."""
@@ -128,14 +136,8 @@ class Line:
             parts.append(Numbers.of(elements, situation_of(train, position)))
         return Numbers.stacked(parts)
 
-    def solved(self, position: int, values: Array) -> list[Solved | str]:
-        """Solve and certify a position at values (S,).
-
-        Returns
-        -------
-        list of Solved or str
-            Why there is no answer, where there is none.
-        """
+    def solved(self, position: int, values: Array) -> list[Solved | Missing]:
+        """Solve and certify a position at values (S,)."""
         if self._samples is not None:
             situations = self._at(values).situations(position)
             found = self.machine.answer(situations, TOLERANCE, vectorised.settle)
@@ -147,11 +149,11 @@ class Line:
             ]
         return [self._one(position, value) for value in values.tolist()]
 
-    def _one(self, position: int, value: float) -> Solved | str:
+    def _one(self, position: int, value: float) -> Solved | Missing:
         try:
             train, elements = self._own(value)
         except (CaseError, ValueError) as problem:
-            return str(problem)
+            return Missing(value, str(problem))
         machine = Machine(train)
         machine.__dict__["elements"] = elements
         situations: Situations = situation_of(train, position)
@@ -164,13 +166,13 @@ class Line:
         x = coordinates(scene, found.equilibria.one(k, 1)) / self.elements.length
         return Solved(value, found.code[k].copy(), x, float(found.verdicts.worst[k]))
 
-    def _from_ladder(self, position: int, value: float) -> Solved | str:
+    def _from_ladder(self, position: int, value: float) -> Solved | Missing:
         """Answer of the slower ways, its set read from forces and radii."""
         try:
             train = self.train(value)
             answer = certified(train, position)
         except (CaseError, Refused) as refusal:
-            return str(refusal)
+            return Missing(value, str(refusal))
         elements, found = elements_like(self.elements, train), answer.equilibrium
         x = coordinates(elements.scene, found) / elements.length
         numbers = Numbers.of(elements, situation_of(train, position))

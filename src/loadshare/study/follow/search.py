@@ -21,9 +21,9 @@ from loadshare.study.follow.active import ActiveSet, Codes, read_pieces
 from loadshare.study.follow.centre import centred
 from loadshare.study.follow.equations import Equations
 from loadshare.study.follow.gauges import gauges_at
-from loadshare.study.follow.line import Line, Solved
+from loadshare.study.follow.line import Line, Missing, Solved
 from loadshare.study.follow.numbers import Numbers
-from loadshare.study.follow.proof import VERGE, prove
+from loadshare.study.follow.proof import VERGE, Proof, prove
 from loadshare.study.follow.ranges import NODES, Flags
 from loadshare.study.follow.stretches import Stretches
 from loadshare.study.follow.zero import first_zero
@@ -93,18 +93,16 @@ class Change:
     apart: float
 
 
+Stretch = tuple[Point | Missing, Point | Missing]
+
+
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """An interval in which nothing was proved, why, and what stands at its ends."""
+    """A stretch on which nothing was proved, and why."""
 
-    start: float
-    stop: float
+    first: Point | Missing
+    last: Point | Missing
     why: str
-    first: Point | str
-    last: Point | str
-
-
-Stretch = tuple[Point | str, Point | str, float, float]
 
 
 class Search:
@@ -139,13 +137,12 @@ class Search:
         """
         values = np.linspace(self.low, self.high, FIRST + 1)
         points = self.points(values)
-        for end, point in ((self.low, points[0]), (self.high, points[-1])):
-            if isinstance(point, str) and point != UNREAD:
+        for point in (points[0], points[-1]):
+            if isinstance(point, Missing) and point.why != UNREAD:
                 parameter = self.line.parameter
-                shown = f"{parameter.name} = {end:.12g} {parameter.unit}".rstrip()
-                raise Refused(f"at {shown}: {point}")
-        ends = values.tolist()
-        stretches = list(zip(points[:-1], points[1:], ends[:-1], ends[1:], strict=True))
+                shown = f"{parameter.name} = {point.value:.12g} {parameter.unit}".rstrip()
+                raise Refused(f"at {shown}: {point.why}")
+        stretches = list(pairwise(points))
         count = 0
         while stretches:
             count += len(stretches)
@@ -153,8 +150,7 @@ class Search:
             left = self._proved_alike(left)
             left = [s for s in left if not self._crossed(s)] if count <= MOST else left
             if count > MOST:
-                for stretch in left:
-                    self._give_up(stretch, "too many stretches")
+                self.gaps += [Gap(*stretch, "too many stretches") for stretch in left]
                 break
             stretches = self._cut(left)
         self.gaps = merged(self.gaps)
@@ -163,48 +159,35 @@ class Search:
 
     # --- Points ---------------------------------------------------------------------------------
 
-    def points(self, values: Array) -> list[Point | str]:
-        """Return certified points, or why there is none."""
-        found: list[Point | str] = []
-        groups: dict[tuple[int, ...], list[int]] = {}
-        for k, solved in enumerate(self.line.solved(self.position, values)):
-            found.append(solved if isinstance(solved, str) else UNREAD)
-            if isinstance(solved, Solved):
-                groups.setdefault(tuple(solved.code.tolist()), []).append(k)
-                found[k] = solved  # type: ignore[call-overload]
-        for code, rows in groups.items():
-            known = [found[k] for k in rows]
-            for k, point in zip(rows, self._read(code, known), strict=True):  # type: ignore[arg-type]
-                found[k] = point
-        return found
-
-    def _read(self, code: tuple[int, ...], solved: list[Solved]) -> list[Point | str]:
-        """Solve points of one code to round-off, on the set of what carries."""
-        numbers = self.line.numbers(self.position, np.array([s.value for s in solved]))
-        found: list[Point | str] = [UNREAD] * len(solved)
-        waiting = [(k, code, s.x) for k, s in enumerate(solved)]
+    def points(self, values: Array) -> list[Point | Missing]:
+        """Return certified points, solved to round-off on the set of what carries."""
+        found: list[Point | Missing] = []
+        solved: dict[int, Solved] = {}
+        for k, answer in enumerate(self.line.solved(self.position, values)):
+            if isinstance(answer, Solved):
+                solved[k] = answer
+            found.append(Missing(answer.value, UNREAD) if k in solved else answer)  # type: ignore[arg-type]
+        waiting = [(k, tuple(s.code.tolist()), s.x) for k, s in solved.items()]
         for _ in range(3):
             groups: dict[ActiveSet, list[tuple[int, Array]]] = {}
-            for k, own, x in waiting:
-                active = self._set(own, x, numbers.take(slice(k, k + 1)))
-                groups.setdefault(active, []).append((k, x))
+            for k, code, x in waiting:
+                numbers = self.line.numbers(self.position, values[[k]])
+                groups.setdefault(self._set(code, x, numbers), []).append((k, x))
             waiting = []
             for active, members in groups.items():
-                rows = np.array([k for k, _ in members])
-                some = numbers.take(rows)
+                rows = [k for k, _ in members]
+                numbers = self.line.numbers(self.position, values[rows])
                 equations = self.equations(active)
-                z = equations.start(np.array([x for _, x in members]), some)
-                z, good = equations.solve(z, some)
-                carries = self._carrying(equations, z, some)
-                z = centred(equations, z, some)
-                for i, k in enumerate(rows.tolist()):
-                    x, own = z[i, : equations.n], tuple(carries[i].tolist())
-                    if not good[i]:
-                        continue
-                    if self._set(own, x, numbers.take(slice(k, k + 1))) == active:
+                z = equations.start(np.array([x for _, x in members]), numbers)
+                z, good = equations.solve(z, numbers)
+                carries = self._carrying(equations, z, numbers)
+                z = centred(equations, z, numbers)
+                for i in np.flatnonzero(good).tolist():
+                    k, x, code = rows[i], z[i, : equations.n], tuple(carries[i].tolist())
+                    if self._set(code, x, numbers.take(slice(i, i + 1))) == active:
                         found[k] = Point(solved[k].value, active, z[i], solved[k].worst)
                     else:
-                        waiting.append((k, own, x))
+                        waiting.append((k, code, x))
         return found
 
     def _set(self, code: tuple[int, ...], x: Array, numbers: Numbers) -> ActiveSet:
@@ -244,19 +227,14 @@ class Search:
 
     def _settled(self, stretch: Stretch) -> bool:
         """Give up a stretch that is not worth cutting."""
-        first, last, low, high = stretch
-        if isinstance(first, str) and isinstance(last, str):
-            self._give_up(stretch, first)
+        first, last = stretch
+        if isinstance(first, Missing) and isinstance(last, Missing):
+            self.gaps.append(Gap(first, last, first.why))
             return True
-        if high - low <= self.least:
-            self._give_up(stretch, "nothing could be proved however near")
+        if last.value - first.value <= self.least:
+            self.gaps.append(Gap(first, last, "nothing could be proved however near"))
             return True
         return False
-
-    def _give_up(self, stretch: Stretch, why: str) -> None:
-        """Name a stretch as not proved."""
-        first, last, low, high = stretch
-        self.gaps.append(Gap(low, high, why, first, last))
 
     def _unconfirmed(self, gap: Gap) -> Change | None:
         """Return the change between the ends of what is not proved, if there is one."""
@@ -266,60 +244,54 @@ class Search:
         if first.active.code == last.active.code:
             return None
         # What was found last was found from nearest.
-        value = 0.5 * (gap.start + gap.stop)
+        value = 0.5 * (first.value + last.value)
         for hint in self._hints.values():
-            value = hint if gap.start <= hint <= gap.stop else value
-        apart = max(value - gap.start, gap.stop - value)
+            value = hint if first.value <= hint <= last.value else value
+        apart = max(value - first.value, last.value - value)
         return Change(value, first.active, last.active, False, max(first.worst, last.worst), apart)
 
-    def _stretches(
-        self, equations: Equations, ends: list[tuple[float, float, Array, Array]]
-    ) -> Stretches:
-        """Set up stretches (low, high, z at both) of one set."""
+    def _prove(self, equations: Equations, ends: list[tuple[float, float, Array, Array]]) -> Proof:
+        """Try to prove that a set holds on stretches, given by values and z at both ends."""
         tau = np.linspace(0.0, 1.0, NODES)
         values = np.concatenate([low + tau * (high - low) for low, high, *_ in ends])
         numbers = self.line.numbers(self.position, values)
-        return Stretches(equations, np.array([[a, b] for _, _, a, b in ends]), numbers)
+        return prove(Stretches(equations, np.array([[a, b] for _, _, a, b in ends]), numbers))
 
     def _proved_alike(self, stretches: list[Stretch]) -> list[Stretch]:
         """Prove those whose ends stand on one set, and return the others."""
-        groups: dict[ActiveSet, list[Stretch]] = {}
+        groups: dict[ActiveSet, list[tuple[Point, Point]]] = {}
         left: list[Stretch] = []
-        for stretch in stretches:
-            first, last, *_ = stretch
+        for first, last in stretches:
             if isinstance(first, Point) and isinstance(last, Point) and first.active == last.active:
-                groups.setdefault(first.active, []).append(stretch)
+                groups.setdefault(first.active, []).append((first, last))
             else:
-                left.append(stretch)
+                left.append((first, last))
         for active, group in groups.items():
-            ends = [(low, high, a.z, b.z) for a, b, low, high in group]  # type: ignore[union-attr]
-            holds = prove(self._stretches(self._equations[active], ends)).holds
+            ends = [(a.value, b.value, a.z, b.z) for a, b in group]
+            holds = self._prove(self._equations[active], ends).holds
             failed = [s for s, good in zip(group, holds, strict=True) if not good]
             left += [s for s in failed if not self._hidden(active, s)]
         return left
 
-    def _hidden(self, active: ActiveSet, stretch: Stretch) -> bool:
+    def _hidden(self, active: ActiveSet, stretch: tuple[Point, Point]) -> bool:
         """Give up a stretch at both ends of which round-off alone leaves no enclosure."""
-        if any(self._is_sharp(active, p) for p in stretch[:2] if isinstance(p, Point)):
+        if any(self._is_sharp(active, point) for point in stretch):
             return False
-        self._give_up(stretch, "round-off hides what holds its bodies")
+        self.gaps.append(Gap(*stretch, "round-off hides what holds its bodies"))
         return True
 
     def _is_sharp(self, active: ActiveSet, point: Point) -> bool:
         """Whether a point is enclosed by itself."""
         if point.value not in self._sharp:
             ends = [(point.value, point.value, point.z, point.z)]
-            enclosed = prove(self._stretches(self._equations[active], ends)).enclosed
+            enclosed = self._prove(self._equations[active], ends).enclosed
             self._sharp[point.value] = bool(enclosed[0])
         return self._sharp[point.value]
 
     def _crossed(self, stretch: Stretch) -> bool:
         """Find and prove the change between two ends; on failure note where it may stand."""
-        first, last, low, high = stretch
-        if (
-            not (isinstance(first, Point) and isinstance(last, Point))
-            or first.active == last.active
-        ):
+        first, last = stretch
+        if isinstance(first, Missing) or isinstance(last, Missing) or first.active == last.active:
             return False
         # Where a body comes to float, room is exacter than forces that vanish all together.
         ways = [(first, last), (last, first)]
@@ -329,10 +301,10 @@ class Search:
             value = self._exit(*ways[1])
         if value is None:
             return False
-        self._hints[low, high] = value
+        self._hints[first.value, last.value] = value
         if not all(self._reaches(point, value) for point in (first, last)):
             return False
-        apart = float(max(value - low, high - value))
+        apart = float(max(value - first.value, last.value - value))
         worst = max(first.worst, last.worst)
         if first.active.code != last.active.code:
             self.changes.append(Change(value, first.active, last.active, True, worst, apart))
@@ -360,7 +332,7 @@ class Search:
         """Whether a set is proved to hold between neighbouring values."""
         pairs = list(zip(values[:-1], values[1:], z[:-1], z[1:], strict=True))
         ends = [(a, b, p, q) if a < b else (b, a, q, p) for a, b, p, q in pairs]
-        return bool(prove(self._stretches(equations, ends)).holds.all())
+        return bool(self._prove(equations, ends).holds.all())
 
     def _solved(self, equations: Equations, values: Array, near: Array) -> tuple[Array, Flags]:
         """Solve a set at values (S,), from unknowns near by; what nothing holds is centred."""
@@ -421,28 +393,27 @@ class Search:
     def _cut(self, stretches: list[Stretch]) -> list[Stretch]:
         """Cut stretches, beside an event where one is expected."""
         cuts: list[list[float]] = []
-        for _, _, low, high in stretches:
-            width, hint = high - low, self._hints.get((low, high))
+        for first, last in stretches:
+            low, width = first.value, last.value - first.value
+            hint = self._hints.get((first.value, last.value))
             inner = [low + CUT * width]
             if hint is not None:
                 inner = [hint - BESIDE * width, hint + BESIDE * width]
-            cuts.append([v for v in inner if low + 0.01 * width < v < high - 0.01 * width])
+            cuts.append([v for v in inner if low + 0.01 * width < v < last.value - 0.01 * width])
         flat = np.array([v for some in cuts for v in some])
         points = iter(self.points(flat) if len(flat) else [])
         found: list[Stretch] = []
-        for (first, last, low, high), some in zip(stretches, cuts, strict=True):
-            ends = [(low, first), *((v, next(points)) for v in some), (high, last)]
-            for (a, one), (b, other) in pairwise(ends):
-                found.append((one, other, a, b))
+        for (first, last), some in zip(stretches, cuts, strict=True):
+            found += pairwise([first, *(next(points) for _ in some), last])
         return found
 
 
 def merged(gaps: Iterable[Gap]) -> list[Gap]:
     """Join gaps that touch."""
     found: list[Gap] = []
-    for gap in sorted(gaps, key=lambda g: g.start):
-        if found and gap.start <= found[-1].stop:
-            found[-1] = replace(found[-1], stop=gap.stop, last=gap.last)
+    for gap in sorted(gaps, key=lambda g: g.first.value):
+        if found and gap.first.value <= found[-1].last.value:
+            found[-1] = replace(found[-1], last=gap.last)
         else:
             found.append(gap)
     return found

@@ -124,12 +124,12 @@ class Corner:
                 floating = self._floating(varied, sign * step)
             return self._rates(self._moved(motion, floating)), shared
         try:
-            told = self._differenced(varied, sign, step)
+            motions = self._differenced(varied, sign, step)
         except NoDifference as why:
             self._remark(key, side, f"has no derivative when it is {_word(side)}: {why}")
             return self._nothing(), False
         self._remark(key, side, f"differenced when it is {_word(side)}: no active set was proved")
-        return self._rates(told), False
+        return self._rates(motions), False
 
     def _differenced(self, varied: Variation, sign: float, step: float | None) -> Motions:
         """Torques and displacements by differences of certified solves."""
@@ -169,25 +169,25 @@ class Corner:
             direct + gradients @ motion.rate, bound(np.eye(len(direct))), bound, moved, error
         )
 
-    def _rates(self, told: Motions) -> Rates:
+    def _rates(self, motions: Motions) -> Rates:
         stages = self.train.stages
         groupings = [[s.meshes for s in stages], [g for s in stages for g in s.groups]]
-        (share, share_error), (pair, pair_error) = (self._shares(told, g) for g in groupings)
+        (share, share_error), (pair, pair_error) = (self._shares(motions, g) for g in groupings)
         torque, torque_error = (
             dict(zip(self.train.meshes, values.tolist(), strict=True))
-            for values in (told.torque, told.torque_error)
+            for values in (motions.torque, motions.torque_error)
         )
-        error = Rates(torque_error, share_error, pair_error, told.displacement_error)
-        return Rates(torque, share, pair, told.displacement, error)
+        error = Rates(torque_error, share_error, pair_error, motions.displacement_error)
+        return Rates(torque, share, pair, motions.displacement, error)
 
     def _shares(
-        self, told: Motions, groups: list[tuple[str, ...]]
+        self, motions: Motions, groups: list[tuple[str, ...]]
     ) -> tuple[dict[str, float], dict[str, float]]:
         """Derivatives of Ω = T / mean(T) of every branch, and bounds on their errors."""
         order = list(self.train.meshes)
         value, error = dict.fromkeys(order, np.nan), dict.fromkeys(order, np.nan)
         for group, weights in self._weights(order, groups):
-            rates, bounds = weights @ told.torque, told.share_error(weights)
+            rates, bounds = weights @ motions.torque, motions.share_error(weights)
             value |= dict(zip(group, rates.tolist(), strict=True))
             error |= dict(zip(group, bounds.tolist(), strict=True))
         return value, error

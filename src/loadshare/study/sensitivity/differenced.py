@@ -52,7 +52,7 @@ def differenced(
     NoDifference
         If there is no certified equilibrium to that side, however near.
     """
-    start = _laid(varied.setting(0.0).train, here)
+    start = _stacked(varied.setting(0.0).train, here)
     first = 4.0 * step if step is not None else FIRST * (abs(varied.value.si) or 1e-3)
     slopes: list[tuple[Array, Array]] = []
     why = ""
@@ -61,7 +61,7 @@ def differenced(
             break
         amount = first * 0.25**k
         try:
-            there = _laid(varied.setting(sign * amount).train, varied.answer(sign * amount))
+            there = _stacked(varied.setting(sign * amount).train, varied.answer(sign * amount))
         except (Refused, CaseError, ValueError) as fault:
             why = str(fault)
             slopes.clear()
@@ -102,11 +102,11 @@ def _limit(slopes: list[tuple[Array, Array]]) -> tuple[Array, Array]:
     return values[chosen, each], errors[chosen, each]
 
 
-def _laid(train: Train, found: Equilibrium) -> Array:
+def _stacked(train: Train, found: Equilibrium) -> Array:
     """Torques, then displacements in every gear's frame, side by side."""
     moved = [gear.frame @ found.displacement[name] for name, gear in train.gears.items()]
     return np.concatenate([list(torques_of(train, found).values()), *moved])
 
 
-def _sizes(laid: Array) -> Array:
-    return np.full(len(laid), float(np.abs(laid).max(initial=0.0)))
+def _sizes(stacked: Array) -> Array:
+    return np.full(len(stacked), float(np.abs(stacked).max(initial=0.0)))

@@ -205,6 +205,6 @@ def _forward(
 
 
 def _noise(found: Array, h: float, value: Value, rounding: Array) -> Array:
-    """Round-off of a difference: of its terms, and of the places at which they are taken."""
-    places = 2.0 * _EPS * abs(value.number) / h
-    return np.asarray(rounding / (h * value.factor) + places * np.abs(found))
+    """Round-off of a difference: of its terms, and of the values at which they are taken."""
+    of_values = 2.0 * _EPS * abs(value.number) / h
+    return np.asarray(rounding / (h * value.factor) + of_values * np.abs(found))

@@ -364,12 +364,12 @@ class Neighbourhood:
         code = tuple(at.OPEN if k in idle else c for k, c in enumerate(branch.active.code))
         active = replace(branch.active, code=code, tied=tied)
         here = Branch(self._setting, active)
-        places = []
+        branch_points = []
         for share in (1.0, 0.5, 0.25):
             there = Branch(varied.setting(share * amount), active)
             z = there.solve(z[: there.n])
-            places.append(z)
-        first, second, third = places
+            branch_points.append(z)
+        first, second, third = branch_points
         z = here.solve((first / 3.0 - 2.0 * second + 8.0 / 3.0 * third)[: here.n])
         return Point(here, z, idle)
 

@@ -6,16 +6,14 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.scene.scene import Array
 from loadshare.study.tolerance.statistics import BINS, Estimate
 
 if TYPE_CHECKING:
     import xarray as xr
 
     from loadshare.study.tolerance.result import OmegaStatistics, Tolerance
-
-Array = NDArray[np.float64]
 
 
 def dataset(found: Tolerance) -> xr.Dataset:
@@ -51,14 +49,12 @@ def dataset(found: Tolerance) -> xr.Dataset:
     }
 
     def estimates(name: str, get: Callable[[OmegaStatistics], list[Estimate]], *axis: str) -> None:
-        for end, field in (("", "value"), ("_low", "low"), ("_high", "high")):
-
-            def one(o: OmegaStatistics, field: str = field) -> Any:
-                values = [getattr(e, field) for e in get(o)]
-                return values if axis else values[0]
-
-            shape = tuple(sizes[name] for name in axis)
-            variables[name + end] = ((*base, *axis), gathered(one, *shape))
+        shape = [sizes[name] for name in axis]
+        ends = gathered(
+            lambda o: np.reshape([(e.value, e.low, e.high) for e in get(o)], (*shape, 3)), *shape, 3
+        )
+        for k, ending in enumerate(("", "_low", "_high")):
+            variables[name + ending] = ((*base, *axis), ends[..., k])
 
     estimates("mean", lambda o: [o.summary.mean])
     estimates("quantile", lambda o: list(o.summary.quantiles.values()), "level")

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.job.many import BLOCK
+from loadshare.scene.scene import Array
 from loadshare.study.tolerance.inputs import Inputs
 from loadshare.study.tolerance.points import uniforms
 
-Array = NDArray[np.float64]
 Rows = NDArray[np.int64]
 
 

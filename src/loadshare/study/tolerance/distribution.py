@@ -8,12 +8,10 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loadshare.case.distributions import NUMBERS, Spread
+from loadshare.scene.scene import Array
 from loadshare.study.parameter import Value, read_value
-
-Array = NDArray[np.float64]
 
 PHASE = "uniform phase"
 TURN = Value(360.0, "deg")
@@ -79,8 +77,8 @@ class Distribution:
         return Value(float(value), self.unit).text
 
     def __str__(self) -> str:
-        told = ", ".join(f"{k} {v:.6g}" for k, v in self.numbers.items())
-        return f"{self.kind} {told} {self.unit}" if told else self.kind
+        numbers = ", ".join(f"{k} {v:.6g}" for k, v in self.numbers.items())
+        return f"{self.kind} {numbers} {self.unit}" if numbers else self.kind
 
 
 @dataclass(frozen=True, slots=True)

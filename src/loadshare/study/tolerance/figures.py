@@ -12,12 +12,11 @@ from loadshare.case import Case
 from loadshare.errors import CaseError
 from loadshare.job.many import Block, solve_blocks
 from loadshare.job.table import mesh_torques, shares
+from loadshare.scene.scene import Array
 from loadshare.study.tolerance.inputs import Inputs
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.ring import DrumRing
 from loadshare.train.train import Train
-
-Array = NDArray[np.float64]
 
 KINDS = {"omega": "stage", "pair_omega": "group"}
 """Ω as columns name it, and over whose mean it is."""

@@ -38,14 +38,14 @@ class Folder:
     def __init__(self, path: Path, job: Job) -> None:
         self.path, self.job = path, job
         self.all = tuple(job.parts())
-        told = {"case": job.name, "text": job.text, "hash": job.hash, "settings": job.settings}
+        content = {"case": job.name, "text": job.text, "hash": job.hash, "settings": job.settings}
         if not (path / STUDY).exists():
             if path.exists() and (not path.is_dir() or any(path.iterdir())):
                 raise LoadshareError(
                     f"{path}: is not empty and holds no tolerance study. Allowed: a new or empty "
                     "folder, or the folder of the same study, which is then completed"
                 )
-            _write_json(path / STUDY, told)
+            _write_json(path / STUDY, content)
             return
         try:
             known = json.loads((path / STUDY).read_text(encoding="utf-8"))["settings"]
@@ -98,8 +98,8 @@ class Folder:
     def worst(self) -> list[dict[str, Any]] | None:
         """Return the worst cases that were found for this study, or None if none are known."""
         try:
-            told = json.loads((self.path / WORST).read_text(encoding="utf-8"))
-            return list(told["worst"]) if told["study"] == self.job.hash else None
+            content = json.loads((self.path / WORST).read_text(encoding="utf-8"))
+            return list(content["worst"]) if content["study"] == self.job.hash else None
         except (OSError, ValueError, KeyError, TypeError):
             return None
 
@@ -173,8 +173,8 @@ def _short(value: Any) -> str:
     return text if len(text) <= 60 else f"{text[:57]}…"
 
 
-def _write_json(file: Path, told: dict[str, Any]) -> None:
-    text = json.dumps(told, indent=1, ensure_ascii=False) + "\n"
+def _write_json(file: Path, content: dict[str, Any]) -> None:
+    text = json.dumps(content, indent=1, ensure_ascii=False) + "\n"
 
     def write(to: Path) -> None:
         to.write_text(text, encoding="utf-8")

@@ -5,11 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.scene.scene import Array
 from loadshare.study.tolerance.statistics import CONFIDENCE, Estimate
-
-Array = NDArray[np.float64]
 
 RESAMPLES = 1000
 """Bootstrap samples."""
@@ -78,11 +76,11 @@ def shares(figures: Array, units: tuple[str, ...], seed: int) -> tuple[Share, ..
     tail = (1.0 - CONFIDENCE) / 2.0
     found = []
     for k, unit in enumerate(units):
-        told = []
+        estimates = []
         for value, resampled in zip((first, total), again, strict=True):
             low, high = np.quantile(resampled[k], [tail, 1.0 - tail])
-            told.append(Estimate(float(value[k, 0]), float(low), float(high)))
-        found.append(Share(unit, *told))
+            estimates.append(Estimate(float(value[k, 0]), float(low), float(high)))
+        found.append(Share(unit, *estimates))
     return tuple(found)
 
 

@@ -8,17 +8,15 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loadshare.case import Case, Study
 from loadshare.case.distributions import Group
 from loadshare.case.keys import dotted
 from loadshare.errors import CaseError, Problem
+from loadshare.scene.scene import Array
 from loadshare.study.parameter import matches, split_outside
 from loadshare.study.tolerance.copula import Copula, correlation_matrix
 from loadshare.study.tolerance.distribution import Distribution, read_distribution
-
-Array = NDArray[np.float64]
 
 FAR = 1e-9
 """Probability beyond the values with which the case is tried before anything is drawn."""
@@ -216,8 +214,8 @@ class _Reader:
             try:
                 self.case.replace(one.changes(end))
             except CaseError as error:
-                told = one.distribution.text(end)
-                hint = f"{one.name} was tried with {told}."
+                value = one.distribution.text(end)
+                hint = f"{one.name} was tried with {value}."
                 if one.distribution.kind == "normal":
                     hint += " A truncated normal distribution keeps within limits."
                 for problem in error.problems:

@@ -83,7 +83,7 @@ class Job:
 
     @classmethod
     def from_json(cls, text: str) -> Job:
-        """Return what `to_json` told."""
+        """Return the job that `to_json` wrote."""
         return cls(**json.loads(text))
 
     @cached_property
@@ -133,8 +133,8 @@ class Job:
 
     def stamp(self, part: Part) -> bytes:
         """Return what a part's metadata says of it."""
-        told = {"study": self.hash, "design": part.design, "part": part.number, "rows": part.rows}
-        return json.dumps(told, sort_keys=True).encode()
+        about = {"study": self.hash, "design": part.design, "part": part.number, "rows": part.rows}
+        return json.dumps(about, sort_keys=True).encode()
 
     def table(self, part: Part) -> pa.Table:
         """Draw and solve a part.

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loadshare.job.many import BLOCK
-
-Array = NDArray[np.float64]
+from loadshare.scene.scene import Array
 
 SEQUENCES = 16
 """Scrambled Sobol sequences that take turns; they differ by chance alone, and so tell the error."""

@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
+from loadshare.scene.scene import Array
 from loadshare.study.tolerance.points import SEQUENCES
-
-Array = NDArray[np.float64]
 
 CONFIDENCE = 0.95
 """Of every interval."""
@@ -201,5 +200,5 @@ def exceedance(values: Array, limit: float, replicated: bool) -> Estimate | None
     shares = [float((part > limit).mean()) for part in _replicates(values)]
     if len(set(shares)) < 2:
         return found
-    told = _from_replicates(found.value, shares)
-    return Estimate(told.value, max(told.low, 0.0), min(told.high, 1.0))
+    spread = _from_replicates(found.value, shares)
+    return Estimate(spread.value, max(spread.low, 0.0), min(spread.high, 1.0))

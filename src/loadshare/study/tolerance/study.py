@@ -26,7 +26,6 @@ from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.indices import Share, shares
 from loadshare.study.tolerance.inputs import read_inputs
 from loadshare.study.tolerance.job import CHUNK, INDICES, Job, Part, equilibria
-from loadshare.study.tolerance.kept import check_kept
 from loadshare.study.tolerance.points import SEQUENCES
 from loadshare.study.tolerance.result import (
     FloatStatistics,
@@ -35,6 +34,7 @@ from loadshare.study.tolerance.result import (
     counted,
     remove_with,
 )
+from loadshare.study.tolerance.resume import check_part
 from loadshare.study.tolerance.statistics import Summary, exceedance, summary
 from loadshare.study.tolerance.worst import WorstCase, check_worst, worst_case
 from loadshare.train import build_train
@@ -211,7 +211,7 @@ def _solve(folder: Folder, scheduler: str | None, workers: int, progress: Progre
     missing = folder.missing()
     for part in folder.all:
         if part not in missing:
-            check_kept(folder, part)
+            check_part(folder, part)
     total = sum(part.rows for part in folder.all)
     done = total - sum(part.rows for part in missing)
     if progress is not None:

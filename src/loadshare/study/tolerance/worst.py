@@ -7,15 +7,13 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from loadshare.errors import CaseError, Problem, Refused, ResultError
 from loadshare.job import solve
 from loadshare.job.many import BLOCK
+from loadshare.scene.scene import Array
 from loadshare.study.tolerance.figures import KINDS, SYSTEM, Solver
 from loadshare.study.tolerance.inputs import Inputs
-
-Array = NDArray[np.float64]
 
 CORNERS, INNER = 6, 6
 """Starting points at random vertices of the box, and at random inside."""
@@ -72,17 +70,17 @@ class Box:
     def __len__(self) -> int:
         return len(self.low)
 
-    def values(self, places: Array) -> Array:
+    def values(self, scaled: Array) -> Array:
         """Return inputs in their units."""
-        return np.asarray(self.low + places * (self.high - self.low))
+        return np.asarray(self.low + scaled * (self.high - self.low))
 
-    def places(self, values: Array) -> Array:
-        """Return where inputs stand in the box; what is beyond stands at its side."""
+    def scaled(self, values: Array) -> Array:
+        """Return inputs as parts of their range; what is beyond is at its end."""
         return np.asarray(np.clip((values - self.low) / (self.high - self.low), 0.0, 1.0))
 
-    def within(self, places: Array) -> Array:
-        """Bring places back into the box: angles around, others to the side."""
-        return np.where(self.periodic, places % 1.0, np.clip(places, 0.0, 1.0))
+    def within(self, scaled: Array) -> Array:
+        """Bring points back into the box: angles around, others to the side."""
+        return np.where(self.periodic, scaled % 1.0, np.clip(scaled, 0.0, 1.0))
 
 
 def worst_case(solver: Solver, kind: str, known: Sequence[Array], seed: int) -> WorstCase | None:
@@ -132,7 +130,7 @@ def _starts(box: Box, known: Sequence[Array], seed: int) -> Array:
     inner = rng.random((INNER, len(box)))
     corners = np.where(box.periodic, rng.random((CORNERS, len(box))), 0.0)
     corners = np.where(box.periodic, corners, rng.integers(0, 2, (CORNERS, len(box))))
-    return np.array([*(box.places(k) for k in known), *corners, *inner], dtype=float)
+    return np.array([*(box.scaled(k) for k in known), *corners, *inner], dtype=float)
 
 
 @dataclass
@@ -142,14 +140,14 @@ class _Search:
     column: str
     solved: int = 0
 
-    def omega(self, places: Array) -> Array:
-        """Ω at places, shape (S,); minus infinity where there is no certified answer."""
-        found = np.full(len(places), -np.inf)
-        for at in range(0, len(places), BLOCK):
+    def omega(self, scaled: Array) -> Array:
+        """Ω at points of the box; minus infinity where there is no certified answer."""
+        found = np.full(len(scaled), -np.inf)
+        for at in range(0, len(scaled), BLOCK):
             part = slice(at, at + BLOCK)
-            values = self.solver.solve(self.box.values(places[part])).columns[self.column]
+            values = self.solver.solve(self.box.values(scaled[part])).columns[self.column]
             found[part] = np.where(np.isnan(values), -np.inf, values)
-        self.solved += len(places)
+        self.solved += len(scaled)
         return found
 
     def round(self, points: Array, best: Array, step: Array) -> tuple[Array, Array]:
@@ -175,24 +173,16 @@ class _Search:
         more = self.omega(together.reshape(-1, width)).reshape(count, -1)
         every = np.concatenate([omega, more], axis=1)
         chosen = every.argmax(axis=1)
-        places = np.concatenate([trials, together], axis=1)
+        scaled = np.concatenate([trials, together], axis=1)
         rows = np.arange(count)
-        return places[rows, chosen], every[rows, chosen]
+        return scaled[rows, chosen], every[rows, chosen]
 
 
 def _confirmed(solver: Solver, box: Box, kind: str, place: Array, solved: int) -> WorstCase | None:
     """Solve the place by itself, with a full certificate."""
     values = box.values(place).tolist()
     changes = solver.inputs.changes(values)
-    try:
-        result = solve(
-            solver.case.replace(changes),
-            positions=solver.positions,
-            tolerance=solver.tolerance,
-        )
-    except (Refused, CaseError):
-        return None
-    omega = (result.omega if kind == "omega" else result.pair_omega)[SYSTEM]
+    omega = _omega_with(solver, changes, kind)
     if omega is None:
         return None
     names = [one.name for one in solver.inputs.every]
@@ -209,6 +199,18 @@ def _confirmed(solver: Solver, box: Box, kind: str, place: Array, solved: int) -
     )
 
 
+def _omega_with(solver: Solver, changes: dict[str, Any], kind: str) -> float | None:
+    """Ω of the system with some inputs changed; None where that is not certified, or Ω is none."""
+    try:
+        result = solve(
+            solver.case.replace(changes), positions=solver.positions, tolerance=solver.tolerance
+        )
+    except (Refused, CaseError):
+        return None
+    found: dict[str, float | None] = getattr(result, kind)
+    return found[SYSTEM]
+
+
 def check_worst(solver: Solver, known: WorstCase, file: str) -> None:
     """Solve a worst case that an earlier run found again.
 
@@ -217,13 +219,11 @@ def check_worst(solver: Solver, known: WorstCase, file: str) -> None:
     ResultError
         If its inputs do not give its Ω.
     """
+    kinds = {over: kind for kind, over in KINDS.items()}
     try:
         changes = solver.inputs.changes(list(known.inputs.values()))
-        result = solve(
-            solver.case.replace(changes), positions=solver.positions, tolerance=solver.tolerance
-        )
-        found = (result.omega if known.over == "stage" else result.pair_omega)[SYSTEM]
-    except (Refused, CaseError, TypeError, ValueError):
+        found = _omega_with(solver, changes, kinds.get(known.over, "pair_omega"))
+    except (TypeError, ValueError):
         changes, found = {}, None
     if found is None or changes != known.changes or not abs(known.omega - found) <= GAIN * found:
         expected = "no certified answer" if found is None else repr(found)

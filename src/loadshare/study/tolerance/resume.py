@@ -1,4 +1,4 @@
-"""Parts that an earlier run left behind are sampled: inputs drawn and samples solved again.
+"""Going on with a study: parts that are there are sampled, some of their samples solved again.
 
 A part is some ten thousand certified answers of which only the largest figures are kept, so it
 cannot be certified by itself. A few of its samples can: the study says how all of them were drawn.
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 SAMPLED = 2
-"""Samples of a kept part that are solved again."""
+"""Samples of such a part that are solved again."""
 APART = 1e-6
 """Relative difference of a figure that two certified answers of one sample cannot have: each is
 known to 1e-9, and a largest figure over branches is no less so."""
 AGAIN = "Remove this file and give the same command: the part is then solved again."
 
 
-def check_kept(folder: Folder, part: Part) -> None:
+def check_part(folder: Folder, part: Part) -> None:
     """Solve some samples of a part again; which ones follows from the study and the part.
 
     Parameters
