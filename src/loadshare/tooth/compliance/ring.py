@@ -120,15 +120,14 @@ class Ring:
         Poisson's strain across the width is held back where a harmonic reaches less deep than half
         the width, and free where it reaches deeper: plane strain and plane stress.
         """
-        n, ratio, nu = self._orders, self.held / self.loaded, self.poisson
+        n, ratio = self._orders, self.held / self.loaded
         deep = self.loaded / n > 0.5 * self.width
-        felt = ~deep & (n * abs(np.log(ratio)) < -0.5 * np.log(FELT))
-        solid = ~(deep | felt)
+        thick = deep | (n * abs(np.log(ratio)) < -0.5 * np.log(FELT))
+        nu = np.where(deep, self._in_plane_stress, self.poisson)
         found = np.empty((2, 2, len(n)))
-        found[..., deep] = _displacements(n[deep], ratio, self._in_plane_stress) / (1.0 - nu**2)
-        found[..., felt] = _displacements(n[felt], ratio, nu)
-        found[..., solid] = _displacements(n[solid], ratio, nu, count=2)
-        return found
+        found[..., thick] = _displacements(n[thick], ratio, nu[thick])
+        found[..., ~thick] = _displacements(n[~thick], ratio, nu[~thick], count=2)
+        return np.where(deep, found / (1.0 - self.poisson**2), found)
 
     @property
     def _in_plane_stress(self) -> float:
@@ -147,7 +146,7 @@ class Ring:
         return scale * twisted, scale * swollen
 
 
-def _displacements(n: Array, ratio: float, poisson: float, count: int = 4) -> Array:
+def _displacements(n: Array, ratio: float, poisson: Array, count: int = 4) -> Array:
     """Displacements u_r, u_θ at radius 1 for tractions σ, τ there of orders n (2, 2, n).
 
     The ring is held at the radius `ratio`; with two fields, that circle is out of reach.
@@ -164,7 +163,7 @@ def _displacements(n: Array, ratio: float, poisson: float, count: int = 4) -> Ar
     return np.moveaxis(np.moveaxis(near[:2] / size, -1, 0) @ shares, 0, -1)
 
 
-def _fields(n: Array, radius: float, ratio: float, poisson: float, count: int) -> Array:
+def _fields(n: Array, radius: float, ratio: float, poisson: Array, count: int) -> Array:
     """Fields of orders n at a radius: u_r, u_θ and the tractions σ, τ on the loaded side (4, …, n).
 
     Displacements are in units of (1 − ν²)/E. Of the first `count` fields, two fade from radius 1
@@ -174,21 +173,20 @@ def _fields(n: Array, radius: float, ratio: float, poisson: float, count: int) -
     grow = (n + 1.0, kappa - n - 1.0, kappa + n + 1.0), (n - 1.0, one, -one)
     fade = (1.0 - n, kappa - 1.0 + n, n - 1.0 - kappa), (-1.0 - n, one, one)
     side = (1.0 if outwards else -1.0) / radius
-    found = np.empty((4, count, len(n)))
-    for k in range(count):
-        fading = (k < 2) != outwards
-        power, u, v = fade[k % 2] if fading else grow[k % 2]
-        size = (radius if k < 2 else radius / ratio) ** power
-        u, v = u * size, v * size
-        u_slope, v_slope = power * u, power * v
-        if fading and k % 2 == 0:
+    fading = [(k < 2) != outwards for k in range(count)]
+    chosen = [(fade if fades else grow)[k % 2] for k, fades in enumerate(fading)]
+    power, u, v = np.moveaxis(np.array(chosen), 1, 0)
+    size = np.array([radius, radius, radius / ratio, radius / ratio])[:count, None] ** power
+    u, v = u * size, v * size
+    u_slope, v_slope = power * u, power * v
+    for k in range(0, count, 2):
+        if fading[k]:
             # Both r^(1 − n) and r^(n − 1) are translations for n = 1; the force needs a logarithm.
-            first, turn = n == 1.0, 2.0 * kappa * np.log(radius)
-            u, v = np.where(first, turn - 1.0, u), np.where(first, -turn - 1.0, v)
-            u_slope = np.where(first, 2.0 * kappa, u_slope)
-            v_slope = np.where(first, -2.0 * kappa, v_slope)
-        dilation = poisson / (1.0 - 2.0 * poisson) * (u_slope + u + n * v)
-        found[0, k], found[1, k] = u / (1.0 - poisson), v / (1.0 - poisson)
-        found[2, k] = side * (dilation + u_slope)
-        found[3, k] = 0.5 * side * (v_slope - v - n * u)
-    return found
+            first, growth = n == 1.0, 2.0 * kappa[n == 1.0]
+            turn = growth * np.log(radius)
+            u[k, first], v[k, first] = turn - 1.0, -turn - 1.0
+            u_slope[k, first], v_slope[k, first] = growth, -growth
+    dilation = poisson / (1.0 - 2.0 * poisson) * (u_slope + u + n * v)
+    moved = np.stack([u, v]) / (1.0 - poisson)
+    stress = side * np.stack([dilation + u_slope, 0.5 * (v_slope - v - n * u)])
+    return np.concatenate([moved, stress])
