@@ -92,29 +92,16 @@ def sensitivity(
             skipped.append((item.key, refusal.problems[0].message))
         else:
             usable.append(item)
-    largest = {
-        kind: {
-            (item.key, side): _largest(train, corners, rates, item.key, side, kind)
-            for item in usable
-            for side in SIDES
-        }
-        for kind in ("share", "pair_share")
-    }
-
-    def figures(kind: str, part: str) -> dict[tuple[str, str], dict[str, float]]:
-        return {
-            at: {stage: getattr(slope, part) for stage, slope in slopes.items()}
-            for at, slopes in largest[kind].items()
-        }
-
+    omega, omega_error = _omegas(train, corners, rates, usable, "share")
+    pair_omega, pair_omega_error = _omegas(train, corners, rates, usable, "pair_share")
     return Sensitivity(
         inputs=tuple(usable),
         positions=tuple(chosen),
         rates=rates,
-        omega=figures("share", "rate"),
-        pair_omega=figures("pair_share", "rate"),
-        omega_error=figures("share", "error"),
-        pair_omega_error=figures("pair_share", "error"),
+        omega=omega,
+        pair_omega=pair_omega,
+        omega_error=omega_error,
+        pair_omega_error=pair_omega_error,
         kinks=tuple(Kink(c.position, elements) for c in corners if (elements := c.on_the_verge)),
         error={item.key: _error(rates, item.key, chosen) for item in usable},
         remarks=tuple(r for c in corners for r in c.remarks),
@@ -141,6 +128,25 @@ def _error(rates: dict[tuple[int, str, str], Rates], key: str, positions: Sequen
     errors = [rates[position, key, side].error for position in positions for side in SIDES]
     stated = [v for e in errors if e is not None for v in e.torque.values()]
     return max((v for v in stated if not math.isnan(v)), default=math.nan)
+
+
+def _omegas(
+    train: Train,
+    corners: list[Corner],
+    rates: dict[tuple[int, str, str], Rates],
+    inputs: Iterable[Input],
+    kind: str,
+) -> tuple[dict[tuple[str, str], dict[str, float]], dict[tuple[str, str], dict[str, float]]]:
+    """Derivatives of the largest Ω by input and side, then by stage; and their errors."""
+    largest = {
+        (item.key, side): _largest(train, corners, rates, item.key, side, kind)
+        for item in inputs
+        for side in SIDES
+    }
+    return (
+        {at: {stage: s.rate for stage, s in slopes.items()} for at, slopes in largest.items()},
+        {at: {stage: s.error for stage, s in slopes.items()} for at, slopes in largest.items()},
+    )
 
 
 def _largest(

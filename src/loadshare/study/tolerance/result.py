@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-import weakref
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -166,11 +164,6 @@ class Tolerance:
         """
         drawn: Figure = picture(self, stage, over)
         return drawn
-
-
-def remove_with(found: Tolerance, path: Path) -> None:
-    """Remove a folder that nobody asked for when the study is no longer used."""
-    weakref.finalize(found, shutil.rmtree, path, ignore_errors=True)
 
 
 def counted(messages: Sequence[str]) -> dict[str, int]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import shutil
 import tempfile
+import weakref
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import asdict
 from itertools import product
 from pathlib import Path
@@ -32,7 +33,6 @@ from loadshare.study.tolerance.result import (
     OmegaStatistics,
     Tolerance,
     counted,
-    remove_with,
 )
 from loadshare.study.tolerance.resume import check_part
 from loadshare.study.tolerance.statistics import Summary, exceedance, summary
@@ -128,19 +128,25 @@ def tolerance(
     given |= {"samples": samples, "seed": seed, "sampling": sampling}
     given |= {"limit": limit, "indices": indices, "positions": positions}
     case, name = _asked(loaded(case), study, given)
-    job = _job(case, name, chunk, engine)
-    path = Path(tempfile.mkdtemp(prefix="loadshare-") if out is None else out)
+    with _folder(out, _job(case, name, chunk, engine)) as folder:
+        _solve(folder, scheduler, workers, progress)
+        return _Reader(folder, case.study[name]).found(worst)
+
+
+@contextmanager
+def _folder(out: str | Path | None, job: Job) -> Iterator[Folder]:
+    """Open a study's folder; one that nobody named is removed with the last who uses it."""
+    if out is not None:
+        yield Folder(Path(out), job)
+        return
+    path = Path(tempfile.mkdtemp(prefix="loadshare-"))
     try:
         folder = Folder(path, job)
-        _solve(folder, scheduler, workers, progress)
-        found = _Reader(folder, case.study[name]).found(worst)
+        yield folder
     except BaseException:
-        if out is None:
-            shutil.rmtree(path, ignore_errors=True)
+        shutil.rmtree(path, ignore_errors=True)
         raise
-    if out is None:
-        remove_with(found, path)
-    return found
+    weakref.finalize(folder, shutil.rmtree, path, ignore_errors=True)
 
 
 def _asked(case: Case, name: str | None, given: Mapping[str, Any]) -> tuple[Case, str]:
