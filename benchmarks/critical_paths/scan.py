@@ -63,13 +63,13 @@ def states(line: Line, values: Array, answers: Equilibria, certified: NDArray[np
     for k, (_, gear) in enumerate(names.radials):
         for flank, force in zip(names.flanks, answers.flank_force.T, strict=True):
             torque[:, k] += train.transmitted(gear, {flank: 1.0}) * force
-    scene = line.scene
+    radials = line.elements.radials
     for k, (name, gear) in enumerate(names.radials):
-        j = next(i for i, r in enumerate(scene.radials) if r.name == name)
+        j = next(i for i, r in enumerate(radials) if r.name == name)
         given = np.broadcast_to(numbers.radial[:, j], (len(values), 6))
         law = at.graph(given, torque[:, k] / push)
         frame = train.gears[gear].frame
-        moved = answers.displacement[:, names.gears.index(gear)] @ frame.T - scene.radials[j].centre
+        moved = answers.displacement[:, names.gears.index(gear)] @ frame.T - radials[j].centre
         radius = np.linalg.norm(moved, axis=1) / length
         force = np.linalg.norm(answers.radial_reaction[:, k], axis=1) / push
         if name.startswith("ring"):

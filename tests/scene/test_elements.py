@@ -27,7 +27,7 @@ DIGITS = 1e-12
 
 def sets(elements: Elements, index: int = 1) -> list[np.ndarray]:
     """The first set, everything, nothing, and some at random."""
-    first = first_sets(elements, data_of(elements, situation_of(elements.scene.train, index)))[0]
+    first = first_sets(elements, data_of(elements, situation_of(elements.train, index)))[0]
     rng = np.random.default_rng(elements.switches)
     some = rng.integers(0, 2, (4, elements.switches)).astype(np.int8)
     return [first, np.ones_like(first), np.zeros_like(first), *some]
@@ -38,11 +38,11 @@ def test_the_statics_of_a_set(name):
     """P carries every load that the set can carry, N carries none; together they span all forces,
     and what no element resists is loose.
     """
-    elements = elements_of(assemble(build_train(shipped(name)), 1))
+    elements = elements_of(build_train(shipped(name)))
     for code in sets(elements):
         basis = elements.basis(code)
         a, p, n, loose = basis.directions, basis.particular, basis.redundant, basis.loose
-        size = elements.scene.size
+        size = elements.size
         resisted = np.eye(size) - loose @ loose.T
         np.testing.assert_allclose(a.T @ p, resisted, atol=DIGITS * np.abs(p).max(initial=1.0))
         np.testing.assert_allclose(a.T @ n, 0.0, atol=DIGITS)
@@ -60,7 +60,7 @@ def test_the_elements_are_the_scene(name):
     """Rows and radials by name and direction; springs give the scene's stiffness."""
     train = build_train(shipped(name))
     scene = assemble(train, 1)
-    elements = elements_of(scene)
+    elements = elements_of(train)
     rows = scene.rows_at(np.zeros(scene.size))
     assert elements.row_names == tuple(r.name for r in rows)
     assert elements.vectors.shape == (len(elements.kinds), scene.size)
@@ -78,7 +78,7 @@ def test_the_elements_are_the_scene(name):
 
 @pytest.mark.parametrize(("branches", "redundants"), [(2, 1), (4, 3), (6, 5), (8, 7)])
 def test_a_branched_train_has_a_redundant_per_branch_but_one(branches, redundants):
-    elements = elements_of(assemble(build_train(families.split_torque(branches)), 1))
+    elements = elements_of(build_train(families.split_torque(branches)))
     assert elements.basis(sets(elements)[0]).redundant.shape[1] == redundants
 
 
@@ -87,13 +87,13 @@ def test_the_seed_has_three_redundants_and_a_floating_pinion_takes_one():
     counts = {}
     for support in ("rigid", "free"):
         case = shipped("fgfbstts/base").replace({"gears.4.support": support})
-        elements = elements_of(assemble(build_train(case), 1))
+        elements = elements_of(build_train(case))
         counts[support] = elements.basis(sets(elements)[0]).redundant.shape[1]
     assert counts == {"rigid": 3, "free": 2}
 
 
 def test_a_set_is_reduced_once():
-    elements = elements_of(assemble(build_train(shipped("fgfbstts/all_elements")), 1))
+    elements = elements_of(build_train(shipped("fgfbstts/all_elements")))
     code = sets(elements)[0]
     again = np.where(code != 0, 3, 0).astype(np.int8)
     assert elements.basis(code) is elements.basis(again), "only what acts matters"
@@ -101,13 +101,13 @@ def test_a_set_is_reduced_once():
 
 def test_opposed_arcs_are_known_where_neighbours_stand_firm():
     """Ring 4 lies on the line between its idlers: a squeeze would be sham. Elastic idlers give."""
-    elements = elements_of(assemble(build_train(shipped("fgfbstts/limit_ring")), 1))
+    elements = elements_of(build_train(shipped("fgfbstts/limit_ring")))
     pairs = [tuple(elements.row_names[k] for k in pair) for pair in elements.opposed]
     assert pairs == [
         ("ring 4: arc 7", "ring 4: arc 6"),
         ("ring 5: arc 9", "ring 5: arc 8"),
     ]
-    elastic = elements_of(assemble(build_train(shipped("fgfbstts/all_elements")), 1))
+    elastic = elements_of(build_train(shipped("fgfbstts/all_elements")))
     assert not elastic.opposed
 
 
@@ -178,7 +178,7 @@ def test_the_numbers_of_a_sample_are_those_of_its_scene(name):
 def test_an_answer_is_in_balance_and_compatible(name):
     """A^T μ = f, N^T (g + δ) = 0 and x = P^T (g + δ), where all laws are linear."""
     train = build_train(shipped(name))
-    elements = elements_of(assemble(train, 1))
+    elements = elements_of(train)
     data = data_of(elements, situation_of(train, 1))
     state = at_rest(elements, data)
     found = exchange(elements, data, state, vectorised.settle)

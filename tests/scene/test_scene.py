@@ -13,6 +13,7 @@ from loadshare.contact.plan import Linearisation, Role, programme
 from loadshare.scene import Plan, assemble
 from loadshare.scene.scene import Scene
 from loadshare.train import build_train
+from loadshare.train.situations import situation_of
 
 
 def scene_of(name: str, index: int = 1) -> Scene:
@@ -139,3 +140,42 @@ def test_a_round_that_was_too_lean_is_repeated():
     assert record.rounds > 1
     assert record.plan.radials["ring sun"] is Role.IN_PLAY
     assert "ring sun" not in dict(record.removed)
+
+
+@pytest.mark.parametrize("name", ["fgfbstts/all_elements", "two_path/clocking_error"])
+def test_a_scene_is_what_the_train_says(name):
+    """Approaches by the one expression of the mesh, forces by shafts and supports, one by one."""
+    train = build_train(shipped(name))
+    rng = np.random.default_rng(5)
+    for index in (1, train.count):
+        scene, here = assemble(train, index), situation_of(train, index)
+        positions, rows = train.mesh_positions(index), {r.name: r for r in scene.rows}
+        x = rng.normal(size=scene.size) * 1e-5
+        turned = {gear: scene.angle(gear, x) for gear in train.gears}
+        moved = {gear: scene.moved(gear, x) for gear in train.gears}
+        for mesh in train.meshes.values():
+            apart = moved[mesh.driver] - moved[mesh.driven]
+            apart = apart + here.offset_of(mesh.driver) - here.offset_of(mesh.driven)
+            ends = turned[mesh.driver], turned[mesh.driven]
+            for drive in mesh.flanks:
+                row = rows[mesh.flank_name(drive)]
+                expected = mesh.approach(drive, positions[mesh.name], ends, apart)
+                assert row.vector @ x - row.gap == pytest.approx(expected, abs=1e-17)
+                assert row.law.compression(700.0) == pytest.approx(
+                    mesh.law(positions[mesh.name]).compression(700.0), rel=1e-14
+                )
+        force = scene.stiffness @ x - scene.load
+        for gear, end in scene.rotation.items():
+            if end.index is not None:
+                force[end.index] += here.torques[gear] * end.rate
+        for shaft in train.shafts.values():
+            if np.isfinite(shaft.stiffness):
+                wind = turned[shaft.first] - turned[shaft.second] - shaft.clocking
+                for gear, sign in ((shaft.first, 1.0), (shaft.second, -1.0)):
+                    end = scene.rotation[gear]
+                    if end.index is not None:
+                        force[end.index] -= sign * shaft.stiffness * wind * end.rate
+        for gear, where in scene.displacement.items():
+            force[where] -= train.gears[gear].support * x[where]
+        size = np.abs(scene.stiffness).max() * np.abs(x).max()
+        assert force == pytest.approx(np.zeros(scene.size), abs=1e-13 * size)

@@ -49,10 +49,10 @@ def unlimited(case: ls.Case, pinion: str) -> float:
     """
     train = build_train(case.replace({"rings.4.float": "1 mm", "rings.5.float": "1 mm"}))
     setting = Setting.at(train, 1)
-    scene = setting.elements.scene
+    at = setting.elements.coordinates
     _, z = setting.branch_of(certified(train, 1).equilibrium)
-    x = z[: scene.size] * setting.elements.length
-    return abs(float(train.rings[pinion].across @ scene.moved(pinion, x))) * 1e6
+    x = z[: at.size] * setting.elements.length
+    return abs(float(train.rings[pinion].across @ at.moved(pinion) @ x)) * 1e6
 
 
 @pytest.mark.parametrize("pinion", ["4", "5"])

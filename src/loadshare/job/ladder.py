@@ -24,6 +24,7 @@ from loadshare.errors import Refused
 from loadshare.job.least import least_places
 from loadshare.job.machine import Answers, Machine, engine_at_hand
 from loadshare.scene import assemble
+from loadshare.scene.assemble import scene_of
 from loadshare.scene.elements import elements_of
 from loadshare.scene.scene import Scene
 from loadshare.solver import Iteration, Options, Record, solve_scene
@@ -33,6 +34,7 @@ from loadshare.solver.position import Known, coordinates_of
 from loadshare.solver.runaway import runaway
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.situations import situation_of
 from loadshare.train.train import Train
 
 HOT, SEARCHED = "hot path", "proximal search"
@@ -144,9 +146,7 @@ def hot_answers(
     found = machine.answer(situations, tolerance, engine_at_hand(engine, len(indices)))
     answers = {}
     loose = np.flatnonzero(found.passed & ~found.determined).tolist()
-    least, proved = least_places(
-        machine, situations, found, loose, lambda row: assemble(train, indices[row]), tolerance
-    )
+    least, proved = least_places(machine, situations, found, loose, tolerance)
     for row in np.flatnonzero(found.passed).tolist():
         index = indices[row]
         equilibrium = least.get(row) or found.equilibria.one(row, index)
@@ -176,7 +176,7 @@ def _hot_record(machine: Machine, found: Answers, row: int) -> Record:
     }
     radials = {
         r.name: Role.IN_PLAY if place else Role.OPEN
-        for r, place in zip(elements.scene.radials, code[elements.rows :], strict=True)
+        for r, place in zip(elements.radials, code[elements.rows :], strict=True)
     }
     redundants = basis.redundant.shape[1]
     return Record(
@@ -186,8 +186,8 @@ def _hot_record(machine: Machine, found: Answers, row: int) -> Record:
         iterations=(),
         plan=Plan(rows, radials),
         rounds=int(found.turns[row]),
-        removed=elements.scene.removed,
-        coordinates=elements.scene.coordinates,
+        removed=elements.removed,
+        coordinates=elements.coordinates.names,
     )
 
 
@@ -231,8 +231,9 @@ def climb(
         If no rung gives a certified answer; the message says what failed at the first rung and
         carries its figures.
     """
-    scene = assemble(train, index)
-    if is_unbalanced(elements_of(scene), scene.load):
+    elements = elements_of(train)
+    scene = scene_of(elements, situation_of(train, index))
+    if is_unbalanced(elements, scene.load):
         _refuse_if_none(scene, PLAINLY)
     first: Refused | None = None
     known = Known(work=Work(steps))

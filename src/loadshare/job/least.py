@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from loadshare.certify.bound import Bounds
 from loadshare.job.machine import Answers, Machine
-from loadshare.scene.scene import Scene
+from loadshare.scene.assemble import scene_of
 from loadshare.solver.position import of_least_norm
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import Situations
@@ -20,7 +20,6 @@ def least_places(
     situations: Situations,
     found: Answers,
     rows: Sequence[int],
-    scene_of: Callable[[int], Scene],
     tolerance: float,
 ) -> tuple[dict[int, Equilibrium], dict[int, tuple[Bounds, int]]]:
     """Move some answers to their least places, in place, and return them with what is open.
@@ -36,8 +35,6 @@ def least_places(
         To these situations; renewed.
     rows : sequence of int
         Numbers of the answers to move.
-    scene_of : callable
-        Scene of a number.
     tolerance : float
         Largest scaled residual of a certified answer.
 
@@ -48,7 +45,7 @@ def least_places(
     dict of int to (Bounds, int)
         Where the bounds of those that moved stand.
     """
-    scenes = {row: scene_of(row) for row in rows}
+    scenes = {row: scene_of(machine.elements, situations.take(slice(row, row + 1))) for row in rows}
     claimed = {row: found.equilibria.one(row, scene.position) for row, scene in scenes.items()}
     least = {row: of_least_norm(scenes[row], claimed[row]) for row in rows}
     moved = [row for row in rows if least[row].displacement is not claimed[row].displacement]

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from loadshare import compilation
 from loadshare.certify import Judge, Verdicts
 from loadshare.certify.validity import Measuring, measuring
-from loadshare.scene import assemble
 from loadshare.scene.data import Data, data_of
 from loadshare.scene.elements import Elements, elements_of
 from loadshare.solver.balance import is_unbalanced
@@ -189,7 +188,7 @@ class Machine:
     @cached_property
     def elements(self) -> Elements:
         """Statics of the train."""
-        return elements_of(assemble(self.train, 1))
+        return elements_of(self.train)
 
     @cached_property
     def judge(self) -> Judge:

@@ -8,7 +8,7 @@ once; single samples that it leaves climb the ladder.
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from itertools import islice
@@ -27,8 +27,6 @@ from loadshare.job.least import least_places
 from loadshare.job.machine import Machine, engine_named
 from loadshare.job.positions import Progress, wanted_positions
 from loadshare.job.table import Table
-from loadshare.scene import assemble
-from loadshare.scene.scene import Scene
 from loadshare.solver import Options
 from loadshare.solver.hot.exchange import Engine
 from loadshare.train import build_train
@@ -298,7 +296,7 @@ def _block(
         determined[:, columns] = found.determined.reshape(-1, count).T
         if least_norm:
             loose = np.flatnonzero(found.passed & ~found.determined).tolist()
-            least_places(machine, situations, found, loose, _scenes(samples, some), tolerance)
+            least_places(machine, situations, found, loose, tolerance)
     for row, p in np.argwhere(~certified).tolist():
         index = positions[p]
         try:
@@ -359,13 +357,3 @@ def _displacements(
         why = machine.measuring.refusals(here.take(large), found.take(large), deflection[large, p])
         refused |= {(int(large[k]), p): told for k, told in why.items()}
     return displaced, refused
-
-
-def _scenes(samples: Samples, positions: Sequence[int]) -> Callable[[int], Scene]:
-    """Scene of every equilibrium of some positions: position by position, sample by sample."""
-
-    def scene(number: int) -> Scene:
-        p, row = divmod(number, samples.count)
-        return assemble(build_train(samples.one(row)), positions[p])
-
-    return scene

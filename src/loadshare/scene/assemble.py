@@ -1,156 +1,111 @@
-"""From a train and a position to its scene."""
+"""From elements and their numbers to a scene in SI: the same rows, gaps and laws, one by one."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
-from loadshare.contact.law import RIGID, Law, PowerLaw
-from loadshare.contact.problem import ArcRow, Array, FollowingLaw, Row
-from loadshare.contact.radial import round_ring_law
-from loadshare.scene.coordinates import Coordinates, coordinates_of
+from loadshare.contact.law import Law, PowerLaw, TableLaw
+from loadshare.contact.problem import ArcRow, FollowingLaw, Row
+from loadshare.contact.radial import RadialLaw, round_ring_law
+from loadshare.scene.data import Data, data_of
+from loadshare.scene.elements import ArcElement, Elements, RadialElement, elements_of
 from loadshare.scene.scene import GearRadial, Scene
 from loadshare.train.memory import SlipFriction, SlipStop
-from loadshare.train.ring import DrumRing
 from loadshare.train.situations import Situations, situation_of
-from loadshare.train.train import Train
+from loadshare.train.train import Spline, Train
 
 
 def assemble(train: Train, index: int) -> Scene:
     """Assemble the scene of position `index` (1-based) of a train."""
-    situation = situation_of(train, index)
-    at = coordinates_of(train)
-    stiffness, load = _linear_part(train, situation, at)
+    return scene_of(elements_of(train), situation_of(train, index))
+
+
+def scene_of(elements: Elements, situations: Situations) -> Scene:
+    """Assemble the scene of the first sample of some situations."""
+    situation = situations.take(slice(0, 1))
+    data, columns, vectors = data_of(elements, situation), elements.columns, elements.vectors
+    force, length = elements.force, elements.length
+    gap, springs = data.gap[0] * length, vectors[columns.springs]
+    stiffness = force / length / data.bending[0, columns.springs]
+    laws = [_law(elements, data, column) for column in range(len(elements.names))]
+    rows = range(columns.flat.start, columns.flat.stop)
+    levers = elements.train.levers
     return Scene(
-        train=train,
+        train=elements.train,
         situation=situation,
-        coordinates=at.names,
-        stiffness=stiffness,
-        load=load,
-        rows=(*_flanks(train, situation, at), *_stops(train, at)),
-        arcs=_arcs(train, situation, at),
-        radials=(*_round_rings(train, at), *_splines(train, at)),
-        rotation=at.rotation,
-        displacement=at.displacement,
-        removed=(*at.removed, *_idle(train)),
+        coordinates=elements.coordinates.names,
+        springs=springs,
+        stiffness=springs.T * stiffness @ springs,
+        load=data.load[0] * force + springs.T @ (stiffness * gap[columns.springs]),
+        rows=tuple(
+            Row(elements.names[k], elements.kinds[k], vectors[k], float(gap[k]), laws[k])
+            for k in rows
+        ),
+        arcs=tuple(
+            _arc(situation, arc, law)
+            for arc, law in zip(elements.arcs, laws[columns.arcs], strict=True)
+        ),
+        radials=tuple(
+            GearRadial(
+                r.name,
+                r.matrix,
+                r.centre,
+                source := _source(elements.train, situation, r),
+                {} if isinstance(source, RadialLaw) else levers(r.gear),
+                gear=r.gear,
+            )
+            for r in elements.radials
+        ),
+        rotation=elements.coordinates.rotation,
+        displacement=elements.coordinates.displacement,
+        removed=elements.removed,
     )
 
 
-def _idle(train: Train) -> list[tuple[str, str]]:
-    """Contacts and forces that never become a row, and why."""
-    flanks = [m.flank_name(False) for m in train.meshes.values() if math.isinf(m.backlash)]
-    frictions = [f"{s.name} friction" for s in train.splines.values() if s.friction_force == 0.0]
-    return [
-        *((name, "no backlash given: the flank cannot touch") for name in flanks),
-        *((name, "its bound is zero") for name in frictions),
-    ]
+def _law(elements: Elements, data: Data, column: int) -> Law:
+    """Law of a spring or contact, in SI."""
+    force, length = elements.force, elements.length
+    m = data.tabulated[column]
+    if m >= 0:
+        points = data.tables[0, m] * np.array([[force], [length]])
+        forces, compressions = points[:, np.isfinite(points[0])].tolist()
+        return TableLaw(tuple(forces), tuple(compressions))
+    b, c = float(data.bending[0, column]), float(data.hertz[0, column])
+    return PowerLaw(b * length / force, c * length / math.cbrt(force) ** 2)
 
 
-def _linear_part(train: Train, situation: Situations, at: Coordinates) -> tuple[Array, Array]:
-    """H from elastic shafts and supports, f from external torques and clocking."""
-    stiffness, load = np.zeros((at.size, at.size)), np.zeros(at.size)
-    for gear, torque in situation.torques.items():
-        r = at.rotation[gear]
-        if r.index is not None:
-            load[r.index] += torque * r.rate
-    for shaft in train.shafts.values():
-        if math.isinf(shaft.stiffness):
-            continue
-        a, b = at.rotation[shaft.first], at.rotation[shaft.second]
-        wind = np.zeros(at.size)
-        for end, sign in ((a, 1.0), (b, -1.0)):
-            if end.index is not None:
-                wind[end.index] += sign * end.rate
-        preset = shaft.clocking - a.constant + b.constant
-        stiffness += shaft.stiffness * np.outer(wind, wind)
-        load += shaft.stiffness * preset * wind
-    for name, where in at.displacement.items():
-        support = train.gears[name].support
-        if support is not None:
-            stiffness[where, where] += np.diag(support)
-    for gear, where in at.slip.items():
-        bent = at.components(at.displacement[gear]) - at.components(where)
-        stiffness += train.splines[gear].bending_stiffness * bent.T @ bent
-    return stiffness, load
+def _arc(situation: Situations, element: ArcElement, law: Law) -> ArcRow:
+    arc = situation.arc(element.ring, element.side)
+    sagitta = float(situation.stop[0, element.drum].max()) ** 2 / (2.0 * arc.distance)
+    return ArcRow(element.name, arc, element.relative, law, sagitta)
 
 
-def _flanks(train: Train, situation: Situations, at: Coordinates) -> list[Row]:
-    """Rows of all flanks that can touch."""
-    rows = []
-    positions = train.mesh_positions(situation.position)
-    for mesh in train.meshes.values():
-        position = positions[mesh.name]
-        relative = at.moved(mesh.driver) - at.moved(mesh.driven)
-        errors = situation.offset_of(mesh.driver) - situation.offset_of(mesh.driven)
-        constants = (at.rotation[mesh.driver].constant, at.rotation[mesh.driven].constant)
-        for drive in mesh.flanks:
-            on_driver, on_driven, normal = mesh.direction(drive)
-            vector = normal @ relative
-            for gear, arm in ((mesh.driver, on_driver), (mesh.driven, on_driven)):
-                r = at.rotation[gear]
-                if r.index is not None:
-                    vector[r.index] += arm * r.rate
-            at_rest = mesh.approach(drive, position, constants, errors)
-            kind = "drive flank" if drive else "coast flank"
-            name = mesh.flank_name(drive)
-            rows.append(Row(name, kind, vector, -at_rest, mesh.law(position)))
-    return rows
+def _source(train: Train, here: Situations, radial: RadialElement) -> RadialLaw | FollowingLaw:
+    """Law of a radial element, or what it follows from."""
+    k = radial.number
+    if radial.kind == "ring":
+        return round_ring_law(float(here.round_radius[0, k]), float(here.round_stiffness[0, k]))
+    spline = _spline(train.splines[radial.gear], *here.spline[0, k].tolist())
+    parts: dict[str, FollowingLaw] = {
+        "spline": spline,
+        "friction": SlipFriction(spline),
+        "clearance": SlipStop(spline),
+    }
+    return parts[radial.kind]
 
 
-def _arcs(train: Train, situation: Situations, at: Coordinates) -> tuple[ArcRow, ...]:
-    """Exclusion arcs of all drums."""
-    arcs = []
-    for ring in train.drums:
-        for side, neighbour in enumerate(ring.neighbours):
-            relative = at.moved(ring.gear) - at.moved(neighbour)
-            arc = situation.arc(ring, side)
-            sagitta = max(ring.up, ring.down) ** 2 / (2.0 * arc.distance)
-            arcs.append(ArcRow(ring.arc_name(neighbour), arc, relative, _wall(ring), sagitta))
-    return tuple(arcs)
-
-
-def _stops(train: Train, at: Coordinates) -> list[Row]:
-    """Radial stops of all drums."""
-    rows = []
-    for ring in train.drums:
-        across = ring.across @ at.moved(ring.gear)
-        upper, lower = ring.stop_names
-        rows.append(Row(upper, "stop", across, ring.up, _wall(ring)))
-        rows.append(Row(lower, "stop", -across, ring.down, _wall(ring)))
-    return rows
-
-
-def _wall(ring: DrumRing) -> Law:
-    return RIGID if math.isinf(ring.stiffness) else PowerLaw(1.0 / ring.stiffness)
-
-
-def _round_rings(train: Train, at: Coordinates) -> list[GearRadial]:
-    """Round rings as radial elements."""
-    found = []
-    for ring in train.rounds:
-        moved = at.components(at.displacement[ring.gear])
-        centre = train.gears[ring.gear].frame @ ring.offset
-        law = round_ring_law(ring.radius, ring.stiffness)
-        found.append(GearRadial(ring.name, moved, centre, law, gear=ring.gear))
-    return found
-
-
-def _splines(train: Train, at: Coordinates) -> list[GearRadial]:
-    """Splines as radial elements: whole, or with memory as friction and clearance of their slip."""
-    found: list[GearRadial] = []
-    origin = np.zeros(2)
-    for gear, spline in train.splines.items():
-        parts: list[tuple[str, Array, Array, FollowingLaw]]
-        if train.slip is None:
-            parts = [(spline.name, at.components(at.displacement[gear]), origin, spline)]
-        else:
-            slipped = at.components(at.slip[gear])
-            before = train.gears[gear].frame @ train.slip[gear]
-            parts = [
-                (spline.name, slipped, before, SlipFriction(spline)),
-                (spline.stop_name, slipped, origin, SlipStop(spline)),
-            ]
-        levers = train.levers(gear)
-        found += [GearRadial(*part, levers, gear=gear) for part in parts]
-    return found
+def _spline(
+    spline: Spline, stiffness: float, stick: float, reach: float, bound: float, rate: float
+) -> Spline:
+    """Return a spline with its numbers in a sample."""
+    return replace(
+        spline,
+        bending_stiffness=stiffness,
+        stick_limit=None if math.isnan(stick) else stick,
+        clearance=reach,
+        friction_force=None if math.isnan(bound) else bound,
+        friction_per_torque=rate,
+    )

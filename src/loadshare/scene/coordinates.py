@@ -6,9 +6,30 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from loadshare.scene.scene import Array, Rotation
 from loadshare.train.train import Train
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Rotation:
+    """How the rotation of a gear follows from the coordinates: φ = rate · x[index] + constant.
+
+    Attributes
+    ----------
+    index : int or None
+        Coordinate (an arc length on the base circle [m]), or None for a gear that cannot turn.
+    rate : float
+        [rad/m].
+    constant : float
+        [rad], from the clocking of rigid shafts.
+    """
+
+    index: int | None
+    rate: float
+    constant: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +66,15 @@ class Coordinates:
     def components(self, where: slice) -> Array:
         """Matrix (2, n) that picks two components."""
         return np.asarray(np.eye(self.size)[where])
+
+    def turned(self, *arms: tuple[str, float]) -> Array:
+        """Row (n,) of a sum of rotations, each times an arm [m]; a length, or an angle for 1."""
+        row = np.zeros(self.size)
+        for gear, arm in arms:
+            rotation = self.rotation[gear]
+            if rotation.index is not None:
+                row[rotation.index] += arm * rotation.rate
+        return row
 
     def moved(self, gear: str) -> Array:
         """Displacement of a gear as a matrix (3, n); zero for one that cannot move."""

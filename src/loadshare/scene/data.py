@@ -13,12 +13,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.elements import Elements, wind_up
-from loadshare.scene.scene import Array
-from loadshare.train.memory import SlipFriction, SlipStop
-from loadshare.train.ring import RoundRing
+from loadshare.scene.coordinates import Array
+from loadshare.scene.elements import Elements
 from loadshare.train.situations import Situations
-from loadshare.train.train import Spline
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,151 +100,86 @@ class Data:
 
 def data_of(elements: Elements, situations: Situations) -> Data:
     """Write the numbers of many situations in the order and the units of the elements."""
-    scene, train = elements.scene, elements.scene.train
-    force, length = elements.force, elements.length
-    size = scene.size
-    order = {g: k for k, g in enumerate(train.gears)}
-    to_load = np.zeros((len(order), size))
-    for gear, k in order.items():
-        r = scene.rotation[gear]
-        if r.index is not None:
-            to_load[k, r.index] = r.rate
-    gaps, bends, hertz = _springs_of(elements, situations)
-    tabulated = np.full(len(elements.kinds), -1)
-    meshes = list(train.meshes.values())
-    flat = situations.offset.reshape(len(situations.offset), -1)
-    flanks = [(m, mesh, drive) for m, mesh in enumerate(meshes) for drive in mesh.flanks]
-    shifts = np.zeros((len(flanks), len(order), 3))
-    for e, (_, mesh, drive) in enumerate(flanks):
-        normal = mesh.direction(drive)[2]
-        shifts[e, order[mesh.driver]], shifts[e, order[mesh.driven]] = normal, -normal
-    nearer = shifts.reshape(len(flanks), -1) @ flat.T
-    for e, (m, mesh, drive) in enumerate(flanks):
-        on_driver, on_driven, _ = mesh.direction(drive)
-        constant = on_driver * scene.rotation[mesh.driver].constant
-        constant += on_driven * scene.rotation[mesh.driven].constant
-        room = situations.gap[:, m] if drive else situations.backlash[:, m]
-        gaps.append(room - constant - nearer[e])
-        bends.append(situations.bending[:, m])
-        hertz.append(situations.hertz[:, m])
-        if situations.table.shape[-1] and situations.table[0, m, 0, 1] > 0.0:
-            tabulated[elements.springs + e] = m
-    none = np.zeros(1)
-    drums = situations.wall.shape[1]
-    for d in range(drums):
-        for side in (0, 1):
-            gaps.append(situations.stop[:, d, side])
-            bends.append(situations.wall[:, d])
-            hertz.append(none)
-    for d in range(drums):
-        for _ in (0, 1):
-            gaps.append(none)
-            bends.append(situations.wall[:, d])
-            hertz.append(none)
-    for radial in scene.radials:
-        for component in radial.centre:
-            gaps.append(np.array([component]))
-            bends.append(none)
-            hertz.append(none)
-    arcs = scene.arcs
+    at, columns, train = elements.coordinates, elements.columns, elements.train
+    force, length, arcs = elements.force, elements.length, elements.arcs
+    to_load = np.array([at.turned((gear, 1.0)) for gear in train.gears])
+    gaps: list[Block] = [(columns.flanks, elements.gaps_of_flanks(situations))]
+    bends: list[Block] = []
+    shafts = list(train.shafts.values())
+    for column, (s, rate) in enumerate(elements.shafts, columns.shafts.start):
+        a, b = (at.rotation[gear].constant for gear in (shafts[s].first, shafts[s].second))
+        gaps.append((column, (situations.clocking[:, s] - a + b) / rate))
+        bends.append((column, 1.0 / (situations.torsion[:, s] * rate**2)))
+    for column, (g, k) in enumerate(elements.supports, columns.supports.start):
+        bends.append((column, 1.0 / situations.support[:, g, k]))
+    if train.slip is not None:
+        bends.append((columns.bends, np.repeat(0.5 / situations.spline[:, :, 0], 2, axis=1)))
+    m = np.array([number for number, *_ in elements.flanks], dtype=np.intp)
+    bends.append((columns.flanks, situations.bending[:, m]))
+    gaps.append((columns.stops, situations.stop.reshape(len(situations.stop), -1)))
+    walls = np.repeat(situations.wall, 2, axis=1)
+    bends += [(columns.stops, walls), (columns.arcs, walls)]
+    gaps.append((columns.radials, np.array([c for r in elements.radials for c in r.centre])[None]))
+    tabulated = np.full(len(elements.names), -1)
+    if situations.table.shape[-1]:
+        tabulated[columns.flanks] = np.where(situations.table[0, m, 0, 1] > 0.0, m, -1)
+    nominal = [situations.arc(a.ring, a.side).nominal for a in arcs]
     return Data(
         count=situations.count,
         load=situations.torque @ to_load / force,
-        gap=_columns(gaps, 1.0 / length),
-        bending=_columns(bends, force / length),
-        hertz=_columns(hertz, math.cbrt(force) ** 2 / length),
+        gap=_side_by_side(elements, gaps, 1.0 / length),
+        bending=_side_by_side(elements, bends, force / length),
+        hertz=_side_by_side(
+            elements,
+            [(columns.flanks, situations.hertz[:, m])],
+            math.cbrt(force) ** 2 / length,
+        ),
         tabulated=tabulated,
         tables=situations.table / np.array([force, length])[:, None],
-        nominal=np.array([a.arc.nominal for a in arcs]).reshape(-1, 3) / length,
+        nominal=np.array(nominal).reshape(-1, 3) / length,
         shift=situations.arc_shift.reshape(len(situations.arc_shift), -1, 3) / length,
         clearance=situations.arc_clearance.reshape(len(situations.arc_clearance), -1) / length,
-        relative=np.array([a.relative for a in arcs]).reshape(-1, 3, size),
+        relative=np.array([a.relative for a in arcs]).reshape(-1, 3, at.size),
         radial=_radials(elements, situations),
-        carried=_carried(elements),
+        carried=elements.levers,
     )
 
 
-def _columns(values: list[Array], factor: float) -> Array:
-    """Stand one-dimensional arrays of length S or 1 side by side, times a factor."""
-    if not values:
-        return np.zeros((1, 0))
-    # Written lengthwise and turned at the end: a column of a wide table is slow to write.
-    table = np.empty((len(values), max(len(v) for v in values)))
-    for row, value in zip(table, values, strict=True):
-        row[:] = value
+Block = tuple[slice | int, Array]
+"""Columns, and their values (S or 1, columns), or (S or 1,) for a single one."""
+
+
+def _side_by_side(elements: Elements, blocks: list[Block], factor: float) -> Array:
+    """Put values in their columns, times a factor; zero elsewhere."""
+    table = np.zeros((max(len(values) for _, values in blocks), len(elements.names)))
+    for columns, values in blocks:
+        table[:, columns] = values
     table *= factor
-    return np.ascontiguousarray(table.T)
-
-
-def _springs_of(
-    elements: Elements, situations: Situations
-) -> tuple[list[Array], list[Array], list[Array]]:
-    """Presets and compliances of elastic shafts and supports."""
-    scene, train = elements.scene, elements.scene.train
-    gaps: list[Array] = []
-    bends: list[Array] = []
-    for s, shaft in enumerate(train.shafts.values()):
-        if math.isinf(shaft.stiffness):
-            continue
-        a, b = scene.rotation[shaft.first], scene.rotation[shaft.second]
-        _, rate = wind_up(scene, shaft.first, shaft.second)
-        gaps.append((situations.clocking[:, s] - a.constant + b.constant) / rate)
-        bends.append(1.0 / (situations.torsion[:, s] * rate**2))
-    for g, (name, gear) in enumerate(train.gears.items()):
-        if name not in scene.displacement:
-            continue
-        assert gear.support is not None
-        for k, stiffness in enumerate(gear.support):
-            if stiffness > 0.0:
-                gaps.append(np.zeros(1))
-                bends.append(1.0 / situations.support[:, g, k])
-    for radial in scene.radials:
-        if isinstance(radial.source, SlipFriction):
-            gaps += [np.zeros(1)] * 2
-            bends += [np.full(1, 0.5 / radial.source.spline.bending_stiffness)] * 2
-    return gaps, bends, [np.zeros(1)] * len(gaps)
+    return table
 
 
 def _radials(elements: Elements, situations: Situations) -> Array:
     """Numbers of every radial law, in the units of the force method."""
-    scene, train = elements.scene, elements.scene.train
+    here, radials = situations, elements.radials
+    count = max(map(len, (here.spline, here.round_radius, here.round_stiffness)))
+    table = np.zeros((count, len(radials), 6))
+    stiffness, stick, reach, bound, per_torque = np.moveaxis(here.spline, 2, 0)
+    for j, radial in enumerate(radials):
+        k, row = radial.number, table[:, j]
+        match radial.kind:
+            case "ring":
+                row[:, 2], row[:, 5] = here.round_radius[:, k], here.round_stiffness[:, k]
+            case "spline":
+                row[:, 0] = row[:, 5] = stiffness[:, k]
+                row[:, 1], row[:, 2], row[:, 3] = stick[:, k], reach[:, k], bound[:, k]
+                row[:, 4] = per_torque[:, k]
+            case "friction":
+                # Level for ever.
+                row[:, 2], row[:, 3], row[:, 5] = np.inf, bound[:, k], np.inf
+            case _:
+                # A rigid ring.
+                room = reach[:, k] - bound[:, k] / stiffness[:, k]
+                row[:, 2], row[:, 5] = np.maximum(room, 0.0), np.inf
     stiff = elements.force / elements.length
-    rounds = [n for n, r in train.rings.items() if isinstance(r, RoundRing)]
-    splines = list(train.splines)
-    varying = (situations.spline, situations.round_radius, situations.round_stiffness)
-    table = np.zeros((max(map(len, varying)), len(scene.radials), 6))
-    for j, radial in enumerate(scene.radials):
-        if isinstance(radial.source, Spline):
-            given = situations.spline[:, splines.index(radial.gear)]
-            table[:, j, 0] = table[:, j, 5] = given[:, 0] / stiff
-            table[:, j, 1:3] = given[:, 1:3] / elements.length
-            table[:, j, 3] = given[:, 3] / elements.force
-            table[:, j, 4] = given[:, 4]
-        elif isinstance(radial.source, SlipFriction | SlipStop):
-            # Friction is level for ever; its stop is a rigid ring. Both bounds are fixed.
-            (piece,) = radial.source.law(0.0).pieces
-            table[:, j, 2] = piece.length / elements.length
-            table[:, j, 3] = piece.force / elements.force
-            table[:, j, 5] = np.inf
-        else:
-            q = rounds.index(radial.gear)
-            table[:, j, 2] = situations.round_radius[:, q] / elements.length
-            table[:, j, 5] = situations.round_stiffness[:, q] / stiff
+    table /= np.array([stiff, elements.length, elements.length, elements.force, 1.0, stiff])
     return table
-
-
-def _carried(elements: Elements) -> Array:
-    """Torque over each spline per unit of every force [m]."""
-    scene, train = elements.scene, elements.scene.train
-    carried = np.zeros((len(scene.radials), len(elements.kinds)))
-    for j, radial in enumerate(scene.radials):
-        column = elements.springs
-        for mesh in train.meshes.values():
-            for drive in mesh.flanks:
-                on_driver, on_driven, _ = mesh.direction(drive)
-                if radial.gear == mesh.driver:
-                    carried[j, column] += on_driver
-                if radial.gear == mesh.driven:
-                    carried[j, column] += on_driven
-                column += 1
-    return carried

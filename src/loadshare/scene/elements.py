@@ -18,21 +18,28 @@ section 11.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from itertools import accumulate, pairwise
+from statistics import median
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.scene import Array, Scene
-from loadshare.train.memory import SlipFriction
+from loadshare.scene.coordinates import Array, Coordinates, coordinates_of
+from loadshare.train.mesh import Mesh
 from loadshare.train.ring import DrumRing
+from loadshare.train.situations import Situations, situation_of
+from loadshare.train.train import Train
 
 OPPOSED = 1e-4
 """Angle [rad] to which two arcs of a ring must be opposed for a squeeze between them to be sham."""
 SETS = 2000
 """Sets of which the statics are kept; with more, all are forgotten, so that memory is bounded."""
+KEPT = 4
+"""Trains of which the elements are kept, for those who ask for one position after another."""
 RANK = 1e-10
 """Singular values of directions below this, relative to the largest, count as zero."""
 
@@ -63,67 +70,239 @@ class Basis:
     loose: Array
 
 
-@dataclass(frozen=True, eq=False)
-class Elements:
-    """All elements of a scene: springs first, then rows, then two columns per radial element.
+@dataclass(frozen=True, slots=True)
+class Columns:
+    """Where each kind of element has its columns.
 
     Attributes
     ----------
-    scene : Scene
-        Of any position; gives names, coordinates and directions.
+    shafts, supports, bends : slice
+        Springs: elastic shafts, elastic supports, shafts of splines that remember their slip.
+    flanks, stops, arcs : slice
+        Contacts; those of arcs turn with the coordinates.
+    radials : slice
+        Two of every radial element.
+    """
+
+    shafts: slice
+    supports: slice
+    bends: slice
+    flanks: slice
+    stops: slice
+    arcs: slice
+    radials: slice
+
+    @classmethod
+    def of(cls, counts: Iterable[int]) -> Columns:
+        """Put kinds of so many columns after one another."""
+        ends = list(accumulate(counts, initial=0))
+        return cls(*(slice(*pair) for pair in pairwise(ends)))
+
+    @property
+    def springs(self) -> slice:
+        """All springs."""
+        return slice(self.shafts.start, self.bends.stop)
+
+    @property
+    def flat(self) -> slice:
+        """Contacts whose direction does not change: flanks and stops."""
+        return slice(self.flanks.start, self.stops.stop)
+
+    @property
+    def rings(self) -> slice:
+        """Contacts of drums: stops and arcs."""
+        return slice(self.stops.start, self.arcs.stop)
+
+    @property
+    def contacts(self) -> slice:
+        """All contacts."""
+        return slice(self.flanks.start, self.arcs.stop)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ArcElement:
+    """An exclusion arc of a drum ring.
+
+    Attributes
+    ----------
+    name : str
+    ring : DrumRing
+    drum, side : int
+        Number of the drum; which of its neighbours.
+    relative : ndarray, shape (3, n)
+        Relative displacement of the two centres from the coordinates.
+    """
+
+    name: str
+    ring: DrumRing
+    drum: int
+    side: int
+    relative: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RadialElement:
+    """A spline or a round ring, or with memory a part of a spline.
+
+    Attributes
+    ----------
+    name, gear : str
+    kind : {"ring", "spline", "friction", "clearance"}
+        With memory a spline is its friction and its clearance.
+    number : int
+        Of the round ring or spline.
+    matrix : ndarray, shape (2, n)
+        P.
+    centre : ndarray, shape (2,)
+        m [m].
+    """
+
+    name: str
+    gear: str
+    kind: str
+    number: int
+    matrix: Array
+    centre: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Elements:
+    """All elements of a train, each with its direction.
+
+    Attributes
+    ----------
+    train : Train
+    coordinates : Coordinates
+    columns : Columns
+        In this order.
     vectors : ndarray, shape (m, n)
-        A; rows of unit norm for springs, as they are for contacts.
-    springs : int
-        Their number s.
+        A; rows of unit norm for springs, as they are for contacts. Arcs stand at rest.
+    names : tuple of str, length m
     kinds : tuple of str, length m
-        "shaft", "support", or the kind of the row or "radial".
+        "shaft", "support", "bending", "drive flank", "coast flank", "stop", "arc" or "radial".
+    shafts : tuple of (int, float)
+        Number of every elastic shaft, and how many radians its wind-up is per unit.
+    supports : tuple of (int, int)
+        Number of the gear of every elastic support, and its axis.
+    flanks : tuple of (int, Mesh, bool)
+        Number of the mesh, the mesh, drive or coast flank.
+    arcs : tuple of ArcElement
+    radials : tuple of RadialElement
+    opposed : tuple of (int, int)
+        Numbers of the contacts that are the opposed arcs of one rigid ring. A float that rolls
+        between them moves across both; faces of both at once would wedge it in, unless the
+        neighbours give way.
     force, length : float
         Units [N], [m], rounded to powers of 8 and of 2: scaling by them is exact, cube roots
         included, so that answers do not depend on them.
     """
 
-    scene: Scene
+    train: Train
+    coordinates: Coordinates
+    columns: Columns
     vectors: Array
-    springs: int
+    names: tuple[str, ...]
     kinds: tuple[str, ...]
+    shafts: tuple[tuple[int, float], ...]
+    supports: tuple[tuple[int, int], ...]
+    flanks: tuple[tuple[int, Mesh, bool], ...]
+    arcs: tuple[ArcElement, ...]
+    radials: tuple[RadialElement, ...]
+    opposed: tuple[tuple[int, int], ...]
     force: float
     length: float
 
     @property
+    def size(self) -> int:
+        """Number of coordinates n."""
+        return self.coordinates.size
+
+    @cached_property
+    def springs(self) -> int:
+        """Number of springs."""
+        return int(self.columns.springs.stop)
+
+    @cached_property
+    def flat(self) -> int:
+        """Number of contacts whose direction does not change: flanks and stops."""
+        return len(self.names[self.columns.flat])
+
+    @cached_property
     def rows(self) -> int:
-        """Number of contact rows: flanks, stops, arcs."""
-        return len(self.scene.rows) + len(self.scene.arcs)
+        """Number of contacts: flanks, stops, arcs."""
+        return len(self.names[self.columns.contacts])
 
     def radial_column(self, j: int) -> int:
         """First of the two columns of a radial element."""
-        return self.springs + self.rows + 2 * j
+        return int(self.columns.radials.start) + 2 * j
 
-    @cached_property
+    @property
     def row_names(self) -> tuple[str, ...]:
-        """Names of the rows in the order of the columns."""
-        names = [r.name for r in self.scene.rows] + [a.name for a in self.scene.arcs]
-        return tuple(names)
+        """Names of the contacts."""
+        return self.names[self.columns.contacts]
 
     @cached_property
-    def opposed(self) -> tuple[tuple[int, int], ...]:
-        """Pairs of rows that are the opposed arcs of one ring.
+    def removed(self) -> tuple[tuple[str, str], ...]:
+        """What never became a coordinate or an element, and why."""
+        train = self.train
+        flanks = [m.flank_name(False) for m in train.meshes.values() if math.isinf(m.backlash)]
+        splines = [s.name for s in train.splines.values() if s.friction_force == 0.0]
+        return (
+            *self.coordinates.removed,
+            *((name, "no backlash given: the flank cannot touch") for name in flanks),
+            *((f"{name} friction", "its bound is zero") for name in splines),
+        )
 
-        A float that rolls between them moves across both. Faces of both at once would wedge it in,
-        unless the neighbours give way.
+    @cached_property
+    def levers(self) -> Array:
+        """Torque that reaches the gear of each radial element other than through its meshes.
+
+        Per unit of the force of every column [m], shape (radials, m).
         """
-        pairs = []
-        first, arcs = len(self.scene.rows), self.scene.arcs
-        for k in range(0, len(arcs), 2):
-            normals = [a.arc.normal(np.zeros(3)) for a in arcs[k : k + 2]]
-            rigid = all(_between_rigid(self.scene, a.name) for a in arcs[k : k + 2])
-            if rigid and np.linalg.norm(normals[0] + normals[1]) < OPPOSED:
-                pairs.append((first + k, first + k + 1))
-        return tuple(pairs)
+        found = np.zeros((len(self.radials), len(self.names)))
+        for j, radial in enumerate(self.radials):
+            levers = self.train.levers(radial.gear)
+            names = self.names[self.columns.flanks]
+            found[j, self.columns.flanks] = [levers.get(name, 0.0) for name in names]
+        return found
+
+    @cached_property
+    def at_rest(self) -> Array:
+        """Approach of every flank from clockings of rigid shafts [m]."""
+        turned = self.coordinates.rotation
+        return np.array(
+            [
+                on_driver * turned[mesh.driver].constant + on_driven * turned[mesh.driven].constant
+                for _, mesh, drive in self.flanks
+                for on_driver, on_driven, _ in (mesh.direction(drive),)
+            ]
+        )
+
+    @cached_property
+    def nearer(self) -> Array:
+        """Approach of every flank per centre offset, shape (flanks, 3 gears)."""
+        order = self.train.order
+        found = np.zeros((len(self.flanks), len(order), 3))
+        for e, (_, mesh, drive) in enumerate(self.flanks):
+            normal = mesh.direction(drive)[2]
+            found[e, order[mesh.driver]], found[e, order[mesh.driven]] = normal, -normal
+        return found.reshape(len(self.flanks), -1)
+
+    def gaps_of_flanks(self, situations: Situations) -> Array:
+        """Gap of every flank with errors and clockings [m], shape (S or 1, flanks)."""
+        m = np.array([number for number, *_ in self.flanks], dtype=np.intp)
+        drive = np.array([drives for *_, drives in self.flanks], dtype=bool)
+        found = situations.backlash[:, m]
+        if len(found) < len(situations.gap):
+            found = np.repeat(found, len(situations.gap), axis=0)
+        found[:, drive] = situations.gap[:, m[drive]]
+        flat = situations.offset.reshape(len(situations.offset), -1)
+        return np.asarray(found - self.at_rest - (self.nearer @ flat.T).T)
 
     @property
     def switches(self) -> int:
         """Length of a set's code: one number per row, one per radial element."""
-        return self.rows + len(self.scene.radials)
+        return self.rows + len(self.radials)
 
     @cached_property
     def kept(self) -> dict[tuple[Any, ...], Any]:
@@ -166,70 +345,122 @@ class Elements:
         return known
 
 
-def elements_of(scene: Scene) -> Elements:
-    """Set up the force method for a scene's train."""
-    springs, kinds = spring_directions(scene)
-    origin = np.zeros(scene.size)
-    rows = [r.vector for r in scene.rows_at(origin)]
-    radials = [component for r in scene.radials for component in r.matrix]
-    vectors = np.array([*springs, *rows, *radials]).reshape(-1, scene.size)
-    kinds += [r.kind for r in scene.rows] + ["arc"] * len(scene.arcs)
-    kinds += ["radial"] * len(radials)
-    return Elements(
-        scene,
-        vectors,
-        len(springs),
-        tuple(kinds),
-        8.0 ** round(math.log(scene.force_unit(), 8.0)),
-        2.0 ** round(math.log2(scene.length_unit())),
+@lru_cache(maxsize=KEPT)
+def elements_of(train: Train) -> Elements:
+    """Set up the force method for a train."""
+    at, here, order = coordinates_of(train), situation_of(train, 1), train.order
+    unit = np.eye(at.size)
+    shafts, shaft_columns = [], []
+    for s, shaft in enumerate(train.shafts.values()):
+        if not math.isinf(shaft.stiffness):
+            wind = at.turned((shaft.first, 1.0), (shaft.second, -1.0))
+            rate = float(np.linalg.norm(wind))
+            shafts.append((s, rate))
+            shaft_columns.append((shaft.name, "shaft", wind / rate if rate else wind))
+    supports, support_columns = [], []
+    for name, where in at.displacement.items():
+        support = train.gears[name].support
+        for k in np.flatnonzero(support).tolist() if support is not None else ():
+            supports.append((order[name], k))
+            support_columns.append((f"bearing {name}", "support", unit[where.start + k]))
+    bends = [
+        # The shaft of a spline that remembers its slip bends by p − s.
+        (f"{train.splines[gear].name} shaft", "bending", bent)
+        for gear, where in at.slip.items()
+        for bent in (unit[at.displacement[gear]] - unit[where]) / np.sqrt(2.0)
+    ]
+    flanks = tuple(
+        (m, mesh, drive) for m, mesh in enumerate(train.meshes.values()) for drive in mesh.flanks
+    )
+    stops = [
+        (name, "stop", sign * ring.across @ at.moved(ring.gear))
+        for ring in train.drums
+        for name, sign in zip(ring.stop_names, (1.0, -1.0), strict=True)
+    ]
+    arcs = tuple(
+        ArcElement(ring.arc_name(n), ring, d, side, at.moved(ring.gear) - at.moved(n))
+        for d, ring in enumerate(train.drums)
+        for side, n in enumerate(ring.neighbours)
+    )
+    normals = [here.arc(a.ring, a.side).normal(np.zeros(3)) for a in arcs]
+    radials = tuple(_radials(train, at))
+    groups: list[list[tuple[str, str, Array]]] = [
+        shaft_columns,
+        support_columns,
+        bends,
+        [_flank(at, mesh, drive) for _, mesh, drive in flanks],
+        stops,
+        [(a.name, "arc", -(n @ a.relative)) for a, n in zip(arcs, normals, strict=True)],
+        [(r.name, "radial", component) for r in radials for component in r.matrix],
+    ]
+    columns = [column for group in groups for column in group]
+    flat = len(flanks) + len(stops)
+    opposed = tuple(
+        (flat + k, flat + k + 1)
+        for k in range(0, len(arcs), 2)
+        if np.linalg.norm(normals[k] + normals[k + 1]) < OPPOSED
+        and not any(train.gears[n].moves for n in arcs[k].ring.neighbours)
+    )
+    elements = Elements(
+        train,
+        at,
+        Columns.of(map(len, groups)),
+        np.array([vector for *_, vector in columns]).reshape(-1, at.size),
+        tuple(name for name, *_ in columns),
+        tuple(kind for _, kind, _ in columns),
+        tuple(shafts),
+        tuple(supports),
+        flanks,
+        arcs,
+        radials,
+        opposed,
+        1.0,
+        1.0,
+    )
+    force, length = _units(elements, here)
+    return replace(
+        elements, force=8.0 ** round(math.log(force, 8.0)), length=2.0 ** round(math.log2(length))
     )
 
 
-def _between_rigid(scene: Scene, arc: str) -> bool:
-    """Whether the neighbour of an arc stands in a rigid bearing."""
-    train = scene.train
-    neighbours = {
-        ring.arc_name(n): n
-        for ring in train.rings.values()
-        if isinstance(ring, DrumRing)
-        for n in ring.neighbours
-    }
-    return not train.gears[neighbours[arc]].moves
+def _flank(at: Coordinates, mesh: Mesh, drive: bool) -> tuple[str, str, Array]:
+    """Name, kind and row of a flank."""
+    on_driver, on_driven, normal = mesh.direction(drive)
+    row = normal @ (at.moved(mesh.driver) - at.moved(mesh.driven))
+    row += at.turned((mesh.driver, on_driver), (mesh.driven, on_driven))
+    return mesh.flank_name(drive), "drive flank" if drive else "coast flank", row
 
 
-def spring_directions(scene: Scene) -> tuple[list[Array], list[str]]:
-    """Unit directions (n,) of elastic shafts and supports, and which of these they are."""
-    train = scene.train
-    vectors, kinds = [], []
-    for shaft in train.shafts.values():
-        if not math.isinf(shaft.stiffness):
-            vectors.append(wind_up(scene, shaft.first, shaft.second)[0])
-            kinds.append("shaft")
-    for name, where in scene.displacement.items():
-        support = train.gears[name].support
-        assert support is not None
-        for k, stiffness in enumerate(support):
-            if stiffness > 0.0:
-                vectors.append(np.eye(scene.size)[where.start + k])
-                kinds.append("support")
-    for radial in scene.radials:
-        if isinstance(radial.source, SlipFriction):
-            # The shaft of a spline that remembers its slip bends by p − s.
-            bent = np.eye(scene.size)[scene.displacement[radial.gear]] - radial.matrix
-            vectors += list(bent / np.sqrt(2.0))
-            kinds += ["bending"] * 2
-    return vectors, kinds
+def _radials(train: Train, at: Coordinates) -> Iterator[RadialElement]:
+    """Yield round rings, then splines, each whole, or with memory as friction and clearance."""
+    origin = np.zeros(2)
+    for k, ring in enumerate(train.rounds):
+        moved = at.components(at.displacement[ring.gear])
+        centre = train.gears[ring.gear].frame @ ring.offset
+        yield RadialElement(ring.name, ring.gear, "ring", k, moved, centre)
+    for k, (gear, spline) in enumerate(train.splines.items()):
+        if train.slip is None:
+            moved = at.components(at.displacement[gear])
+            yield RadialElement(spline.name, gear, "spline", k, moved, origin)
+            continue
+        slipped = at.components(at.slip[gear])
+        before = train.gears[gear].frame @ train.slip[gear]
+        yield RadialElement(spline.name, gear, "friction", k, slipped, before)
+        yield RadialElement(spline.stop_name, gear, "clearance", k, slipped, origin)
 
 
-def wind_up(scene: Scene, first: str, second: str) -> tuple[Array, float]:
-    """Return the unit vector of a shaft's wind-up, and how many radians a unit along it is."""
-    wind = np.zeros(scene.size)
-    for gear, sign in ((first, 1.0), (second, -1.0)):
-        r = scene.rotation[gear]
-        if r.index is not None:
-            wind[r.index] += sign * r.rate
-    size = float(np.linalg.norm(wind))
-    return (wind / size if size else wind), size
+def _units(elements: Elements, here: Situations) -> tuple[float, float]:
+    """Force and length that a scene is measured by (see `Scene`)."""
+    train, flanks = elements.train, elements.flanks
+    radius = [g.base_radius for g in train.gears.values()]
+    force = float((np.abs(here.torque[0]) / radius).max(initial=0.0)) or 1.0
+    positions = train.mesh_positions(here.position)
+    gaps = elements.gaps_of_flanks(here)[0]
+    drive = [(e, mesh) for e, (_, mesh, drives) in enumerate(flanks) if drives]
+    if not drive:
+        return force, 1e-6
+    yielded = median(mesh.law(positions[mesh.name]).compression(force) for _, mesh in drive)
+    return force, max(yielded, 1e-3 * max(abs(gaps[e]) for e, _ in drive))
 
 
 def unresisted(directions: Array) -> Array:

@@ -10,29 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.contact.problem import ContactProblem, Radial
+from loadshare.scene.coordinates import Rotation
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True)
-class Rotation:
-    """How the rotation of a gear follows from the coordinates: φ = rate · x[index] + constant.
-
-    Attributes
-    ----------
-    index : int or None
-        Coordinate (an arc length on the base circle [m]), or None for a gear that cannot turn.
-    rate : float
-        [rad/m].
-    constant : float
-        [rad], from the clocking of rigid shafts.
-    """
-
-    index: int | None
-    rate: float
-    constant: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,6 +47,8 @@ class Scene(ContactProblem):
     radials : tuple of GearRadial
     train, situation
         Where it comes from.
+    springs : ndarray, shape (k, n)
+        Directions of shafts and supports.
     rotation : mapping of gear to Rotation
     displacement : mapping of gear to slice
         Where the two displacement components of a moving gear stand.
@@ -75,6 +59,7 @@ class Scene(ContactProblem):
     radials: tuple[GearRadial, ...]
     train: Train
     situation: Situations
+    springs: Array
     rotation: dict[str, Rotation]
     displacement: dict[str, slice]
     removed: tuple[tuple[str, str], ...]

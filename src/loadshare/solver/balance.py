@@ -35,11 +35,9 @@ def is_unbalanced(elements: Elements, load: Array) -> bool:
     size = float(np.linalg.norm(load))
     if not size:
         return False
-    flat = elements.springs + len(elements.scene.rows)
-    pushing = elements.vectors[elements.springs : flat]
-    arcs = [a.relative for a in elements.scene.arcs]
-    radials = elements.vectors[elements.springs + elements.rows :]
-    held = np.vstack([elements.vectors[: elements.springs], radials, *arcs])
+    columns, vectors = elements.columns, elements.vectors
+    pushing, arcs = vectors[columns.flat], [a.relative for a in elements.arcs]
+    held = np.vstack([vectors[columns.springs], vectors[columns.radials], *arcs])
     try:
         forces, _ = nnls(np.vstack([held, -held, pushing]).T, load / size)
     except RuntimeError:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from loadshare.contact.radial import RadialLaw
 from loadshare.solver.hot import places as at
 from loadshare.study.follow.active import switch_names
 from loadshare.study.follow.line import Line
@@ -92,22 +91,22 @@ def events_of(line: Line, position: int, change: Change) -> list[Event]:
     change : Change
     """
     elements = line.elements
-    scene, rows = elements.scene, elements.rows
+    rows, kinds = elements.rows, elements.kinds[elements.columns.contacts]
     names = switch_names(elements)
     pairs = list(zip(change.before.code, change.after.code, strict=True))
     changed = [k for k, (here, then) in enumerate(pairs) if here != then]
     found = []
     for k in sorted(changed, key=lambda k: (k >= rows, names[k] if k < rows else "")):
-        ring = k >= rows and isinstance(scene.radials[k - rows].source, RadialLaw)
+        ring = k >= rows and elements.radials[k - rows].kind == "ring"
         before, after = (_state(code, k < rows, ring) for code in pairs[k])
         if before == after:
             continue
         gear = None
         if k >= rows:
-            gear = scene.radials[k - rows].gear
+            gear = elements.radials[k - rows].gear
             kind = _SPLINE.get((before, after), f"{before} becomes {after}")
-        elif k >= len(scene.rows) or scene.rows[k].kind == "stop":
-            gear = next(g for g in scene.train.rings if names[k].startswith(f"ring {g}:"))
+        elif kinds[k] in ("stop", "arc"):
+            gear = next(g for g in elements.train.rings if names[k].startswith(f"ring {g}:"))
             kind = f"float {'reaches' if after == 'closed' else 'leaves'} boundary"
         else:
             kind = f"contact {'closes' if after == 'closed' else 'opens'}"

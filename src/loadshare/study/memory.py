@@ -24,6 +24,7 @@ from loadshare.contact.plan import Plan
 from loadshare.errors import Refused
 from loadshare.job.ladder import SEARCHED, Answer, rungs
 from loadshare.scene import assemble
+from loadshare.scene.assemble import scene_of
 from loadshare.scene.data import data_of
 from loadshare.scene.elements import elements_of
 from loadshare.scene.scene import Array, Scene
@@ -149,10 +150,10 @@ def _searched(train: Train, index: int) -> Answer | None:
     """
     if any(spline.friction_force is None for spline in train.splines.values()):
         return None
-    scene = assemble(train, index)
-    elements = elements_of(scene)
+    elements, situation = elements_of(train), situation_of(train, index)
+    scene, data = scene_of(elements, situation), data_of(elements, situation)
     try:
-        data = data_of(elements, situation_of(train, index))
+        laws = {r.name: r.law(0.0) for r in scene.radials}
     except ValueError:
         # A spline has no law with memory; the general programme says why.
         return None
@@ -166,7 +167,7 @@ def _searched(train: Train, index: int) -> Answer | None:
         x=state.x[0] * elements.length,
         forces=forces,
         radial_forces={name: force[k : k + 2] for name, k in columns.items()},
-        laws={r.name: r.law(0.0) for r in scene.radials},
+        laws=laws,
         kind="force method",
         iterations=(),
     )
@@ -334,6 +335,7 @@ def _without_slip(scene: Scene, gears: tuple[str, ...], slips: Mapping[str, Vect
         coordinates=tuple(scene.coordinates[k] for k in others),
         stiffness=scene.stiffness[np.ix_(others, others)],
         load=scene.load[others] - scene.stiffness[np.ix_(others, lost)] @ values,
+        springs=cut(scene.springs),
         rows=tuple(replace(r, vector=cut(r.vector)) for r in scene.rows),
         arcs=tuple(replace(a, relative=cut(a.relative)) for a in scene.arcs),
         radials=tuple(

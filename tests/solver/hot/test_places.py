@@ -19,6 +19,7 @@ from loadshare.certify.tolerance import TOLERANCE
 from loadshare.contact.radial import RadialLaw, round_ring_law, spline_law
 from loadshare.job.ladder import HOT
 from loadshare.job.machine import Machine
+from loadshare.scene import assemble
 from loadshare.scene.data import data_of
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot import vectorised
@@ -230,13 +231,11 @@ def test_a_solved_element_stands_on_its_law(name):
     found = machine.answer(group.situations(1), TOLERANCE, vectorised.settle)
     seen = set()
     for row in np.flatnonzero(found.passed)[:25].tolist():
-        other = Machine(build_train(group.one(row)))
+        other = assemble(build_train(group.one(row)), 1)
         equilibrium = found.equilibria.one(row, 1)
-        for j, radial in enumerate(machine.elements.scene.radials):
-            torque = other.train.transmitted(radial.gear, equilibrium.flank_force)
-            law = other.elements.scene.radials[j].law(torque)
-            gear = other.train.gears[radial.gear]
-            centre = other.elements.scene.radials[j].centre
+        for j, radial in enumerate(other.radials):
+            law = radial.law(other.train.transmitted(radial.gear, equilibrium.flank_force))
+            gear, centre = other.train.gears[radial.gear], radial.centre
             radius = float(np.hypot(*(gear.frame @ equilibrium.displacement[radial.gear] - centre)))
             size = float(np.linalg.norm(equilibrium.radial_reaction[radial.name]))
             low, high = law.interval(radius, 1e-13)
@@ -271,7 +270,7 @@ def test_torque_that_reaches_the_spline_bounds_its_friction():
     carried = found.equilibria.flank_force @ data.carried[:, flanks].T
     for row in range(5):
         forces = found.equilibria.one(row, 2).flank_force
-        for j, radial in enumerate(elements.scene.radials):
+        for j, radial in enumerate(elements.radials):
             torque = group.train.transmitted(radial.gear, forces)
             assert abs(carried[row, j]) == pytest.approx(abs(torque), rel=1e-12)
 

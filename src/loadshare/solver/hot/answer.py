@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple, cast
 
 import numpy as np
 
 from loadshare.scene.data import Data
-from loadshare.scene.elements import Elements, wind_up
+from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
 from loadshare.solver.hot.exchange import Codes
 from loadshare.solver.hot.places import PINNED
@@ -21,7 +20,7 @@ def equilibria(elements: Elements, state: State, compiled: bool = False) -> Equi
 
     With `compiled`, products are those of Numba, which pass over zeros: the same but for round-off.
     """
-    names = Names(elements.scene.train)
+    names = Names(elements.train)
     to = _map(elements, names)
     force, tables = state.force, (state.x, state.x, state.force, state.force, state.force)
     if compiled:
@@ -38,14 +37,13 @@ def equilibria(elements: Elements, state: State, compiled: bool = False) -> Equi
     rotation, displacement, reaction, torque, support = found
     rotation += to.turned
     count, gears, radials = len(force), len(names.gears), len(names.radials)
-    first, last = elements.springs, elements.springs + elements.rows
-    ring = first + len(names.flanks)
+    flanks, rings = elements.columns.flanks, elements.columns.rings
     return Equilibria(
         names,
         rotation,
         displacement.reshape(count, gears, 3),
-        pushes(force, first, ring, elements.force),
-        pushes(force, ring, last, elements.force),
+        pushes(force, flanks.start, flanks.stop, elements.force),
+        pushes(force, rings.start, rings.stop, elements.force),
         reaction.reshape(count, radials, 3),
         torque,
         support.reshape(count, gears, 2),
@@ -94,27 +92,22 @@ def _map(elements: Elements, names: Names) -> _Map:
     known = elements.kept.get(("map",))
     if known is not None:
         return cast(_Map, known)
-    scene, train = elements.scene, elements.scene.train
-    gears, n, m = len(names.gears), elements.scene.size, len(elements.kinds)
+    train, at, columns = elements.train, elements.coordinates, elements.columns
+    gears, n, m = len(names.gears), elements.size, len(elements.kinds)
     rotation, turned = np.zeros((n, gears)), np.zeros(gears)
     displacement, support = np.zeros((n, gears, 3)), np.zeros((m, gears, 2))
     reaction, torque = np.zeros((m, len(names.radials), 3)), np.zeros((m, len(train.shafts)))
-    spring = 0
-    for s, shaft in enumerate(train.shafts.values()):
-        if not math.isinf(shaft.stiffness):
-            torque[spring, s] = 1.0 / wind_up(scene, shaft.first, shaft.second)[1]
-            spring += 1
+    for column, (s, rate) in enumerate(elements.shafts, columns.shafts.start):
+        torque[column, s] = 1.0 / rate
+    for column, (g, k) in enumerate(elements.supports, columns.supports.start):
+        support[column, g, k] = 1.0
     for g, name in enumerate(names.gears):
-        gear, r, where = train.gears[name], scene.rotation[name], scene.displacement.get(name)
+        gear, r, where = train.gears[name], at.rotation[name], at.displacement.get(name)
         turned[g] = r.constant
         if r.index is not None:
             rotation[r.index, g] = r.rate
         if where is not None:
             displacement[where, g] = gear.frame
-            if gear.support is not None:
-                for k in np.flatnonzero(gear.support > 0.0).tolist():
-                    support[spring, g, k] = 1.0
-                    spring += 1
     for j, (_, name) in enumerate(names.radials):
         column = elements.radial_column(j)
         reaction[column : column + 2, j] = -train.gears[name].frame

@@ -168,10 +168,10 @@ def _structure(
     columns = basis.columns
     kind = bends[columns].astype(np.int8)
     kind[data.tabulated[columns] >= 0] = 2
-    kind[columns >= elements.springs + elements.rows] = 3
-    first_arc = elements.springs + len(elements.scene.rows)
+    kind[columns >= elements.columns.contacts.stop] = 3
+    first_arc = elements.columns.arcs.start
     arcs = columns - first_arc
-    arc_of = np.where((arcs >= 0) & (arcs < len(elements.scene.arcs)), arcs, -1)
+    arc_of = np.where((arcs >= 0) & (arcs < len(elements.arcs)), arcs, -1)
     radial_at = np.full(elements.switches - elements.rows, -1)
     for j in range(len(radial_at)):
         if code[elements.rows + j] != OPEN:

@@ -44,7 +44,7 @@ def determined(
     compiled : bool
         With Numba where that is faster: the same answer.
     """
-    first, last = elements.springs, elements.springs + elements.rows
+    first, last = elements.springs, elements.columns.contacts.stop
     carries = CARRIES * pushes(data)
     if compiled:
         from loadshare.solver.hot import products
@@ -69,7 +69,7 @@ def determined(
 def _kinds(elements: Elements, data: Data, state: State, carries: Array) -> Codes:
     """How every radial element holds, shape (S, radials)."""
     everyone = np.arange(data.count)
-    kinds = np.empty((data.count, len(elements.scene.radials)), dtype=np.int8)
+    kinds = np.empty((data.count, len(elements.radials)), dtype=np.int8)
     for j in range(kinds.shape[1]):
         law = at.graph(pick(data.radial, everyone)[:, j], state.force @ data.carried[j])
         column = elements.radial_column(j)
@@ -91,10 +91,9 @@ def _fixed(
     elements: Elements, data: Data, state: State, some: Codes, rows: NDArray[np.intp]
 ) -> Flags:
     """Whether samples of one set of carrying elements are determined, shape (len(rows),)."""
-    scene, carry, kinds = elements.scene, some[: elements.rows], some[elements.rows :]
-    flat = elements.rows - len(scene.arcs)
-    first = elements.springs
-    holding = [elements.vectors[:first], elements.vectors[first : first + flat][carry[:flat] != 0]]
+    carry, kinds = some[: elements.rows], some[elements.rows :]
+    flat, columns, vectors = elements.flat, elements.columns, elements.vectors
+    holding = [vectors[columns.springs], vectors[columns.flat][carry[:flat] != 0]]
     holding += [data.relative[a] for a in np.flatnonzero(carry[flat:])]
     holding += [_radial(elements, j) for j in np.flatnonzero(kinds == HELD).tolist()]
     moves = unresisted(np.vstack(holding))
@@ -142,7 +141,7 @@ def _touched(
     ndarray of bool, shape (k, m)
         Whether a sample touches it.
     """
-    flat, x = elements.rows - len(elements.scene.arcs), state.x[rows]
+    flat, x = elements.flat, state.x[rows]
     directions: list[Array] = []
     touches: list[Flags] = []
 

@@ -14,7 +14,6 @@ from itertools import permutations
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.contact.radial import RadialLaw
 from loadshare.scene.data import Data
 from loadshare.scene.elements import Basis, Elements
 from loadshare.solver.hot import places as at
@@ -86,12 +85,12 @@ def first_sets(elements: Elements, data: Data) -> Codes:
     code = np.zeros((count, elements.switches), dtype=np.int8)
     everyone = np.arange(count)
     push = pick(data.push, everyone)
-    for k, row in enumerate(elements.scene.rows):
-        if row.kind == "drive flank":
+    for k, kind in enumerate(elements.kinds[elements.columns.flanks]):
+        if kind == "drive flank":
             code[:, k] = np.where(push > 0.0, at.CLOSED, at.OPEN)
-    for j, radial in enumerate(elements.scene.radials):
-        gear = elements.scene.train.gears[radial.gear]
-        driving = elements.scene.train.gears[elements.scene.train.input]
+    for j, radial in enumerate(elements.radials):
+        gear = elements.train.gears[radial.gear]
+        driving = elements.train.gears[elements.train.input]
         torque = np.broadcast_to(push * driving.base_radius / (gear.ratio or 1.0), (count,))
         law = at.graph(pick(data.radial, everyone)[:, j], torque)
         rigid = np.isinf(law.last) & (law.reach == 0.0)
@@ -108,9 +107,9 @@ def _relieve(elements: Elements, data: Data, code: Codes) -> None:
 
     How the two share the force is open; a spline that carries nothing is one answer.
     """
-    radials = elements.scene.radials
+    radials = elements.radials
     for (i, spline), (j, ring) in permutations(enumerate(radials), 2):
-        if spline.gear != ring.gear or not isinstance(ring.source, RadialLaw):
+        if spline.gear != ring.gear or ring.kind != "ring":
             continue
         centres = [data.gap[:, c : c + 2] for c in map(elements.radial_column, (i, j))]
         together = (centres[0] == centres[1]).all(axis=1)

@@ -93,7 +93,7 @@ def plain_set(elements: Elements, data: Data, basis: Basis, code: Codes) -> Plai
 
 def _structure(elements: Elements, data: Data, basis: Basis, code: Codes) -> tuple[Any, ...]:
     """The first fields of `Plain`."""
-    springs, flanks = elements.springs, len(elements.scene.rows)
+    springs, flanks = elements.springs, elements.flat
     curved = data.curved[basis.columns[springs:]]
     powers = int(curved.sum())
     order = np.append(np.arange(springs), springs + np.argsort(~curved, kind="stable"))

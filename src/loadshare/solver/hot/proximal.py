@@ -92,11 +92,11 @@ class Proximal:
 
     def __init__(self, elements: Elements, data: Data) -> None:
         self.elements, self.data, self.rows = elements, data, np.zeros(1, dtype=int)
-        self.springs, self.scalar = elements.springs, elements.springs + elements.rows
+        self.springs, self.scalar = elements.springs, elements.columns.contacts.stop
         self.load = data.load[0]
         self.gap = np.array(data.gap[0])
         self.vectors = np.array(elements.vectors)
-        self.x = np.zeros(elements.scene.size)
+        self.x = np.zeros(elements.size)
         self.force = np.zeros(len(self.vectors))
         self.looks = 0
         self.pull, self.laws = STIFFER[0], Laws(elements, data, self.force, SOFTER, STIFFER[0])
@@ -110,7 +110,7 @@ class Proximal:
             # A radius that gives way as much as the rest is held: steeper, and a float that has far
             # to roll would do so in tiny steps, each pressed out of the round and back again.
             # Slip that is remembered may have less room than that would tell apart.
-            yielding = 0.0 if self.elements.scene.train.slip is not None else self.pull
+            yielding = 0.0 if self.elements.train.slip is not None else self.pull
             rounded = max(SHARED * softer, yielding)
             self.laws = Laws(self.elements, self.data, self.force, softer, rounded)
             if not self.laws.graph.valid.all():
@@ -129,8 +129,8 @@ class Proximal:
 
     def _face_arcs(self) -> None:
         """Replace arcs by their faces at the last pass."""
-        first = self.springs + len(self.elements.scene.rows)
-        for a in range(len(self.elements.scene.arcs)):
+        first = self.elements.columns.arcs.start
+        for a in range(len(self.elements.arcs)):
             normal, margin = arc_at(self.data, a, self.rows, self.x[None, :])
             self.vectors[first + a] = -normal[0] @ self.data.relative[a]
             self.gap[first + a] = margin[0] + self.vectors[first + a] @ self.x

@@ -37,7 +37,7 @@ class Laws:
     def __init__(
         self, elements: Elements, data: Data, force: Array, softer: float, pull: float
     ) -> None:
-        self.springs, self.scalar = elements.springs, elements.springs + elements.rows
+        self.springs, self.scalar = elements.springs, elements.columns.contacts.stop
         self.compliance = data.bending[0, : self.scalar] + softer
         self.power = np.flatnonzero(data.hertz[0, : self.scalar] > 0.0)
         self.hertz = data.hertz[0, self.power]

@@ -62,7 +62,7 @@ def at_rest(elements: Elements, data: Data) -> State:
     root = np.empty((count, width))
     root[:] = np.cbrt(0.5 * push)[:, None]
     return State(
-        x=np.zeros((count, elements.scene.size)),
+        x=np.zeros((count, elements.size)),
         force=np.zeros((count, width)),
         root=root,
         floor=FLOOR * np.cbrt(push),

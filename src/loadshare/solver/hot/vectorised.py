@@ -138,7 +138,7 @@ class _Passes:
         self.code, self.rows = code, rows
         columns, count = basis.columns, len(rows)
         shape = (count, len(columns))
-        self.load = np.broadcast_to(pick(data.load, rows), (count, elements.scene.size))
+        self.load = np.broadcast_to(pick(data.load, rows), (count, elements.size))
         self.gap = np.array(np.broadcast_to(pick(data.gap, rows)[:, columns], shape))
         self.bending = np.broadcast_to(pick(data.bending, rows)[:, columns], shape)
         self.hertz = np.broadcast_to(pick(data.hertz, rows)[:, columns], shape)
@@ -151,16 +151,16 @@ class _Passes:
         self.z = self.force @ basis.redundant
         self.lean = self.x, self.force
         self.compression, self.misfit = np.zeros(shape), np.zeros(count)
-        first_arc = elements.springs + len(elements.scene.rows)
+        first_arc = elements.columns.arcs.start
         arcs = columns - first_arc
-        self.arc_at = np.flatnonzero((arcs >= 0) & (arcs < len(elements.scene.arcs)))
+        self.arc_at = np.flatnonzero((arcs >= 0) & (arcs < len(elements.arcs)))
         self.arc = arcs[self.arc_at]
         self.radial = [
             (j, int(place), int(np.searchsorted(columns, elements.radial_column(j))))
             for j, place in enumerate(code[elements.rows :])
             if place != at.OPEN
         ]
-        self.scalar = np.flatnonzero(columns < elements.springs + elements.rows)
+        self.scalar = np.flatnonzero(columns < elements.columns.contacts.stop)
         self.contact = self.scalar[columns[self.scalar] >= elements.springs]
         n = basis.redundant
         self.products = (n[:, :, None] * n[:, None, :]).reshape(len(columns), n.shape[1] ** 2)
@@ -405,10 +405,10 @@ class _Passes:
         yielded = np.abs(self.compression[:, self.scalar]).max(axis=1, initial=0.0)
         force_band, faint = sign * largest_force, at.SIGN * largest_force
         length_band = sign * np.maximum(yielded, 1e-3 * furthest)
-        rows = slice(elements.springs, elements.springs + elements.rows)
+        rows = elements.columns.contacts
         approach = self.x @ elements.vectors[rows].T - pick(data.gap, self.rows)[:, rows]
-        for a in range(len(elements.scene.arcs)):
-            approach[:, len(elements.scene.rows) + a] = -arc_at(data, a, self.rows, self.x)[1]
+        for a in range(len(elements.arcs)):
+            approach[:, elements.flat + a] = -arc_at(data, a, self.rows, self.x)[1]
         closed = self.code[: elements.rows] == at.CLOSED
         wrong[:, : elements.rows] = approach > length_band[:, None]
         place = np.flatnonzero(
@@ -462,12 +462,12 @@ class _Passes:
         """What is first in the way of a drift (k, n), if anything, and where it stands then."""
         elements = self.elements
         stopping = np.zeros((len(self.rows), elements.switches), dtype=bool)
-        rows = slice(elements.springs, elements.springs + elements.rows)
+        rows = elements.columns.contacts
         speed = drift @ elements.vectors[rows].T
         room = pick(self.data.gap, self.rows)[:, rows] - self.x @ elements.vectors[rows].T
-        for a in range(len(elements.scene.arcs)):
+        for a in range(len(elements.arcs)):
             margin = arc_at(self.data, a, self.rows, self.x)[1]
-            room[:, len(elements.scene.rows) + a] = margin
+            room[:, elements.flat + a] = margin
         fast = at.DRIFT * np.abs(drift).max(axis=1, initial=0.0)[:, None]
         way = np.where(speed > fast, np.maximum(room, 0.0) / speed, np.inf)
         way[:, self.code[: elements.rows] == at.CLOSED] = np.inf
@@ -496,7 +496,7 @@ class _Passes:
         x, loose = self.x[k : k + 1], self.basis.loose
         vectors = np.array(elements.vectors[elements.springs + opened])
         room = pick(self.data.gap, here)[0, elements.springs + opened] - vectors @ x[0]
-        first = len(elements.scene.rows)
+        first = elements.flat
         for a, place in zip(
             opened[opened >= first] - first, np.flatnonzero(opened >= first), strict=True
         ):

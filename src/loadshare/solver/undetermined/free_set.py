@@ -17,7 +17,7 @@ import numpy as np
 from loadshare.contact.problem import ArcRow
 from loadshare.contact.programme import Array
 from loadshare.contact.radial import RadialLaw
-from loadshare.scene.elements import spring_directions, unresisted
+from loadshare.scene.elements import unresisted
 from loadshare.scene.scene import GearRadial, Scene
 from loadshare.solver.undetermined.norm import Norm, norm_of
 
@@ -95,7 +95,7 @@ def free_set(
     """
     carries = CARRIES * max([scene.force_unit(), *(abs(f) for f in forces.values())])
     norm = norm_of(scene)
-    ties = [*spring_directions(scene)[0], *_rows_of(scene.stiffness)]
+    ties = [*scene.springs, *_rows_of(scene.stiffness)]
     vectors: list[Array] = []
     rooms: list[float] = []
     open_arcs: list[ArcRow] = []

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.scene.elements import Elements
-from loadshare.scene.scene import Array, Scene
+from loadshare.scene.scene import Array
 from loadshare.solver.hot import places as at
 from loadshare.study.follow.numbers import Numbers
 from loadshare.train.equilibrium import Equilibrium
@@ -52,18 +52,19 @@ class ActiveSet:
 
 def switch_names(elements: Elements) -> tuple[str, ...]:
     """Names of contacts and radial elements, in the order of a code."""
-    return (*elements.row_names, *(radial.name for radial in elements.scene.radials))
+    return (*elements.row_names, *(radial.name for radial in elements.radials))
 
 
-def coordinates(scene: Scene, found: Equilibrium) -> Array:
-    """Coordinates x [m] of an equilibrium."""
-    x = np.zeros(scene.size)
-    for gear, where in scene.displacement.items():
-        x[where] = scene.train.gears[gear].frame @ found.displacement[gear]
-    for gear, rotation in scene.rotation.items():
+def coordinates(elements: Elements, found: Equilibrium) -> Array:
+    """Coordinates x of an equilibrium, in the units of the elements."""
+    at = elements.coordinates
+    x = np.zeros(at.size)
+    for gear, where in at.displacement.items():
+        x[where] = at.frame[gear] @ found.displacement[gear]
+    for gear, rotation in at.rotation.items():
         if rotation.index is not None:
             x[rotation.index] = (found.rotation[gear] - rotation.constant) / rotation.rate
-    return x
+    return x / elements.length
 
 
 def read_code(elements: Elements, numbers: Numbers, found: Equilibrium, x: Array) -> Codes:
@@ -83,9 +84,9 @@ def read_code(elements: Elements, numbers: Numbers, found: Equilibrium, x: Array
     force = np.array([pushes[name] for name in elements.row_names]) / elements.force
     code = np.zeros(elements.switches, dtype=np.int8)
     code[: elements.rows][force > CARRIES * max(1.0, force.max(initial=0.0))] = at.CLOSED
-    rows = slice(elements.springs, elements.springs + elements.rows)
+    rows = elements.columns.contacts
     transmitted = numbers.carried[0, :, rows] @ force
-    for j, radial in enumerate(elements.scene.radials):
+    for j, radial in enumerate(elements.radials):
         column = elements.radial_column(j)
         both = slice(column, column + 2)
         radius = float(np.linalg.norm(numbers.vectors[0, both] @ x - numbers.gap[0, both]))

@@ -132,9 +132,9 @@ class Equations:
         self.elements, self.active = elements, active
         self.tabulated = tabulated = numbers.tabulated[0]
         self.code: Codes = np.array(active.code, dtype=np.int8)
-        self.n = elements.scene.size
-        self.scalars = elements.springs + len(elements.scene.rows)
-        self.arcs = range(len(elements.scene.rows), elements.rows)
+        self.n = elements.size
+        self.scalars = elements.columns.arcs.start
+        self.arcs = range(elements.flat, elements.rows)
         self.radials = range(elements.rows, elements.switches)
         rows = self.code[: elements.rows] == at.CLOSED
         acting = np.append(np.ones(elements.springs, dtype=bool), rows)

@@ -15,7 +15,7 @@ from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import CaseError, Refused
 from loadshare.job.machine import Answers, Machine
 from loadshare.scene.elements import Elements
-from loadshare.scene.scene import Array, Scene
+from loadshare.scene.scene import Array
 from loadshare.solver.hot import vectorised
 from loadshare.study.answers import certified
 from loadshare.study.follow.active import Codes, coordinates, read_code
@@ -113,11 +113,6 @@ class Line:
         """Its elements, in whose units everything is told."""
         return self.machine.elements
 
-    @property
-    def scene(self) -> Scene:
-        """A scene, for names."""
-        return self.elements.scene
-
     def _own(self, value: float) -> tuple[Train, Elements]:
         """Train and elements at a value that makes a machine of its own."""
         if value not in self._known:
@@ -142,7 +137,7 @@ class Line:
             situations = self._at(values).situations(position)
             found = self.machine.answer(situations, TOLERANCE, vectorised.settle)
             return [
-                self._from_batch(self.scene, found, k, value)
+                self._from_batch(self.elements, found, k, value)
                 if found.passed[k]
                 else self._from_ladder(position, value)
                 for k, value in enumerate(values.tolist())
@@ -160,10 +155,10 @@ class Line:
         found = machine.answer(situations, TOLERANCE, vectorised.settle)
         if not found.passed[0]:
             return self._from_ladder(position, value)
-        return self._from_batch(elements.scene, found, 0, value)
+        return self._from_batch(elements, found, 0, value)
 
-    def _from_batch(self, scene: Scene, found: Answers, k: int, value: float) -> Solved:
-        x = coordinates(scene, found.equilibria.one(k, 1)) / self.elements.length
+    def _from_batch(self, elements: Elements, found: Answers, k: int, value: float) -> Solved:
+        x = coordinates(elements, found.equilibria.one(k, 1))
         return Solved(value, found.code[k].copy(), x, float(found.verdicts.worst[k]))
 
     def _from_ladder(self, position: int, value: float) -> Solved | Missing:
@@ -174,7 +169,7 @@ class Line:
         except (CaseError, Refused) as refusal:
             return Missing(value, str(refusal))
         elements, found = elements_like(self.elements, train), answer.equilibrium
-        x = coordinates(elements.scene, found) / elements.length
+        x = coordinates(elements, found)
         numbers = Numbers.of(elements, situation_of(train, position))
         code = read_code(elements, numbers, found, x)
         return Solved(value, code, x, answer.certificate.worst)

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene import assemble
 from loadshare.scene.data import data_of
 from loadshare.scene.elements import Elements, elements_of
 from loadshare.scene.scene import Array
@@ -90,7 +89,7 @@ def _idle(elements: Elements, situations: Situations) -> list[int]:
     turned = {gear for s in train.shafts.values() for gear in (s.first, s.second)} | {train.output}
     gears = list(train.gears)
     turned |= {gears[k] for k in np.flatnonzero(np.any(situations.torque, axis=0))}
-    return [j for j, radial in enumerate(elements.scene.radials) if radial.gear not in turned]
+    return [j for j, radial in enumerate(elements.radials) if radial.gear not in turned]
 
 
 def elements_like(base: Elements, train: Train) -> Elements:
@@ -101,7 +100,7 @@ def elements_like(base: Elements, train: Train) -> Elements:
     ValueError
         If it has other elements.
     """
-    mine = elements_of(assemble(train, 1))
-    if mine.kinds != base.kinds or mine.scene.coordinates != base.scene.coordinates:
+    mine = elements_of(train)
+    if mine.kinds != base.kinds or mine.coordinates.names != base.coordinates.names:
         raise ValueError("the parameter changes which elements there are")
     return replace(mine, force=base.force, length=base.length)

@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from loadshare.scene import assemble
 from loadshare.scene.elements import Elements, elements_of
 from loadshare.scene.scene import Array
 from loadshare.solver.hot import places as at
@@ -64,18 +63,21 @@ class Setting:
         ValueError
             If it has other elements than these.
         """
-        own = elements_of(assemble(train, 1)) if base is None else elements_like(base, train)
+        own = elements_of(train) if base is None else elements_like(base, train)
         return cls(train, base or own, Numbers.of(own, situation_of(train, position)))
 
     @cached_property
     def levers(self) -> Array:
         """Torques of the meshes [N·m] per unit of every flank's force, shape (meshes, scalars)."""
-        scene, meshes = self.elements.scene, self.train.meshes.values()
-        columns = {row.name: self.elements.springs + k for k, row in enumerate(scene.rows)}
-        found = np.zeros((len(meshes), self.elements.springs + len(scene.rows)))
+        meshes, columns = self.train.meshes.values(), self.elements.columns
+        found = np.zeros((len(meshes), columns.flat.stop))
+        flanks = {
+            name: k
+            for k, name in enumerate(self.elements.names[columns.flanks], columns.flanks.start)
+        }
         for row, mesh in zip(found, meshes, strict=True):
             for drive in mesh.flanks:
-                row[columns[mesh.flank_name(drive)]] = mesh.lever(drive) * self.elements.force
+                row[flanks[mesh.flank_name(drive)]] = mesh.lever(drive) * self.elements.force
         return found
 
     def branch_of(self, found: Equilibrium) -> tuple[Branch, Array]:
@@ -96,7 +98,7 @@ class Setting:
         return ActiveSet(code, read_pieces(elements, numbers, code, x))
 
     def _x(self, found: Equilibrium) -> Array:
-        return coordinates(self.elements.scene, found) / self.elements.length
+        return coordinates(self.elements, found)
 
 
 class Gauge(NamedTuple):

@@ -161,7 +161,7 @@ class Corner:
         loose, length = self._loose(floating), self.elements.length
         moved = {g: np.zeros(2) for g in self.train.gears}
         error = {g: np.zeros(2) for g in self.train.gears}
-        for gear, where in self.elements.scene.displacement.items():
+        for gear, where in self.elements.coordinates.displacement.items():
             pick = np.eye(size)[where]
             moved[gear] = np.where(loose[gear], np.nan, pick @ motion.rate * length)
             error[gear] = np.where(loose[gear], np.nan, motion.bound(pick) * length)
@@ -213,7 +213,7 @@ class Corner:
         place = self.neighbourhood.own
         if place is not None:
             moves = np.abs(place.tangent.loose).max(axis=1, initial=0.0) > LOOSE
-            for gear, where in self.elements.scene.displacement.items():
+            for gear, where in self.elements.coordinates.displacement.items():
                 loose[gear] = loose[gear] | moves[where]
         return loose
 
