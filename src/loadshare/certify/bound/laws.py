@@ -423,6 +423,12 @@ def _pairs(claim: Claim, act: Codes, found: Elements, softest: float) -> None:
     wrong = np.abs(true - 1.0 / lateral) * (1.0 + EPS) + np.where(act == Act.SLIP, 1.0 / along, 0.0)
     found.stiff_error[:] = np.where(lined, np.maximum(wrong, np.finfo(float).tiny), 0.0)
     _follow(claim, acts, yields[:, part], found.follows[:, part], found.shrinks[:, part])
+    if found.follows.any() or found.shrinks.any():
+        # A torque over a spline is the difference of forces that may be far larger.
+        torque = EPS * np.abs(claim.answers.flank_force) @ np.abs(columns.moments).T
+        lost = torque @ columns.splined.T
+        found.rounding[:, first:] += np.repeat(found.follows * lost, 2, axis=1)
+        found.width[:, first:] += np.repeat(found.shrinks * lost, 2, axis=1)
 
 
 def _put_aside(claim: Claim, acts: Codes) -> tuple[Array, Array]:
