@@ -376,6 +376,8 @@ class _Part:
         misfit = misfit + self._per_torque(self.room[rows], torque)
         over = np.abs(self.left[rows] - force @ known.directions) + self.rounding[rows]
         over += EPS * size * (np.abs(force) @ np.abs(known.directions))
+        # What goes along a free move may end at any contact, and push what that joins.
+        over += self.stray[rows][:, None]
         apart = np.abs(misfit + moved @ known.directions.T - yielded) + self.width[rows]
         apart += EPS * size * (np.abs(moved) @ np.abs(known.directions).T + np.abs(misfit))
         sizes = np.abs(force) + np.abs(followed)

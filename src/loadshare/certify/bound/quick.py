@@ -300,7 +300,11 @@ class _Group:
         over = np.where(at < columns.arcs.stop, np.minimum(off, 0.0), np.maximum(off, 0.0))
         misfit[:, self.line] = np.where(size == 0.0, over, off)
         width = self._columns(found.width, found.width[pick][:, at])
-        rounding = rounding + found.rounding[pick] @ matrix
+        stray = np.zeros(len(left))
+        if self.statics.moves.size:
+            stray = np.abs(left @ self.statics.moves).max(axis=1) + EPS * scale
+        # What goes along a free move may end at any contact, and push what that joins.
+        rounding = rounding + found.rounding[pick] @ matrix + stray[:, None]
         base, energy = self._under(left, misfit)
         # By what rigid parts contradict one another, one of them stands open.
         width = width + np.abs(misfit @ self.rigid) @ np.abs(self.rigid).T
@@ -336,7 +340,7 @@ class _Group:
             whole[:, at[self.turning] + k] += errors[:, self.line.stop :]
             if len(lined):
                 whole[:, at + k] += np.abs(size) / distance * way
-        proved = self._is_proved(whole, places, moved, left, scale) & near
+        proved = self._is_proved(whole, places, moved, stray, scale) & near
         self._cover_twins(whole)
         shared = np.abs(self.rigid).max(axis=1, initial=0.0) > SHARED
         whole[:, self.plain[shared[: len(self.plain)]]] = np.inf
@@ -389,7 +393,7 @@ class _Group:
         return np.asarray(enough[:, None] * total)
 
     def _is_proved(
-        self, errors: Array, places: Array, moved: Array, left: Array, scale: Array
+        self, errors: Array, places: Array, moved: Array, stray: Array, scale: Array
     ) -> Flags:
         """Whether all that was assumed holds within the errors.
 
@@ -399,13 +403,8 @@ class _Group:
         claim, found, pick = self.claim, self.found, self.pick
         columns = claim.columns
         force = np.abs(found.force[pick])
-        if self.statics.moves.size:
-            stray = np.abs(left @ self.statics.moves).max(axis=1)
-            errors += (
-                stray
-                + EPS * scale
-                + np.where(stray <= rounding_of(found.force[pick], scale), 0.0, np.inf)
-            )[:, None]
+        allowed = rounding_of(found.force[pick], scale) + EPS * scale
+        errors += np.where(stray <= allowed, stray, np.inf)[:, None]
         proved = np.isfinite(errors).all(axis=1) & np.isfinite(places).all(axis=1)
         light = np.maximum(force, LIGHT * scale[:, None])[:, columns.flanks]
         proved &= (errors[:, columns.flanks] <= 0.1 * light).all(axis=1)
