@@ -190,7 +190,7 @@ def test_an_interrupted_batch_leaves_whole_files_and_goes_on(command, star, tmp_
 
 
 GATED = """
-import sys, time
+import signal, sys, time
 from pathlib import Path
 from loadshare.cli.batch import work as pool
 from loadshare.cli.batch.work import work
@@ -202,6 +202,8 @@ def gated(task):
     return work(task)
 
 if __name__ == "__main__":
+    # Whoever runs the tests in the background has interrupts ignored, and children inherit that.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     pool.work = gated
     from loadshare.cli.main import main
     main()
