@@ -94,6 +94,17 @@ def test_bounds_hold_of_light_flanks_too(number):
     assert [a for a in bounded if a.margin < -ROUNDING or a.passed] == []
 
 
+@pytest.mark.parametrize(("seed", "number"), [(3, 0), (5, 40)])
+def test_a_contact_that_is_left_out_is_no_rounding(seed, number):
+    """What it carried is missing on gears that carry nothing else."""
+    case = draw(seed, number)
+    whole = victim(case, 1 + number % case.operating.positions)
+    tried = (one(whole, "contact dropped", np.random.default_rng(k)) for k in range(40))
+    wrong = [a for a in tried if a is not None and a.error > ALLOWED]
+    assert len(wrong) > 5
+    assert [a for a in wrong if a.margin < -ROUNDING or a.passed] == []
+
+
 def test_attacks_depend_on_their_seed_alone(found):
     again = list(attacks(SEED, 20, each=20))
     assert [(a.train, a.way, a.passed) for a in again] == [

@@ -15,7 +15,7 @@ from benchmarks.random_trains.draw import LAYOUTS, draw
 from benchmarks.random_trains.judge import AGREES, judged
 from benchmarks.random_trains.run import PROBLEMS, STRESS, failures, one, run
 from benchmarks.random_trains.table import text
-from loadshare.job.ladder import HOT, SEARCHED
+from loadshare.job.ladder import SEARCHED
 
 SEED = 7
 
@@ -66,7 +66,6 @@ def test_a_rigid_ring_that_would_have_to_pull_lets_go(number):
 def test_gears_that_carry_nothing_leave_no_torque_unproved(number):
     """Their contacts push with forces of rounding, in numbers, and are endlessly soft."""
     assert not faults([number], seed=1)
-    assert {p.effort.rung for p in ls.solve(draw(1, number)).positions} <= {HOT, SEARCHED}
 
 
 def test_a_search_that_goes_to_and_fro_is_told():

@@ -172,8 +172,7 @@ def _proved(held: Held, scale: Array, largest: Array, rigorous: bool) -> tuple[B
         box.coordinate[rows[better]] = coordinate[better]
     for row in np.flatnonzero(~(relative <= LARGEST) & finite).tolist():
         one = replace(claim.take(np.array([row])), fine=True)
-        ways = (_with_locked, _with_light_friction) if columns.pairs else ()
-        for way in (*ways, _without_noise) if columns.train.slip is None else ways:
+        for way in (_with_locked, _with_light_friction) if columns.pairs else ():
             if not relative[row] <= LARGEST:
                 box.force[row], box.coordinate[row] = way(one, scale[row : row + 1])
                 relative[row] = _torques(columns, box.force[row], flanks[row]).max() / largest[row]
@@ -213,31 +212,6 @@ def _with_light_friction(claim: Claim, scale: Array) -> tuple[Array, Array]:
         act[:, -2 * splines : -splines][pressed] = Act.OPEN
     force, coordinate = _fine(claim, act, scale)
     return force[0], coordinate[0]
-
-
-def _without_noise(claim: Claim, scale: Array) -> tuple[Array, Array]:
-    """Bound a single claim with forces of rounding taken for none.
-
-    Gears that carry nothing else then have no load left at all, not even of rounding, that their
-    contacts, endlessly soft as these are, would have to balance.
-    """
-    noise = NOISE * float(np.abs(claim.forces).max(initial=0.0))
-
-    def told(force: Array) -> Array:
-        return np.where(np.abs(force) <= noise, 0.0, force)
-
-    answers = claim.answers
-    cleaned = replace(
-        answers,
-        flank_force=told(answers.flank_force),
-        ring_force=told(answers.ring_force),
-        radial_reaction=told(answers.radial_reaction),
-        shaft_torque=told(answers.shaft_torque),
-        support_force=told(answers.support_force),
-    )
-    one = replace(claim, answers=cleaned)
-    found, coordinate = _fine(one, first_acts(one), scale)
-    return found[0] + np.abs(one.forces - claim.forces)[0], coordinate[0]
 
 
 def _fine(claim: Claim, act: Codes, scale: Array) -> tuple[Array, Array]:
