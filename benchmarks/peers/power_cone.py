@@ -8,6 +8,7 @@ import numpy as np
 
 from benchmarks.peers.form import Array, Form
 from benchmarks.peers.loop import Claim, Failure, settle
+from loadshare.contact.backends.clarabel_ import cones_of
 from loadshare.contact.backends.conic import conic_form
 from loadshare.contact.programme import Cone, Programme
 from loadshare.contact.radial import RadialLaw
@@ -46,15 +47,7 @@ class PowerCone:
                 cones=tuple(Cone(g.radial.name, g.matrix, g.centre, law) for g, law in graphs),
             )
         )
-        kinds = {
-            "zero": clarabel.ZeroConeT,
-            "nonnegative": clarabel.NonnegativeConeT,
-            "second-order": clarabel.SecondOrderConeT,
-        }
-        cones = [
-            clarabel.PowerConeT(size) if kind == "power" else kinds[kind](int(size))
-            for kind, size in written.cones
-        ]
+        cones = cones_of(written)
         settings = clarabel.DefaultSettings()
         settings.verbose = settings.presolve_enable = False
         settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = self.tolerance

@@ -9,6 +9,7 @@ import pytest
 from scipy.sparse import triu
 
 import loadshare as ls
+from loadshare.contact.backends.clarabel_ import cones_of
 from loadshare.contact.forms import ComplementarityForm
 
 SPLIT = "cases/branches/split_torque_2.toml"
@@ -65,16 +66,15 @@ def test_a_complementarity_problem_by_trying_every_set() -> None:
 def test_cones_by_clarabel(exact_hertz: bool) -> None:
     formulation = ls.formulate(RING, 2, exact_hertz=exact_hertz)
     form = formulation.conic()
-    kinds = {"zero": clarabel.ZeroConeT, "nonnegative": clarabel.NonnegativeConeT}
-    kinds["second-order"] = clarabel.SecondOrderConeT
-    cones = [
-        clarabel.PowerConeT(size) if kind == "power" else kinds[kind](int(size))
-        for kind, size in form.cones
-    ]
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     answer = clarabel.DefaultSolver(
-        triu(form.quadratic, format="csc"), form.linear, form.matrix, form.bounds, cones, settings
+        triu(form.quadratic, format="csc"),
+        form.linear,
+        form.matrix,
+        form.bounds,
+        cones_of(form),
+        settings,
     ).solve()
     same(formulation, formulation.read(form.point(np.array(answer.x), np.array(answer.z))))
 

@@ -2,11 +2,28 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from loadshare.contact.backends.backend import KINDS_CONIC, Backend, BackendFailure
-from loadshare.contact.backends.conic import conic_form
+from loadshare.contact.backends.conic import ConicForm, conic_form
 from loadshare.contact.programme import Point, Programme
+
+
+def cones_of(form: ConicForm) -> list[Any]:
+    """Return the cones of a form, as Clarabel names them."""
+    import clarabel
+
+    kinds = {
+        "zero": clarabel.ZeroConeT,
+        "nonnegative": clarabel.NonnegativeConeT,
+        "second-order": clarabel.SecondOrderConeT,
+    }
+    return [
+        clarabel.PowerConeT(size) if kind == "power" else kinds[kind](int(size))
+        for kind, size in form.cones
+    ]
 
 
 class Clarabel:
@@ -20,22 +37,13 @@ class Clarabel:
         import clarabel
 
         form = conic_form(programme)
-        kinds = {
-            "zero": clarabel.ZeroConeT,
-            "nonnegative": clarabel.NonnegativeConeT,
-            "second-order": clarabel.SecondOrderConeT,
-        }
-        cones = [
-            clarabel.PowerConeT(size) if kind == "power" else kinds[kind](int(size))
-            for kind, size in form.cones
-        ]
         settings = clarabel.DefaultSettings()
         settings.verbose = False
         settings.presolve_enable = False
         settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-11
         settings.max_iter = 200
         answer = clarabel.DefaultSolver(
-            form.quadratic, form.linear, form.matrix, form.bounds, cones, settings
+            form.quadratic, form.linear, form.matrix, form.bounds, cones_of(form), settings
         ).solve()
         z, dual = np.array(answer.x), np.array(answer.z)
         if not (np.isfinite(z).all() and np.isfinite(dual).all()):
