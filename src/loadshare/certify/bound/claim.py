@@ -219,9 +219,8 @@ class Claim:
         matrix = self.columns.matrix
         if not self.fine:
             due = self.load[0].value
-            left = due - forces @ matrix.high
-            most = np.abs(forces).max(axis=1, initial=0.0) + np.abs(due).max(axis=1, initial=0.0)
-            return left, np.broadcast_to(EPS * most[:, None], left.shape)
+            sizes = np.abs(forces) @ self.columns.sizes + np.abs(due)
+            return due - forces @ matrix.high, self.columns.roundings * sizes
         pushed, sizes = product(forces, matrix.high)
         load, more = self.load
         left = minus(minus(load, pushed), exact(forces @ matrix.low)).value

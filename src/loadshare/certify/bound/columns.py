@@ -29,6 +29,8 @@ from loadshare.train.train import Train
 Array = NDArray[np.float64]
 
 
+UNIT = 0.5 * np.finfo(float).eps
+"""Rounding of one operation, relative to its result."""
 SETS = 2000
 """Sets of columns of which the statics are kept, so that memory is bounded."""
 
@@ -207,6 +209,17 @@ class Columns:
             if turn.coordinate is not None:
                 found[turn.coordinate] = turn.radius
         return found
+
+    @cached_property
+    def sizes(self) -> Array:
+        """Sizes of the entries of A, shape (m, n)."""
+        return np.abs(self.matrix.high)
+
+    @cached_property
+    def roundings(self) -> Array:
+        """Rounding of the balance at every coordinate, over the sizes of its terms, shape (n,)."""
+        terms = np.count_nonzero(self.sizes, axis=0)
+        return np.asarray((terms + 4) * UNIT)
 
     @cached_property
     def contacts(self) -> NDArray[np.intp]:

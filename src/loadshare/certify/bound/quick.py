@@ -55,6 +55,8 @@ DIGITS = 20
 """Ways of acting that make one number below 2⁶³."""
 REFERENCES = 16
 """Claims whose lines are tried on all those whose elements act alike."""
+FEW = 8
+"""Claims up to which each is bounded by itself where lines turn."""
 GAIN = 0.5
 """Largest share of an error that may come back over friction that follows the torque."""
 
@@ -78,7 +80,7 @@ def quick_boxes(claim: Claim, act: Codes, scale: Array) -> Box:
     left, rounding = claim.balance(found.force)
     arms = np.abs(claim.columns.moments).sum(axis=1)
     rounding = rounding + put_aside(claim.columns, found.spare, NOISE * scale[:, None] * arms)
-    for rows in alike(act):
+    for rows in _groups(claim, act):
         for _ in range(REFERENCES):
             group = _Group(claim, found, rows, doubled, scale[rows], np.abs(left) + rounding)
             if not group.is_covered:
@@ -143,6 +145,18 @@ def alike(codes: Codes) -> list[NDArray[np.intp]]:
         _, group = np.unique(group * (number.max() + 1) + number, return_inverse=True)
     order = np.argsort(group, kind="stable")
     return np.split(order, np.cumsum(np.bincount(group))[:-1])
+
+
+def _groups(claim: Claim, act: Codes) -> list[NDArray[np.intp]]:
+    """Rows with the same codes; of few claims that lean on a ring or spline, each by itself.
+
+    By itself the turn of a line is known; among many it is left to chance.
+    """
+    groups = alike(act)
+    first = act.shape[1] - len(claim.radial_gears)
+    if claim.count > FEW or not np.isin(act[:, first:], (Act.STOP, Act.STEP)).any():
+        return groups
+    return [row for rows in groups for row in np.split(rows, len(rows))]
 
 
 def _over_tangents(

@@ -49,8 +49,8 @@ SETTLED, STALLED, LAW, SIGN, SHRINK, DRIFT = (
     at.SHRINK,
     at.DRIFT,
 )
-FEW = 4
-"""Samples up to which lanes would stand empty for the most part."""
+FEW = 16
+"""Samples up to which lanes gain nothing over one sample after another."""
 compiled = jit(nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
 
 
