@@ -34,6 +34,7 @@ from loadshare.certify.tolerance import TOLERANCE
 from loadshare.job.machine import Machine
 from loadshare.solver.hot import vectorised
 from loadshare.study.answers import certified
+from loadshare.study.positions import loaded
 from loadshare.study.sensitivity import SIDES, Input, Sensitivity
 from loadshare.study.sensitivity.inputs import inputs_of
 from loadshare.train import Train, build_train
@@ -102,6 +103,8 @@ def differenced(
 
     None where there is no equilibrium to that side, or differences do not converge.
     """
+    # Laws from teeth or pair files are inputs as well: they stand in the case as it is solved.
+    case = loaded(case)
     train = build_train(case)
     cycle = train.mesh_positions(position)
     value = item.value
