@@ -18,7 +18,6 @@ import loadshare as ls
 from benchmarks import families
 from loadshare.certify import certify
 from loadshare.certify.tolerance import TOLERANCE
-from loadshare.errors import Refused
 from loadshare.job.ladder import hot_answers
 from loadshare.job.machine import Machine
 from loadshare.scene import assemble
@@ -94,11 +93,6 @@ def test_an_unloaded_pinion_in_a_round_ring(offset):
     assert found.floats["pinionB"].state == "undetermined"
 
 
-@pytest.mark.xfail(
-    reason="in balance; the bound does not cover friction that is used up exactly",
-    raises=Refused,
-    strict=True,
-)
 def test_a_spline_on_its_friction_bound_slips_anywhere_along_its_force():
     """One mesh pushes with F = T/r_b, friction holds up to τ T/radius: at radius = τ r_b they are
     the same under any load. The pinion lies anywhere from S1 to S2 along that force.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,6 +15,7 @@ from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.held import STILL, Held, with_held_slips
 from loadshare.certify.bound.laws import Act, Codes, first_acts
 from loadshare.certify.bound.locked import locked, without
+from loadshare.certify.bound.open_slips import is_inside, open_slips, reaction_error
 from loadshare.certify.bound.quick import quick_boxes
 from loadshare.certify.bound.verge import on_the_verge
 from loadshare.certify.tolerance import LARGEST
@@ -172,7 +174,7 @@ def _proved(held: Held, scale: Array, largest: Array, rigorous: bool) -> tuple[B
         box.coordinate[rows[better]] = coordinate[better]
     for row in np.flatnonzero(~(relative <= LARGEST) & finite).tolist():
         one = replace(claim.take(np.array([row])), fine=True)
-        for way in (_with_locked, _with_light_friction) if columns.pairs else ():
+        for way in (_with_locked, _with_light_friction, _with_open_slips) if columns.pairs else ():
             if not relative[row] <= LARGEST:
                 box.force[row], box.coordinate[row] = way(one, scale[row : row + 1])
                 relative[row] = _torques(columns, box.force[row], flanks[row]).max() / largest[row]
@@ -186,9 +188,31 @@ def _proved(held: Held, scale: Array, largest: Array, rigorous: bool) -> tuple[B
 
 def _with_locked(claim: Claim, scale: Array) -> tuple[Array, Array]:
     """Bound what is left of a single claim when gears are held that cannot move."""
+    found = _without(claim, locked(claim), scale)
+    return found.force[0], found.coordinate[0]
+
+
+def _with_open_slips(claim: Claim, scale: Array) -> tuple[Array, Array]:
+    """Bound a single claim with gears put where they are whose splines have used up friction."""
+    columns = claim.columns
+    slips = open_slips(claim)
+    found = _without(claim, {slip.gear: slip.play for slip in slips}, scale)
+    flanks = found.force[0, columns.flanks]
+    if not all(is_inside(claim, slip, flanks) for slip in slips):
+        return np.full_like(found.force[0], np.inf), np.full_like(found.coordinate[0], np.inf)
+    first = columns.radials.start + 2 * len(columns.train.rounds)
+    for slip in slips:
+        at = first + 2 * slip.number
+        found.force[0, at : at + 2] = reaction_error(claim, slip, flanks)
+        bearing = columns.bearings.start + 2 * list(columns.places).index(slip.gear)
+        found.force[0, bearing : bearing + 2] = np.abs(claim.forces[0, bearing : bearing + 2])
+    return found.force[0], found.coordinate[0]
+
+
+def _without(claim: Claim, gears: Mapping[str, float | Array], scale: Array) -> Box:
+    """Bound what is left of a single claim when some gears stand where they are, but for a play."""
     whole = claim.columns
     found = Box.unproved(claim, first_acts(claim))
-    gears = locked(claim)
     if gears:
         held, origin = without(claim, gears)
         names = [whole.coordinates.index(n) for n in held.columns.coordinates]
@@ -196,7 +220,7 @@ def _with_locked(claim: Claim, scale: Array) -> tuple[Array, Array]:
         for gear, play in gears.items():
             at = whole.places[gear]
             found.coordinate[0, at : at + 2] = play
-    return found.force[0], found.coordinate[0]
+    return found
 
 
 def _with_light_friction(claim: Claim, scale: Array) -> tuple[Array, Array]:

@@ -8,7 +8,7 @@ and its limits are left out; what is then bounded is all the rest. Source: formu
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from itertools import combinations
 
@@ -104,15 +104,15 @@ def _supports(normals: Array, room: Array, direction: Array) -> Iterator[float]:
                 yield float(np.maximum(shares, EPS) @ room[[i, j]])
 
 
-def without(claim: Claim, gears: dict[str, float]) -> tuple[Claim, NDArray[np.intp]]:
+def without(claim: Claim, gears: Mapping[str, float | Array]) -> tuple[Claim, NDArray[np.intp]]:
     """The claim for the train in which some gears are held where they are claimed.
 
     Parameters
     ----------
     claim : Claim
         A single one.
-    gears : dict of gear to float
-        How far each may stand from there [m].
+    gears : mapping of gear to float or ndarray, shape (2,)
+        How far each may stand from there [m], in any direction or along its axes.
 
     Returns
     -------
@@ -139,8 +139,9 @@ def without(claim: Claim, gears: dict[str, float]) -> tuple[Claim, NDArray[np.in
     slack = np.zeros(len(columns.names))
     for gear, play in gears.items():
         at = whole.places[gear]
-        moved = np.abs(whole.matrix.high[origin, at : at + 2]).sum(axis=1)
-        slack += moved * (play + EPS * np.abs(here.offset[0, whole.order[gear]]).sum())
+        moved = np.abs(whole.matrix.high[origin, at : at + 2])
+        rounding = EPS * np.abs(here.offset[0, whole.order[gear]]).sum()
+        slack += moved @ (np.broadcast_to(play, 2) + rounding)
     return Claim(columns, here, answer, slack=slack), origin
 
 
