@@ -1,7 +1,8 @@
 """Compiling with Numba: kept on disk, told while it lasts, and never the reason of a failure.
 
 What is compiled is kept where Numba finds a folder to write in: beside the source, else in the
-user's cache folder (`NUMBA_CACHE_DIR` comes before both). Where there is none, where Numba cannot
+user's cache folder (`NUMBA_CACHE_DIR` comes before both), with what tells the numbers and the other
+functions that were compiled into it. Where there is none, where Numba cannot
 be imported, or where it does not compile, `why_not` says so once, in the log, and those who have
 another kernel use that. A file that was damaged on disk is found out by its digest and made anew.
 """
@@ -16,7 +17,7 @@ import time
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from types import TracebackType
+from types import CodeType, FunctionType, TracebackType
 from typing import Any, NamedTuple
 
 log = logging.getLogger("loadshare")
@@ -116,6 +117,37 @@ def within(**how: Any) -> Callable[[Callable[..., Any]], Any]:
     return decorated
 
 
+def fingerprint(function: Callable[..., Any]) -> str:
+    """Return what tells a function, all that it calls and all numbers compiled into it from others.
+
+    Numba looks at a function's own file only, and would go on with old numbers of another one.
+
+    Parameters
+    ----------
+    function
+        The plain one, as it is written.
+    """
+    told: list[str] = []
+    seen = {function}
+    waiting = [function]
+    while waiting:
+        one = waiting.pop()
+        code = one.__code__
+        # What code itself looks like in print names its address in memory.
+        constants = [c for c in code.co_consts if not isinstance(c, CodeType)]
+        told.append(f"{one.__qualname__} {code.co_code.hex()} {constants!r} {code.co_names!r}")
+        for name in code.co_names:
+            value = one.__globals__.get(name)
+            called = getattr(value, "py_func", value)
+            if isinstance(called, FunctionType):
+                if called not in seen:
+                    seen.add(called)
+                    waiting.append(called)
+            elif isinstance(value, int | float | str | tuple):
+                told.append(f"{name} = {value!r}")
+    return hashlib.sha256("\n".join(told).encode()).hexdigest()
+
+
 def at_hand(*functions: Any) -> bool:
     """Tell whether functions run without compiling; what was kept on disk is loaded.
 
@@ -146,7 +178,19 @@ def _caches() -> _Caches:
     from numba.core.caching import FunctionCache, IndexDataCacheFile, NullCache
 
     class Files(IndexDataCacheFile):
-        """Index and data of a function; what is damaged counts as not there."""
+        """Index and data of a function; what is damaged or out of date counts as not there."""
+
+        _function: Callable[..., Any]
+        _written: Any
+
+        @property
+        def _source_stamp(self) -> Any:
+            # What it calls may be defined further down: it is looked at as late as that.
+            return self._written, fingerprint(self._function)
+
+        @_source_stamp.setter
+        def _source_stamp(self, stamp: Any) -> None:
+            self._written = stamp
 
         def _load_index(self) -> Any:
             try:
@@ -177,6 +221,7 @@ def _caches() -> _Caches:
                 filename_base=self._impl.filename_base,
                 source_stamp=self._impl.locator.get_source_stamp(),
             )
+            self._cache_file._function = function
 
         def load_overload(self, sig: Any, target_context: Any) -> Any:
             try:

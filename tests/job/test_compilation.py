@@ -249,6 +249,30 @@ def test_at_hand_is_what_was_compiled_or_kept(tmp_path, monkeypatch):
     assert not compilation.at_hand(again)
 
 
+def test_numbers_of_another_file_that_change_are_compiled_anew(tmp_path, monkeypatch):
+    """Numba itself looks at the function's own file only."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kept"))
+    (tmp_path / "numbers_of.py").write_text(
+        "from typing import NamedTuple\nclass N(NamedTuple):\n    most: float = 1.0\nN = N()\n"
+    )
+    (tmp_path / "called_by.py").write_text(
+        "from loadshare.compilation import jit\nfrom numbers_of import N\n"
+        "@jit()\ndef outer(x):\n    return inner(x)\n"
+        "@jit()\ndef inner(x):\n    return x > N.most\n"
+    )
+    script = f"""
+import sys; sys.path.insert(0, {str(tmp_path)!r})
+import called_by
+from loadshare.compilation import at_hand
+print((at_hand(called_by.outer), called_by.outer(2.0)))
+"""
+    assert run(script)[0] == (False, True)
+    assert run(script)[0] == (True, True)
+    numbers = tmp_path / "numbers_of.py"
+    numbers.write_text(numbers.read_text().replace("1.0", "9.0"))
+    assert run(script)[0] == (False, False)
+
+
 def test_what_is_damaged_is_not_at_hand(tmp_path, monkeypatch):
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     file = tmp_path / "kept.py"

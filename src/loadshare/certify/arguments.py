@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from loadshare.certify.mechanics import Mechanics
 from loadshare.certify.residuals import ROUNDED
 from loadshare.certify.tolerance import BAND
-from loadshare.contact.radial import ROUNDING
+from loadshare.settings import LAWS
 from loadshare.train.equilibria import CLAIMED, Equilibria
 from loadshare.train.situations import VARYING, Situations
 
@@ -122,7 +122,7 @@ def arguments_of(of: Mechanics) -> Arguments:
         pull_centre=of.centres[pulls],
         rounds=rounds,
         band=BAND,
-        rounding=ROUNDING,
+        rounding=LAWS.written,
         rounded=ROUNDED,
     )
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from loadshare.certify.graphs import Graph
 from loadshare.certify.laws import area, interpolated, strain_energy
 from loadshare.certify.mechanics import Mechanics
-from loadshare.contact.radial import ROUNDING
+from loadshare.settings import LAWS
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 
@@ -234,12 +234,12 @@ class State:
         continuous = bound / stiffness
         free = np.isnan(given)
         stick = np.where(free, continuous, np.minimum(given, continuous))
-        lawless = stiffness * given > bound * (1.0 + ROUNDING)
+        lawless = stiffness * given > bound * (1.0 + LAWS.written)
         lawless |= ~free & (reach < stick)
         if self.of.train.slip is None:
             stick = np.where((reach < stick) & free, np.inf, stick)
             return [Graph(stiffness, stick, bound, reach, stiffness)], lawless
-        lawless |= stiffness * given < bound * (1.0 - ROUNDING)
+        lawless |= stiffness * given < bound * (1.0 - LAWS.written)
         zero, endless = np.zeros_like(bound), np.full_like(bound, np.inf)
         room = np.maximum(reach - continuous, 0.0)
         friction = Graph(zero, zero, bound, endless, endless)

@@ -10,6 +10,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from loadshare.settings import LAWS
+
 
 @dataclass(frozen=True, slots=True)
 class Piece:
@@ -139,10 +141,6 @@ class RadialLaw:
         )
 
 
-ROUNDING = 1e-6
-"""Relative excess of K_w S1 over F_m that the digits of a written S1 explain."""
-
-
 def spline_law(
     bending_stiffness: float, stick_limit: float | None, clearance: float, friction: float
 ) -> RadialLaw:
@@ -167,7 +165,7 @@ def spline_law(
     """
     continuous = friction / bending_stiffness
     s1 = continuous if stick_limit is None else stick_limit
-    if bending_stiffness * s1 > friction * (1.0 + ROUNDING):
+    if bending_stiffness * s1 > friction * (1.0 + LAWS.written):
         raise ValueError(
             f"the spline's force would drop from K_w S1 = {bending_stiffness * s1:.6g} N to "
             f"F_m = {friction:.6g} N where it starts to slip (K_w = {bending_stiffness:.6g} N/m, "

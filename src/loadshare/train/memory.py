@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from loadshare.contact.radial import ROUNDING, Piece, RadialLaw
+from loadshare.contact.radial import Piece, RadialLaw
+from loadshare.settings import LAWS
 from loadshare.train.gear import Vector
 
 if TYPE_CHECKING:
@@ -63,7 +64,7 @@ class SlipFriction(_Part):
         spline.law(torque)
         if spline.stick_limit is not None:
             bent = spline.bending_stiffness * spline.stick_limit
-            if bent < bound * (1.0 - ROUNDING):
+            if bent < bound * (1.0 - LAWS.written):
                 raise ValueError(
                     f"{spline.name}: friction with memory has no step from K_w S1 = {bent:.6g} N "
                     f"to F_m = {bound:.6g} N; leave stick_limit out"

@@ -27,7 +27,7 @@ from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.laws import APART, CORNER, LIGHT, NOISE
 from loadshare.certify.bound.quick import GAIN, NEAR, OPPOSED, SECANT
 from loadshare.certify.bound.statics import RANK, Statics
-from loadshare.contact.radial import ROUNDING
+from loadshare.settings import LAWS
 from loadshare.train.equilibria import CLAIMED, Equilibria
 from loadshare.train.ring import transverse
 from loadshare.train.situations import VARYING, Situations
@@ -89,7 +89,7 @@ class Layout(NamedTuple):
     light: float = LIGHT
     near: float = NEAR
     corner: float = CORNER
-    rounding: float = ROUNDING
+    rounding: float = LAWS.written
     balanced: float = BALANCED
     rounded: float = ROUNDED
     gain: float = GAIN

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.twofold import Twofold, exact, minus, plus, product, quotient
-from loadshare.contact.radial import ROUNDING
+from loadshare.settings import LAWS
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 
@@ -250,7 +250,7 @@ class Claim:
             bound = np.where(np.isnan(fixed), per_torque * torque, fixed)
             until = bound / stiffness
             stick = np.where(np.isnan(given), until, np.fmin(given, until))
-            drops = stiffness * given > bound * (1.0 + ROUNDING)
+            drops = stiffness * given > bound * (1.0 + LAWS.written)
             faulty = drops | (~np.isnan(given) & (reach < stick))
             if train.slip is None:
                 stick = np.where((reach < stick) & np.isnan(given), np.inf, stick)

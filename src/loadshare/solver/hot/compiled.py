@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.compilation import jit
-from loadshare.contact.radial import ROUNDING as WRITTEN
 from loadshare.scene.data import Data
 from loadshare.scene.elements import Basis, Elements
 from loadshare.scene.scene import Array
+from loadshare.settings import HOT, LAWS
 from loadshare.solver.hot import lanes
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot.plain import is_plain
@@ -36,19 +36,6 @@ STICK, CORNER, PINNED, SLIP, STOP, WALL = (
     at.WALL,
 )
 DONE, OTHER, FAILED = at.DONE, at.OTHER, at.FAILED
-PASSES, PATIENCE, OUTSIDE = at.PASSES, at.PATIENCE, at.OUTSIDE
-BEYOND, BURST = at.BEYOND, at.BURST
-CREEP, FAINT, PROXIMAL = at.CREEP, at.FAINT, at.PROXIMAL
-REFINEMENTS, SMALL = at.REFINEMENTS, at.SMALL
-HURRY, NEARLY = at.HURRY, at.NEARLY
-SETTLED, STALLED, LAW, SIGN, SHRINK, DRIFT = (
-    at.SETTLED,
-    at.STALLED,
-    at.LAW,
-    at.SIGN,
-    at.SHRINK,
-    at.DRIFT,
-)
 FEW = 16
 """Samples up to which lanes gain nothing over one sample after another."""
 compiled = jit(nogil=True, error_model="numpy", fastmath={"reassoc", "contract", "nsz"})
@@ -283,7 +270,7 @@ def _graph(s, i, j, force):  # type: ignore[no-untyped-def]
         stick = continuous if reach >= continuous else np.inf
     else:
         stick = min(given, continuous)
-        valid = first * given <= bound * (1.0 + WRITTEN) and reach >= stick
+        valid = first * given <= bound * (1.0 + LAWS.written) and reach >= stick
     return first, stick, bound, reach, numbers[5], valid
 
 
@@ -326,7 +313,7 @@ def _tangent(place, law, u, v, p, q, push):  # type: ignore[no-untyped-def]
     if place == PINNED:
         return 0.0, 0.0, 0.0, du, dv
     if place == SLIP:
-        return 0.0, min(max(radius, stick), reach) / max(bound, FAINT * push), 0.0, du, dv
+        return 0.0, min(max(radius, stick), reach) / max(bound, HOT.faint * push), 0.0, du, dv
     reached = max(radius, reach)
     pull = bound + last * (reached - reach)
     inner = 1.0 / last
@@ -390,7 +377,7 @@ def _solve(matrix, right, size):  # type: ignore[no-untyped-def]
         for r in range(c + 1, size):
             if abs(matrix[r, c]) > best:
                 best, pivot = abs(matrix[r, c]), r
-        if not best > SMALL * largest:
+        if not best > HOT.pivot * largest:
             return False
         largest = max(largest, best)
         if pivot != c:
@@ -422,13 +409,13 @@ def _solve_singular(matrix, target, found, definite, size):  # type: ignore[no-u
     if not scale > 0.0:
         scale = 1.0
     work, left = np.empty((size, size)), np.empty(size)
-    for _ in range(REFINEMENTS):
+    for _ in range(HOT.refinements):
         for c in range(size):
             left[c] = target[c]
             for d in range(size):
                 left[c] -= matrix[c, d] * found[d]
                 work[c, d] = matrix[c, d]
-            work[c, c] += PROXIMAL * scale if c < definite else -PROXIMAL * scale
+            work[c, c] += HOT.proximal * scale if c < definite else -HOT.proximal * scale
         if not _solve(work, left, size):
             return
         for c in range(size):
@@ -491,7 +478,7 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal)
         settled, refused, hopeless, burst = False, False, False, False
         hurried = False
         previous = np.inf
-        for number in range(PASSES):
+        for number in range(HOT.passes):
             # Tangents of the laws, faces of the arcs, tangents of the radial elements.
             for d in range(n):
                 load[d] = given_load[d]
@@ -660,23 +647,23 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal)
                         else:
                             f = force[e] - following**3
                             gone = abs(f) * (b + 2.0 / 3.0 * c_hertz / following)
-                        misfit = max(misfit, gone / largest * (SETTLED / LAW))
+                        misfit = max(misfit, gone / largest * (HOT.settled / HOT.law))
                         root[e] = max(following, floors[i])
                     else:
                         waiting = root[e] > floors[i]
                         if waiting:
                             misfit = max(misfit, 1.0)
                         loose[e] += 1
-                        if abs(force[e]) <= SIGN * push:
+                        if abs(force[e]) <= HOT.sign * push:
                             loose[e] = 0
-                        root[e] = max(SHRINK * root[e], floors[i])
-                        hopeless = hopeless or loose[e] >= PATIENCE
+                        root[e] = max(HOT.shrink * root[e], floors[i])
+                        hopeless = hopeless or loose[e] >= HOT.patience
                 elif s.kind[e] == 2:
                     table = _row(s.tables, i)[s.tabulated[s.columns[e]]]
                     at_start, at_force, slope = _piece(table[1], table[0], compression[e])
                     value = at_force + slope * (compression[e] - at_start)
                     root[e] = np.cbrt(max(value, 0.0))
-            nearly = misfit * LAW / SETTLED
+            nearly = misfit * HOT.law / HOT.settled
             if bent:
                 for d in range(n):
                     x[d] = 0.0
@@ -696,14 +683,14 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal)
                 if s.radial_at[j] >= 0 and s.code[s.rows + j] == SLIP:
                     u, v = _offset(s, i, j, x)
                     law = _graph(s, i, j, force)
-                    left = u * u + v * v > BEYOND * BEYOND * law[3] * law[3]
-                    left = left or law[2] <= SIGN * push
+                    left = u * u + v * v > HOT.beyond * HOT.beyond * law[3] * law[3]
+                    left = left or law[2] <= HOT.sign * push
                     outside[j] = outside[j] + 1 if left else 0
-                    hopeless = hopeless or outside[j] >= OUTSIDE
+                    hopeless = hopeless or outside[j] >= HOT.outside
             if not np.isfinite(misfit):
                 refused = True
                 break
-            if bent and number < 2 and nearly <= NEARLY and not one_only[i]:
+            if bent and number < 2 and nearly <= HOT.nearly and not one_only[i]:
                 # A set that is clearly wrong need not be settled.
                 verdict[row] = _signs(
                     s,
@@ -714,7 +701,7 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal)
                     loose,
                     outside,
                     push,
-                    HURRY,
+                    HOT.hurry,
                     True,
                     False,
                     False,
@@ -725,19 +712,19 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal)
                 hurried = verdict[row] == OTHER
                 if hurried:
                     break
-            if misfit <= SETTLED:
+            if misfit <= HOT.settled:
                 settled = True
                 break
-            if number > 2 and misfit <= STALLED and misfit >= 0.5 * previous:
+            if number > 2 and misfit <= HOT.stalled and misfit >= 0.5 * previous:
                 settled = True
                 break
             previous = misfit
             burst = False
             for e in range(k):
-                burst = burst or abs(force[e]) > BURST * (push if push > 0.0 else 1.0)
+                burst = burst or abs(force[e]) > HOT.burst * (push if push > 0.0 else 1.0)
             if hopeless or burst:
                 break
-        if not settled and not refused and not burst and previous <= CREEP:
+        if not settled and not refused and not burst and previous <= HOT.creep:
             settled = True
         if not bent and not hurried:
             for d in range(n):
@@ -754,7 +741,7 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal)
                 loose,
                 outside,
                 push,
-                SIGN,
+                HOT.sign,
                 settled,
                 refused,
                 burst,
@@ -801,7 +788,7 @@ def _signs(  # type: ignore[no-untyped-def]
         for d in range(n):
             along += s.loose[d, c] * given[d]
         drift = max(drift, abs(along))
-    if drift > DRIFT * push:
+    if drift > HOT.drift * push:
         return _stopped(s, i, x, force, gap, given, proposal, normal)
     if refused:
         return FAILED
@@ -824,7 +811,7 @@ def _signs(  # type: ignore[no-untyped-def]
         off = False
         if closed:
             off = (settled or burst) and force[acting] < -force_band
-            if not settled and s.kind[acting] == 1 and loose[acting] >= PATIENCE:
+            if not settled and s.kind[acting] == 1 and loose[acting] >= HOT.patience:
                 off = True
             acting += 1
         elif settled:
@@ -841,13 +828,15 @@ def _signs(  # type: ignore[no-untyped-def]
             if one_only:
                 return OTHER
     for j in range(switches - s.rows):
-        if settled or outside[j] >= OUTSIDE:
+        if settled or outside[j] >= HOT.outside:
             e = s.radial_at[j]
             place = s.code[s.rows + j]
             p, q = (force[e], force[e + 1]) if e >= 0 else (0.0, 0.0)
             u, v = _offset(s, i, j, x)
             law = _graph(s, i, j, force)
-            better = _misplaced(place, law, u, v, p, q, force_band, length_band, SIGN * strongest)
+            better = _misplaced(
+                place, law, u, v, p, q, force_band, length_band, HOT.sign * strongest
+            )
             if better != place:
                 proposal[s.rows + j] = better
                 wrong += 1
@@ -869,7 +858,7 @@ def _stopped(s, i, x, force, gap, given, proposal, normal):  # type: ignore[no-u
             along += s.loose[d, c] * given[d]
         for d in range(n):
             drift[d] += along * s.loose[d, c]
-    fast = DRIFT * np.abs(drift).max()
+    fast = HOT.drift * np.abs(drift).max()
     nearest, first = np.inf, -1
     for row in range(s.rows):
         if s.code[row] == CLOSED:

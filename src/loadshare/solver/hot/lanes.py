@@ -20,39 +20,17 @@ from loadshare.compilation import jit, within
 from loadshare.scene.data import Data
 from loadshare.scene.elements import Basis, Elements
 from loadshare.scene.scene import Array
+from loadshare.settings import HOT, LANES
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot.plain import Codes, Rows, plain_set
 from loadshare.solver.hot.state import State
 
 WIDTHS = (16, 32, 64)
 """Samples side by side: the first number that is enough, or the last."""
-ROUNDS = 4
-"""Times that samples begin again beside those that took as long."""
-FEW = 0.125
-"""Share of the lanes that is not waited for, but in the last round."""
-PASSES = 30
-"""Passes after which a sample is left to `compiled`."""
 UNDECIDED = -1
 """Verdict on a sample that is left to `compiled`."""
 
 OPEN, CLOSED, DONE, OTHER = at.OPEN, at.CLOSED, at.DONE, at.OTHER
-SETTLED, STALLED, LAW, SIGN = at.SETTLED, at.STALLED, at.LAW, at.SIGN
-HURRY, NEARLY, PATIENCE = at.HURRY, at.NEARLY, at.PATIENCE
-SHRINK, BURST, DRIFT = at.SHRINK, at.BURST, at.DRIFT
-TURNED = 10.0
-"""Weight of the angle by which arcs still turn among what has to settle."""
-LEAST = 1e-4
-"""Share of a turn that is expected of the next pass at least."""
-STEEPEST = 1e-2
-"""Angle by which no arc turns: 1 mm over 0.1 m."""
-CLOSED_BY = 1e-12
-"""Misfit of compatibility, over the largest compression, from which on a sample is left."""
-DOUBTFUL = 1e-8
-"""Pivot, over the largest, below which a sample is left to `compiled`."""
-HASTE = 2
-"""Patience with sets that are exchanged all at once (see `places.PATIENCE`)."""
-CLOSE = 1e-5
-"""Halley's last step on a root, relative, from which on the root counts as found."""
 
 _how: dict[str, Any] = {
     "nogil": True,
@@ -226,7 +204,7 @@ def _solve(matrix, right, lanes, singular, largest, pivot):  # type: ignore[no-u
         for m in range(lanes):
             p = matrix[c, c, m]
             largest[m] = p if p > largest[m] else largest[m]
-            if not p > DOUBTFUL * largest[m]:
+            if not p > LANES.doubtful * largest[m]:
                 singular[m] = True
             pivot[m] = 1.0 / p
         for d in range(c + 1, r):
@@ -322,7 +300,7 @@ def _fill(s, room, rows, waiting, first, count, lanes, xs, forces, roots, floors
     for m in range(lanes):
         i = samples[m]
         room.floor[m] = floors[i]
-        room.patience[m] = PATIENCE if one_only[i] else HASTE
+        room.patience[m] = HOT.patience if one_only[i] else LANES.haste
         room.live[m], room.go[m], room.sign[m], room.singular[m] = m < count, 1.0, 0.0, False
         room.push[m], room.previous[m], room.turn[m] = 0.0, np.inf, np.inf
     for k in range(s.loaded.shape[0]):
@@ -336,7 +314,7 @@ def _fill(s, room, rows, waiting, first, count, lanes, xs, forces, roots, floors
             drift = 0.0
             for k in range(s.loaded.shape[0]):
                 drift += s.loose[s.loaded[k], c] * weight[k, m]
-            if abs(drift) > DRIFT * room.push[m]:
+            if abs(drift) > HOT.drift * room.push[m]:
                 room.live[m] = False
     for e in range(springs):
         for m in range(lanes):
@@ -496,16 +474,16 @@ def _renew_laws(s, room, misfit, lanes):  # type: ignore[no-untyped-def]
             more = abs(more - y)
             # What the tangent leaves of the law.
             gone = abs((b * y + c_hertz) * y * y - moved)
-            gone += 0.0 if more <= CLOSE * y else 2.0 * c_hertz * y * more
+            gone += 0.0 if more <= LANES.close * y else 2.0 * c_hertz * y * more
             gone = gone if touching else 0.0
             misfit[m] = gone if gone > misfit[m] else misfit[m]
             waiting = 0.0 if touching | (now <= room.floor[m]) else 1.0
             room.waits[m] = waiting if waiting > room.waits[m] else room.waits[m]
-            idle = abs(f) <= SIGN * room.push[m]
+            idle = abs(f) <= HOT.sign * room.push[m]
             since = 0.0 if touching | idle else room.loose[p, m] + 1.0
             room.loose[p, m] = since
             room.longest[m] = since if since > room.longest[m] else room.longest[m]
-            y = y if touching else SHRINK * now
+            y = y if touching else HOT.shrink * now
             y = y if y > room.floor[m] else room.floor[m]
             y = y if room.go[m] > 0.0 else now
             room.root[p, m] = y
@@ -538,12 +516,12 @@ def _follow_arcs(s, room, distance, lanes):  # type: ignore[no-untyped-def]
         for m in range(lanes):
             f = abs(room.force[s.arcs[w, 0], m] - room.before[w, m])
             strongest = room.strongest[m] if room.strongest[m] > 0.0 else 1.0
-            y = f / strongest * (STEEPEST / TURNED * distance)
+            y = f / strongest * (LANES.steepest / LANES.turned * distance)
             step[m] = y if y > step[m] else step[m]
     for m in range(lanes):
         # Every pass turns them by about the same share of what the pass before did.
-        y = step[m] * (TURNED / distance)
-        rest = y * min(max(y / room.turn[m], LEAST), 1.0)
+        y = step[m] * (LANES.turned / distance)
+        rest = y * min(max(y / room.turn[m], LANES.least), 1.0)
         room.turn[m] = y
         room.misfit[m] = rest if rest > room.misfit[m] else room.misfit[m]
 
@@ -561,31 +539,33 @@ def _run(s, room, one_only, enough, lanes):  # type: ignore[no-untyped-def]
     for m in range(lanes):
         lives += room.live[m]
     law_misfit, misfit = room.three, room.misfit
-    for number in range(PASSES):
+    for number in range(LANES.passes):
         if lives <= enough:
             break
         _pass(s, room, lanes)
         _renew_laws(s, room, law_misfit, lanes)
         for m in range(lanes):
-            misfit[m] = 1.0 if room.waits[m] > 0.0 else law_misfit[m] * (SETTLED / LAW)
+            misfit[m] = 1.0 if room.waits[m] > 0.0 else law_misfit[m] * (HOT.settled / HOT.law)
         if s.turning.shape[0] > 0:
             _follow_arcs(s, room, distance, lanes)
         for m in range(lanes):
             if not room.live[m]:
                 continue
-            settled = misfit[m] <= SETTLED or (
-                number > 2 and misfit[m] <= STALLED and misfit[m] >= 0.5 * room.previous[m]
+            settled = misfit[m] <= HOT.settled or (
+                number > 2 and misfit[m] <= HOT.stalled and misfit[m] >= 0.5 * room.previous[m]
             )
             room.previous[m] = misfit[m]
             # A set that is clearly wrong need not be settled.
-            pulled = law_misfit[m] <= NEARLY and not one_only[room.samples[m]]
-            pulled = pulled and room.weakest[m] < -HURRY * room.strongest[m]
+            pulled = law_misfit[m] <= HOT.nearly and not one_only[room.samples[m]]
+            pulled = pulled and room.weakest[m] < -HOT.hurry * room.strongest[m]
             # Forces without bound and what is not a number are left undecided.
-            burst = not room.strongest[m] <= BURST * (room.push[m] if room.push[m] > 0.0 else 1.0)
+            burst = not room.strongest[m] <= HOT.burst * (
+                room.push[m] if room.push[m] > 0.0 else 1.0
+            )
             undecided = room.singular[m] or burst
             if settled or pulled or undecided or room.longest[m] >= room.patience[m]:
                 room.live[m], room.go[m], lives = False, 0.0, lives - 1
-                sign = SIGN if settled else (HURRY if pulled else np.inf)
+                sign = HOT.sign if settled else (HOT.hurry if pulled else np.inf)
                 room.sign[m] = 0.0 if undecided else sign
 
 
@@ -619,7 +599,7 @@ def _conclude(s, room, count, lanes, xs, forces, roots, one_only, verdict, propo
             y = abs(total[m])
             misfit[m] = y if y > misfit[m] else misfit[m]
     for m in range(lanes):
-        if misfit[m] > CLOSED_BY * yielded[m] and room.sign[m] == SIGN:
+        if misfit[m] > LANES.closed_by * yielded[m] and room.sign[m] == HOT.sign:
             # What the matrix of the redundants was too stiff or too flat for.
             room.sign[m] = 0.0
     for d in range(room.x.shape[0]):
@@ -644,8 +624,8 @@ def _conclude(s, room, count, lanes, xs, forces, roots, one_only, verdict, propo
             roots[i, s.contacts[p]] = room.root[p, m]
         if room.live[m]:
             continue
-        verdict[row] = DONE if sign == SIGN and room.mistakes[m] == 0 else OTHER
-        if sign > SIGN and room.mistakes[m] == 0:
+        verdict[row] = DONE if sign == HOT.sign and room.mistakes[m] == 0 else OTHER
+        if sign > HOT.sign and room.mistakes[m] == 0:
             # What does not settle may still say which flank is open.
             for p in range(s.powers):
                 if room.force[p, m] <= 0.0:
@@ -707,14 +687,14 @@ def _settle_all(s, rows, xs, forces, roots, floors, one_only, verdict, proposal,
     verdict[:] = UNDECIDED
     waiting = np.arange(rows.shape[0])
     total = rows.shape[0]
-    for number in range(ROUNDS):
+    for number in range(LANES.rounds):
         kept = 0
-        last = number == ROUNDS - 1 or total <= lanes
+        last = number == LANES.rounds - 1 or total <= lanes
         for first in range(0, total, lanes):
             count = min(lanes, total - first)
             width = min(lanes, (count + 7) // 8 * 8)
             _fill(s, room, rows, waiting, first, count, width, xs, forces, roots, floors, one_only)
-            _run(s, room, one_only, 0 if last else int(FEW * count), width)
+            _run(s, room, one_only, 0 if last else int(LANES.few * count), width)
             if last:
                 for m in range(count):
                     room.live[m] = False

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from loadshare.scene.data import Data
 from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
-from loadshare.solver.hot.places import FLOOR
+from loadshare.settings import HOT
 
 
 @dataclass(slots=True, eq=False)
@@ -65,7 +65,7 @@ def at_rest(elements: Elements, data: Data) -> State:
         x=np.zeros((count, elements.size)),
         force=np.zeros((count, width)),
         root=root,
-        floor=FLOOR * np.cbrt(push),
+        floor=HOT.floor * np.cbrt(push),
         stays=np.zeros(count, dtype=bool),
     )
 

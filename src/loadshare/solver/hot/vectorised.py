@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from loadshare.scene.data import Data
 from loadshare.scene.elements import Basis, Elements
 from loadshare.scene.scene import Array
+from loadshare.settings import HOT
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot.rest import rest
 from loadshare.solver.hot.state import State
@@ -59,12 +60,12 @@ def settle(
         drifting = (drift != 0.0).any(axis=1)
         passes.run(one_only[rows] | drifting)
         start = state.x[rows]
-        far = state.stays[rows] & (size_of(passes.x - start) > at.FAR * (1.0 + size_of(start)))
+        far = state.stays[rows] & (size_of(passes.x - start) > HOT.far * (1.0 + size_of(start)))
         if far.any():
             # What all but nothing resists has run away from where it began.
             drift[far], drifting = (passes.x - start)[far], drifting | far
             passes.x[far] = start[far]
-        wrong, moved = passes.wrong(at.SIGN)
+        wrong, moved = passes.wrong(HOT.sign)
         staying = state.stays[rows] & wrong.any(axis=1)
         if staying.any():
             wrong, moved = passes.left_in_place(state.x[rows], staying, wrong, moved)
@@ -188,40 +189,40 @@ class _Passes:
         bent = [place for _, place, _ in self.radial if place not in straight]
         curved = len(self.arc) + len(bent) + len(self.table) > 0
         previous = np.full(len(self.rows), np.inf)
-        for number in range(at.PASSES):
+        for number in range(HOT.passes):
             x, force = self.x, self.force
             self._pass(self._blocks())
             roots = self.root
             laws = self._renew_laws()
             self.lean = self.x, self.force
-            if number % at.SWING >= at.SWING - at.DAMPED:
+            if number % HOT.swing >= HOT.swing - HOT.damped:
                 # Newton's steps that swing to and fro around an answer settle between.
                 self.lean = 0.5 * (x + self.x), 0.5 * (force + self.force)
                 self.root = 0.5 * (roots + self.root)
             if curved and number < 2:
-                self._hurry((laws <= at.NEARLY) & ~patient)
+                self._hurry((laws <= HOT.nearly) & ~patient)
             yielded = np.abs(self.compression[:, self.contact]).max(axis=1, initial=0.0)
             closing = self.misfit / np.where(yielded > 0.0, yielded, np.inf)
-            misfit = np.maximum(closing, laws * (at.SETTLED / at.LAW))
+            misfit = np.maximum(closing, laws * (HOT.settled / HOT.law))
             if curved:
                 misfit = np.maximum(misfit, change(self.force, force))
-                balanced = misfit <= at.SETTLED
+                balanced = misfit <= HOT.settled
                 misfit = np.maximum(misfit, change(self.x, x))
             else:
-                balanced = misfit <= at.SETTLED
+                balanced = misfit <= HOT.settled
             # A law's tangent leaves a misfit of second order, so a small one need not be repeated.
-            stalled = (number > 2) & (misfit <= at.STALLED) & (misfit >= 0.5 * previous)
-            self.settled = (misfit <= at.SETTLED) | stalled
+            stalled = (number > 2) & (misfit <= HOT.stalled) & (misfit >= 0.5 * previous)
+            self.settled = (misfit <= HOT.settled) | stalled
             self.refused |= ~np.isfinite(self.x).all(axis=1)
             previous = misfit
-            self.burst = np.abs(self.force).max(axis=1, initial=0.0) > at.BURST * self.unit
-            hopeless = (self.loose >= at.PATIENCE).any(axis=1) | self._slipped_out() | self.burst
+            self.burst = np.abs(self.force).max(axis=1, initial=0.0) > HOT.burst * self.unit
+            hopeless = (self.loose >= HOT.patience).any(axis=1) | self._slipped_out() | self.burst
             hopeless |= self.hurried.any(axis=1)
             if (self.settled | self.refused | hopeless).all():
                 break
         # What creeps on without end is left to the certificate.
         # Where the forces stand, what still moves is held by none.
-        self.settled |= (previous <= at.CREEP) | balanced
+        self.settled |= (previous <= HOT.creep) | balanced
         self.settled &= ~self.burst
         self.settled &= ~self.refused
 
@@ -270,18 +271,18 @@ class _Passes:
             yields[k : k + 2] = place != at.PINNED
         n = self.basis.redundant
         _, sizes, right = np.linalg.svd(n[yields], full_matrices=True)
-        return right[int((sizes > at.SHARED).sum()) :].T
+        return right[int((sizes > HOT.shared).sum()) :].T
 
     def _set_apart(self, matrix: Array, sides: Array, lengths: Array) -> None:
         """Hold the shares of rigid elements, unless they contradict one another."""
         q = self.shared
         size, largest = len(q), np.abs(matrix).max(axis=(1, 2))
         against = sides[:, :size] @ q
-        against[np.abs(against) <= at.NOISE * lengths[:, None]] = 0.0
+        against[np.abs(against) <= HOT.noise * lengths[:, None]] = 0.0
         apart = np.where(largest > 0.0, largest, 1.0)
         matrix[:, :size, :size] += apart[:, None, None] * (q @ q.T)
         mild = sides[:, :size] - (sides[:, :size] @ q) @ q.T
-        sides[:, :size] = mild + (against / at.PROXIMAL) @ q.T
+        sides[:, :size] = mild + (against / HOT.proximal) @ q.T
 
     def _tangents(self) -> tuple[Array, Array]:
         """Tangent compliance of every scalar element, and what its tangent leaves at no force."""
@@ -311,10 +312,10 @@ class _Passes:
             largest = np.abs(self.compression[:, self.scalar]).max(axis=1)
             misfit = off.max(axis=1) / largest
             misfit[waiting.any(axis=1)] = 1.0
-            self.loose[touching | (np.abs(force) <= at.SIGN * self.push[:, None])] = 0
+            self.loose[touching | (np.abs(force) <= HOT.sign * self.push[:, None])] = 0
             following = root_of(b, c, np.where(touching, compression, 1.0))
             self.root[:, self.power] = np.maximum(
-                np.where(touching, following, at.SHRINK * root), floor
+                np.where(touching, following, HOT.shrink * root), floor
             )
         if len(self.table):
             compression = self.compression[:, self.table]
@@ -361,9 +362,9 @@ class _Passes:
         for j, place, _ in self.radial:
             if place == at.SLIP:
                 radius, law = np.sqrt((self._offset(j) ** 2).sum(axis=1)), self._graph(j)
-                left = (radius > at.BEYOND * law.reach) | (law.bound <= at.SIGN * self.push)
+                left = (radius > HOT.beyond * law.reach) | (law.bound <= HOT.sign * self.push)
                 self.outside[:, j] = np.where(left, self.outside[:, j] + 1, 0)
-        return np.asarray((self.outside >= at.OUTSIDE).any(axis=1))
+        return np.asarray((self.outside >= HOT.outside).any(axis=1))
 
     def _graph(self, j: int) -> at.Graph:
         """Law of a radial element; found once where no torque moves its friction bound."""
@@ -389,7 +390,7 @@ class _Passes:
         if not these.any():
             return
         before, self.settled = self.settled, these
-        wrong, moved = self.wrong(at.HURRY)
+        wrong, moved = self.wrong(HOT.hurry)
         self.settled = before
         wrong &= these[:, None]
         self.hurried |= wrong
@@ -403,7 +404,7 @@ class _Passes:
         largest_force = np.maximum(np.abs(self.force).max(axis=1, initial=0.0), self.push)
         furthest = np.abs(self.x).max(axis=1, initial=0.0)
         yielded = np.abs(self.compression[:, self.scalar]).max(axis=1, initial=0.0)
-        force_band, faint = sign * largest_force, at.SIGN * largest_force
+        force_band, faint = sign * largest_force, HOT.sign * largest_force
         length_band = sign * np.maximum(yielded, 1e-3 * furthest)
         rows = elements.columns.contacts
         approach = self.x @ elements.vectors[rows].T - pick(data.gap, self.rows)[:, rows]
@@ -430,14 +431,14 @@ class _Passes:
                 length_band,
                 faint,
             )
-        slipped = (self.outside >= at.OUTSIDE) & ~self.settled[:, None]
+        slipped = (self.outside >= HOT.outside) & ~self.settled[:, None]
         pulled = wrong & self.burst[:, None] & np.append(closed, np.zeros_like(slipped[0]))
         wrong &= self.settled[:, None]
         wrong[:, elements.rows :] |= slipped
         wrong |= pulled
         # What the passes could not settle may still say which flank is open.
         power = self.basis.columns[self.power] - elements.springs
-        opening = (self.loose >= at.PATIENCE) & ~self.settled[:, None]
+        opening = (self.loose >= HOT.patience) & ~self.settled[:, None]
         wrong[:, power] |= opening
         return wrong, moved
 
@@ -447,7 +448,7 @@ class _Passes:
         """Leave what no acting element holds where it was before, if that rights all signs."""
         least, loose = self.x, self.basis.loose
         self.x = np.where(these[:, None], least + (before - least) @ loose @ loose.T, least)
-        other, places = self.wrong(at.SIGN)
+        other, places = self.wrong(HOT.sign)
         these = these & ~other.any(axis=1)
         self.x = np.where(these[:, None], self.x, least)
         return np.where(these[:, None], other, wrong), np.where(these[:, None], places, moved)
@@ -455,7 +456,7 @@ class _Passes:
     def drift(self) -> Array:
         """Move (k, n) that no acting element resists and the load pushes along; zero without."""
         along = self.load @ self.basis.loose
-        drifting = np.abs(along).max(axis=1, initial=0.0) > at.DRIFT * self.push
+        drifting = np.abs(along).max(axis=1, initial=0.0) > HOT.drift * self.push
         return np.asarray(np.where(drifting[:, None], along @ self.basis.loose.T, 0.0))
 
     def stopped_by(self, drift: Array) -> tuple[Flags, Codes]:
@@ -468,7 +469,7 @@ class _Passes:
         for a in range(len(elements.arcs)):
             margin = arc_at(self.data, a, self.rows, self.x)[1]
             room[:, elements.flat + a] = margin
-        fast = at.DRIFT * np.abs(drift).max(axis=1, initial=0.0)[:, None]
+        fast = HOT.drift * np.abs(drift).max(axis=1, initial=0.0)[:, None]
         way = np.where(speed > fast, np.maximum(room, 0.0) / speed, np.inf)
         way[:, self.code[: elements.rows] == at.CLOSED] = np.inf
         places = np.repeat(self.code[None, :], len(self.rows), axis=0)
@@ -557,13 +558,13 @@ def solve(matrix: Array, sides: Array, size: int) -> Array:
         regular = np.linalg.slogdet(normed)[0] != 0.0
         solved[regular] = np.linalg.solve(normed[regular], target[regular][:, :, None])[:, :, 0]
     residual = np.abs(times(normed, solved) - target).max(axis=1)
-    regular &= residual <= at.REFINED * np.maximum(np.abs(solved).max(axis=1), 1e-300)
+    regular &= residual <= HOT.refined * np.maximum(np.abs(solved).max(axis=1), 1e-300)
     if not regular.all():
         sign = np.where(np.arange(matrix.shape[1]) < size, 1.0, -1.0)
         normed, target = normed[~regular], target[~regular]
-        proximal = normed + at.PROXIMAL * np.diag(sign)
+        proximal = normed + HOT.proximal * np.diag(sign)
         found: Array = np.zeros(target.shape)
-        for _ in range(at.REFINEMENTS):
+        for _ in range(HOT.refinements):
             left = target - times(normed, found)
             found += np.linalg.solve(proximal, left[:, :, None])[:, :, 0]
         solved[~regular] = found
@@ -674,7 +675,7 @@ def block(
         elif place == at.SLIP:
             # Beyond the piece the true tangent is too soft to find the way back.
             inner, start = np.zeros(count), np.zeros(count)
-            outer = np.clip(radius, law.stick, law.reach) / np.maximum(law.bound, at.FAINT * push)
+            outer = np.clip(radius, law.stick, law.reach) / np.maximum(law.bound, HOT.faint * push)
         else:
             reached = np.maximum(radius, law.reach)
             pull = law.bound + law.last * (reached - law.reach)
@@ -683,7 +684,7 @@ def block(
             start = law.reach - law.bound / law.last
     # Across its offset a force vanishes in the end, whatever its compliance there: one that a small
     # force makes immense would only drown all others.
-    outer = np.minimum(outer, at.SOFTEST)
+    outer = np.minimum(outer, HOT.softest)
     dyad = along[:, :, None] * along[:, None, :]
     compliance = inner[:, None, None] * dyad + outer[:, None, None] * (_BOTH - dyad)
     bound = law.bound if place == at.SLIP else None
