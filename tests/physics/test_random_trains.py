@@ -10,6 +10,9 @@ The examples are the same in every run (derandomised), so that a failure can be 
 else has been imported may bring others, as Hypothesis also draws numbers that it finds in the code.
 """
 
+import math
+from collections.abc import Mapping, Set
+
 import pytest
 from hypothesis import HealthCheck, given, note, settings
 from hypothesis import strategies as st
@@ -17,7 +20,7 @@ from tests.support import answer, forces, furthest
 
 import loadshare as ls
 from benchmarks import families
-from loadshare.certify import certify
+from loadshare.certify import Certificate, certify
 from loadshare.train import build_train
 
 AGREE = 1e-9
@@ -177,13 +180,26 @@ def split_torques(draw: st.DrawFn) -> ls.Case:
     return ls.Case(data)
 
 
+def undetermined(certificate: Certificate) -> set[str]:
+    """Forces that a certificate bounds by nothing; none of them is a flank's."""
+    names = {name for name, error in certificate.bound.force.items() if math.isinf(error)}
+    assert not names & certificate.bound.torque.keys()
+    return names
+
+
+def determined(found: Mapping[str, float], shared: Set[str]) -> dict[str, float]:
+    """Forces, or components of forces, but for those that are shared."""
+    return {k: v for k, v in found.items() if not {k, k.rsplit(" ", 1)[0]} & shared}
+
+
 def is_solved_and_agreed(case: ls.Case) -> None:
     note(case.to_toml())
     train = build_train(case)
     result = ls.solve(case)
     assert result.passed
     expected = ls.explain(case, 1).equilibrium
-    assert certify(train, expected).passed
+    known = certify(train, expected)
+    assert known.passed
     kind = ""
     for options in (
         {},
@@ -199,9 +215,13 @@ def is_solved_and_agreed(case: ls.Case) -> None:
         except ls.Refused:
             continue  # the ladder does not depend on every rung
         kind = kind or record.kind
-        if certify(train, found).passed:
-            # Forces are unique; displacements are not where a branch is unloaded.
-            assert furthest(forces(expected), forces(found)) < AGREE, options
+        told = certify(train, found)
+        if told.passed:
+            # Forces are unique, unless rigid parts share them: a spline without play in a drum
+            # without clearance. Displacements are not where a branch is unloaded.
+            shared = undetermined(known) | undetermined(told)
+            one, other = (determined(forces(v), shared) for v in (expected, found))
+            assert furthest(one, other) < AGREE, options
 
 
 @pytest.mark.parametrize("family", [stars, split_torques], ids=["star", "split torque"])
