@@ -295,6 +295,50 @@ def test_limits_that_can_hold_do_not_contradict(name):
         assert contradiction(assemble(train, index)) == ()
 
 
+def between_planets(offset: str) -> ls.Case:
+    """A sun between the rolling rings of two planets, one of which a round ring pins off centre."""
+    reach = 80.0 / math.cos(math.radians(20.0))
+    gears = {
+        "sun": {"centre": ["0 mm", "0 mm"], "base_radius": "50 mm"},
+        "ring": {"centre": ["0 mm", "0 mm"], "base_radius": "110 mm", "type": "internal"},
+        "p1": {"centre": [f"{reach!r} mm", "0 mm"], "base_radius": "30 mm"},
+        "p2": {"centre": [f"{-reach!r} mm", "0 mm"], "base_radius": "30 mm"},
+    }
+    meshes = {
+        mesh: {"pressure_angle": "20 deg", "stiffness": "1e6 N*m/rad"}
+        for mesh in ("sun-p1", "p1-ring", "sun-p2", "p2-ring")
+    }
+    rings = {
+        "sun": {"neighbours": ["p1", "p2"], "clearance": "0 um", "float": "100 um"},
+        "p1": {"radius": "3 um", "offset": [offset, "0 um"]},
+    }
+    operating = {"input": "sun", "output": "ring", "torque": "100 N*m"}
+    return ls.Case(operating=operating, gears=gears, meshes=meshes, rings=rings)
+
+
+def test_a_round_ring_has_its_part_in_a_contradiction():
+    """The planet is 1 µm too near at least, and the sun, between two rings, cannot make way.
+
+    The arcs bend by 0.02 µm over the sun's float. Where the ring lets the planet be in its place,
+    there is room.
+    """
+    tight = between_planets("-4 um")
+    named = set(contradiction(assemble(build_train(tight), 1)))
+    assert named == {"ring sun: arc p1", "ring sun: arc p2", "ring p1"}
+    with pytest.raises(Refused, match="rigid limits contradict one another") as refused:
+        ls.solve(tight)
+    assert all(name in str(refused.value) for name in named)
+    for room in ("-3 um", "-2 um", "5 um"):
+        assert contradiction(assemble(build_train(between_planets(room)), 1)) == ()
+
+
+def test_limits_of_drawn_trains_that_leave_no_place_are_named():
+    """All rungs of the ladder were climbed for it, and no set was found."""
+    for number in (2600, 2863):
+        with pytest.raises(Refused, match="rigid limits contradict one another: ring sun"):
+            ls.solve(draw(1, number), positions=[1])
+
+
 def test_room_for_the_squeeze_ends_the_contradiction():
     """The overlap is 20 µm on either side: 21 µm of clearance hold it, 19 µm do not."""
     case = squeezed(shipped("fgfbstts/limit_ring"), "4")

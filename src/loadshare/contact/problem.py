@@ -127,6 +127,15 @@ class Radial:
         """Whether the law must be settled in the outer loop."""
         return not isinstance(self.source, RadialLaw) and self.source.friction_force is None
 
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """Finite extents of its pieces without torque; none where its law would drop then [m]."""
+        try:
+            pieces = self.law(0.0).pieces
+        except ValueError:
+            return ()
+        return tuple(p.length for p in pieces if p.length < np.inf)
+
     def torque(self, forces: Mapping[str, float]) -> float:
         """Torque over the element; a row that is not named carries nothing."""
         return sum(lever * forces.get(name, 0.0) for name, lever in self.levers.items())
@@ -236,7 +245,7 @@ class ContactProblem:
         yielded = [r.law.compression(force) for r in self.rows]
         yielded += [force / k for k in np.diag(self.stiffness).tolist() if k > 0.0]
         gaps = [abs(r.gap) for r in self.rows] + [a.arc.clearance for a in self.arcs]
-        gaps += [p.length for r in self.radials for p in r.law(0.0).pieces if p.length < np.inf]
+        gaps += [length for r in self.radials for length in r.lengths]
         soft = float(np.median([v for v in yielded if v > 0.0] or [0.0]))
         return max(soft, 1e-3 * max(gaps, default=0.0)) or 1.0
 

@@ -233,8 +233,9 @@ def climb(
     """
     elements = elements_of(train)
     scene = scene_of(elements, situation_of(train, index))
+    _refuse_if_contradicted(scene, PLAINLY)
     if is_unbalanced(elements, scene.load):
-        _refuse_if_none(scene, PLAINLY)
+        _refuse_if_driven(scene)
     first: Refused | None = None
     known = Known(work=Work(steps))
     seen: list[tuple[Iteration, ...]] = []
@@ -244,7 +245,7 @@ def climb(
         except Refused as refusal:
             if first is None:
                 first = refusal
-                _refuse_if_none(scene, PLAINLY)
+                _refuse_if_driven(scene)
             continue
         if any(record.iterations is others for others in seen):
             # The same answer once more.
@@ -256,28 +257,32 @@ def climb(
         first = first or uncertified(index, certificate)
         if not options.polish:
             break
-    _refuse_if_none(scene)
+    _refuse_if_contradicted(scene)
+    _refuse_if_driven(scene)
     raise _far_before(
         train, index, tolerance, first or Refused(f"position {index}: nothing was tried")
     )
 
 
-def _refuse_if_none(scene: Scene, overlap: float = OVERLAP) -> None:
-    """Refuse a position that is shown to have no equilibrium, and name what is in the way."""
-    here = f"position {scene.position}:"
+def _refuse_if_contradicted(scene: Scene, overlap: float = OVERLAP) -> None:
+    """Refuse a position whose rigid limits are shown to leave no place, and name them."""
     against = contradiction(scene, overlap)
     if against:
         raise Refused(
-            f"{here} rigid limits contradict one another: {', '.join(against)}; "
-            "give one of them more clearance or float, or a stiffness"
+            f"position {scene.position}: rigid limits contradict one another: "
+            f"{', '.join(against)}; give one of them more clearance or float, or a stiffness"
         )
+
+
+def _refuse_if_driven(scene: Scene) -> None:
+    """Refuse a position whose load is shown to move something without end, and name what."""
     moves = runaway(scene)
     if moves:
         floats = [g for g in scene.displacement if {f"gear {g} x", f"gear {g} y"} & {*moves}]
         also = f"; nothing limits the float of gear {', '.join(floats)}" if floats else ""
         raise Refused(
-            f"{here} nothing balances the load on {moves[0]}: no contact, support or limit holds "
-            f"it{also}"
+            f"position {scene.position}: nothing balances the load on {moves[0]}: no contact, "
+            f"support or limit holds it{also}"
         )
 
 
