@@ -59,7 +59,8 @@ class HotPath(NamedTuple):
     """Factor on the cube root of the force of a flank that is not compressed: a tenth of the force
     a pass."""
     patience: int = 6
-    """Passes after which a flank that stays uncompressed is taken for open."""
+    """Passes after which a flank that stays uncompressed is taken for open, and a rigid stop that
+    holds inward."""
     outside: int = 2
     """Passes after which a radial element that stays beyond its level piece has left it."""
     beyond: float = 1.01
@@ -70,6 +71,8 @@ class HotPath(NamedTuple):
     """Largest compliance of a radial element across its offset."""
     far: float = 1e3
     """Way from where proximal passes ended, over how far they went, that only a drift explains."""
+    rolls: int = 4
+    """Passes that renew the faces of arcs along a loose move: these turn by thousandths at most."""
     faint: float = 1e-12
     """Friction bound, over the load, at which a slipping element is held across its slip."""
     drift: float = 1e-12

@@ -18,7 +18,7 @@ from loadshare.scene.data import Data, data_of
 from loadshare.scene.elements import Elements, elements_of
 from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.hot import vectorised
-from loadshare.solver.hot.answer import equilibria, pin
+from loadshare.solver.hot.answer import equilibria, pin, without_noise
 from loadshare.solver.hot.determined import determined
 from loadshare.solver.hot.exchange import Codes, Engine, Found, exchange, first_sets
 from loadshare.solver.hot.proximal import search
@@ -276,6 +276,9 @@ class Machine:
             searched |= left
             pin(self.elements, data, state, found.code)
             answers, verdicts = self._judged(situations, state, tolerance, engine)
+            unproved = found.solved & ~verdicts.passed & (verdicts.worst <= tolerance)
+            if unproved.any() and without_noise(self.elements, state, unproved):
+                answers, verdicts = self._judged(situations, state, tolerance, engine)
             left = found.solved & ~verdicts.passed & ~searched
             if not left.any():
                 break

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize
 
 import loadshare as ls
 from loadshare.job.ladder import HOT
@@ -21,6 +22,26 @@ def test_a_disc_alone_is_met_on_the_way_to_its_middle():
     share = rest(np.zeros((0, 2)), np.zeros(0), [(np.eye(2), -np.array([3.0, 4.0]), 2.0)], 5.0)
     assert share == pytest.approx([1.8, 2.4], rel=1e-9)
     assert np.hypot(*(share - [3.0, 4.0])) <= 2.0 * (1.0 + 1e-11)
+
+
+def test_discs_that_one_move_closes_both_are_met():
+    """Newly turned tangents alone sent the place to and fro between the two discs."""
+    row, room = np.array([[1.0, -1.0, 1.0]]), np.array([-2.0])
+    discs = [
+        (np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), np.array([-2.0, 1.0]), 1.0),
+        (np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]), np.array([2.0, -1.0]), 3.0),
+    ]
+    share = rest(row, room, discs, 4.0)
+    assert (row @ share <= room + 1e-11).all()
+    for matrix, start, reach in discs:
+        assert np.linalg.norm(start + matrix @ share) <= reach + 1e-11
+    inside = [
+        {"type": "ineq", "fun": lambda u, m=m, q=q, r=r: r * r - ((q + m @ u) ** 2).sum()}
+        for m, q, r in discs
+    ]
+    inside.append({"type": "ineq", "fun": lambda u: room - row @ u})
+    nearest = minimize(lambda u: u @ u, share, method="SLSQP", constraints=inside)
+    assert share == pytest.approx(nearest.x, abs=1e-5)
 
 
 def test_no_room_is_told():

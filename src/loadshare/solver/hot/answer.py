@@ -5,10 +5,12 @@ from __future__ import annotations
 from typing import NamedTuple, cast
 
 import numpy as np
+from numpy.typing import NDArray
 
 from loadshare.scene.data import Data
 from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
+from loadshare.settings import HOT
 from loadshare.solver.hot.exchange import Codes
 from loadshare.solver.hot.places import PINNED
 from loadshare.solver.hot.state import State
@@ -62,6 +64,20 @@ def pin(elements: Elements, data: Data, state: State, code: Codes) -> None:
             (at,) = np.flatnonzero(elements.vectors[column])
             pins = np.broadcast_to(data.gap[:, column], len(code))
             state.x[rows, at] = pins[rows] / elements.vectors[column, at]
+
+
+def without_noise(elements: Elements, state: State, rows: NDArray[np.bool_]) -> bool:
+    """Let radial elements of some samples carry nothing where they carry round-off; tell if any do.
+
+    What holds a gear that no load reaches pulls by what the sums of its contacts leave.
+    """
+    first = elements.columns.radials.start
+    pairs = state.force[rows, first:].reshape(int(rows.sum()), -1, 2)
+    size = np.sqrt((pairs * pairs).sum(axis=2))
+    largest = np.abs(state.force[rows]).max(axis=1, initial=0.0)
+    noise = (size > 0.0) & (size <= HOT.sign * largest[:, None])
+    state.force[rows, first:] = np.where(noise[:, :, None], 0.0, pairs).reshape(len(pairs), -1)
+    return bool(noise.any())
 
 
 def _pushes(force: Array, first: int, last: int, unit: float) -> Array:

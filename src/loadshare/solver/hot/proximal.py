@@ -14,13 +14,15 @@ a pass ends at is a set, and a start for the exact solve on it.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from copy import deepcopy
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from loadshare.scene.data import Data
 from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
+from loadshare.settings import HOT
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.exchange import Codes, Found, exchange, first_sets
@@ -57,6 +59,8 @@ STILL = 1e-15
 """Step, over the largest coordinate, that is round-off."""
 TRIES = 3
 """Passes from which a set is solved exactly: a later one may stand nearer."""
+IDLE = 1e-6
+"""Force, over the largest, up to which a contact may be idle: a pass adds some of its own."""
 EXCHANGES = 7
 """Sets that an exact solve visits from where the passes stand: enough to tell to and fro."""
 
@@ -126,6 +130,15 @@ class Proximal:
         """Write down where the passes stand."""
         state.x[0], state.force[0], state.stays[0] = self.x, self.force, True
         state.root[0] = np.maximum(np.cbrt(np.maximum(self.force, 0.0)), state.floor[0])
+
+    def without_idle(self, code: Codes) -> Codes:
+        """Open what carries all but nothing where the passes stand."""
+        idle = np.abs(self.force) <= IDLE * np.abs(self.force).max(initial=0.0)
+        apart = idle[self.scalar :].reshape(-1, 2).all(axis=1)
+        law = self.laws.graph
+        free = (law.bound == 0.0) & (law.stick == 0.0) & (law.reach > 0.0)
+        opened = np.append(idle[self.springs : self.scalar], apart & free)
+        return np.where(opened, at.OPEN, code).astype(np.int8)
 
     def _face_arcs(self) -> None:
         """Replace arcs by their faces at the last pass."""
@@ -267,18 +280,41 @@ def search(elements: Elements, data: Data) -> tuple[State, Found]:
         key = code.tobytes()
         if key == before and tried.count(key) < TRIES:
             tried.append(key)
-            passes.store(state)
-            more = exchange(
-                elements,
-                data,
-                state,
-                vectorised.settle,
-                code[None, :],
-                singly=True,
-                limit=EXCHANGES,
-            )
-            found = found.completed(more)
-            if found.solved[0]:
-                break
+            # What carries nothing where a set fails may only be in the way.
+            lean = passes.without_idle(code)
+            for start in (code, lean) if (lean != code).any() else (code,):
+                passes.store(state)
+                more = exchange(
+                    elements,
+                    data,
+                    state,
+                    vectorised.settle,
+                    start[None, :],
+                    singly=True,
+                    limit=EXCHANGES,
+                )
+                found = found.completed(more)
+                if found.solved[0]:
+                    return _without_noise(elements, data, state, found)
         before = key
     return state, found
+
+
+def _without_noise(
+    elements: Elements, data: Data, state: State, found: Found
+) -> tuple[State, Found]:
+    """Open contacts that carry round-off, if the set holds without them where the gears are.
+
+    Of many no bound could tell whether they act.
+    """
+    pushes = np.abs(state.force[0])
+    idle = pushes[elements.columns.contacts] <= HOT.sign * pushes.max(initial=0.0)
+    code = found.code.copy()
+    code[0, : elements.rows][idle] = at.OPEN
+    if (code == found.code).all():
+        return state, found
+    lean = deepcopy(state)
+    more = exchange(elements, data, lean, vectorised.settle, code, singly=True, limit=1)
+    if not more.solved[0]:
+        return state, found
+    return lean, replace(more, turns=found.turns + more.turns)

@@ -13,7 +13,7 @@ from scipy.optimize import nnls
 from loadshare.scene.scene import Array
 
 RENEWALS = 40
-"""Passes that renew the tangents of round limits; each about halves what is left, or better."""
+"""Passes that add tangents of round limits; each leaves about a quarter of what is left."""
 FITS = 1e-12
 """Overlap that counts as none, over the largest room or move."""
 
@@ -37,9 +37,10 @@ def rest(
     share = np.zeros(rows.shape[1])
     limits, bounds = rows, rooms
     for _ in range(RENEWALS):
+        # Those of former passes stay: without, two discs may send the place to and fro.
         faces = [(along @ m, reach - along @ q) for m, q, reach, along in _tangents(discs, share)]
-        limits = np.vstack([rows, *(f[0] for f in faces)])
-        bounds = np.append(rooms, [f[1] for f in faces])
+        limits = np.vstack([limits, *(f[0] for f in faces)])
+        bounds = np.append(bounds, [f[1] for f in faces])
         found = _least(limits, bounds)
         if found is None:
             return None

@@ -119,7 +119,9 @@ class _Passes:
     loose : ndarray of int, shape (k, flanks with a power law)
         How many passes in a row a flank was not compressed.
     outside : ndarray of int, shape (k, radial elements)
-        How many passes in a row an element was beyond its level piece.
+        How many passes in a row an element was beyond its level piece, or held inward.
+    patience : ndarray of int, shape (radial elements,)
+        How many of these show that it has left its place.
     fixed : dict of int to Graph
         Laws of radial elements that do not follow the torque.
     linear : dict of int to _Block
@@ -174,6 +176,7 @@ class _Passes:
         self.hurried_to = np.repeat(code[None, :], count, axis=0)
         self.loose = np.zeros((count, len(self.power)), dtype=int)
         self.outside = np.zeros((count, elements.switches - elements.rows), dtype=int)
+        self.patience = np.where(code[elements.rows :] == at.WALL, HOT.patience, HOT.outside)
         self.fixed: dict[int, at.Graph] = {}
         self.linear: dict[int, _Block] = {}
 
@@ -355,16 +358,22 @@ class _Passes:
         return blocks
 
     def _slipped_out(self) -> Flags:
-        """Samples with a radial element that has left its level piece.
+        """Samples with a radial element that has left its level piece or its rigid stop.
 
-        It stays far beyond the end of it, or friction that follows the torque is gone.
+        It stays far beyond the end of that piece, or friction that follows the torque is gone; a
+        stop goes on holding inward, this way and that.
         """
-        for j, place, _ in self.radial:
+        for j, place, k in self.radial:
+            offset, law = self._offset(j), self._graph(j)
             if place == at.SLIP:
-                radius, law = np.sqrt((self._offset(j) ** 2).sum(axis=1)), self._graph(j)
+                radius = np.sqrt((offset**2).sum(axis=1))
                 left = (radius > HOT.beyond * law.reach) | (law.bound <= HOT.sign * self.push)
-                self.outside[:, j] = np.where(left, self.outside[:, j] + 1, 0)
-        return np.asarray((self.outside >= HOT.outside).any(axis=1))
+            elif place == at.WALL:
+                left = (offset * self.force[:, k : k + 2]).sum(axis=1) < 0.0
+            else:
+                continue
+            self.outside[:, j] = np.where(left, self.outside[:, j] + 1, 0)
+        return np.asarray((self.outside >= self.patience).any(axis=1))
 
     def _graph(self, j: int) -> at.Graph:
         """Law of a radial element; found once where no torque moves its friction bound."""
@@ -431,7 +440,7 @@ class _Passes:
                 length_band,
                 faint,
             )
-        slipped = (self.outside >= HOT.outside) & ~self.settled[:, None]
+        slipped = (self.outside >= self.patience) & ~self.settled[:, None]
         pulled = wrong & self.burst[:, None] & np.append(closed, np.zeros_like(slipped[0]))
         wrong &= self.settled[:, None]
         wrong[:, elements.rows :] |= slipped
@@ -447,11 +456,20 @@ class _Passes:
     ) -> tuple[Flags, Codes]:
         """Leave what no acting element holds where it was before, if that rights all signs."""
         least, loose = self.x, self.basis.loose
-        self.x = np.where(these[:, None], least + (before - least) @ loose @ loose.T, least)
+        self._move(these, (before - least) @ loose)
         other, places = self.wrong(HOT.sign)
         these = these & ~other.any(axis=1)
         self.x = np.where(these[:, None], self.x, least)
         return np.where(these[:, None], other, wrong), np.where(these[:, None], places, moved)
+
+    def _move(self, these: Flags, share: Array) -> None:
+        """Go along loose moves by shares (k, l), and roll along arcs in contact meanwhile."""
+        loose = self.basis.loose
+        self.x = np.where(these[:, None], self.x + share @ loose.T, self.x)
+        apart = self.x @ loose @ loose.T
+        for _ in range(HOT.rolls if len(self.arc) else 0):
+            held = (self._at_arcs()[1] + self.compression) @ self.basis.particular
+            self.x = np.where(these[:, None], held + apart, self.x)
 
     def drift(self) -> Array:
         """Move (k, n) that no acting element resists and the load pushes along; zero without."""
@@ -490,9 +508,24 @@ class _Passes:
 
     def rests(self, k: int, wrong: Flags) -> bool:
         """Find sample `k` a place where nothing that is open overlaps, if only places are wrong."""
-        elements, rows, here = self.elements, self.elements.rows, self.rows[k : k + 1]
         if (wrong & (self.code != at.OPEN)).any():
             return False
+        before, this = self.x, np.arange(len(self.rows)) == k
+        for _ in range(HOT.rolls):
+            size = float(np.abs(self.x[k]).max())
+            share = rest(*self._room(k), size)
+            if share is None:
+                self.x = before
+                return False
+            self._move(this, share[None, :])
+            # What rolls along an arc ends beside the place that was sought.
+            if not len(self.arc) or float(np.abs(share).max()) <= HOT.sign * size:
+                break
+        return True
+
+    def _room(self, k: int) -> tuple[Array, Array, list[tuple[Array, Array, float]]]:
+        """What is open around sample `k`, as `rest` takes it."""
+        elements, rows, here = self.elements, self.elements.rows, self.rows[k : k + 1]
         opened = np.flatnonzero(self.code[:rows] == at.OPEN)
         x, loose = self.x[k : k + 1], self.basis.loose
         vectors = np.array(elements.vectors[elements.springs + opened])
@@ -510,11 +543,7 @@ class _Passes:
             discs.append((matrix, self._offset(j)[k], float(self._graph(j).reach[k])))
         closes = vectors @ loose
         finite = np.isfinite(room)
-        share = rest(closes[finite], room[finite], discs, float(np.abs(x).max()))
-        if share is None:
-            return False
-        self.x[k] += loose @ share
-        return True
+        return closes[finite], room[finite], discs
 
     def store(self, state: State) -> None:
         """Write back where the samples stand."""
