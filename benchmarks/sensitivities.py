@@ -30,8 +30,8 @@ from benchmarks.machine_facts import facts
 from benchmarks.random_trains.draw import draw
 from benchmarks.reference import NoReference, reference
 from benchmarks.stress.families import FAMILIES
-from loadshare.certify.tolerance import TOLERANCE
 from loadshare.job.machine import Machine
+from loadshare.settings import CERTIFY
 from loadshare.solver.hot import vectorised
 from loadshare.study.answers import certified
 from loadshare.study.positions import loaded
@@ -194,7 +194,7 @@ def figures(train: Train, position: int, fine: bool) -> Array:
 def answered(train: Train, position: int) -> Equilibrium:
     """Return a certified equilibrium; what it leaves open need not be of least norm."""
     machine = Machine(train)
-    found = machine.answer(machine.situations([position]), TOLERANCE, vectorised.settle)
+    found = machine.answer(machine.situations([position]), CERTIFY.tolerance, vectorised.settle)
     if found.passed[0]:
         return found.equilibria.one(0, position)
     return certified(train, position).equilibrium

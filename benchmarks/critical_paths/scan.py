@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from benchmarks.critical_paths.draw import Path
 from loadshare.certify import Judge
 from loadshare.certify.bound import Bounds
-from loadshare.certify.tolerance import TOLERANCE
 from loadshare.job.machine import Machine, engine_named
 from loadshare.job.many import solve_blocks
 from loadshare.scene.data import Data
+from loadshare.settings import CERTIFY
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot.exchange import Codes, Engine, Found, exchange
 from loadshare.solver.hot.state import State
@@ -176,7 +176,7 @@ def scanned(path: Path, line: Line, values: Array, engine: str) -> States:
         here = values[block]
         situations = samples.take(block).situations(1)
         solver = engine_named(engine, len(values))
-        found = machine.answer(situations, TOLERANCE, solver, starts=(1,))
+        found = machine.answer(situations, CERTIFY.tolerance, solver, starts=(1,))
         told = states(line, here, found.equilibria, found.passed)
         left = _thinned(np.flatnonzero(~found.passed), ASKED)
         if len(left):

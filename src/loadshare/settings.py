@@ -1,4 +1,4 @@
-"""The numbers by which programmes decide: how small counts as none, how long to go on.
+"""The numbers by which solvers, studies and certificates decide: what is small, when to stop.
 
 One table for all rooms. Every number stands with its meaning and the reason for its size; what is
 not a ratio says its unit. Compiled code is handed them as data, so that it never keeps old ones.
@@ -105,6 +105,293 @@ class Lanes(NamedTuple):
     its cube."""
 
 
+class Statics(NamedTuple):
+    """Sets of elements that act, and what they leave free."""
+
+    opposed: float = 1e-4
+    """Angle [rad] up to which two arcs of a ring count as opposed: what squeezes a gear between
+    them moves nothing else."""
+    sets: int = 2000
+    """Sets of which the statics are kept; with more, all are forgotten, so that memory is
+    bounded."""
+    trains: int = 4
+    """Trains of which the elements are kept, for those who ask for one position after another."""
+    rank: float = 1e-10
+    """Singular values of directions below this, relative to the largest, count as zero."""
+
+
+class Certify(NamedTuple):
+    """Verdicts on answers."""
+
+    tolerance: float = 1e-9
+    """Largest scaled residual of a certified answer."""
+    band: float = 1e-9
+    """Band in which a margin counts as none, in deflections of the case."""
+    largest: float = 1e-3
+    """Largest tolerance: an answer that misses by more than a thousandth is not certified, it is
+    guessed, and Ω is read to three digits behind the point."""
+    together: int = 2048
+    """Answers judged together: as many as a processor's own memory holds."""
+    trains: int = 64
+    """Trains of which the mechanics are kept: more than the positions of a march judged in turn."""
+    carries: float = 1e-9
+    """Part of the load from which on a contact counts as carrying, and of the deflection within
+    which a radius counts as at a corner: the band of the certificate."""
+    rank: float = 1e-10
+    """Relative size below which a singular value of unit rows is none."""
+    flat: float = 1e-13
+    """Relative stiffness below which a move is held by nothing: round-off of the stiffest
+    element."""
+    nothing: float = 1e-15
+    """Curvature that is none: what round-off leaves where rigid contacts allow no move."""
+    turned: float = 0.01
+    """Angle [rad] of a line of action or a ring's arm from which on a warning is given: forces are
+    off by 1 % then, about as far as mesh stiffnesses are known."""
+    neglected: float = 0.01
+    """Share of the case's deflection that the approach neglects, from which on a warning is given:
+    what compliances make of it changes torques by about 1 %."""
+    meaningless: float = 1.0
+    """Share from which on an answer is refused: the neglected approach is all of the deflection, or
+    the compression all of a tooth's height."""
+    compressed: float = 0.1
+    """Share of a tooth's height by which it yields, from which on a warning is given: the square of
+    it, 1 %, is what linear bending neglects."""
+    height: float = 2.25
+    """Height of a tooth in modules: addendum 1, dedendum 1.25."""
+    fewest: int = 17
+    """Teeth of a gear of which none are known: the fewest without undercut (20 deg), so that its
+    teeth are the highest."""
+    noise: float = 1e-12
+    """Force, over the largest one, that is a solver's rounding."""
+    alike: float = 1e-9
+    """Relative difference of figures that differ by round-off alone."""
+
+
+class Bound(NamedTuple):
+    """Bounds on the distance of a claim from the exact equilibrium."""
+
+    noise: float = 1e-12
+    """Force, over the largest one, of a contact that may as well be open: a solver's rounding over
+    a clear gap. It is put aside; so is the friction of a spline that takes no more torque than
+    that."""
+    light_friction: float = 1e-10
+    """Friction, in loads of the claim, that may be put aside where nothing else bounds a torque."""
+    enough: float = 1e-11
+    """Relative bound with which double precision is content."""
+    together: int = 512
+    """Claims that are looked at in twice the precision at a time."""
+    many: int = 1000
+    """Claims from which on only the largest error is found where that is enough."""
+    soft: float = 1e5
+    """Largest compliance of a turn of a line, at first, in compliances of the claim: what is softer
+    hardly carries."""
+    softest: float = 1e11
+    """The same at last, where a turn that is stiffer bounds nothing."""
+    yielding: float = 1e3
+    """Largest compliance of what slips, in compliances of the claim."""
+    light: float = 1e-9
+    """Force, in loads of the claim, at which the tangent of a contact without force is taken. Below
+    it a Hertz contact is softer still: it answers by something between that tangent and none."""
+    reached: float = 4.0
+    """Times the force of a contact on the verge up to which its tangent holds."""
+    apart: float = 1e-6
+    """Gap, over the largest deflection, that is clear."""
+    corner: float = 1e-12
+    """Relative distance from a level within which a force is on it, up to rounding."""
+    secant: float = 0.9
+    """Part of the tangent compliance that the secant to the exact force keeps. The bound is far
+    below a tenth of the force wherever it is of use; elsewhere it is refused."""
+    endless: float = 1e300
+    """Compliance, over the tangent's, of a Hertz contact without force: there is no largest."""
+    near: float = 1e-6
+    """Gap, over the widest one, within which a contact counts among those that may carry."""
+    opposed: float = 1.0 - 1e-6
+    """Cosine from which on two arcs are opposed."""
+    angle: float = 0.02
+    """Angle [rad] between two lines that still count as nearly the same."""
+    references: int = 16
+    """Claims whose lines are tried on all those whose elements act alike."""
+    few: int = 8
+    """Claims up to which each is bounded by itself where lines turn."""
+    gain: float = 0.5
+    """Largest share of an error that may come back over friction that follows the torque."""
+    wider: float = 2.0
+    """How far a box goes beyond what came out of the one before."""
+    passes: int = 8
+    """Boxes that are tried; the second mostly holds."""
+    singular: float = 1e-15
+    """Compliance of a self-stress, over the largest, below which it is shared by rigid parts
+    alone."""
+    shared: float = 1e-7
+    """Part of a force in a self-stress of rigid parts from which on it is undetermined."""
+    sets_told_apart: int = 1000
+    """Sets of elements that are told apart in a batch."""
+    sets: int = 2000
+    """Sets of elements of which the statics are kept, so that memory is bounded."""
+    slip_turns: float = 1e-6
+    """Angle by which a slip may turn."""
+    slack: float = 1e-6
+    """Part of the level within which a force is on it where the place says that something slips."""
+    at_end: float = 1e-6
+    """Distance of a slip from the end of its room, over the slip, within which it is at the end."""
+    next_to: float = 1e-12
+    """The same over the displacement: rounding of what has moved far."""
+    turned: float = 1e-11
+    """Error of a torque over a spline, in torques of the claim, for which its room is made wider.
+    That much is hardly ever asked for: friction mostly needs its clearance by more than this."""
+    slight: float = 1e-6
+    """Play, in deflections of the claim, of a gear that counts as locked."""
+    bowed: float = 1e-3
+    """Play, in centre distances of an arc, below which the arc is taken for its tangent and a
+    bow."""
+    trains: int = 64
+    """Trains of which the columns are kept: more than the positions of a march judged in turn."""
+    used_up: float = 1e-9
+    """Distance of a force from its friction bound, over the bound, up to which it may be used
+    up."""
+    margin: float = 1e-6
+    """How far the place of a gear whose spline has used up its friction may lie beyond the slip,
+    over the clearance: small for the forces, and large beside their errors."""
+    rank: float = 1e-11
+    """Singular value of the directions, relative to the largest, that counts as zero. Directions
+    are cosines and ratios of radii; what geometry makes dependent is so to some 1e-16."""
+    loose: float = 1e-7
+    """Part of a coordinate in a move that nothing resists from which on it is undetermined."""
+    on_the_verge: int = 7
+    """Elements on the verge of which every combination is tried. With more, convexity alone bounds
+    the error (see `quick`), which asks for no combination."""
+    verge_passes: int = 4
+    """Passes in which further elements may turn out to be on the verge."""
+    idle: float = 1e-9
+    """Part in self-stresses below which a contact cannot change a force."""
+
+
+class Follow(NamedTuple):
+    """Following an active set along a parameter, and what proves that no event was passed over."""
+
+    carries: float = 1e-11
+    """Force over the load from which on a contact counts as closed."""
+    facets: int = 24
+    """Sides at first of the polygon that stands for a round ring in which a body floats."""
+    polygons: int = 24
+    """Polygons at most; two are taken as a rule, and each leaves a quarter of the error at most."""
+    full: float = 1e-3
+    """Part of the room a polygon promises that may be missing."""
+    spent: float = 1e-12
+    """Room [deflections] that is none."""
+    unit_of_room: float = 1e-6
+    """Unit of room [deflections] in which a linear programme is exact to the last digits."""
+    binds: float = 1e-6
+    """Room [deflections] left by the linear programme at which a limit binds."""
+    room: float = 1.0
+    """Room [deflections] around a floating body that is as good as any more."""
+    felt: float = 1e-9
+    """Speed at which a move closes a limit, over that of the move, below which it does not."""
+    steps: int = 40
+    """Newton's steps before a branch counts as lost."""
+    solved: float = 1e-11
+    """Last step of an answer, relative to the largest unknown."""
+    roots: int = 30
+    """Newton's steps for a cube root of a force; about six are taken."""
+    rank: float = 1e-12
+    """Singular values below this, relative to the largest, of the scaled Jacobian, count as
+    zero."""
+    enclosures: int = 6
+    """Attempts to find an enclosure."""
+    verge: float = 1e-11
+    """Gauge, in deflections or loads, that counts as zero: a hundredth of what is certified."""
+    unfelt: float = 1e-10
+    """Part of a move, or of the load along it, that counts as none."""
+    nodes: int = 5
+    """Values of a stretch at which the parameter's effect is sampled."""
+    first: int = 8
+    """Stretches at the beginning."""
+    cut: float = 0.4877
+    """Where a stretch is cut: no simple fraction, for those are where thresholds stand."""
+    beside: float = 0.05
+    """Distance from an event at which a stretch is cut, over its width."""
+    least: float = 1e-10
+    """Width of a stretch that is not cut any more, over the largest value."""
+    most: int = 2000
+    """Stretches of a position; what is left then is named as not proved."""
+    idle: float = 1e-11
+    """Force and compression, over load and deflection, at which a closed contact carries
+    nothing."""
+    sections: int = 9
+    """Values between two ends at which the gauges of one are looked at."""
+    grade: float = 0.5
+    """Ratio of stretches that shrink towards an event."""
+    resolved: float = 1e-9
+    """Distance from an event that counts as the event itself, over its value."""
+    refinements: int = 16
+    """Refinements of a bracket; three are taken as a rule, and each halves it at least."""
+    exact: float = 1e-12
+    """Width of a bracket, over the largest value, that is good enough where rounding stops it."""
+    adjacent: float = 4e-16
+    """Width of a bracket, over its value, with nothing in between."""
+
+
+class Sensitivity(NamedTuple):
+    """Derivatives at an equilibrium, by its equations and by differences."""
+
+    loose: float = 1e-9
+    """Approach per move that nothing resists, from which on a contact's approach is
+    undetermined."""
+    roundings: float = 4.0
+    """Roundings that a term of the residual has behind it: radii, directions, sums."""
+    first: float = 1e-4
+    """First step, relative to the input's value or to the step that differencing takes."""
+    steps: int = 6
+    """Steps that are tried as a rule, each a quarter of the one before."""
+    most: int = 16
+    """Steps that are tried where an event stands so near that slopes grow as steps shrink."""
+    settled: int = 5
+    """Steps over which slopes must not have grown to count as settled."""
+    solved: float = 1e-12
+    """What a certified solve leaves open of the largest force and displacement."""
+    safe: float = 3.0
+    """Error over the distance of two neighbouring limits."""
+    step: float = 1e-3
+    """Step relative to the input's value: its fourth power, and round-off over it, are about
+    1e-12."""
+    shorter: tuple[float, ...] = (1.0, 1.0 / 16.0, 1.0 / 256.0)
+    """Shares of the step that are tried until the input may take it."""
+    other: tuple[float, ...] = (1.0 / 16.0, 1.0 / 256.0, 16.0)
+    """Steps, over the usual one, that are tried where it leaves a large error."""
+    close: float = 1e-8
+    """Relative error of a derivative that calls for no other step."""
+    kink: float = 1e-7
+    """Difference of both sides, over the largest derivative, from which on there is a kink."""
+    central: float = 1.5
+    """Sum of the weights of a central difference: its rounding over that of its terms."""
+    forward: float = 5.5
+    """The same of a one-sided difference."""
+    verge: float = 1e-9
+    """Gauge below which an element stands on the verge, in deflections or loads."""
+    rank: float = 1e-13
+    """Singular values of the equilibrated Jacobian below this, over the largest, count as zero."""
+    follows: float = 1e-7
+    """Part of a derivative that an active set may leave unbalanced; it counts as an error."""
+    slides: float = 1e-7
+    """Rate at which a verge element is violated that counts as none, over the largest rate."""
+    way: float = 1e-4
+    """Move over which the gauges are differenced, in deflections and loads."""
+    near: tuple[float, ...] = (1e-5, 1e-7, 1e-3)
+    """Effects of the steps, in deflections and loads, after which the set of a side is looked
+    for."""
+    round_off: float = 1e-11
+    """Effect of an input's step that counts as none, likewise."""
+    tie: float = 1e-9
+    """Shares that differ by no more are both the largest."""
+    beside: float = 1e-6
+    """Change of an input, relative to its value, within which a step of the answer is told."""
+
+
 LAWS = Laws()
 HOT = HotPath()
 LANES = Lanes()
+STATICS = Statics()
+CERTIFY = Certify()
+BOUND = Bound()
+FOLLOW = Follow()
+SENSITIVITY = Sensitivity()

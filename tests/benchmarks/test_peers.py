@@ -13,8 +13,8 @@ from benchmarks.peers import PEERS
 from benchmarks.peers.form import form_of
 from benchmarks.peers.loop import Failure, force_of
 from loadshare.certify import certify
-from loadshare.certify.tolerance import LARGEST
 from loadshare.scene import assemble
+from loadshare.settings import CERTIFY
 from loadshare.train import build_train
 
 EXACT, INTERIOR, BATCHED = 1e-9, 1e-5, 1e-2
@@ -53,7 +53,7 @@ def test_a_peer_finds_the_certified_answer(entry, name):
     found = form.equilibrium(claim.x, claim.forces, claim.pulls)
     limit = {"DAQP": EXACT, "moreau": BATCHED}.get(entry.name, INTERIOR)
     # A peer's answer is in balance to its own tolerance; its torques are not proved so closely.
-    certificate = certify(train, found, min(limit, LARGEST))
+    certificate = certify(train, found, min(limit, CERTIFY.largest))
     assert certificate.worst <= limit, certificate.residuals
 
 

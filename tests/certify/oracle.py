@@ -15,10 +15,10 @@ from functools import cached_property
 import numpy as np
 
 from loadshare.certify.rigid import RigidShafts, rigid_shafts
-from loadshare.certify.tolerance import BAND
 from loadshare.contact.arc import Arc
 from loadshare.contact.law import RIGID, Law, PowerLaw
 from loadshare.contact.radial import RadialLaw, round_ring_law
+from loadshare.settings import CERTIFY
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import Vector
 from loadshare.train.memory import SlipFriction, SlipStop
@@ -525,8 +525,8 @@ def judged(train: Train, answer: Equilibrium) -> dict[str, Figures]:
         "moment_balance": moment_balance(state),
         "penetration": penetration(state),
         "complementarity": complementarity(state),
-        "deformation_law": deformation_law(state, BAND * load),
-        "cone_membership": cone_membership(state, BAND * deflection),
+        "deformation_law": deformation_law(state, CERTIFY.band * load),
+        "cone_membership": cone_membership(state, CERTIFY.band * deflection),
         "energy_gap": energy_gap(state),
     }
     return {name: Figures(found[name], unit, scale[unit]) for name, unit in UNITS.items()}

@@ -24,7 +24,7 @@ from tests.support import shipped
 
 from loadshare.certify import RESIDUALS, Judge
 from loadshare.certify.compiled import judge_all
-from loadshare.certify.tolerance import TOLERANCE
+from loadshare.settings import CERTIFY
 from loadshare.train import build_train
 from loadshare.train.situations import Situations
 
@@ -135,7 +135,7 @@ def test_no_answer_at_all():
     train = build_train(shipped("fgfbstts/all_elements"))
     situations, found = claims(train, [1])
     none = taken(found, np.zeros(0, dtype=int))
-    verdicts = Judge(train).judge(situations, none, tolerance=TOLERANCE, compiled=True)
+    verdicts = Judge(train).judge(situations, none, tolerance=CERTIFY.tolerance, compiled=True)
     assert verdicts.residuals.shape == (0, len(RESIDUALS))
 
 
@@ -150,12 +150,15 @@ def test_a_contact_that_pulls():
     load = float(Judge(train).judge(situations, found).load[0])
     spoilt = taken(found, np.zeros(2, dtype=int))
     idle = int(np.argmin(found.flank_force[0]))
-    spoilt.flank_force[:, idle] = (-0.5 * TOLERANCE * load, -2.0 * TOLERANCE * load)
+    spoilt.flank_force[:, idle] = (
+        -0.5 * CERTIFY.tolerance * load,
+        -2.0 * CERTIFY.tolerance * load,
+    )
     verdicts = alike(train, situations, spoilt)
     cone = RESIDUALS.index("cone_membership")
     np.testing.assert_allclose(
         verdicts.residuals[:, cone],
-        (0.5 * TOLERANCE, 2.0 * TOLERANCE),
+        (0.5 * CERTIFY.tolerance, 2.0 * CERTIFY.tolerance),
         rtol=RELATIVE,
         atol=ABSOLUTE,
     )

@@ -19,7 +19,7 @@ from tests.support import SHIPPED, answer, coasting, loaded, lost_contact, round
 import loadshare as ls
 from benchmarks import families
 from loadshare.certify import RESIDUALS, Judge, Residual, Verdicts, certify
-from loadshare.certify.tolerance import TOLERANCE
+from loadshare.settings import CERTIFY
 from loadshare.train import Train, build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations, situation_of, stack
@@ -163,7 +163,7 @@ def test_right_answers(name):
     agree(train, indices, situations, found)
     many = Judge(train).judge(situations, found)
     assert many.passed.all()
-    assert many.tolerance == TOLERANCE
+    assert many.tolerance == CERTIFY.tolerance
     single = [certify(train, found.one(row, k)) for row, k in enumerate(indices)]
     np.testing.assert_allclose(many.load, [c.load for c in single], rtol=1e-14)
     np.testing.assert_allclose(many.deflection, [c.deflection for c in single], rtol=1e-9)
@@ -184,7 +184,7 @@ def test_wrong_answers(name):
     many = alike(train, situations.take(rows), spoilt)
     assert not many.passed.all()
     if "all_elements" in name:
-        assert (many.residuals > TOLERANCE).any(axis=0).all(), (
+        assert (many.residuals > CERTIFY.tolerance).any(axis=0).all(), (
             "a residual was never put to the test"
         )
 
@@ -303,7 +303,7 @@ def test_a_wrong_shaft_torque_is_caught():
     for row in range(len(elastic)):
         failing = certify(train, spoilt.one(row, 1)).failing
         assert {"moment_balance", "deformation_law"} <= failing.keys()
-        assert (many.residuals[row, [1, 4]] > TOLERANCE).all()
+        assert (many.residuals[row, [1, 4]] > CERTIFY.tolerance).all()
 
 
 def test_a_wrong_support_force_is_caught():
@@ -324,7 +324,7 @@ def test_a_wrong_support_force_is_caught():
         # A bearing that is not there carries nothing; an elastic one what its displacement says.
         law = "deformation_law" if gear.support[0] > 0.0 else "cone_membership"
         assert law in failing
-        shown = dict(zip(RESIDUALS, many.residuals[row] > TOLERANCE, strict=True))
+        shown = dict(zip(RESIDUALS, many.residuals[row] > CERTIFY.tolerance, strict=True))
         assert shown["force_balance"]
         assert shown[law]
 

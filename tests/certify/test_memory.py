@@ -12,8 +12,8 @@ from tests.certify.test_many import agree, alike, damaged, scales_of, taken
 from tests.support import shipped
 
 from loadshare.certify import RESIDUALS, certify
-from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import Refused
+from loadshare.settings import CERTIFY
 from loadshare.study.memory import stepped
 from loadshare.train import Train, build_train
 from loadshare.train.equilibria import Equilibria
@@ -55,7 +55,7 @@ def test_steps_of_a_march(name):
     many = alike(train, situations, spoilt)
     assert not many.passed.all()
     for residual in ("force_balance", "penetration", "cone_membership", "energy_gap"):
-        assert (many.residuals[:, RESIDUALS.index(residual)] > TOLERANCE).any(), residual
+        assert (many.residuals[:, RESIDUALS.index(residual)] > CERTIFY.tolerance).any(), residual
 
 
 def test_a_law_that_jumps_is_refused():

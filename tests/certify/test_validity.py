@@ -15,15 +15,8 @@ from tests.support import answer, loaded, shipped
 
 import loadshare as ls
 from loadshare.certify import Judge, certify
-from loadshare.certify.validity import (
-    COMPRESSED,
-    HEIGHT,
-    MEANINGLESS,
-    NEGLECTED,
-    TURNED,
-    Measuring,
-    validity,
-)
+from loadshare.certify.validity import Measuring, validity
+from loadshare.settings import CERTIFY
 from loadshare.train import build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
@@ -101,10 +94,10 @@ def test_the_neglected_approach_is_that_of_exact_involutes(kind):
         # Third order over second order: ten times smaller where the displacement is.
         assert misfits[1] < 0.15 * misfits[0] + 1e-6
         across = abs(float(mesh.coast_normal[:2] @ way))
-        far = TURNED * R1 * math.tan(ALPHA) * way
+        far = CERTIFY.turned * R1 * math.tan(ALPHA) * way
         found = validity(train, claim(train, far), 1.0).measures["approach"].value
         true = abs(exact(kind, r2, far) - float(mesh.drive_normal[:2] @ far))
-        if across > 0.3 and found > 1e-3 * TURNED**2 * R1:
+        if across > 0.3 and found > 1e-3 * CERTIFY.turned**2 * R1:
             assert found == pytest.approx(true, rel=0.1)
 
 
@@ -148,10 +141,15 @@ def test_compression_by_the_height_of_the_teeth(teeth):
     """The height of 2.25 modules of the teeth given, or of the 17 that stand for unknown ones."""
     train = build_train(pair("external", teeth))
     module = 2.0 * R1 / ((teeth or 17) * math.cos(ALPHA))
-    for share, verdict in ((0.99 * COMPRESSED, "small"), (1.01 * COMPRESSED, "large"),
-                           (1.01 * MEANINGLESS, "meaningless")):  # fmt: skip
+    shares = {
+        0.99 * CERTIFY.compressed: "small",
+        1.01 * CERTIFY.compressed: "large",
+        1.01 * CERTIFY.meaningless: "meaningless",
+    }
+    for share, verdict in shares.items():
         pressed = replace(
-            claim(train, (0.0, 0.0)), rotation={"1": share * HEIGHT * module / R1, "2": 0.0}
+            claim(train, (0.0, 0.0)),
+            rotation={"1": share * CERTIFY.height * module / R1, "2": 0.0},
         )
         found = validity(train, pressed, 1.0)
         assert found.measures["compression"].value == pytest.approx(share)
@@ -164,8 +162,12 @@ def test_the_bound_of_the_neglected_approach():
     n = train.meshes["1-2"].drive_normal[:2]
     moved = 1e-4 * np.array([-n[1], n[0]])
     neglected = 1e-8 / (2.0 * 0.17 * math.tan(ALPHA))
-    for deflection, verdict in ((1.01 / NEGLECTED, "small"), (0.99 / NEGLECTED, "large"),
-                                (0.99 / MEANINGLESS, "meaningless")):  # fmt: skip
+    deflections = {
+        1.01 / CERTIFY.neglected: "small",
+        0.99 / CERTIFY.neglected: "large",
+        0.99 / CERTIFY.meaningless: "meaningless",
+    }
+    for deflection, verdict in deflections.items():
         found = validity(train, claim(train, moved), deflection * neglected)
         assert found.verdict == verdict, found.measures["approach"]
 
@@ -236,7 +238,7 @@ def test_a_case_that_gives_way_too_much_is_refused_everywhere():
     case = loaded(shipped("fgfbstts/base"), "5e5 N*m")
     with pytest.raises(ls.Refused, match="tooth height") as refused:
         ls.solve(case, positions=[1])
-    assert refused.value.figures["compression"] > MEANINGLESS
+    assert refused.value.figures["compression"] > CERTIFY.meaningless
     known = ls.explain(case, 1)
     assert certify(known.train, known.equilibrium).passed
     assert known.validity.verdict == "meaningless"
@@ -258,4 +260,4 @@ def test_a_warning_stands_in_the_result_and_outlives_a_file(tmp_path):
     assert set(position.validity.warned) == {"compression"}
     result.to_json(tmp_path / "r.json")
     assert ls.load_result(tmp_path / "r.json") == result
-    assert result.dataset.validity.sel(measure="compression").item() > COMPRESSED
+    assert result.dataset.validity.sel(measure="compression").item() > CERTIFY.compressed

@@ -8,12 +8,23 @@ from tests.support import shipped
 
 import loadshare as ls
 from loadshare.certify import certify
-from loadshare.certify.tolerance import LARGEST, checked_tolerance
+from loadshare.certify.tolerance import checked_tolerance
 from loadshare.job import explain
 from loadshare.job.many import solve_blocks
+from loadshare.settings import CERTIFY
 from loadshare.train import build_train
 
-NO_TOLERANCE = (-1.0, 0.0, 1e300, math.inf, math.nan, 1.001 * LARGEST, True, "1e-9", None)
+NO_TOLERANCE = (
+    -1.0,
+    0.0,
+    1e300,
+    math.inf,
+    math.nan,
+    1.001 * CERTIFY.largest,
+    True,
+    "1e-9",
+    None,
+)
 SAMPLES = {"rings.4.float [um]": [4.0]}
 
 
@@ -35,7 +46,7 @@ def test_a_tolerance_that_certifies_nothing_is_refused(ask, tolerance):
 
 
 def test_any_other_tolerance_is_taken():
-    assert checked_tolerance(LARGEST) == LARGEST
+    assert checked_tolerance(CERTIFY.largest) == CERTIFY.largest
     assert checked_tolerance(np.float64(1e-12)) == 1e-12
     result = ls.solve(shipped("fgfbstts/base"), positions=[1], tolerance=1e-8)
     assert result.stamp.tolerance == 1e-8

@@ -15,13 +15,13 @@ import loadshare as ls
 from benchmarks.random_trains.draw import draw
 from loadshare.certify import certify
 from loadshare.certify.residuals import turned
-from loadshare.certify.tolerance import TOLERANCE
 from loadshare.contact.plan import Role
 from loadshare.errors import Refused
 from loadshare.job import ladder
 from loadshare.job.ladder import HOT, SEARCHED, STEPS, climb, climb_all, hot_answers, rungs
 from loadshare.job.machine import Machine
 from loadshare.scene import assemble
+from loadshare.settings import CERTIFY
 from loadshare.solver import Options
 from loadshare.solver.contradiction import contradiction
 from loadshare.solver.hot import places, vectorised
@@ -66,7 +66,7 @@ def test_what_the_hot_path_leaves_the_next_rung_answers(name, monkeypatch):
 def test_what_exchange_leaves_is_searched_for(monkeypatch):
     """By the proximal method, from which an engine of its own takes over."""
     own = Machine(build_train(shipped("fgfbstts/limit_ring")))
-    exchanged = own.answer(own.situations([1, 2]), TOLERANCE, vectorised.settle)
+    exchanged = own.answer(own.situations([1, 2]), CERTIFY.tolerance, vectorised.settle)
     assert exchanged.passed.all()
     assert not exchanged.searched.any()
     with monkeypatch.context() as without:
@@ -76,7 +76,7 @@ def test_what_exchange_leaves_is_searched_for(monkeypatch):
                 elements, data, state, failing, code, **how
             ),
         )
-        searched = own.answer(own.situations([1, 2]), TOLERANCE, vectorised.settle)
+        searched = own.answer(own.situations([1, 2]), CERTIFY.tolerance, vectorised.settle)
     assert searched.passed.all()
     assert searched.searched.all()
     for one, other in zip(exchanged.equilibria.arrays, searched.equilibria.arrays, strict=True):
@@ -84,7 +84,7 @@ def test_what_exchange_leaves_is_searched_for(monkeypatch):
         if one is not exchanged.equilibria.displacement:
             scale = np.abs(one).max(initial=1e-300)
             assert np.abs(one - other).max(initial=0.0) < 1e-9 * scale
-    (found,) = climb_all(own, [1], Options(), TOLERANCE)
+    (found,) = climb_all(own, [1], Options(), CERTIFY.tolerance)
     assert found.rung == HOT
 
 
@@ -132,10 +132,10 @@ def test_a_wrong_set_is_not_handed_out(monkeypatch):
     monkeypatch.setattr(vectorised, "settle", content)
     monkeypatch.setattr("loadshare.job.machine.search", lost)
     own = Machine(build_train(shipped("fgfbstts/limit_ring")))
-    answers = own.answer(own.situations([1]), TOLERANCE, content)
+    answers = own.answer(own.situations([1]), CERTIFY.tolerance, content)
     assert not answers.passed.any(), "open stops are penetrated"
-    assert hot_answers(own, [1], TOLERANCE) == {}
-    (found,) = climb_all(own, [1], Options(), TOLERANCE)
+    assert hot_answers(own, [1], CERTIFY.tolerance) == {}
+    (found,) = climb_all(own, [1], Options(), CERTIFY.tolerance)
     assert found.rung == "clarabel + exact"
     assert found.certificate.passed
 
@@ -173,11 +173,11 @@ def test_the_rungs_in_order():
 def test_only_what_is_left_climbs(monkeypatch):
     """One position of five fails on the hot path; only that one climbs, and order is kept."""
     train = build_train(shipped("fgfbstts/both_errors"))
-    quick = hot_answers(Machine(train), range(1, 6), TOLERANCE)
+    quick = hot_answers(Machine(train), range(1, 6), CERTIFY.tolerance)
     monkeypatch.setattr(
         ladder, "hot_answers", lambda *_: {k: a for k, a in quick.items() if k != 3}
     )
-    found = list(climb_all(Machine(train), range(1, 6), Options(), TOLERANCE))
+    found = list(climb_all(Machine(train), range(1, 6), Options(), CERTIFY.tolerance))
     assert [a.equilibrium.index for a in found] == [1, 2, 3, 4, 5]
     assert [a.rung == HOT for a in found] == [True, True, False, True, True]
 
@@ -427,8 +427,8 @@ def test_only_rigid_arcs_between_firm_neighbours_squeeze():
 
 def test_climbing_alone_gives_the_answer_of_the_hot_path():
     train = build_train(shipped("fgfbstts/all_elements"))
-    hot = hot_answers(Machine(train), [1], TOLERANCE)[1]
-    climbed = climb(train, 1, Options(), TOLERANCE)
+    hot = hot_answers(Machine(train), [1], CERTIFY.tolerance)[1]
+    climbed = climb(train, 1, Options(), CERTIFY.tolerance)
     assert max(disagreement(train, hot.equilibrium, climbed.equilibrium)) < 1e-9
 
 
@@ -436,8 +436,8 @@ def test_the_rungs_after_the_hot_path_give_up_after_so_many_steps():
     """Lost contact takes curved solves; with too few steps it is refused, and says so."""
     train = build_train(lost_contact())
     with pytest.raises(Refused, match="in the steps allowed"):
-        climb(train, 1, Options(), TOLERANCE, steps=1)
-    assert climb(train, 1, Options(), TOLERANCE, steps=STEPS).certificate.passed
+        climb(train, 1, Options(), CERTIFY.tolerance, steps=1)
+    assert climb(train, 1, Options(), CERTIFY.tolerance, steps=STEPS).certificate.passed
 
 
 def test_a_refusal_tells_of_a_part_of_the_load_that_is_too_much_already():

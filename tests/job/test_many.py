@@ -16,11 +16,11 @@ from tests.support import furthest, shipped
 
 import loadshare as ls
 from benchmarks import families
-from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import CaseError
 from loadshare.job import many
 from loadshare.job.ladder import HOT
 from loadshare.job.many import KEEP, solve_blocks
+from loadshare.settings import CERTIFY
 from loadshare.train.samples import samples_of
 
 RINGS = {
@@ -81,11 +81,11 @@ def test_shapes_labels_and_units():
     }
     assert found.attrs["case"] == "limit_ring"
     assert found.attrs["case_hash"] == case.hash
-    assert found.attrs["tolerance"] == TOLERANCE
+    assert found.attrs["tolerance"] == CERTIFY.tolerance
     assert found.attrs["refused"] == {}
     assert (found.rung == HOT).all()
     assert found.certified.all()
-    assert (found.residual <= TOLERANCE).all()
+    assert (found.residual <= CERTIFY.tolerance).all()
 
 
 @pytest.mark.parametrize("keep", [("torque",), ("share", "pair_share"), ("displacement",), ()])

@@ -17,10 +17,10 @@ from tests.support import answer, coordinates
 import loadshare as ls
 from benchmarks import families
 from loadshare.certify import certify
-from loadshare.certify.tolerance import TOLERANCE
 from loadshare.job.ladder import hot_answers
 from loadshare.job.machine import Machine
 from loadshare.scene import assemble
+from loadshare.settings import CERTIFY
 from loadshare.solver.position import coordinates_of
 from loadshare.solver.undetermined.norm import norm_of
 from loadshare.solver.undetermined.region import Disc, Region
@@ -218,7 +218,7 @@ def test_engines_agree_on_random_trains_with_lost_branches():
     @given(with_lost_branches())
     def run(case: ls.Case) -> None:
         train = build_train(case)
-        found = hot_answers(Machine(train), [1], TOLERANCE).get(1)
+        found = hot_answers(Machine(train), [1], CERTIFY.tolerance).get(1)
         if found is None:
             return
         mine = found.equilibrium

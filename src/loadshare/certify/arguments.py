@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from loadshare.certify.mechanics import Mechanics
 from loadshare.certify.residuals import ROUNDED
-from loadshare.certify.tolerance import BAND
-from loadshare.settings import LAWS
+from loadshare.settings import CERTIFY, LAWS
 from loadshare.train.equilibria import CLAIMED, Equilibria
 from loadshare.train.situations import VARYING, Situations
 
@@ -121,7 +120,7 @@ def arguments_of(of: Mechanics) -> Arguments:
         pull_gear=of.pulled[pulls].astype(np.uintp),
         pull_centre=of.centres[pulls],
         rounds=rounds,
-        band=BAND,
+        band=CERTIFY.band,
         rounding=LAWS.written,
         rounded=ROUNDED,
     )

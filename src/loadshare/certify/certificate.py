@@ -21,7 +21,8 @@ from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.pulls import fault_of
 from loadshare.certify.residuals import FIGURES, RESIDUALS, scales, worst_of_one
 from loadshare.certify.state import State
-from loadshare.certify.tolerance import BAND, TOLERANCE, checked_tolerance
+from loadshare.certify.tolerance import checked_tolerance
+from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import situation_of
@@ -147,7 +148,10 @@ def certify_later(
 
 
 def certify(
-    train: Train, answer: Equilibrium, tolerance: float = TOLERANCE, rigorous: bool = False
+    train: Train,
+    answer: Equilibrium,
+    tolerance: float = CERTIFY.tolerance,
+    rigorous: bool = False,
 ) -> Certificate:
     """Judge a claimed equilibrium.
 
@@ -218,7 +222,7 @@ class _Single:
         return Residual(value, unit, math.inf if math.isnan(ratio) else ratio, where)
 
     def floats(self) -> Mapping[str, FloatState]:
-        return {} if self.fault else float_states(self.state, self.undetermined, BAND)
+        return {} if self.fault else float_states(self.state, self.undetermined, CERTIFY.band)
 
     def bound(self, rigorous: bool) -> Bound:
         if self.fault:

@@ -13,16 +13,13 @@ from loadshare.certify.bound.one import columns_of
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.residuals import scaled_residuals
 from loadshare.certify.state import State
-from loadshare.certify.tolerance import TOLERANCE
 from loadshare.certify.verdicts import Verdicts
+from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
 Flags = NDArray[np.bool_]
-
-TOGETHER = 2048
-"""Answers judged together: as many as a processor's own memory holds."""
 
 
 class Judge:
@@ -55,7 +52,7 @@ class Judge:
         self,
         situations: Situations,
         answers: Equilibria,
-        tolerance: float = TOLERANCE,
+        tolerance: float = CERTIFY.tolerance,
         compiled: bool = False,
     ) -> Verdicts:
         """Judge S claimed equilibria.
@@ -79,9 +76,9 @@ class Judge:
             return Verdicts(residuals, tolerance, load, deflection, limits)
         limits = self.bounds(situations, answers)
         count = len(answers.rotation)
-        if count <= TOGETHER:
+        if count <= CERTIFY.together:
             return self._together(situations, answers, tolerance, limits)
-        parts = [slice(at, at + TOGETHER) for at in range(0, count, TOGETHER)]
+        parts = [slice(at, at + CERTIFY.together) for at in range(0, count, CERTIFY.together)]
         return Verdicts.joined(
             [self._together(situations.take(p), answers.part(p), tolerance, limits) for p in parts],
             limits,

@@ -9,15 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.rigid import rigid_shafts
+from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Names
 from loadshare.train.ring import transverse
 from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.intp]
-
-KEPT = 64
-"""Trains of which the mechanics are kept: more than the positions of a march judged in turn."""
 
 
 class Mechanics:
@@ -238,7 +236,7 @@ class Mechanics:
         return tuple(f"ring {drums[d].gear}: arcs" for d in self.squeezed)
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=CERTIFY.trains)
 def mechanics_of(train: Train) -> Mechanics:
     """Return the mechanics of a train, written down once."""
     return Mechanics(train)

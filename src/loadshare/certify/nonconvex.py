@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.mechanics import mechanics_of
-from loadshare.certify.uniqueness import CARRIES
+from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
@@ -43,7 +43,7 @@ def is_convex(train: Train, situations: Situations, answers: Equilibria, load: A
     load : ndarray, shape (S,)
         Of each case [N].
     """
-    band = CARRIES * load
+    band = CERTIFY.carries * load
     convex = _arc_forces(train, answers).max(axis=(1, 2), initial=0.0) <= band
     torque = answers.flank_force @ mechanics_of(train).spline_moment.T
     fixed, per_torque = situations.spline[:, :, 3], situations.spline[:, :, 4]

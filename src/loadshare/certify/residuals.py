@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from loadshare.certify.graphs import complementary, energy, interval, strength
 from loadshare.certify.state import State, size
-from loadshare.certify.tolerance import BAND
+from loadshare.settings import CERTIFY
 
 Array = NDArray[np.float64]
 Blocks = list[tuple[Array, tuple[str, ...]]]
@@ -74,7 +74,7 @@ def deformation_law(state: State) -> Blocks:
     A contact with less force than the band counts as open; complementarity judges it then.
     """
     of = state.of
-    misfit = np.where(state.force > BAND * state.load, np.abs(state.overlap), 0.0)
+    misfit = np.where(state.force > CERTIFY.band * state.load, np.abs(state.overlap), 0.0)
     blocks = [(misfit, of.contacts)]
     if len(of.shaft):
         lag = np.abs(state.wind - state.torque / state.here.torsion)
@@ -96,7 +96,7 @@ def cone_membership(state: State) -> Blocks:
 
     Within a band about its radius, a graph's corner admits its whole step.
     """
-    of, band = state.of, BAND * state.deflection
+    of, band = state.of, CERTIFY.band * state.deflection
     blocks = [(-state.force, of.contacts)]
     if len(of.moving):
         stiffness, force = state.support

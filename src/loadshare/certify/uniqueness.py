@@ -34,6 +34,7 @@ from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.pulls import Pull, pulls_of
 from loadshare.certify.state import State
 from loadshare.contact.radial import Piece
+from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import situation_of
@@ -41,15 +42,6 @@ from loadshare.train.train import Spline, Train
 
 Array = NDArray[np.float64]
 
-CARRIES = 1e-9
-"""Part of the load from which on a contact counts as carrying, and of the deflection within which a
-radius counts as at a corner: the band of the certificate."""
-RANK = 1e-10
-"""Relative size below which a singular value of unit rows is none."""
-FLAT = 1e-13
-"""Relative stiffness below which a move is held by nothing: round-off of the stiffest element."""
-NOTHING = 1e-15
-"""Curvature that is none: what round-off leaves where rigid contacts allow no move."""
 TOLD = {
     "convex": "only answer: the problem is convex",
     "least energy": "only answer of least energy: nothing that is not convex carries",
@@ -131,8 +123,8 @@ class _System:
         self.columns = columns_of(train)
         self.rows = self.columns.matrix.high
         size = len(self.columns.coordinates)
-        self.load = CARRIES * float(state.load[0])
-        self.near = CARRIES * float(state.deflection[0])
+        self.load = CERTIFY.carries * float(state.load[0])
+        self.near = CERTIFY.carries * float(state.deflection[0])
         self.stiffness = np.zeros((size, size))
         self.taken = np.zeros((size, size))
         self.rigid: list[Array] = []
@@ -264,17 +256,17 @@ class _System:
         if self.rigid:
             rows = np.array([r / (np.linalg.norm(r) or 1.0) for r in self.rigid])
             _, sizes, basis = np.linalg.svd(rows)
-            free = basis[int((sizes > RANK).sum()) :].T
+            free = basis[int((sizes > CERTIFY.rank).sum()) :].T
         stiffness, taken = (free.T @ m @ free for m in (self.stiffness, self.taken))
         values, vectors = np.linalg.eigh(stiffness)
-        held = values > FLAT * max(float(values.max(initial=0.0)), 0.0)
+        held = values > CERTIFY.flat * max(float(values.max(initial=0.0)), 0.0)
         loose = vectors[:, ~held]
         size = float(np.abs(self.taken).max())
-        if loose.size and float(np.abs(taken @ loose).max(initial=0.0)) > RANK * size:
+        if loose.size and float(np.abs(taken @ loose).max(initial=0.0)) > CERTIFY.rank * size:
             return math.inf
         root = vectors[:, held] / np.sqrt(values[held])
         largest = float(np.linalg.eigvalsh(root.T @ taken @ root).max(initial=0.0))
-        return largest if largest > NOTHING else 0.0
+        return largest if largest > CERTIFY.nothing else 0.0
 
 
 def _along_and_across(along: Array) -> tuple[Array, Array]:

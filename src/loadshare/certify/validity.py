@@ -33,6 +33,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.mechanics import mechanics_of
+from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.gear import cross
@@ -41,29 +42,6 @@ from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
-
-TURNED = 0.01
-"""Angle [rad] of a line of action or a ring's arm from which on a warning is given: forces are off
-by 1 % then, about as far as mesh stiffnesses are known."""
-NEGLECTED = 0.01
-"""Share of the case's deflection that the approach neglects, from which on a warning is given: what
-compliances make of it changes torques by about 1 %."""
-MEANINGLESS = 1.0
-"""Share from which on an answer is refused: the neglected approach is all of the deflection, or the
-compression all of a tooth's height."""
-COMPRESSED = 0.1
-"""Share of a tooth's height by which it yields, from which on a warning is given: the square of it,
-1 %, is what linear bending neglects."""
-HEIGHT = 2.25
-"""Height of a tooth in modules: addendum 1, dedendum 1.25."""
-FEWEST = 17
-"""Teeth of a gear of which none are known: the fewest without undercut (20 deg), so that its teeth
-are the highest."""
-
-NOISE = 1e-12
-"""Force, over the largest one, that is a solver's rounding."""
-ALIKE = 1e-9
-"""Relative difference of figures that differ by round-off alone."""
 
 TOLD = {
     "centre": "centre displaced / base radius",
@@ -168,12 +146,12 @@ class Measuring:
     def bounds(self) -> dict[str, tuple[float, float]]:
         """Warning and refusal of what has bounds."""
         bounds = {
-            "compression": (COMPRESSED, MEANINGLESS),
-            "line_of_action": (min(TURNED, self.vanishing), self.vanishing),
-            "approach": (NEGLECTED, MEANINGLESS),
+            "compression": (CERTIFY.compressed, CERTIFY.meaningless),
+            "line_of_action": (min(CERTIFY.turned, self.vanishing), self.vanishing),
+            "approach": (CERTIFY.neglected, CERTIFY.meaningless),
         }
         if len(self.of.drum):
-            bounds["ring"] = (TURNED, self.vanishing)
+            bounds["ring"] = (CERTIFY.turned, self.vanishing)
         return bounds if self.of.flanks else {}
 
     def bounded(
@@ -210,7 +188,7 @@ class Measuring:
         turned = np.abs((self.across / self.line) @ shifts)
         neglected = 0.5 * self.line * turned * turned
         room = np.maximum(-compression, 0.0) - neglected
-        near = np.flatnonzero((-room > NEGLECTED * deflection).any(axis=0))
+        near = np.flatnonzero((-room > CERTIFY.neglected * deflection).any(axis=0))
         if len(near):
             room[:, near] = self._room_of_idle(situations, answers, room, near)
         found = {
@@ -227,7 +205,7 @@ class Measuring:
     ) -> Array:
         """Room of the flanks of some answers [m], (flanks, rows), as gears without force turn."""
         force = np.abs(answers.flank_force[rows].T)
-        idle = force <= NOISE * force.max(axis=0)
+        idle = force <= CERTIFY.noise * force.max(axis=0)
         torque = np.broadcast_to(situations.torque, answers.rotation.shape)[rows]
         found = here = room[:, rows]
         for gear in self.turnable:
@@ -320,7 +298,7 @@ def measuring(train: Train) -> Measuring:
 
 def _first(values: Array) -> int:
     """The first of the largest values: alike elements differ by round-off."""
-    return int(np.argmax(values >= (1.0 - ALIKE) * values.max()))
+    return int(np.argmax(values >= (1.0 - CERTIFY.alike) * values.max()))
 
 
 def _axis(train: Train, mesh: Mesh) -> Array:
@@ -343,7 +321,11 @@ def _geometry(train: Train, mesh: Mesh) -> tuple[float, float, float]:
     else:
         base = abs(first - second) if "internal" in kinds else first + second
     teeth = [(r, g.teeth) for r, g in zip(mesh.radii, gears, strict=True) if g.teeth]
-    pinions = [(r, FEWEST) for r, k in zip(mesh.radii, kinds, strict=True) if k == "external"]
-    radius, number = min(teeth or pinions or [(min(mesh.radii), FEWEST)], key=lambda t: t[0])
+    pinions = [
+        (r, CERTIFY.fewest) for r, k in zip(mesh.radii, kinds, strict=True) if k == "external"
+    ]
+    radius, number = min(
+        teeth or pinions or [(min(mesh.radii), CERTIFY.fewest)], key=lambda t: t[0]
+    )
     module = 2.0 * radius / (number * math.cos(angle))
-    return base * math.tan(angle), angle, HEIGHT * module
+    return base * math.tan(angle), angle, CERTIFY.height * module

@@ -20,13 +20,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from loadshare.case import Case, load_case
 from loadshare.certify.nonconvex import arc_curvature, is_convex
-from loadshare.certify.tolerance import TOLERANCE, checked_tolerance
+from loadshare.certify.tolerance import checked_tolerance
 from loadshare.errors import CaseError, Refused
 from loadshare.job.ladder import HOT, SEARCHED, STEPS, climb
 from loadshare.job.least import least_places
 from loadshare.job.machine import Machine, engine_named
 from loadshare.job.positions import Progress, wanted_positions
 from loadshare.job.table import Table
+from loadshare.settings import CERTIFY
 from loadshare.solver import Options
 from loadshare.solver.hot.exchange import Engine
 from loadshare.train import build_train
@@ -97,7 +98,7 @@ def solve_blocks(
     samples: Mapping[str, ArrayLike],
     *,
     positions: Iterable[int] | None = None,
-    tolerance: float = TOLERANCE,
+    tolerance: float = CERTIFY.tolerance,
     engine: str = "auto",
     workers: int = WORKERS,
     least_norm: bool = False,
@@ -167,7 +168,7 @@ def solve_many(
     *,
     positions: Iterable[int] | None = None,
     keep: Iterable[str] = KEEP,
-    tolerance: float = TOLERANCE,
+    tolerance: float = CERTIFY.tolerance,
     engine: str = "auto",
     workers: int = WORKERS,
     least_norm: bool = False,

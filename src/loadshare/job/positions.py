@@ -11,13 +11,14 @@ from typing import Protocol
 
 from loadshare._version import __version__
 from loadshare.case import Case, load_case
-from loadshare.certify.tolerance import TOLERANCE, checked_tolerance
+from loadshare.certify.tolerance import checked_tolerance
 from loadshare.errors import Refused
 from loadshare.job.ladder import AUTO, HOT, SEARCHED, Answer, climb_all, displaced, left_out
 from loadshare.job.machine import Machine
 from loadshare.results.claim import claim_of
 from loadshare.results.derive import position_of, result_from
 from loadshare.results.result import Effort, Position, Result, Stamp
+from loadshare.settings import CERTIFY
 from loadshare.solver import Options
 from loadshare.tooth import resolve
 from loadshare.train import Train, build_train
@@ -36,7 +37,7 @@ def solve(
     solver: str = AUTO,
     method: str = "newton",
     reduce: bool = True,
-    tolerance: float = TOLERANCE,
+    tolerance: float = CERTIFY.tolerance,
     positions: Iterable[int] | None = None,
     engine: str = "auto",
     near: Case | None = None,
@@ -127,7 +128,7 @@ def explain(
     solver: str = AUTO,
     method: str = "newton",
     reduce: bool = True,
-    tolerance: float = TOLERANCE,
+    tolerance: float = CERTIFY.tolerance,
 ) -> Answer:
     """Solve one position and return everything that is known of how it was solved.
 

@@ -13,12 +13,12 @@ from pathlib import Path
 import numpy as np
 
 from loadshare.case import Case
-from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import Refused
 from loadshare.job.ladder import Answer, climb_all
 from loadshare.job.machine import Machine
 from loadshare.job.positions import prepared
 from loadshare.scene.data import data_of
+from loadshare.settings import CERTIFY
 from loadshare.solver import Options
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.answer import equilibria
@@ -92,7 +92,7 @@ def search(case: Case | str | Path, position: int = 1, *, seed: int = 0) -> Sear
         As :func:`loadshare.solve`.
     """
     _, machine = prepared(case)
-    (known,) = climb_all(machine, [position], Options(), TOLERANCE)
+    (known,) = climb_all(machine, [position], Options(), CERTIFY.tolerance)
     if isinstance(known, Refused):
         raise known
     others: list[Equilibrium] = []
@@ -128,7 +128,7 @@ def _starts(machine: Machine, position: int, rng: np.random.Generator) -> list[E
     state.x[:] = rng.normal(size=state.x.shape) * scale * 10.0 ** -rng.uniform(1, 9, (STARTS, 1))
     found = exchange(elements, data, state, vectorised.settle, code)
     answers = equilibria(elements, state, False)
-    verdicts = machine.judge.judge(situations, answers, TOLERANCE)
+    verdicts = machine.judge.judge(situations, answers, CERTIFY.tolerance)
     good = np.flatnonzero(found.solved & verdicts.passed).tolist()
     return [answers.one(row, position) for row in good]
 
@@ -140,7 +140,7 @@ def _path(train: Train, position: int, deflection: float) -> Equilibrium | None:
     found: Answer | Refused | None = None
     for more in extra:
         near = Machine(_widened(train, more), near=near)
-        (found,) = climb_all(near, [position], Options(), TOLERANCE)
+        (found,) = climb_all(near, [position], Options(), CERTIFY.tolerance)
         if isinstance(found, Refused):
             return None
     return found.equilibrium if isinstance(found, Answer) else None

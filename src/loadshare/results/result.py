@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from loadshare.certify import Certificate, FloatState
 from loadshare.certify.uniqueness import TOLD, Uniqueness
-from loadshare.certify.validity import ALIKE, Measure, Validity
+from loadshare.certify.validity import Measure, Validity
 from loadshare.pictures import picture
 from loadshare.results.claim import Claim, Pair
+from loadshare.settings import CERTIFY
 from loadshare.train.equilibrium import Equilibrium
 
 if TYPE_CHECKING:
@@ -189,7 +190,9 @@ class Result:
         for p in self.positions:
             for name, measure in p.validity.measures.items():
                 found.setdefault(name, []).append((measure, p.position))
-        largest = {n: max(m.value for m, _ in every) * (1.0 - ALIKE) for n, every in found.items()}
+        largest = {
+            n: max(m.value for m, _ in every) * (1.0 - CERTIFY.alike) for n, every in found.items()
+        }
         return tuple(
             (n, *next(f for f in every if f[0].value >= largest[n])) for n, every in found.items()
         )

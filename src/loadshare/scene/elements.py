@@ -29,19 +29,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.scene.coordinates import Array, Coordinates, coordinates_of
+from loadshare.settings import STATICS
 from loadshare.train.mesh import Mesh
 from loadshare.train.ring import DrumRing
 from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Train
-
-OPPOSED = 1e-4
-"""Angle [rad] to which two arcs of a ring must be opposed for a squeeze between them to be sham."""
-SETS = 2000
-"""Sets of which the statics are kept; with more, all are forgotten, so that memory is bounded."""
-KEPT = 4
-"""Trains of which the elements are kept, for those who ask for one position after another."""
-RANK = 1e-10
-"""Singular values of directions below this, relative to the largest, count as zero."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -311,7 +303,7 @@ class Elements:
 
     def keep(self, key: tuple[Any, ...], value: Any) -> Any:
         """Keep what an engine needs of a set, and return it."""
-        if len(self.kept) >= SETS:
+        if len(self.kept) >= STATICS.sets:
             self.kept.clear()
         self.kept[key] = value
         return value
@@ -339,13 +331,13 @@ class Elements:
                     self.springs + self.rows + np.flatnonzero(np.repeat(acts[self.rows :], 2)),
                 ]
             ).astype(np.intp)
-            if len(self._bases) >= SETS:
+            if len(self._bases) >= STATICS.sets:
                 self._bases.clear()
             known = self._bases[key] = _basis(columns, self.vectors[columns])
         return known
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=STATICS.trains)
 def elements_of(train: Train) -> Elements:
     """Set up the force method for a train."""
     at, here, order = coordinates_of(train), situation_of(train, 1), train.order
@@ -398,7 +390,7 @@ def elements_of(train: Train) -> Elements:
     opposed = tuple(
         (flat + k, flat + k + 1)
         for k in range(0, len(arcs), 2)
-        if np.linalg.norm(normals[k] + normals[k + 1]) < OPPOSED
+        if np.linalg.norm(normals[k] + normals[k + 1]) < STATICS.opposed
         and not any(train.gears[n].moves for n in arcs[k].ring.neighbours)
     )
     elements = Elements(
@@ -470,7 +462,7 @@ def unresisted(directions: Array) -> Array:
 
 
 def _rank(sizes: Array) -> int:
-    return int((sizes > RANK * sizes.max(initial=0.0)).sum())
+    return int((sizes > STATICS.rank * sizes.max(initial=0.0)).sum())
 
 
 def _basis(columns: NDArray[np.intp], directions: Array) -> Basis:

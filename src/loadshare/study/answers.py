@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import Refused
 from loadshare.job.ladder import Answer, climb, climb_all, displaced
 from loadshare.job.machine import Machine
+from loadshare.settings import CERTIFY
 from loadshare.solver import Options
 from loadshare.train.train import Train
 
@@ -23,9 +23,9 @@ def certified(train: Train, position: int) -> Answer:
     """
     found: Answer | Refused
     if train.slip is not None:
-        found = climb(train, position, BACKEND, TOLERANCE)
+        found = climb(train, position, BACKEND, CERTIFY.tolerance)
     else:
-        (found,) = climb_all(Machine(train), [position], Options(), TOLERANCE)
+        (found,) = climb_all(Machine(train), [position], Options(), CERTIFY.tolerance)
     refused = found if isinstance(found, Refused) else displaced(found)
     if refused is not None:
         raise refused

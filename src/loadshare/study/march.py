@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from loadshare.case import Case
-from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import CaseError, Refused
 from loadshare.job import Progress
 from loadshare.job.ladder import Answer, displaced
 from loadshare.job.positions import result_of
 from loadshare.results import Result
+from loadshare.settings import CERTIFY
 from loadshare.study.answers import BACKEND
 from loadshare.study.memory import stepped
 from loadshare.study.positions import loaded
@@ -160,7 +160,7 @@ def _marched(case: Case, train: Train, progress: Progress | None) -> March:
                 raise refused
         except Refused as refusal:
             if answers:
-                refusal.partial = result_of(case, train, answers, BACKEND, TOLERANCE, steps)
+                refusal.partial = result_of(case, train, answers, BACKEND, CERTIFY.tolerance, steps)
             raise
         after = {g: _slipped(answer, s, before[g]) for g, s in train.splines.items()}
         slips.append({g: _slip(answer, g, before[g], after[g]) for g in after})
@@ -171,7 +171,7 @@ def _marched(case: Case, train: Train, progress: Progress | None) -> March:
     assert train.march is not None
     reference, revolutions, count = train.march
     return March(
-        result=result_of(case, train, answers, BACKEND, TOLERANCE, steps),
+        result=result_of(case, train, answers, BACKEND, CERTIFY.tolerance, steps),
         revolutions=tuple(revolutions * k / count for k in range(count)),
         gear=reference,
         slips=tuple(slips),

@@ -17,7 +17,6 @@ from itertools import combinations, islice
 import numpy as np
 
 from loadshare.certify import certify
-from loadshare.certify.tolerance import TOLERANCE
 from loadshare.contact.findings import Work
 from loadshare.contact.outer import Settled
 from loadshare.contact.plan import Plan
@@ -28,6 +27,7 @@ from loadshare.scene.assemble import scene_of
 from loadshare.scene.data import data_of
 from loadshare.scene.elements import elements_of
 from loadshare.scene.scene import Array, Scene
+from loadshare.settings import CERTIFY
 from loadshare.solver import Options, Record, solve_scene
 from loadshare.solver.hot.proximal import search
 from loadshare.solver.position import Known, equilibrium_of, of_least_norm
@@ -124,7 +124,7 @@ def _followed(train: Train, index: int) -> Answer | None:
 
 def _judged(train: Train, found: Equilibrium, record: Record, rung: str) -> Answer | None:
     """Return an equilibrium as an answer if its certificate passes."""
-    certificate = certify(train, found, TOLERANCE)
+    certificate = certify(train, found, CERTIFY.tolerance)
     return Answer(train, found, certificate, record, rung) if certificate.passed else None
 
 
@@ -306,7 +306,7 @@ def _held(
         if answer is not None:
             ranges = of_least_norm(assemble(train, index), split).undetermined
             split = replace(split, undetermined=ranges)
-            certificate = certify(train, split, TOLERANCE)
+            certificate = certify(train, split, CERTIFY.tolerance)
             return replace(answer, equilibrium=split, certificate=certificate)
     return None
 

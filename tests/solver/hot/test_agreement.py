@@ -13,10 +13,10 @@ from tests.support import SHIPPED, answer, disagreement, forces, furthest, shipp
 
 import loadshare as ls
 from loadshare.certify import certify
-from loadshare.certify.tolerance import TOLERANCE
 from loadshare.job.ladder import HOT, hot_answers
 from loadshare.job.machine import Machine
 from loadshare.results.result import Position
+from loadshare.settings import CERTIFY
 from loadshare.train import build_train
 
 AGREE = 1e-9
@@ -50,7 +50,7 @@ def agrees(case: ls.Case) -> bool:
     """Whether the hot path answers a train; its answer must then be right."""
     note(case.to_toml())
     train = build_train(case)
-    found = hot_answers(Machine(train), [1], TOLERANCE).get(1)
+    found = hot_answers(Machine(train), [1], CERTIFY.tolerance).get(1)
     if found is None:
         return False
     mine = found.equilibrium

@@ -15,8 +15,8 @@ from tests.solver.hot.trains import VARIED, varied
 from tests.support import SHIPPED, shipped
 
 import loadshare as ls
-from loadshare.certify.tolerance import TOLERANCE
 from loadshare.job.machine import FEW, Answers, Machine, engine_named
+from loadshare.settings import CERTIFY
 from loadshare.solver.hot import compiled, lanes, vectorised
 from loadshare.solver.hot import places as at
 from loadshare.train import build_train
@@ -87,7 +87,7 @@ def one_by_one(*given):
 def agree(machine: Machine, situations: Situations) -> Answers:
     """All engines certify the same samples, with the same elements and the same figures."""
     one, *others = (
-        machine.answer(situations, TOLERANCE, engine)
+        machine.answer(situations, CERTIFY.tolerance, engine)
         for engine in (vectorised.settle, in_lanes, in_few_lanes, one_by_one)
     )
     for other in others:

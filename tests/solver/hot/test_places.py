@@ -15,12 +15,12 @@ from tests.solver.hot.trains import varied
 
 import loadshare as ls
 from benchmarks import families
-from loadshare.certify.tolerance import TOLERANCE
 from loadshare.contact.radial import RadialLaw, round_ring_law, spline_law
 from loadshare.job.ladder import HOT
 from loadshare.job.machine import Machine
 from loadshare.scene import assemble
 from loadshare.scene.data import data_of
+from loadshare.settings import CERTIFY
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot import vectorised
 from loadshare.train import build_train
@@ -228,7 +228,7 @@ def test_a_solved_element_stands_on_its_law(name):
     case, samples = varied(name, 60, seed=3)
     ((_, group),) = samples_of(case, samples)
     machine = Machine(group.train)
-    found = machine.answer(group.situations(1), TOLERANCE, vectorised.settle)
+    found = machine.answer(group.situations(1), CERTIFY.tolerance, vectorised.settle)
     seen = set()
     for row in np.flatnonzero(found.passed)[:25].tolist():
         other = assemble(build_train(group.one(row)), 1)
@@ -263,7 +263,7 @@ def test_torque_that_reaches_the_spline_bounds_its_friction():
     ((_, group),) = samples_of(case, samples)
     machine = Machine(group.train)
     situations = group.situations(2)
-    found = machine.answer(situations, TOLERANCE, vectorised.settle)
+    found = machine.answer(situations, CERTIFY.tolerance, vectorised.settle)
     elements = machine.elements
     data = data_of(elements, situations)
     flanks = slice(elements.springs, elements.springs + found.equilibria.flank_force.shape[1])

@@ -21,13 +21,11 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.certify.bound.bound import BALANCED, ROUNDED, SINGULAR
+from loadshare.certify.bound.bound import BALANCED, ROUNDED
 from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.columns import Columns
-from loadshare.certify.bound.laws import APART, CORNER, LIGHT, NOISE
-from loadshare.certify.bound.quick import GAIN, NEAR, OPPOSED, SECANT
-from loadshare.certify.bound.statics import RANK, Statics
-from loadshare.settings import LAWS
+from loadshare.certify.bound.statics import Statics
+from loadshare.settings import BOUND, LAWS
 from loadshare.train.equilibria import CLAIMED, Equilibria
 from loadshare.train.ring import transverse
 from loadshare.train.situations import VARYING, Situations
@@ -84,15 +82,15 @@ class Layout(NamedTuple):
     rest_at: Places
     rest_value: Array
     eps: float = EPS
-    noise: float = NOISE
-    apart_by: float = APART
-    light: float = LIGHT
-    near: float = NEAR
-    corner: float = CORNER
+    noise: float = BOUND.noise
+    apart_by: float = BOUND.apart
+    light: float = BOUND.light
+    near: float = BOUND.near
+    corner: float = BOUND.corner
     rounding: float = LAWS.written
     balanced: float = BALANCED
     rounded: float = ROUNDED
-    gain: float = GAIN
+    gain: float = BOUND.gain
     wider: tuple[float, float] = WIDER
 
 
@@ -261,8 +259,11 @@ class Plan:
 
     def sets(self) -> Sets:
         """Return room for sets of elements."""
-        size = (MOST, len(self.contacts) + len(self.springs) + len(self.pulls))
-        first, key = np.empty(MOST, dtype=np.intp), np.empty(MOST, dtype=np.uint64)
+        size = (BOUND.sets_told_apart, len(self.contacts) + len(self.springs) + len(self.pulls))
+        first, key = (
+            np.empty(BOUND.sets_told_apart, dtype=np.intp),
+            np.empty(BOUND.sets_told_apart, dtype=np.uint64),
+        )
         return Sets(first, key, np.full(size, np.inf), np.zeros(size))
 
     def _known(self, acts: Flags) -> tuple[Statics, Array]:
@@ -274,11 +275,11 @@ class Plan:
             firm = np.concatenate([self.contacts[acts[:contacts]], self.springs])
             statics, known = Statics.of(np.concatenate([firm, some])), Statics.of(firm)
             held = some @ known.moves
-            held[np.abs(held) < RANK] = 0.0
-            part = np.linalg.pinv(held.T, rcond=RANK) @ known.moves.T
+            held[np.abs(held) < BOUND.rank] = 0.0
+            part = np.linalg.pinv(held.T, rcond=BOUND.rank) @ known.moves.T
             by_firm = known.particular @ (np.eye(len(part.T)) - some.T @ part)
             particular = np.concatenate([by_firm, part])
-            if len(self._statics) >= SETS:
+            if len(self._statics) >= BOUND.sets:
                 self._statics.clear()
             found = self._statics[acts.tobytes()] = statics, particular
         return found
@@ -330,9 +331,9 @@ class Plan:
         soft, n = self._both(least)[self._on(acts)], statics.redundant
         if not np.isfinite(soft).all():
             return None
-        stiff = n.T @ (SECANT * soft[:, None] * n)
+        stiff = n.T @ (BOUND.secant * soft[:, None] * n)
         values, vectors = np.linalg.eigh(stiff)
-        if values.size and values.min() <= SINGULAR * values.max():
+        if values.size and values.min() <= BOUND.singular * values.max():
             return None
         return Operators(statics, particular, n @ (vectors / np.sqrt(values)))
 
@@ -350,7 +351,7 @@ class Plan:
         root[on], particular[on] = known.root, known.particular
         passes, sizes = np.abs(particular), np.sqrt((root**2).sum(axis=1))
         # What radial elements yield is told by every claim itself.
-        soft = np.where(on, self._both(most) / SECANT, 0.0)
+        soft = np.where(on, self._both(most) / BOUND.secant, 0.0)
         soft[pulls:] = 0.0
         some = acts[contacts - arcs : contacts]
         across = self.across[some].sum(axis=0)
@@ -385,10 +386,6 @@ class Plan:
         found.is_loose[g] = len(moves) > 0
 
 
-MOST = 1000
-"""Sets of elements that are told apart in a batch."""
-SETS = 2000
-"""Sets of elements of which the statics are kept, so that memory is bounded."""
 _plans: WeakKeyDictionary[Columns, Plan] = WeakKeyDictionary()
 
 
@@ -423,7 +420,7 @@ def _twins(columns: Columns, nominal: Array, apart: Array) -> Numbers:
     twin = np.full(contacts + len(apart), -1, dtype=np.intp)
     for start in range(flanks, len(twin), 2):
         k = start - contacts
-        if k >= 0 and nominal[k] @ nominal[k + 1] > -OPPOSED * apart[k] * apart[k + 1]:
+        if k >= 0 and nominal[k] @ nominal[k + 1] > -BOUND.opposed * apart[k] * apart[k + 1]:
             continue
         twin[start], twin[start + 1] = start + 1, start
     return twin

@@ -29,19 +29,12 @@ from numpy.typing import NDArray
 
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
-from loadshare.certify.bound.laws import LIGHT, SOFT, SOFTEST, Act, Codes, Elements, elements
+from loadshare.certify.bound.laws import Act, Codes, Elements, elements
+from loadshare.settings import BOUND
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-WIDER, PASSES = 2.0, 8
-"""How far a box goes beyond what came out of the one before, and how many are tried."""
-REFERENCES = 16
-"""Claims whose linear operators are tried on all that have the same columns acting."""
-SINGULAR = 1e-15
-"""Compliance of a self-stress, over the largest, below which it is shared by rigid parts alone."""
-SHARED = 1e-7
-"""Part of a force in a self-stress of rigid parts from which on it is undetermined."""
 BALANCED, ROUNDED = 1e-12, 16.0 * EPS
 """Load along a move that nothing resists that is rounding: part of the load, and of any force."""
 
@@ -103,11 +96,11 @@ def boxes(claim: Claim, act: Codes, scale: Array, verge: Flags | None = None) ->
         Load of the claims [N].
     """
     verge = np.zeros(act.shape, dtype=bool) if verge is None else verge
-    box = _boxes(claim, act, scale, verge, SOFT)
+    box = _boxes(claim, act, scale, verge, BOUND.soft)
     rows = np.flatnonzero(np.isinf(box.force).any(axis=1))
     if claim.columns.pairs and len(rows):
         # What holds a coordinate may be no more than the turning of a light force.
-        other = _boxes(claim.take(rows), act[rows], scale[rows], verge[rows], SOFTEST)
+        other = _boxes(claim.take(rows), act[rows], scale[rows], verge[rows], BOUND.softest)
         unbounded = [np.isinf(b.force[:, claim.columns.flanks]).sum(axis=1) for b in (box, other)]
         better = np.flatnonzero(unbounded[1] <= unbounded[0][rows])
         box.put(rows[better], Box(*(getattr(other, f.name)[better] for f in fields(Box))))
@@ -218,10 +211,10 @@ class _Response:
             m = np.zeros_like(m)
         values, vectors = np.linalg.eigh(0.5 * (m + m.T))
         # A self-stress among rigid parts has no compliance: it is left as it is claimed.
-        kept = np.abs(values) > SINGULAR * np.abs(values).max(initial=0.0)
+        kept = np.abs(values) > BOUND.singular * np.abs(values).max(initial=0.0)
         basis = n @ vectors[:, kept]
         free = n @ vectors[:, ~kept]
-        self.shared = np.where(np.abs(free).max(axis=1, initial=0.0) > SHARED, np.inf, 0.0)
+        self.shared = np.where(np.abs(free).max(axis=1, initial=0.0) > BOUND.shared, np.inf, 0.0)
         by_gap = basis / values[kept] @ basis.T
         by_load = p - by_gap @ bent(p)
         self.force_by = by_load, by_gap
@@ -324,7 +317,7 @@ class _Part:
         self.splined = columns.splined[self.pairs, :splines]
         claimed = found.force[np.ix_(self.rows, self.columns)]
         torque = claimed @ self.twist.T
-        sure = np.abs(torque) > LIGHT * (np.abs(claimed) @ np.abs(self.twist).T)
+        sure = np.abs(torque) > BOUND.light * (np.abs(claimed) @ np.abs(self.twist).T)
         self.torque = np.where(sure, np.abs(torque), 0.0)
         sense = np.where(sure, np.sign(torque), 0.0) @ self.splined.T
         line = found.line[where] * sense[:, :, None]
@@ -354,7 +347,7 @@ class _Part:
         coordinate = np.full((len(self.rows), len(self.statics.directions.T)), np.inf)
         allowed = rounding_of(self.found.force[self.rows], scale)
         left = np.flatnonzero(self.stray <= allowed)
-        for _ in range(REFERENCES):
+        for _ in range(BOUND.references):
             if not len(left):
                 break
             middle = int(left[len(left) // 2])
@@ -397,8 +390,10 @@ class _Part:
         reached = response.reach(over, apart)
         boxes = tuple(np.zeros_like(v) for v in reached)
         left = np.arange(len(rows))
-        for _ in range(PASSES):
-            boxes = tuple(np.maximum(b, WIDER * v) for b, v in zip(boxes, reached, strict=True))
+        for _ in range(BOUND.passes):
+            boxes = tuple(
+                np.maximum(b, BOUND.wider * v) for b, v in zip(boxes, reached, strict=True)
+            )
             ends = tuple(b + s[left] for b, s in zip(boxes, steps, strict=True))
             push, gap = self._left_out(rows[left], *ends)
             elastic = boxes[0] + self._per_torque(levels[left], boxes[2])

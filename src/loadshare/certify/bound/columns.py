@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 
 from loadshare.certify.bound.statics import Statics
 from loadshare.certify.bound.twofold import Twofold, quotient, two_product
+from loadshare.settings import BOUND
 from loadshare.train.mesh import Mesh
 from loadshare.train.train import Train
 
@@ -31,8 +32,6 @@ Array = NDArray[np.float64]
 
 UNIT = 0.5 * np.finfo(float).eps
 """Rounding of one operation, relative to its result."""
-SETS = 2000
-"""Sets of columns of which the statics are kept, so that memory is bounded."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,7 +243,7 @@ class Columns:
         key = columns.tobytes()
         known = self._statics.get(key)
         if known is None:
-            if len(self._statics) >= SETS:
+            if len(self._statics) >= BOUND.sets:
                 self._statics.clear()
             known = self._statics[key] = Statics.of(self.matrix.high[columns])
         return known

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from loadshare import compilation
+from loadshare.settings import BOUND
 
 # As in the compiled certificate: nothing is allocated, and what takes tuples is inlined.
 _how: dict[str, Any] = {
@@ -22,10 +23,6 @@ _how: dict[str, Any] = {
     "fastmath": {"reassoc", "contract", "nsz"},
     "_nrt": False,
 }
-TURN = 1e-6
-"""Angle by which a slip may turn."""
-SLACK = 1e-6
-"""Part of the level within which a force is on it where the place says that something slips."""
 FORCE, WAY, TORQUE, ARC, ARC_WAY = range(5)
 """Largest error of a force, way of an element, error of a torque; force and way of arcs."""
 compiled = compilation.jit(**_how)
@@ -442,9 +439,9 @@ def _nearest(law, force, distance, corner):  # type: ignore[no-untyped-def]
     first, stick, level, reach, last, end = law
     if np.isinf(stick):
         return -1.0, force, 1.0 / first, np.inf
-    slips = stick * (1.0 + SLACK) < distance < reach * (1.0 - SLACK)
-    if abs(force - level) <= (SLACK if slips else corner) * level:
-        return min(max(distance, stick), reach), level, reach / level, TURN * level
+    slips = stick * (1.0 + BOUND.slack) < distance < reach * (1.0 - BOUND.slack)
+    if abs(force - level) <= (BOUND.slack if slips else corner) * level:
+        return min(max(distance, stick), reach), level, reach / level, BOUND.slip_turns * level
     if force > level:
         far = reach + (force - level) / last
         return far, force, max(1.0 / last, far / force), min(force - level, 0.05 * force)
@@ -572,8 +569,8 @@ def _carried(of, found, group, g, s):  # type: ignore[no-untyped-def]
             if x != 0.0 or y != 0.0:
                 for c in range(group.part.shape[3]):
                     along += abs(x * group.part[g, q, 0, c] + y * group.part[g, q, 1, c])
-                level = found.spare[s, q] / TURN
-                back += along + TURN * by[0]
+                level = found.spare[s, q] / BOUND.slip_turns
+                back += along + BOUND.slip_turns * by[0]
                 blind += 2.0 * soft * level * along
     return more, back, blind * group.widest[g]
 

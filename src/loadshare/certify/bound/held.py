@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.bound.claim import EPS, Claim
+from loadshare.settings import BOUND
 
 Array = NDArray[np.float64]
 
@@ -24,13 +25,6 @@ STILL = ((1e-10, 1e-4), (1e-10, 0.0), (2e-9, 1e-4))
 slip, over the slip, and still stand still, as they are tried in turn.
 
 What they leave of the law is bounded."""
-AT_END, NEXT_TO = 1e-6, 1e-12
-"""Distance of a slip from the end of its room, over the slip and the displacement, that is a
-solver's."""
-TURNED = 1e-11
-"""Error of a torque over a spline, in torques of the claim, for which its room is made wider.
-
-That much is hardly ever asked for: friction mostly needs its clearance by more than this."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +82,7 @@ def with_held_slips(claim: Claim, scale: Array, still: tuple[float, float]) -> H
         both = reactions[:, friction] + reactions[:, stop]
         stiffness, rate = claim.situations.spline[:, k, 0], _rate(claim, k)
         arm = float(np.abs(columns.moments[k]).max(initial=0.0))
-        least = TURNED * scale * arm
+        least = BOUND.turned * scale * arm
         gives = arm * stiffness * (claim.graphs[:, stop, 3] + reach)
         room, torque = _widest(claim, k, stop, rate, np.maximum(least, gives))
         if float((stiffness * (room + reach)).max()) <= slight * float(scale.min()):
@@ -102,7 +96,7 @@ def with_held_slips(claim: Claim, scale: Array, still: tuple[float, float]) -> H
         place = np.abs(claim.answers.displacement[:, columns.order[gear]]).max(axis=1)
         held = (slipped <= unchanged * reach + EPS * place) & (reach > 0.0)
         room = limits[:, stop, 1] - reach
-        held &= room <= AT_END * reach + NEXT_TO * place
+        held &= room <= BOUND.at_end * reach + BOUND.next_to * place
         if not held.any():
             continue
         outward = before / reach

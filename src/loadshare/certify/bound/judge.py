@@ -18,30 +18,12 @@ from loadshare.certify.bound.locked import locked, without
 from loadshare.certify.bound.open_slips import is_inside, open_slips, reaction_error
 from loadshare.certify.bound.quick import quick_boxes
 from loadshare.certify.bound.verge import on_the_verge
-from loadshare.certify.tolerance import LARGEST
+from loadshare.settings import BOUND, CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-
-
-NOISE = 1e-12
-"""Force, in loads of the claim, below which a contact may as well be open."""
-
-
-LIGHT = 1e-10
-"""Friction, in loads of the claim, that may be put aside where nothing else bounds a torque."""
-
-
-ENOUGH = 1e-11
-"""Relative bound with which double precision is content."""
-TOGETHER = 512
-"""Claims that are looked at in twice the precision at a time."""
-
-
-MANY = 1000
-"""Claims from which on only the largest error is found where that is enough."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,9 +93,9 @@ def bounds(
 def _bounds(claim: Claim, rigorous: bool, compiled: bool, wanted: Flags | None) -> Bounds:
     columns, answers = claim.columns, claim.answers
     relative: Array | None = None
-    if compiled and not rigorous and claim.count >= MANY and is_covered(columns):
+    if compiled and not rigorous and claim.count >= BOUND.many and is_covered(columns):
         relative = relative_bounds(columns, claim.situations, answers)
-        poor = ~(relative <= ENOUGH)
+        poor = ~(relative <= BOUND.enough)
         left = np.flatnonzero(poor if wanted is None else poor & wanted)
         if len(left):
             more = _boxes(claim.take(left), rigorous).relative
@@ -135,7 +117,7 @@ def _boxes(claim: Claim, rigorous: bool) -> Bounds:
     first, *others = STILL if columns.train.slip is not None else STILL[:1]
     box, relative = _proved(with_held_slips(claim, scale, first), scale, largest, rigorous)
     for still in others:
-        rows = np.flatnonzero(~(relative <= ENOUGH))
+        rows = np.flatnonzero(~(relative <= BOUND.enough))
         if len(rows):
             held = with_held_slips(claim.take(rows), scale[rows], still)
             other, found = _proved(held, scale[rows], largest[rows], rigorous)
@@ -162,9 +144,9 @@ def _proved(held: Held, scale: Array, largest: Array, rigorous: bool) -> tuple[B
         box = quick_boxes(claim, act, scale)
 
     relative = _torques(columns, box.force, flanks).max(axis=1, initial=0.0) / largest
-    left = np.flatnonzero(~(relative <= ENOUGH) & finite)
-    for at in range(0, len(left), TOGETHER):
-        rows = left[at : at + TOGETHER]
+    left = np.flatnonzero(~(relative <= BOUND.enough) & finite)
+    for at in range(0, len(left), BOUND.together):
+        rows = left[at : at + BOUND.together]
         fine = replace(claim.take(rows), fine=True)
         force, coordinate = _fine(fine, act[rows], scale[rows])
         found = _torques(columns, force, flanks[rows]).max(axis=1, initial=0.0) / largest[rows]
@@ -172,15 +154,15 @@ def _proved(held: Held, scale: Array, largest: Array, rigorous: bool) -> tuple[B
         relative[rows[better]] = found[better]
         box.force[rows[better]] = force[better]
         box.coordinate[rows[better]] = coordinate[better]
-    for row in np.flatnonzero(~(relative <= LARGEST) & finite).tolist():
+    for row in np.flatnonzero(~(relative <= CERTIFY.largest) & finite).tolist():
         one = replace(claim.take(np.array([row])), fine=True)
         for way in (_with_locked, _with_light_friction, _with_open_slips) if columns.pairs else ():
-            if not relative[row] <= LARGEST:
+            if not relative[row] <= CERTIFY.largest:
                 box.force[row], box.coordinate[row] = way(one, scale[row : row + 1])
                 relative[row] = _torques(columns, box.force[row], flanks[row]).max() / largest[row]
     # Where torques are not bounded closely enough for any certificate, what seems to be bounded is
     # so only if what acts was taken rightly, and secants leave tangents by more than was allowed.
-    unproved = ~(relative <= LARGEST) | held.denied(box.force)
+    unproved = ~(relative <= CERTIFY.largest) | held.denied(box.force)
     box.force[unproved], box.coordinate[unproved], relative[unproved] = np.inf, np.inf, np.inf
     box.force[:, held.shared] = np.inf
     return box, relative
@@ -229,7 +211,7 @@ def _with_light_friction(claim: Claim, scale: Array) -> tuple[Array, Array]:
     With memory, so is the friction of splines that are pressed to the end of their clearance: there
     a slip can only turn, which the stop hardly lets it.
     """
-    act = first_acts(claim, LIGHT)
+    act = first_acts(claim, BOUND.light_friction)
     if claim.columns.train.slip is not None:
         splines = len(claim.columns.train.splines)
         pressed = act[:, -splines:] == Act.STOP
@@ -259,7 +241,7 @@ def _of_rounding(claim: Claim, scale: Array) -> Flags:
 
     Of splines, their friction is then put aside.
     """
-    columns, noise = claim.columns, NOISE * scale[:, None]
+    columns, noise = claim.columns, BOUND.noise * scale[:, None]
     contacts = np.abs(claim.forces[:, columns.contacts])
     found = np.zeros((claim.count, len(columns.contacts) + columns.pairs), dtype=bool)
     found[:, : contacts.shape[1]] = (contacts > 0.0) & (contacts <= noise)

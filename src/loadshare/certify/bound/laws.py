@@ -18,26 +18,11 @@ from numpy.typing import NDArray
 
 from loadshare.certify.bound.claim import EPS, TINY, Claim
 from loadshare.certify.bound.twofold import exact, minus, plus, power_two_thirds, two_product
+from loadshare.settings import BOUND
 
 Array = NDArray[np.float64]
 Codes = NDArray[np.int8]
 Flags = NDArray[np.bool_]
-
-SOFT, SOFTEST, YIELDING = 1e5, 1e11, 1e3
-"""Largest compliance of a turn, first and at last, and of what slips, in those of the claim."""
-LIGHT = 1e-9
-"""Force, in loads of the claim, at which the tangent of a contact without force is taken.
-
-Below it a Hertz contact is softer still: it answers by something between that tangent and none."""
-REACHED = 4.0
-"""Times the force of a contact on the verge up to which its tangent holds."""
-NOISE, APART = 1e-12, 1e-6
-"""Force over the largest one, and gap over the largest deflection, of a contact that is open.
-
-So little force over so clear a gap is a solver's rounding, and is put aside; so is the friction of
-a spline that takes no more torque than rounding."""
-CORNER = 1e-12
-"""Relative distance from a level within which a force is on it, up to rounding."""
 
 
 class Act:
@@ -118,7 +103,7 @@ class Elements:
     spare: Array
 
 
-def first_acts(claim: Claim, noise: float = NOISE) -> Codes:
+def first_acts(claim: Claim, noise: float = BOUND.noise) -> Codes:
     """How the elements act by the claim's own forces, shape (S, elements).
 
     Parameters
@@ -138,7 +123,7 @@ def first_acts(claim: Claim, noise: float = NOISE) -> Codes:
     )
     largest = np.abs(force[:, columns.flanks]).max(axis=1, initial=0.0)[:, None]
     deflection = length[:, columns.flanks].max(axis=1, initial=0.0)[:, None]
-    faint = (np.abs(contacts) <= NOISE * largest) & (gap > APART * deflection)
+    faint = (np.abs(contacts) <= BOUND.noise * largest) & (gap > BOUND.apart * deflection)
     closed = (contacts != 0.0) & ~faint
     scalar = np.where(closed, Act.STOP, Act.OPEN).astype(np.int8)
     radials = np.zeros((claim.count, 0), np.int8)
@@ -156,8 +141,8 @@ def _radial_acts(claim: Claim, noise: Array) -> Codes:
     with np.errstate(invalid="ignore"):
         end = np.where(stick > 0.0, first * stick, 0.0)
     held = np.where(np.isinf(last), Act.PINNED, Act.STICK)
-    below = size < level * (1.0 - CORNER)
-    steps = end < level * (1.0 - CORNER)
+    below = size < level * (1.0 - BOUND.corner)
+    steps = end < level * (1.0 - BOUND.corner)
     ways = (
         (np.isinf(stick), Act.STICK),
         ((level <= noise) & (size <= noise) & (distance < reach), Act.OPEN),
@@ -178,7 +163,7 @@ def _radial_acts(claim: Claim, noise: Array) -> Codes:
 
 
 def elements(
-    claim: Claim, act: Codes, scale: Array, verge: Flags | None, softest: float = SOFTEST
+    claim: Claim, act: Codes, scale: Array, verge: Flags | None, softest: float = BOUND.softest
 ) -> Elements:
     """Describe the elements at S claims.
 
@@ -212,9 +197,9 @@ def elements(
     active[:, columns.flanks] = act[:, :flanks] != Act.OPEN
     active[:, columns.stops] = act[:, flanks : flanks + stops] != Act.OPEN
     pushed = force[:, columns.flanks]
-    least = LIGHT * scale[:, None]
+    least = BOUND.light * scale[:, None]
     light = np.ones(pushed.shape, bool) if verge is None else verge[:, :flanks] | (pushed == 0.0)
-    reached = pushed if verge is None else REACHED * pushed
+    reached = pushed if verge is None else BOUND.reached * pushed
     at = np.where(light, np.maximum(reached, least), pushed)
     _flanks(claim, scale, at, soft, curve, room, misfit, width)
     light &= curve[:, columns.flanks] > 0.0
@@ -311,7 +296,7 @@ def _tables(
 
     slope = at(slopes, k)
     value = at(values, k) + slope * (force - at(forces, k))
-    near = LIGHT * scale[:, None]
+    near = BOUND.light * scale[:, None]
     jump = np.zeros(force.shape)
     corners = np.abs(forces[:, :, 1:-1] - force[:, :, None])
     ends = np.arange(1, forces.shape[2] - 1) > last[:, :, None]
@@ -391,7 +376,7 @@ def _pairs(claim: Claim, act: Codes, found: Elements, softest: float) -> None:
     most = np.maximum(found.soft.max(axis=1, initial=0.0), np.finfo(float).tiny)
     across = np.where(size > 0.0, distance / np.where(size > 0.0, size, 1.0), np.inf)
     lateral = sign * np.minimum(across, softest * most[:, None])
-    free = np.maximum(YIELDING * most[:, None], 100.0 * np.abs(lateral))
+    free = np.maximum(BOUND.yielding * most[:, None], 100.0 * np.abs(lateral))
     along = np.where(act == Act.SLIP, free, yields)
     springs = np.where(act == Act.STICK, 1.0, 0.0)
     stiffness = np.concatenate(

@@ -17,17 +17,13 @@ from numpy.typing import NDArray
 
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
+from loadshare.settings import BOUND
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.ring import DrumRing
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
-
-SLIGHT = 1e-6
-"""Play, in deflections of the claim, of a gear that counts as locked."""
-BOWED = 1e-3
-"""Play, in centre distances of an arc, below which the arc is taken for its tangent and a bow."""
 
 
 def locked(claim: Claim) -> dict[str, float]:
@@ -49,7 +45,7 @@ def locked(claim: Claim) -> dict[str, float]:
         if math.isfinite(ring.stiffness) or name in neighbours:
             continue
         play = _drum(claim, ring) if isinstance(ring, DrumRing) else _round(claim, name)
-        if play <= SLIGHT * deflection:
+        if play <= BOUND.slight * deflection:
             found[name] = play
     return found
 
@@ -83,7 +79,7 @@ def _drum(claim: Claim, ring: DrumRing) -> float:
     # Arcs bow away from their tangents by less than this, as long as the play is small.
     bow = np.array([0.0, 0.0, *((2.0 * play) ** 2 / distance)])
     further = _reach(normals, room + bow)
-    return further if further <= min(2.0 * play, BOWED * float(distance.min())) else math.inf
+    return further if further <= min(2.0 * play, BOUND.bowed * float(distance.min())) else math.inf
 
 
 def _reach(normals: Array, room: Array) -> float:
@@ -98,7 +94,7 @@ def _supports(normals: Array, room: Array, direction: Array) -> Iterator[float]:
     """Bounds on how far moves may go along a direction."""
     for i, j in combinations(range(len(normals)), 2):
         pair = normals[[i, j]].T
-        if abs(np.linalg.det(pair)) > BOWED:
+        if abs(np.linalg.det(pair)) > BOUND.bowed:
             shares = np.linalg.solve(pair, -direction)
             if (shares >= -EPS).all():
                 yield float(np.maximum(shares, EPS) @ room[[i, j]])

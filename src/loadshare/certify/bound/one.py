@@ -11,13 +11,11 @@ import numpy as np
 
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.judge import Bounds, bounds
+from loadshare.settings import BOUND
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Train
-
-KEPT = 64
-"""Trains of which the columns are kept: more than the positions of a march judged in turn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +80,7 @@ class Bound:
         return cls(relative, torque, forces, place)
 
 
-@lru_cache(maxsize=KEPT)
+@lru_cache(maxsize=BOUND.trains)
 def columns_of(train: Train) -> Columns:
     """Return the columns of a train, built once."""
     return Columns(train)

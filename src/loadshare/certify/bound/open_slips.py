@@ -45,13 +45,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.bound.claim import EPS, Claim
+from loadshare.settings import BOUND
 
 Array = NDArray[np.float64]
-
-USED_UP = 1e-9
-"""Distance of a force from its friction bound, over the bound, up to which it may be used up."""
-MARGIN = 1e-6
-"""μ, over the clearance."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,12 +92,12 @@ def open_slips(claim: Claim) -> list[OpenSlip]:
         _, stick, level, reach, _ = claim.graphs[0, len(train.rounds) + number].tolist()
         if gear in limited or support.any() or not 0.0 <= stick <= reach < math.inf:
             continue
-        if size == 0.0 or abs(size - level) > USED_UP * level:
+        if size == 0.0 or abs(size - level) > BOUND.used_up * level:
             continue
         way = force / size
         place = claim.lengths[0].value[0, first : first + 2]
         along, across = float(place @ way), float(place @ [-way[1], way[0]])
-        margin = MARGIN * reach
+        margin = BOUND.margin * reach
         ends = max(reach + margin - along, along - (stick - margin)), abs(across) + margin
         play = np.abs(way) * ends[0] + np.abs(way[::-1]) * ends[1]
         found.append(OpenSlip(gear, number, force, play + EPS * (reach + abs(along))))
@@ -139,7 +135,7 @@ def is_inside(claim: Claim, slip: OpenSlip, flanks: Array) -> bool:
     )
     lost = abs(rate) * torque if math.isnan(fixed) else 0.0
     least = (level - lost) * (1.0 - EPS)
-    margin = MARGIN * reach
+    margin = BOUND.margin * reach
     near, far = stick - margin, math.hypot(reach + margin, margin)
     radius = math.hypot(near, margin)
     return bool(

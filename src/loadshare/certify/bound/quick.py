@@ -23,42 +23,17 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.certify.bound.bound import (
-    SHARED,
-    SINGULAR,
-    Box,
-    aside,
-    doubts,
-    put_aside,
-    rounding_of,
-)
+from loadshare.certify.bound.bound import Box, aside, doubts, put_aside, rounding_of
 from loadshare.certify.bound.claim import EPS, Claim
-from loadshare.certify.bound.laws import LIGHT, NOISE, SOFTEST, Act, Codes, Elements, elements
+from loadshare.certify.bound.laws import Act, Codes, Elements, elements
 from loadshare.certify.bound.statics import Statics
+from loadshare.settings import BOUND
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-SECANT = 0.9
-"""Part of the tangent compliance that the secant to the exact force keeps.
-
-The bound is far below a tenth of the force wherever it is of use; elsewhere it is refused."""
-ENDLESS = 1e300
-"""Compliance, over the tangent's, of a Hertz contact without force: there is no largest."""
-NEAR = 1e-6
-"""Gap, over the widest one, within which a contact counts among those that may carry."""
-OPPOSED = 1.0 - 1e-6
-"""Cosine from which on two arcs are opposed."""
-ANGLE = 0.02
-"""Angle [rad] between two lines that still count as nearly the same."""
 DIGITS = 20
 """Ways of acting that make one number below 2⁶³."""
-REFERENCES = 16
-"""Claims whose lines are tried on all those whose elements act alike."""
-FEW = 8
-"""Claims up to which each is bounded by itself where lines turn."""
-GAIN = 0.5
-"""Largest share of an error that may come back over friction that follows the torque."""
 
 
 def quick_boxes(claim: Claim, act: Codes, scale: Array) -> Box:
@@ -79,9 +54,9 @@ def quick_boxes(claim: Claim, act: Codes, scale: Array) -> Box:
         return box
     left, rounding = claim.balance(found.force)
     arms = np.abs(claim.columns.moments).sum(axis=1)
-    rounding = rounding + put_aside(claim.columns, found.spare, NOISE * scale[:, None] * arms)
+    rounding = rounding + put_aside(claim.columns, found.spare, BOUND.noise * scale[:, None] * arms)
     for rows in _groups(claim, act):
-        for _ in range(REFERENCES):
+        for _ in range(BOUND.references):
             group = _Group(claim, found, rows, doubled, scale[rows], np.abs(left) + rounding)
             if not group.is_covered:
                 break
@@ -109,7 +84,7 @@ def _with_near(claim: Claim, act: Codes) -> tuple[Codes, Flags]:
     widest = np.abs(gaps).max(axis=1, initial=0.0)
     act = act.copy()
     part = act[:, : gaps.shape[1]]
-    part[(part == Act.OPEN) & (gaps <= NEAR * widest[:, None])] = Act.STOP
+    part[(part == Act.OPEN) & (gaps <= BOUND.near * widest[:, None])] = Act.STOP
     doubled = np.zeros(act.shape, dtype=bool)
     force = np.concatenate(
         [claim.forces[:, columns.contacts], claim.forces[:, columns.arcs][:, ::2]], axis=1
@@ -120,7 +95,7 @@ def _with_near(claim: Claim, act: Codes) -> tuple[Codes, Flags]:
         if start >= contacts:
             one, other = ways[:, start - contacts], ways[:, start - contacts + 1]
             sizes = np.sqrt((one**2).sum(axis=1) * (other**2).sum(axis=1))
-            both &= (one * other).sum(axis=1) < -OPPOSED * sizes
+            both &= (one * other).sum(axis=1) < -BOUND.opposed * sizes
         for k in (0, 1):
             weaker = force[:, start + k] < force[:, start + 1 - k] + k * np.finfo(float).tiny
             doubled[both & weaker, start + k] = True
@@ -129,7 +104,7 @@ def _with_near(claim: Claim, act: Codes) -> tuple[Codes, Flags]:
         length = length[:, columns.radials].reshape(claim.count, -1, 2)
         left = claim.graphs[:, :, 3] - np.sqrt((length**2).sum(axis=2))
         radials = act[:, gaps.shape[1] :]
-        radials[(radials == Act.OPEN) & (left <= NEAR * widest[:, None])] = Act.STOP
+        radials[(radials == Act.OPEN) & (left <= BOUND.near * widest[:, None])] = Act.STOP
     return act, doubled
 
 
@@ -154,7 +129,7 @@ def _groups(claim: Claim, act: Codes) -> list[NDArray[np.intp]]:
     """
     groups = alike(act)
     first = act.shape[1] - len(claim.radial_gears)
-    if claim.count > FEW or not np.isin(act[:, first:], (Act.STOP, Act.STEP)).any():
+    if claim.count > BOUND.few or not np.isin(act[:, first:], (Act.STOP, Act.STEP)).any():
         return groups
     return [row for rows in groups for row in np.split(rows, len(rows))]
 
@@ -167,12 +142,12 @@ def _over_tangents(
     The tangent of a light Hertz contact is taken at more than its force.
     """
     flanks = claim.columns.flanks
-    force, least = found.force[rows][:, flanks], LIGHT * scale[:, None]
+    force, least = found.force[rows][:, flanks], BOUND.light * scale[:, None]
     with np.errstate(divide="ignore"):
-        light = np.minimum(1.5 * np.cbrt(least / force), ENDLESS)
+        light = np.minimum(1.5 * np.cbrt(least / force), BOUND.endless)
     hertz = np.broadcast_to(claim.situations.hertz, (claim.count, claim.situations.hertz.shape[1]))
     some = hertz[rows][:, claim.columns.meshes] > 0.0
-    return np.where(some & (force < least), light, 1.0 / SECANT)
+    return np.where(some & (force < least), light, 1.0 / BOUND.secant)
 
 
 class _Group:
@@ -227,11 +202,11 @@ class _Group:
         self.is_left = self.is_sliding.copy()
         self.is_left[self.line.stop :] = True
         self.is_covered = True
-        self.over = np.full((len(rows), len(self.directions)), 1.0 / SECANT)
+        self.over = np.full((len(rows), len(self.directions)), 1.0 / BOUND.secant)
         over = _over_tangents(claim, found, self.pick, scale)
         flanks = np.flatnonzero(self.plain < columns.flanks.stop)
         self.over[:, flanks] = over[:, self.plain[flanks]]
-        self.is_endless = (self.over > 1.0 / SECANT).any(axis=0)
+        self.is_endless = (self.over > 1.0 / BOUND.secant).any(axis=0)
         self._set_particular()
         self._set_stiffness()
 
@@ -267,16 +242,16 @@ class _Group:
         found, pick = self.found, self.pick
         self.soft = self._columns(found.soft, found.along[pick][:, self.lined])
         self.soft[:, self.is_sliding] = 0.0
-        least = SECANT * self.soft.min(axis=0)
+        least = BOUND.secant * self.soft.min(axis=0)
         if len(self.slips):
             size, distance = (v[pick][:, self.slips] for v in (found.size, found.distance))
-            least[self.is_sliding] = np.repeat(SECANT * (distance / size).min(axis=0), 2)
+            least[self.is_sliding] = np.repeat(BOUND.secant * (distance / size).min(axis=0), 2)
         turning = self.lined[self.turning]
         size, distance = (v[pick][:, turning] for v in (found.size, found.distance))
-        most = SOFTEST * self.soft.max(initial=0.0)
+        most = BOUND.softest * self.soft.max(initial=0.0)
         lateral = np.where(size > 0.0, distance / np.where(size > 0.0, size, 1.0), np.inf)
         lateral = np.minimum(lateral, most)
-        least[self.line.stop :] = SECANT * lateral.min(axis=0, initial=np.inf)
+        least[self.line.stop :] = BOUND.secant * lateral.min(axis=0, initial=np.inf)
         if self.is_left is self.is_sliding:
             self.soft[:, self.line.stop :] = lateral
         n = self.statics.redundant
@@ -285,7 +260,7 @@ class _Group:
             self.is_covered, stiff = False, np.eye(len(stiff))
         values, vectors = np.linalg.eigh(stiff)
         # A self-stress of rigid parts alone has no compliance, and moves nothing else.
-        kept = values > SINGULAR * values.max(initial=0.0)
+        kept = values > BOUND.singular * values.max(initial=0.0)
         self.rigid = n @ vectors[:, ~kept]
         self.root = n @ (vectors[:, kept] / np.sqrt(values[kept]))
         self.sizes = np.sqrt((self.root**2).sum(axis=1))
@@ -327,7 +302,7 @@ class _Group:
         if found.follows[pick].any():
             errors = errors + self._followed(errors)
         angle = np.abs(line - self.reference).sum(axis=2)
-        self.turned = (angle > ANGLE).any(axis=1)
+        self.turned = (angle > BOUND.angle).any(axis=1)
         linear, box = errors, 2.0 * errors
         near = np.ones(len(errors), dtype=bool)
         # The box is that of the first pass, widened by what the first pass leaves out.
@@ -356,7 +331,7 @@ class _Group:
                 whole[:, at + k] += np.abs(size) / distance * way
         proved = self._is_proved(whole, places, moved, stray, scale) & near
         self._cover_twins(whole)
-        shared = np.abs(self.rigid).max(axis=1, initial=0.0) > SHARED
+        shared = np.abs(self.rigid).max(axis=1, initial=0.0) > BOUND.shared
         whole[:, self.plain[shared[: len(self.plain)]]] = np.inf
         for k in (0, 1):
             whole[:, at[shared[self.line]] + k] = np.inf
@@ -403,7 +378,7 @@ class _Group:
             k = (pair - arcs - len(columns.train.rounds)) % len(arms)
             most = np.maximum(most, errors[:, : len(at)] @ arms[k, at])
         back = (total[:, : len(at)] @ arms[:, at].T).max(axis=1)
-        enough = np.where(back < GAIN, most / (1.0 - np.minimum(back, GAIN)), np.inf)
+        enough = np.where(back < BOUND.gain, most / (1.0 - np.minimum(back, BOUND.gain)), np.inf)
         return np.asarray(enough[:, None] * total)
 
     def _is_proved(
@@ -420,10 +395,10 @@ class _Group:
         allowed = rounding_of(found.force[pick], scale) + EPS * scale
         errors += np.where(stray <= allowed, stray, np.inf)[:, None]
         proved = np.isfinite(errors).all(axis=1) & np.isfinite(places).all(axis=1)
-        light = np.maximum(force, LIGHT * scale[:, None])[:, columns.flanks]
+        light = np.maximum(force, BOUND.light * scale[:, None])[:, columns.flanks]
         proved &= (errors[:, columns.flanks] <= 0.1 * light).all(axis=1)
         # Friction that is put aside was allowed for up to so large errors.
-        slight = (errors[:, columns.flanks] <= NOISE * scale[:, None]).all(axis=1)
+        slight = (errors[:, columns.flanks] <= BOUND.noise * scale[:, None]).all(axis=1)
         proved &= slight | (found.spare[pick] == 0.0).all(axis=1)
         # The curvature of a table is that of a corner within reach.
         proved &= (found.curve[pick] >= 0.0).all(axis=1)

@@ -8,14 +8,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.settings import BOUND
+
 Array = NDArray[np.float64]
-
-RANK = 1e-11
-"""Singular value of the directions, relative to the largest, that counts as zero.
-
-Directions are cosines and ratios of radii; what geometry makes dependent is so to some 1e-16."""
-LOOSE = 1e-7
-"""Part of a coordinate in a move that nothing resists from which on it is undetermined."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,11 +38,11 @@ class Statics:
     def of(cls, directions: Array) -> Statics:
         """Return the statics of some rows of A."""
         left, sizes, right = np.linalg.svd(directions, full_matrices=True)
-        rank = int((sizes > RANK * sizes.max(initial=0.0)).sum())
+        rank = int((sizes > BOUND.rank * sizes.max(initial=0.0)).sum())
         particular = left[:, :rank] / sizes[:rank] @ right[:rank]
         return cls(directions, particular, left[:, rank:], right[rank:].T)
 
     @cached_property
     def loose(self) -> NDArray[np.bool_]:
         """Coordinates that a move shifts, shape (n,)."""
-        return np.asarray(np.abs(self.moves).max(axis=1, initial=0.0) > LOOSE)
+        return np.asarray(np.abs(self.moves).max(axis=1, initial=0.0) > BOUND.loose)

@@ -17,19 +17,11 @@ from numpy.typing import NDArray
 
 from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
-from loadshare.certify.bound.laws import NOISE, Act, Codes, elements
+from loadshare.certify.bound.laws import Act, Codes, elements
 from loadshare.certify.bound.quick import quick_boxes
+from loadshare.settings import BOUND
 
 Array = NDArray[np.float64]
-
-MOST = 7
-"""Elements on the verge of which every combination is tried.
-
-With more, convexity alone bounds the error (see `quick`), which asks for no combination."""
-ROUNDS = 4
-"""Passes in which further elements may turn out to be on the verge."""
-IDLE = 1e-9
-"""Part in self-stresses below which a contact cannot change a force."""
 
 
 def on_the_verge(claim: Claim, act: Codes, scale: Array, box: Box) -> Box:
@@ -51,10 +43,10 @@ def on_the_verge(claim: Claim, act: Codes, scale: Array, box: Box) -> Box:
         int(e): _ways(claim, int(e), int(act[0, e]), bool(box.above[0, e]))
         for e in np.flatnonzero(box.doubtful[0] & free)
     }
-    for _ in range(ROUNDS):
+    for _ in range(BOUND.verge_passes):
         idle = _idle(claim, act, list(ways), scale)
         tried = {e: way for e, way in ways.items() if e not in idle}
-        if len(tried) > MOST:
+        if len(tried) > BOUND.on_the_verge:
             break
         acts = np.array(
             [
@@ -140,7 +132,7 @@ def _is_limit(claim: Claim, e: int) -> bool:
     columns = claim.columns
     radial = e - len(columns.contacts) - (columns.arcs.stop - columns.arcs.start) // 2
     largest = np.abs(claim.forces[0, columns.flanks]).max(initial=0.0)
-    return radial < 0 or bool(claim.graphs[0, radial, 2] <= NOISE * largest)
+    return radial < 0 or bool(claim.graphs[0, radial, 2] <= BOUND.noise * largest)
 
 
 def _alone(
@@ -162,7 +154,7 @@ def _alone(
         first = columns.first_pair + 2 * (e - count)
         return float(part[first : first + 2].max())
 
-    return {e for e in some if share(e) < IDLE}
+    return {e for e in some if share(e) < BOUND.idle}
 
 
 def _closed(act: Codes, doubtful: Iterable[int]) -> tuple[Codes, NDArray[np.bool_]]:

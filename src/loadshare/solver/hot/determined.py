@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.scene.data import Data
-from loadshare.scene.elements import RANK, Elements, unresisted
+from loadshare.scene.elements import Elements, unresisted
 from loadshare.scene.scene import Array
+from loadshare.settings import STATICS
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot.exchange import Codes
 from loadshare.solver.hot.state import State, pushes
@@ -115,7 +116,7 @@ def _fixed(
     across = np.zeros((len(these), len(level), moves.shape[1]))
     for k, j in enumerate(level):
         across[:, k] = _across(elements, state, j, rows[these]) @ moves
-    left = moves.shape[1] - (np.linalg.svd(across, compute_uv=False) > RANK).sum(axis=1)
+    left = moves.shape[1] - (np.linalg.svd(across, compute_uv=False) > STATICS.rank).sum(axis=1)
     found[these] = left == 0
     doubtful = (left > 0) & (touches[these].sum(axis=1) > left)
     for k in np.flatnonzero(doubtful).tolist():

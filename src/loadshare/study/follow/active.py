@@ -10,14 +10,12 @@ from numpy.typing import NDArray
 
 from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
+from loadshare.settings import FOLLOW
 from loadshare.solver.hot import places as at
 from loadshare.study.follow.numbers import Numbers
 from loadshare.train.equilibrium import Equilibrium
 
 Codes = NDArray[np.int8]
-
-CARRIES = 1e-11
-"""Force over the load from which on a contact counts as closed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +81,7 @@ def read_code(elements: Elements, numbers: Numbers, found: Equilibrium, x: Array
     pushes = {**found.flank_force, **found.ring_force}
     force = np.array([pushes[name] for name in elements.row_names]) / elements.force
     code = np.zeros(elements.switches, dtype=np.int8)
-    code[: elements.rows][force > CARRIES * max(1.0, force.max(initial=0.0))] = at.CLOSED
+    code[: elements.rows][force > FOLLOW.carries * max(1.0, force.max(initial=0.0))] = at.CLOSED
     rows = elements.columns.contacts
     transmitted = numbers.carried[0, :, rows] @ force
     for j, radial in enumerate(elements.radials):

@@ -13,23 +13,9 @@ from scipy.optimize import linprog
 from scipy.sparse import block_diag
 
 from loadshare.scene.scene import Array
+from loadshare.settings import FOLLOW
 from loadshare.study.follow.equations import Equations, free_moves, scaling
 from loadshare.study.follow.numbers import Numbers
-
-FACETS = 24
-"""Sides at first of the polygon that stands for a round ring in which a body floats."""
-PASSES = 24
-"""Polygons at most; two are taken as a rule, and each leaves a quarter of the error at most."""
-FULL, SPENT = 1e-3, 1e-12
-"""Part of the room a polygon promises that may be missing, and room [deflections] that is none."""
-LEAST = 1e-6
-"""Unit of room [deflections] in which a linear programme is exact to the last digits."""
-BINDS = 1e-6
-"""Room [deflections] left by the linear programme at which a limit binds."""
-ROOM = 1.0
-"""Room [deflections] around a floating body that is as good as any more."""
-FELT = 1e-9
-"""Speed at which a move closes a limit, over that of the move, below which it does not."""
 
 
 def centred(equations: Equations, z: Array, numbers: Numbers) -> Array:
@@ -58,34 +44,34 @@ def _into_the_middle(
     """
     z = z.copy()
     moves = [m / np.maximum(np.abs(m).max(axis=1, initial=0.0), 1e-300)[:, None] for m in moves]
-    turns = 2.0 * np.pi * np.arange(FACETS) / FACETS
+    turns = 2.0 * np.pi * np.arange(FOLLOW.facets) / FOLLOW.facets
     ways = np.stack([np.cos(turns), np.sin(turns)], axis=1)
-    facets = np.broadcast_to(ways, (len(z), len(equations.radials), FACETS, 2))
+    facets = np.broadcast_to(ways, (len(z), len(equations.radials), FOLLOW.facets, 2))
     bends = any(k not in equations.polar_at for k in equations.arcs)
     rows, scale = np.arange(len(z)), np.ones(len(z))
-    for number in range(PASSES):
+    for number in range(FOLLOW.polygons):
         here = numbers.take(rows)
         room, closing = _rooms(equations, z[rows], here, facets)
         blocks: dict[int, tuple[Array, Array]] = {}
         for i, k in enumerate(rows.tolist()):
             speed = closing[i] @ moves[k].T
-            near = (np.abs(speed).max(axis=1, initial=0.0) > FELT) & np.isfinite(room[i])
+            near = (np.abs(speed).max(axis=1, initial=0.0) > FOLLOW.felt) & np.isfinite(room[i])
             if near.any():
                 limits = np.hstack([speed[near], np.ones((int(near.sum()), 1))])
                 blocks[i] = limits, room[i, near] / scale[i]
         promised = np.full(len(rows), -np.inf)
-        steps = _widest(list(blocks.values()), ROOM / scale[list(blocks)])
+        steps = _widest(list(blocks.values()), FOLLOW.room / scale[list(blocks)])
         for i, step in zip(blocks, steps, strict=True):
             z[rows[i], : equations.n] += scale[i] * step[:-1] @ moves[rows[i]]
             promised[i] = scale[i] * step[-1]
         along, actual = _round(equations, z[rows], here)
-        short = (promised > SPENT) & (actual < (1.0 - FULL) * promised)
+        short = (promised > FOLLOW.spent) & (actual < (1.0 - FOLLOW.full) * promised)
         # Arcs are straight around the point: the second time they are nearly exact.
         again = short | (bends and number == 0) & np.isfinite(promised)
         if not again.any():
             break
         rows, facets = rows[again], np.concatenate([facets, along[:, :, None]], axis=2)[again]
-        scale = np.clip(np.where(short, promised - actual, 1.0), LEAST, 1.0)[again]
+        scale = np.clip(np.where(short, promised - actual, 1.0), FOLLOW.unit_of_room, 1.0)[again]
     return z
 
 
@@ -120,7 +106,7 @@ def _widest(blocks: Sequence[tuple[Array, Array]], most: Array) -> list[Array]:
     for (rows, room), found in zip(blocks, np.split(answer.x, last[:-1] + 1), strict=True):
         # The programme is solved to its tolerance; what binds is met to round-off.
         left = room - rows @ found
-        binds = left <= BINDS
+        binds = left <= FOLLOW.binds
         more = np.linalg.lstsq(rows[binds], left[binds], rcond=None)[0]
         steps.append(found + more)
     return steps

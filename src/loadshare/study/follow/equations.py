@@ -18,19 +18,11 @@ import numpy as np
 
 from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
+from loadshare.settings import FOLLOW
 from loadshare.solver.hot import places as at
 from loadshare.study.follow.active import ActiveSet, Codes
 from loadshare.study.follow.numbers import Numbers
 from loadshare.study.follow.ranges import Flags
-
-STEPS = 40
-"""Newton's steps before a branch counts as lost."""
-SOLVED = 1e-11
-"""Last step of an answer, relative to the largest unknown."""
-ROOTS = 30
-"""Newton's steps for a cube root of a force; about six are taken."""
-RANK = 1e-12
-"""Singular values below this, relative to the largest, of the scaled Jacobian, count as zero."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -349,7 +341,7 @@ class Equations:
         count = len(z)
         done, lost = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
         previous = np.full(count, np.inf)
-        for _ in range(STEPS):
+        for _ in range(FOLLOW.steps):
             rows = np.flatnonzero(~done & ~lost)
             if not len(rows):
                 break
@@ -367,14 +359,16 @@ class Equations:
             z[rows] -= step
             size = np.abs(step).max(axis=1, initial=0.0)
             scale = np.maximum(np.abs(z[rows]).max(axis=1, initial=0.0), 1.0)
-            small = size <= SOLVED * scale
+            small = size <= FOLLOW.solved * scale
             done[rows] = (size <= 1e-15 * scale) | (small & (size >= 0.5 * previous[rows]))
             lost[rows] |= ~np.isfinite(size) | (size > 1e9)
             previous[rows] = size
         with np.errstate(all="ignore"):
             off = np.abs(self.residual(z, numbers)).max(axis=1, initial=0.0)
         unit = np.abs(numbers.load).max(axis=1, initial=0.0)
-        return z, (done | (previous <= SOLVED)) & ~lost & (off <= 1e-9 * np.maximum(unit, 1.0))
+        return z, (done | (previous <= FOLLOW.solved)) & ~lost & (
+            off <= 1e-9 * np.maximum(unit, 1.0)
+        )
 
     @property
     def floats(self) -> bool:
@@ -406,7 +400,7 @@ def pressed(b: Array, c: Array, approach: Array) -> tuple[Array, Array]:
     with np.errstate(divide="ignore", invalid="ignore"):
         root = np.minimum(np.sqrt(size / c), np.cbrt(size / b))
         # Both bounds lie above the root of a convex function: Newton descends to it.
-        for _ in range(ROOTS):
+        for _ in range(FOLLOW.roots):
             step = ((b * root + c) * root**2 - size) / ((3.0 * b * root + 2.0 * c) * root)
             root = np.where(size > 0.0, np.where(step > 0.0, root - step, root), 0.0)
             if not (step > 4e-16 * root).any():
@@ -435,7 +429,7 @@ def least_norm_step(jacobian: Array, off: Array, singular: bool = True) -> Array
             return np.asarray(factor * np.linalg.solve(scaled, (factor * off)[:, :, None])[:, :, 0])
         except np.linalg.LinAlgError:
             pass
-    inverse = np.linalg.pinv(scaled, rcond=RANK)
+    inverse = np.linalg.pinv(scaled, rcond=FOLLOW.rank)
     step = factor * (inverse @ (factor * off)[:, :, None])[:, :, 0]
     # One refinement: the inverse alone loses digits where stiff and soft parts meet.
     left = off - (jacobian @ step[:, :, None])[:, :, 0]
@@ -453,4 +447,4 @@ def free_moves(jacobian: Array) -> tuple[Array, Flags]:
         Which of the rows are such moves.
     """
     _, sizes, right = np.linalg.svd(jacobian)
-    return right, sizes <= RANK * sizes.max(axis=1, initial=0.0)[:, None]
+    return right, sizes <= FOLLOW.rank * sizes.max(axis=1, initial=0.0)[:, None]

@@ -8,9 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from loadshare.scene.scene import Array
+from loadshare.settings import FOLLOW
 from loadshare.solver.hot import places as at
 from loadshare.study.follow.equations import pressed
-from loadshare.study.follow.ranges import NODES, Range, sampled
+from loadshare.study.follow.ranges import Range, sampled
 from loadshare.study.follow.stretches import Stretches
 
 
@@ -182,7 +183,7 @@ def friction_bound(s: Stretches, k: int, slopes: dict[int, Slope]) -> Bound:
     slope = np.abs(s.split(s.state.slope)).max(axis=1)
     rate, spread = np.zeros(s.count), np.zeros(s.count)
     torque = s.split(s.state.transmitted[:, j])
-    sign = np.sign(torque[:, NODES // 2])
+    sign = np.sign(torque[:, FOLLOW.nodes // 2])
     for i in np.flatnonzero(e.acts).tolist():
         if not arms[:, i].any():
             continue
@@ -220,7 +221,7 @@ def _turning_force(
     off = push.value.off + push.extra
     across_off = off / near + np.abs(push.value.middle) * around / (near * radius)
     slack = push.off + 2.0 * across_off + (push.steep + across) * 2.0 * turn
-    stiff = s.split(s.state.polars[k].stiffness)[:, NODES // 2]
+    stiff = s.split(s.state.polars[k].stiffness)[:, FOLLOW.nodes // 2]
     rate = (stiff @ offset.rate[:, :, None])[:, :, 0] + push.rate[:, None] * along
     bends = offset.spread.sum(axis=1)
     moved = np.abs(offset.rate).sum(axis=1) + bends

@@ -8,9 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from loadshare.scene.scene import Array
+from loadshare.settings import FOLLOW
 from loadshare.solver.hot import places as at
 from loadshare.study.follow.forces import friction_bound, varying_slopes
-from loadshare.study.follow.ranges import NODES, Enclosure, Flags, Range, sampled
+from loadshare.study.follow.ranges import Enclosure, Flags, Range, sampled
 from loadshare.study.follow.stretches import Stretches
 
 
@@ -154,7 +155,7 @@ def _radius(s: Stretches, k: int, dev: Array, bend: Array) -> Enclosure:
         clearance = s.sampled(s.numbers.clearance[:, k - s.equations.arcs.start])
     else:
         nodes = s.split(s.state.polars[k].radius)
-        clearance = sampled(np.zeros((s.count, NODES)))
+        clearance = sampled(np.zeros((s.count, FOLLOW.nodes)))
     moved = np.sqrt((offset.rate**2).sum(axis=1))
     straight = (s.along[k] * offset.rate).sum(axis=1)
     spread = moved * turn + np.sqrt((offset.spread**2).sum(axis=1))
@@ -200,7 +201,7 @@ def _pull(s: Stretches, where: int, dev: Array, bend: Array) -> Enclosure:
     p = s.chord[np.array([where, where + 1])]
     size = np.sqrt((p.nodes**2).sum(axis=2))
     speed = np.sqrt((p.rate**2).sum(axis=1)) + np.sqrt((p.spread**2).sum(axis=1))
-    middle = size[:, NODES // 2]
+    middle = size[:, FOLLOW.nodes // 2]
     along = p.middle / np.where(middle > 0.0, middle, 1.0)[:, None]
     turn = 2.0 * np.sqrt((p.off**2).sum(axis=1)) / np.where(middle > 0.0, middle, 1e-300)
     spread = np.minimum(speed * turn, 2.0 * speed)

@@ -11,11 +11,11 @@ from functools import cached_property
 
 from loadshare.case import Case
 from loadshare.case.keys import parse
-from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import CaseError, Refused
 from loadshare.job.machine import Answers, Machine
 from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
+from loadshare.settings import CERTIFY
 from loadshare.solver.hot import vectorised
 from loadshare.study.answers import certified
 from loadshare.study.follow.active import Codes, coordinates, read_code
@@ -135,7 +135,7 @@ class Line:
         """Solve and certify a position at values (S,)."""
         if self._samples is not None:
             situations = self._at(values).situations(position)
-            found = self.machine.answer(situations, TOLERANCE, vectorised.settle)
+            found = self.machine.answer(situations, CERTIFY.tolerance, vectorised.settle)
             return [
                 self._from_batch(self.elements, found, k, value)
                 if found.passed[k]
@@ -152,7 +152,7 @@ class Line:
         machine = Machine(train)
         machine.__dict__["elements"] = elements
         situations: Situations = situation_of(train, position)
-        found = machine.answer(situations, TOLERANCE, vectorised.settle)
+        found = machine.answer(situations, CERTIFY.tolerance, vectorised.settle)
         if not found.passed[0]:
             return self._from_ladder(position, value)
         return self._from_batch(elements, found, 0, value)

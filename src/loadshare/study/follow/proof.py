@@ -24,20 +24,15 @@ from typing import NamedTuple
 import numpy as np
 
 from loadshare.scene.scene import Array
+from loadshare.settings import FOLLOW
 from loadshare.study.follow.equations import free_moves, scaling
 from loadshare.study.follow.forces import forces
 from loadshare.study.follow.gauges import gauges
-from loadshare.study.follow.ranges import NODES, Flags, sampled
+from loadshare.study.follow.ranges import Flags, sampled
 from loadshare.study.follow.stretches import Stretches
 
-ROUNDS = 6
-"""Attempts to find an enclosure."""
 ROUND_OFF = 64.0 * np.finfo(float).eps
 """Round-off of a sum, relative to the size of its terms."""
-VERGE = 1e-11
-"""Gauge, in deflections or loads, that counts as zero: a hundredth of what is certified."""
-UNFELT = 1e-10
-"""Part of a move, or of the load along it, that counts as none."""
 
 
 class Proof(NamedTuple):
@@ -63,7 +58,7 @@ def prove(s: Stretches) -> Proof:
         enclosed &= fixed
         holds = enclosed.copy()
         for gauge in gauges(s, dev, bend):
-            holds &= gauge.holds(VERGE)
+            holds &= gauge.holds(FOLLOW.verge)
     return Proof(holds, enclosed)
 
 
@@ -98,7 +93,9 @@ def _unfelt(s: Stretches, moves: Array, loose: Flags) -> Flags:
     felt = np.maximum(felt, along(np.concatenate(acting, axis=1)))
     load = s.split(s.numbers.load)
     push = np.abs(load).max(axis=(1, 2), initial=0.0)
-    return np.asarray(~loose | ((felt <= UNFELT * size) & (along(load) <= UNFELT * size * push)))
+    return np.asarray(
+        ~loose | ((felt <= FOLLOW.unfelt * size) & (along(load) <= FOLLOW.unfelt * size * push))
+    )
 
 
 def _enclosed(s: Stretches, inverse: Array) -> tuple[Flags, Array, Array]:
@@ -114,7 +111,7 @@ def _enclosed(s: Stretches, inverse: Array) -> tuple[Flags, Array, Array]:
     dev = 1e-15 * np.ones((s.count, s.width))
     done = np.zeros(s.count, dtype=bool)
     found = bend = np.full((s.count, s.width), np.inf)
-    for _ in range(ROUNDS):
+    for _ in range(FOLLOW.enclosures):
         into, slack, rates, spreads = _stacked(s, dev)
         through = reach @ into.transpose(0, 2, 1)
         spread = straight.spread + (np.abs(through) @ spreads[:, :, None])[:, :, 0]
@@ -199,8 +196,8 @@ def _drift(s: Stretches, reach: Array) -> Array:
     z = s.flat[s.middle]
     middle = e.jacobian(z, s.at_middle)
     most = np.zeros_like(middle)
-    for k in range(NODES):
-        there = s.numbers.take(s.middle - NODES // 2 + k)
+    for k in range(FOLLOW.nodes):
+        there = s.numbers.take(s.middle - FOLLOW.nodes // 2 + k)
         most = np.maximum(most, np.abs(e.jacobian(z, there) - middle))
     found[:, :, s.z_in :] = np.abs(reach) @ (2.0 * most)
     return found

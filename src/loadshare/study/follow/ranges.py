@@ -8,11 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.scene.scene import Array
+from loadshare.settings import FOLLOW
 
 Flags = NDArray[np.bool_]
-
-NODES = 5
-"""Values of a stretch at which the parameter's effect is sampled."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,17 +32,17 @@ class Range:
     @property
     def low(self) -> Array:
         """Lower bound along the chord."""
-        return np.asarray(self.nodes.min(axis=1) - self.spread / (2.0 * (NODES - 1)))
+        return np.asarray(self.nodes.min(axis=1) - self.spread / (2.0 * (FOLLOW.nodes - 1)))
 
     @property
     def high(self) -> Array:
         """Upper bound along the chord."""
-        return np.asarray(self.nodes.max(axis=1) + self.spread / (2.0 * (NODES - 1)))
+        return np.asarray(self.nodes.max(axis=1) + self.spread / (2.0 * (FOLLOW.nodes - 1)))
 
     @property
     def middle(self) -> Array:
         """Value in the middle."""
-        return np.asarray(self.nodes[:, NODES // 2])
+        return np.asarray(self.nodes[:, FOLLOW.nodes // 2])
 
     @property
     def off(self) -> Array:
@@ -72,9 +70,9 @@ class Range:
 
 def sampled(nodes: Array) -> Range:
     """Enclose a smooth quantity known at the nodes (B, NODES, ...)."""
-    slopes = (NODES - 1) * np.diff(nodes, axis=1)
+    slopes = (FOLLOW.nodes - 1) * np.diff(nodes, axis=1)
     low, high = slopes.min(axis=1), slopes.max(axis=1)
-    noise = 4.0 * NODES * np.finfo(float).eps * np.abs(nodes).max(axis=1)
+    noise = 4.0 * FOLLOW.nodes * np.finfo(float).eps * np.abs(nodes).max(axis=1)
     # Half the range is what the samples show; as much again is what may lie between them.
     return Range(nodes, 0.5 * (low + high), (high - low) + noise)
 

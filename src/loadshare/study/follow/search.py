@@ -16,6 +16,7 @@ import numpy as np
 
 from loadshare.errors import Refused
 from loadshare.scene.scene import Array
+from loadshare.settings import FOLLOW
 from loadshare.solver.hot import places as at
 from loadshare.study.follow.active import ActiveSet, Codes, read_pieces
 from loadshare.study.follow.centre import centred
@@ -23,31 +24,13 @@ from loadshare.study.follow.equations import Equations
 from loadshare.study.follow.gauges import gauges_at
 from loadshare.study.follow.line import Line, Missing, Solved
 from loadshare.study.follow.numbers import Numbers
-from loadshare.study.follow.proof import VERGE, Proof, prove
-from loadshare.study.follow.ranges import NODES, Flags
+from loadshare.study.follow.proof import Proof, prove
+from loadshare.study.follow.ranges import Flags
 from loadshare.study.follow.stretches import Stretches
 from loadshare.study.follow.zero import first_zero
 
-FIRST = 8
-"""Stretches at the beginning."""
-CUT = 0.4877
-"""Where a stretch is cut: no simple fraction, for those are where thresholds stand."""
-BESIDE = 0.05
-"""Distance from an event at which a stretch is cut, over its width."""
-LEAST = 1e-10
-"""Width of a stretch that is not cut any more, over the largest value."""
-MOST = 2000
-"""Stretches of a position; what is left then is named as not proved."""
-IDLE = 1e-11
-"""Force and compression, over load and deflection, at which a closed contact carries nothing."""
 UNREAD = "the active set of its equilibrium could not be told"
 """Why a certified answer is no point."""
-SECTIONS = 9
-"""Values between two ends at which the gauges of one are looked at."""
-GRADE = 0.5
-"""Ratio of stretches that shrink towards an event."""
-RESOLVED = 1e-9
-"""Distance from an event that counts as the event itself, over its value."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -120,7 +103,7 @@ class Search:
         self.line, self.position, self.low, self.high = line, position, low, high
         # Which contacts are rigid or curved anywhere on the way.
         self._anywhere = line.numbers(position, np.linspace(low, high, 3))
-        self.least = LEAST * max(abs(low), abs(high))
+        self.least = FOLLOW.least * max(abs(low), abs(high))
         self.changes: list[Change] = []
         self.gaps: list[Gap] = []
         self._equations: dict[ActiveSet, Equations] = {}
@@ -135,7 +118,7 @@ class Search:
         Refused
             If an end has no certified equilibrium.
         """
-        values = np.linspace(self.low, self.high, FIRST + 1)
+        values = np.linspace(self.low, self.high, FOLLOW.first + 1)
         points = self.points(values)
         for point in (points[0], points[-1]):
             if isinstance(point, Missing) and point.why != UNREAD:
@@ -148,8 +131,8 @@ class Search:
             count += len(stretches)
             left = [s for s in stretches if not self._settled(s)]
             left = self._proved_alike(left)
-            left = [s for s in left if not self._crossed(s)] if count <= MOST else left
-            if count > MOST:
+            left = [s for s in left if not self._crossed(s)] if count <= FOLLOW.most else left
+            if count > FOLLOW.most:
                 self.gaps += [Gap(*stretch, "too many stretches") for stretch in left]
                 break
             stretches = self._cut(left)
@@ -200,17 +183,17 @@ class Search:
         code = np.repeat(equations.code[None], len(z), axis=0)
         state = equations.state(z, numbers)
         push = np.abs(numbers.load).max(axis=1, initial=0.0)
-        band = IDLE * np.where(push > 0.0, push, 1.0)
+        band = FOLLOW.idle * np.where(push > 0.0, push, 1.0)
         springs = equations.elements.springs
         columns = np.arange(springs, equations.scalars)
         moved = np.abs(state.approach[:, columns])
         moved[:, np.isin(columns, equations.rigid)] = 0.0
-        idle = (np.abs(state.force[:, columns]) <= band[:, None]) & (moved <= IDLE)
+        idle = (np.abs(state.force[:, columns]) <= band[:, None]) & (moved <= FOLLOW.idle)
         code[:, : len(columns)][idle] = at.OPEN
         for k, where in equations.polar_at.items():
             loose = np.abs(state.polars[k].size) <= band
             if k in equations.arcs and where is None:
-                loose &= np.abs(state.margin[k]) <= IDLE
+                loose &= np.abs(state.margin[k]) <= FOLLOW.idle
             elif k in equations.radials and equations.code[k] != at.WALL:
                 # Whether it slips or sticks hangs on rounding once its friction is gone.
                 loose &= np.abs(state.laws[k].bound) <= band
@@ -252,7 +235,7 @@ class Search:
 
     def _prove(self, equations: Equations, ends: list[tuple[float, float, Array, Array]]) -> Proof:
         """Try to prove that a set holds on stretches, given by values and z at both ends."""
-        tau = np.linspace(0.0, 1.0, NODES)
+        tau = np.linspace(0.0, 1.0, FOLLOW.nodes)
         values = np.concatenate([low + tau * (high - low) for low, high, *_ in ends])
         numbers = self.line.numbers(self.position, values)
         return prove(Stretches(equations, np.array([[a, b] for _, _, a, b in ends]), numbers))
@@ -320,8 +303,8 @@ class Search:
             return True
         # Bodies active by vanishing forces alone: their equations become singular at the event, so
         # stretches shrink towards it, down to what counts as the event itself.
-        parts = [(value - point.value) * GRADE**k for k in range(200)]
-        near = RESOLVED * max(abs(value), abs(value - point.value))
+        parts = [(value - point.value) * FOLLOW.grade**k for k in range(200)]
+        near = FOLLOW.resolved * max(abs(value), abs(value - point.value))
         values = np.array([value - part for part in parts if abs(part) > near])
         if len(values) < 2:
             return True
@@ -352,13 +335,13 @@ class Search:
     def _exit(self, near: Point, far: Point) -> float | None:
         """Value at which the first gauge of one end's set vanishes on the way to the other."""
         equations = self._equations[near.active]
-        values = np.linspace(near.value, far.value, SECTIONS)
+        values = np.linspace(near.value, far.value, FOLLOW.sections)
         found = self._sections(equations, values, near.z)
         if found is None:
             return None
         values, gauges = found
         negative = gauges < 0.0
-        negative[0] &= gauges[0] < -VERGE
+        negative[0] &= gauges[0] < -FOLLOW.verge
         if negative[0].any():
             return float(near.value)
         beyond = np.flatnonzero(negative.any(axis=1))
@@ -366,7 +349,7 @@ class Search:
             return None
         due = np.flatnonzero(negative[beyond[0]])
         least = gauges[:, due]
-        if least[beyond[0] - 1].min() <= VERGE:
+        if least[beyond[0] - 1].min() <= FOLLOW.verge:
             return float(values[beyond[0] - 1])
 
         def asked(inner: Array) -> Array | None:
@@ -396,9 +379,9 @@ class Search:
         for first, last in stretches:
             low, width = first.value, last.value - first.value
             hint = self._hints.get((first.value, last.value))
-            inner = [low + CUT * width]
+            inner = [low + FOLLOW.cut * width]
             if hint is not None:
-                inner = [hint - BESIDE * width, hint + BESIDE * width]
+                inner = [hint - FOLLOW.beside * width, hint + FOLLOW.beside * width]
             cuts.append([v for v in inner if low + 0.01 * width < v < last.value - 0.01 * width])
         flat = np.array([v for some in cuts for v in some])
         points = iter(self.points(flat) if len(flat) else [])

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from loadshare.scene.scene import Array
+from loadshare.settings import FOLLOW
 from loadshare.solver.hot import places as at
 from loadshare.study.follow.equations import Equations
 from loadshare.study.follow.numbers import Numbers
-from loadshare.study.follow.ranges import NODES, Enclosure, Range, sampled
+from loadshare.study.follow.ranges import Enclosure, Range, sampled
 
 
 class Stretches:
@@ -34,11 +35,11 @@ class Stretches:
     def __init__(self, equations: Equations, ends: Array, numbers: Numbers) -> None:
         e = self.equations = equations
         self.numbers, self.count = numbers, len(ends)
-        tau = np.linspace(0.0, 1.0, NODES)[:, None]
+        tau = np.linspace(0.0, 1.0, FOLLOW.nodes)[:, None]
         chord = (1.0 - tau) * ends[:, :1] + tau * ends[:, 1:]
         self.flat = chord.reshape(-1, e.size)
         self.chord = sampled(chord)
-        self.middle = np.arange(self.count) * NODES + NODES // 2
+        self.middle = np.arange(self.count) * FOLLOW.nodes + FOLLOW.nodes // 2
         self.at_middle = numbers.take(self.middle)
         self.vectors = self.own(self.at_middle.vectors)
         self.columns: dict[int, slice] = {}
@@ -57,19 +58,19 @@ class Stretches:
             self.approach = self.sampled(self.state.approach)
             polars = self.state.polars
             self.offsets = {k: self.sampled(p.offset) for k, p in polars.items()}
-            self.radii = {k: self.split(p.radius)[:, NODES // 2] for k, p in polars.items()}
-            self.along = {k: self.split(p.along)[:, NODES // 2] for k, p in polars.items()}
+            self.radii = {k: self.split(p.radius)[:, FOLLOW.nodes // 2] for k, p in polars.items()}
+            self.along = {k: self.split(p.along)[:, FOLLOW.nodes // 2] for k, p in polars.items()}
 
     @classmethod
     def at_points(cls, equations: Equations, z: Array, numbers: Numbers) -> Stretches:
         """Return stretches without length at points z (S, size)."""
-        rows = np.repeat(np.arange(len(z)), NODES)
+        rows = np.repeat(np.arange(len(z)), FOLLOW.nodes)
         return cls(equations, np.stack([z, z], axis=1), numbers.take(rows))
 
     def split(self, values: Array) -> Array:
         """Return values of all nodes (B·NODES or 1, ...) as (B, NODES, ...)."""
-        shape = (self.count * NODES, *values.shape[1:])
-        return np.broadcast_to(values, shape).reshape(self.count, NODES, *values.shape[1:])
+        shape = (self.count * FOLLOW.nodes, *values.shape[1:])
+        return np.broadcast_to(values, shape).reshape(self.count, FOLLOW.nodes, *values.shape[1:])
 
     def sampled(self, values: Array) -> Range:
         """Enclose a quantity known at all nodes (B·NODES or 1, ...)."""

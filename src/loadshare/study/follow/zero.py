@@ -12,13 +12,8 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from loadshare.scene.scene import Array
+from loadshare.settings import FOLLOW
 
-ROUNDS = 16
-"""Refinements of a bracket; three are taken as a rule, and each halves it at least."""
-EXACT = 1e-12
-"""Width of a bracket, over the largest value, that is good enough where rounding stops it."""
-ADJACENT = 4e-16
-"""Width of a bracket, over its value, with nothing in between."""
 _AROUND = np.array([-1e-2, -1e-4, -1e-7, -1e-10, 0.0, 1e-10, 1e-7, 1e-4, 1e-2])
 
 
@@ -44,9 +39,9 @@ def first_zero(
         None where the gauges end on the way, or do not settle.
     """
     largest = float(np.abs(values).max())
-    for _ in range(ROUNDS):
+    for _ in range(FOLLOW.refinements):
         low, high = values[beyond - 1], values[beyond]
-        if gauges[beyond].min() == 0.0 or abs(high - low) <= ADJACENT * abs(high):
+        if gauges[beyond].min() == 0.0 or abs(high - low) <= FOLLOW.adjacent * abs(high):
             return float(high)
         inner = _inner(values, gauges, beyond)
         if not len(inner):
@@ -59,7 +54,7 @@ def first_zero(
         order = np.argsort(values if high > low else -values, kind="stable")
         values, gauges = values[order], gauges[order]
         beyond = int(np.flatnonzero(gauges.min(axis=1) <= 0.0)[0])
-    return float(high) if abs(high - low) <= EXACT * largest else None
+    return float(high) if abs(high - low) <= FOLLOW.exact * largest else None
 
 
 def _inner(values: Array, gauges: Array, beyond: int) -> Array:

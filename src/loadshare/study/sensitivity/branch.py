@@ -10,6 +10,7 @@ import numpy as np
 
 from loadshare.scene.elements import Elements, elements_of
 from loadshare.scene.scene import Array
+from loadshare.settings import SENSITIVITY
 from loadshare.solver.hot import places as at
 from loadshare.study.follow.active import ActiveSet, coordinates, read_code, read_pieces
 from loadshare.study.follow.equations import Equations
@@ -20,10 +21,6 @@ from loadshare.train import Train
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import situation_of
 
-LOOSE = 1e-9
-"""Approach per move that nothing resists, from which on a contact's approach is undetermined."""
-ROUNDINGS = 4.0
-"""Roundings that a term of the residual has behind it: radii, directions, sums."""
 _EPS = float(np.finfo(float).eps)
 
 
@@ -121,7 +118,7 @@ class Gauge(NamedTuple):
         if self.gradient is None:
             return None
         rates = np.asarray(self.gradient @ loose)
-        return rates if np.abs(rates).max(initial=0.0) > LOOSE else None
+        return rates if np.abs(rates).max(initial=0.0) > SENSITIVITY.loose else None
 
 
 class Branch:
@@ -174,7 +171,9 @@ class Branch:
         sizes = self.equations.sizes(z[None], self.numbers, state)[0]
         torques = np.abs(self.setting.levers @ state.force[0])
         torques += np.abs(self.torque_gradients(z)) @ np.abs(z)
-        return _EPS * np.concatenate([ROUNDINGS * sizes, 2.0 * ROUNDINGS * torques])
+        return _EPS * np.concatenate(
+            [SENSITIVITY.roundings * sizes, 2.0 * SENSITIVITY.roundings * torques]
+        )
 
     def solve(self, x: Array) -> Array:
         """Solve from coordinates near by.

@@ -9,9 +9,10 @@ import numpy as np
 
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.scene.scene import Array
+from loadshare.settings import SENSITIVITY
 from loadshare.study.answers import certified
 from loadshare.study.parameter import Value
-from loadshare.study.sensitivity.branch import LOOSE, Setting
+from loadshare.study.sensitivity.branch import Setting
 from loadshare.study.sensitivity.differenced import NoDifference, differenced
 from loadshare.study.sensitivity.directional import Motion, Neighbourhood
 from loadshare.study.sensitivity.result import SIDES, Rates, Remark
@@ -212,7 +213,7 @@ class Corner:
         loose = {g: np.array([f"gear {g} {c}" in free for c in "xy"]) for g in self.train.gears}
         place = self.neighbourhood.own
         if place is not None:
-            moves = np.abs(place.tangent.loose).max(axis=1, initial=0.0) > LOOSE
+            moves = np.abs(place.tangent.loose).max(axis=1, initial=0.0) > SENSITIVITY.loose
             for gear, where in self.elements.coordinates.displacement.items():
                 loose[gear] = loose[gear] | moves[where]
         return loose

@@ -12,21 +12,10 @@ import numpy as np
 
 from loadshare.errors import CaseError, Refused
 from loadshare.scene.scene import Array
+from loadshare.settings import SENSITIVITY
 from loadshare.study.sensitivity.variation import Variation, torques_of
 from loadshare.train import Train
 from loadshare.train.equilibrium import Equilibrium
-
-FIRST = 1e-4
-"""First step, relative to the input's value or to the step that differencing takes."""
-STEPS, MOST = 6, 16
-"""Steps that are tried, each a quarter of the one before: as a rule, and where an event stands so
-near that slopes grow as steps shrink."""
-SETTLED = 5
-"""Steps over which slopes must not have grown to count as settled."""
-SOLVED = 1e-12
-"""What a certified solve leaves open of the largest force and displacement."""
-SAFE = 3.0
-"""Error over the distance of two neighbouring limits."""
 
 
 class NoDifference(RuntimeError):  # noqa: N818 -- a finding, not a fault
@@ -53,11 +42,11 @@ def differenced(
         If there is no certified equilibrium to that side, however near.
     """
     start = _stacked(varied.setting(0.0).train, here)
-    first = 4.0 * step if step is not None else FIRST * (abs(varied.value.si) or 1e-3)
+    first = 4.0 * step if step is not None else SENSITIVITY.first * (abs(varied.value.si) or 1e-3)
     slopes: list[tuple[Array, Array]] = []
     why = ""
-    for k in range(MOST):
-        if k >= STEPS and not _unsettled(slopes[-SETTLED:]):
+    for k in range(SENSITIVITY.most):
+        if k >= SENSITIVITY.steps and not _unsettled(slopes[-SENSITIVITY.settled :]):
             break
         amount = first * 0.25**k
         try:
@@ -66,7 +55,7 @@ def differenced(
             why = str(fault)
             slopes.clear()
             continue
-        noise = SOLVED * np.maximum(_sizes(start), _sizes(there)) / amount
+        noise = SENSITIVITY.solved * np.maximum(_sizes(start), _sizes(there)) / amount
         slopes.append(((there - start) * sign / amount, noise))
     if len(slopes) < 3:
         raise NoDifference(why or "its equilibrium cannot be told from steps that near")
@@ -93,7 +82,7 @@ def _limit(slopes: list[tuple[Array, Array]]) -> tuple[Array, Array]:
         for (far, coarse), (near, noise) in pairwise(slopes)
     ]
     values = np.array([value for value, _ in limits[1:]])
-    errors = np.array([SAFE * np.abs(b[0] - a[0]) + b[1] for a, b in pairwise(limits)])
+    errors = np.array([SENSITIVITY.safe * np.abs(b[0] - a[0]) + b[1] for a, b in pairwise(limits)])
     for far, near in combinations(range(len(values)), 2):
         apart = np.abs(values[far] - values[near])
         errors[far] = np.where(apart > errors[far] + errors[near], np.inf, errors[far])

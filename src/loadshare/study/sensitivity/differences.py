@@ -15,11 +15,10 @@ import numpy as np
 
 from loadshare.errors import CaseError
 from loadshare.scene.scene import Array
+from loadshare.settings import SENSITIVITY
 from loadshare.study.parameter import Value
 from loadshare.study.sensitivity.branch import BranchLost
 
-STEP = 1e-3
-"""Step relative to the input's value: its fourth power, and round-off over it, are about 1e-12."""
 LEAST = {
     "": 1e-4,
     "m": 1e-6,
@@ -34,16 +33,6 @@ LEAST = {
     "rad/(N*m)^(2/3)": 1e-11,
 }
 """Least step of every kind of input, in its SI unit: for inputs that are zero."""
-SHORTER = (1.0, 1.0 / 16.0, 1.0 / 256.0)
-"""Shares of the step that are tried until the input may take it."""
-OTHER = (1.0 / 16.0, 1.0 / 256.0, 16.0)
-"""Steps, over the usual one, that are tried where it leaves a large error."""
-CLOSE = 1e-8
-"""Relative error of a derivative that calls for no other step."""
-KINK = 1e-7
-"""Difference of both sides, over the largest derivative, from which on there is a kink."""
-CENTRAL, FORWARD = 1.5, 5.5
-"""Sums of the weights of a difference: its rounding over that of its terms."""
 # Weights of f(0), f(h), f(2h), f(4h) times 1/h: the forward difference of third order and, without
 # the last point, of second order.
 _FORWARD = np.array([-21.0, 32.0, -12.0, 1.0]) / 12.0
@@ -110,11 +99,11 @@ def differentiate(of: Callable[[float], Array], value: Value, rounding: Array) -
     CaseError
         If the input can be varied on neither side.
     """
-    usual = max(STEP * abs(value.number), LEAST[value.si_unit] / value.factor)
+    usual = max(SENSITIVITY.step * abs(value.number), LEAST[value.si_unit] / value.factor)
     best = _differentiated(of, value, rounding, usual)
-    if _relative(best) <= CLOSE:
+    if _relative(best) <= SENSITIVITY.close:
         return best
-    for share in OTHER:
+    for share in SENSITIVITY.other:
         try:
             found = _differentiated(of, value, rounding, share * usual)
         except (CaseError, ValueError, BranchLost):
@@ -144,7 +133,7 @@ def _differentiated(
 ) -> Derivative:
     here = of(value.number)
     sides: dict[int, tuple[Points, float] | Exception] = {}
-    for share in SHORTER:
+    for share in SENSITIVITY.shorter:
         h = usual * share
         for sign in (-1, 1):
             if isinstance(sides.get(sign), tuple):
@@ -170,7 +159,7 @@ def _differentiated(
         both = low if low.error.max(initial=0.0) < high.error.max(initial=0.0) else high
     apart = np.abs(low.value - high.value)
     size = float(np.abs(both.value).max(initial=0.0))
-    kinked = (apart > 3.0 * (low.error + high.error)) & (apart > KINK * size)
+    kinked = (apart > 3.0 * (low.error + high.error)) & (apart > SENSITIVITY.kink * size)
     if kinked.any():
         return Derivative(low, high, True, min(steps) * to_si)
     return Derivative(both, both, False, min(steps) * to_si)
@@ -181,7 +170,7 @@ def _central(below: Points, above: Points, h: float, value: Value, rounding: Arr
     once, twice, four = ((above[k] - below[k]) / (2.0 * k * h * value.factor) for k in (1, 2, 4))
     near, far = (4.0 * once - twice) / 3.0, (4.0 * twice - four) / 3.0
     still = (once == 0.0) & (twice == 0.0) & (four == 0.0)
-    noise = _noise(near, h, value, CENTRAL * rounding)
+    noise = _noise(near, h, value, SENSITIVITY.central * rounding)
     return Slope(near, np.where(still, 0.0, np.abs(near - far) + noise))
 
 
@@ -200,7 +189,7 @@ def _forward(
     scale = sign / (h * value.factor)
     found, check = (scale * np.tensordot(w, values, 1) for w in (_FORWARD, _FORWARD_CHECK))
     still = (values == here).all(axis=0)
-    noise = _noise(found, h, value, FORWARD * rounding)
+    noise = _noise(found, h, value, SENSITIVITY.forward * rounding)
     return Slope(np.where(still, 0.0, found), np.where(still, 0.0, np.abs(found - check) + noise))
 
 

@@ -22,26 +22,13 @@ import numpy as np
 
 from loadshare.errors import CaseError, Refused
 from loadshare.scene.scene import Array
+from loadshare.settings import SENSITIVITY
 from loadshare.solver.hot import places as at
 from loadshare.study.follow.active import switch_names
 from loadshare.study.sensitivity.branch import Branch, BranchLost, Gauge, Setting
 from loadshare.study.sensitivity.differences import Derivative, Slope
 from loadshare.train.equilibrium import Equilibrium
 
-VERGE = 1e-9
-"""Gauge below which an element stands on the verge, in deflections or loads."""
-RANK = 1e-13
-"""Singular values of the equilibrated Jacobian below this, over the largest, count as zero."""
-FOLLOWS = 1e-7
-"""Part of a derivative that an active set may leave unbalanced; it counts as an error."""
-SLIDES = 1e-7
-"""Rate at which a verge element is violated that counts as none, over the largest rate."""
-WAY = 1e-4
-"""Move over which the gauges are differenced, in deflections and loads."""
-NEAR = (1e-5, 1e-7, 1e-3)
-"""Effects of the steps, in deflections and loads, after which the set of a side is looked for."""
-ROUND_OFF = 1e-11
-"""Effect of an input's step that counts as none, likewise."""
 _EPS = float(np.finfo(float).eps)
 _NOTHING = (CaseError, ValueError, BranchLost, Refused)
 
@@ -88,7 +75,7 @@ class Tangent:
         largest = np.abs(self.matrix).max(axis=1, initial=0.0)
         scale = 1.0 / np.sqrt(np.where(largest > 0.0, largest, 1.0))
         left, sizes, right = np.linalg.svd(self.matrix * scale[:, None] * scale)
-        rank = int((sizes > RANK * sizes.max(initial=0.0)).sum())
+        rank = int((sizes > SENSITIVITY.rank * sizes.max(initial=0.0)).sum())
         core = (right[:rank].T / sizes[:rank]) @ left[:, :rank].T
         self.inverse = np.asarray(scale[:, None] * core * scale)
         self.unbalanced = _orthonormal(scale[:, None] * left[:, rank:], size)
@@ -216,7 +203,7 @@ class Neighbourhood:
         except BranchLost:
             return
         names = switch_names(setting.elements)
-        near = [g for g in self.own.gauges().values() if abs(g.value) <= VERGE]
+        near = [g for g in self.own.gauges().values() if abs(g.value) <= SENSITIVITY.verge]
         loose = self.own.tangent.loose
         self.verge = tuple(dict.fromkeys(names[g.switch] for g in near if g.closing(loose) is None))
         self._points.append(self.own)
@@ -254,7 +241,10 @@ class Neighbourhood:
         size = float(np.abs(explicit).max(initial=0.0))
         left = np.abs(tangent.unbalanced.T @ explicit)
         known = np.abs(tangent.unbalanced.T) @ error
-        if (left > np.maximum(known + FOLLOWS * size, ROUND_OFF / change.step)).any():
+        if (
+            left
+            > np.maximum(known + SENSITIVITY.follows * size, SENSITIVITY.round_off / change.step)
+        ).any():
             return None
         rate = -tangent.solve(explicit)
         terms = np.abs(tangent.matrix) @ np.abs(rate) + np.abs(explicit)
@@ -273,9 +263,9 @@ class Neighbourhood:
     def _verge(point: Point) -> Gauges | None:
         """Gauges that stand on the verge, undetermined ones with them; None if one is violated."""
         gauges = {key: g for key, g in point.gauges().items() if g.switch not in point.idle}
-        if any(g.value < -10.0 * VERGE for g in gauges.values()):
+        if any(g.value < -10.0 * SENSITIVITY.verge for g in gauges.values()):
             return None
-        return {key: g for key, g in gauges.items() if g.value <= 10.0 * VERGE}
+        return {key: g for key, g in gauges.items() if g.value <= 10.0 * SENSITIVITY.verge}
 
     def _holds(
         self, point: Point, sign: float, rate: Array, step: float, varied: Varied, verge: Gauges
@@ -285,7 +275,7 @@ class Neighbourhood:
             return True
         branch, z = point.branch, point.z
         fastest = float(np.abs(rate).max(initial=0.0))
-        step = min(step, WAY / fastest) if fastest else step
+        step = min(step, SENSITIVITY.way / fastest) if fastest else step
         along = []
         try:
             for k in (1.0, 2.0):
@@ -293,7 +283,7 @@ class Neighbourhood:
                 along.append(there.gauges(z + k * sign * step * rate))
         except _NOTHING:
             return False
-        slack = SLIDES * fastest + ROUND_OFF / step
+        slack = SENSITIVITY.slides * fastest + SENSITIVITY.round_off / step
         tied: list[tuple[Array, float]] = []
         for key, gauge in verge.items():
             if any(key not in there for there in along):
@@ -338,9 +328,9 @@ class Neighbourhood:
         shifts = [s for s in shifts if np.isfinite(s)]
         effect = float(np.abs(slope.value[: branch.size]).max(initial=0.0))
         effect = max([effect, *(s / change.step for s in shifts)])
-        if effect * reach <= ROUND_OFF:
+        if effect * reach <= SENSITIVITY.round_off:
             return
-        for near in NEAR:
+        for near in SENSITIVITY.near:
             yield sign * min(near / effect, reach)
 
     def _soft(self, branch: Branch) -> frozenset[int]:

@@ -15,14 +15,12 @@ from loadshare.errors import CaseError
 from loadshare.job import Progress
 from loadshare.job.positions import wanted_positions
 from loadshare.results.share import coefficients
+from loadshare.settings import SENSITIVITY
 from loadshare.study.positions import loaded
 from loadshare.study.sensitivity.corner import Corner
 from loadshare.study.sensitivity.inputs import inputs_of
 from loadshare.study.sensitivity.result import SIDES, Input, Kink, Rates, Sensitivity
 from loadshare.train import Train, build_train
-
-TIE = 1e-9
-"""Shares that differ by no more are both the largest."""
 
 
 class Slope(NamedTuple):
@@ -177,7 +175,7 @@ def _steepest(near: list[Slope], side: str) -> Slope:
     if not near:
         return Slope(np.nan, np.nan, np.nan)
     top = max(share for share, _, _ in near)
-    equal = [(slope, error) for share, slope, error in near if share >= top - TIE]
+    equal = [(slope, error) for share, slope, error in near if share >= top - SENSITIVITY.tie]
     slopes = [slope for slope, _ in equal]
     steepest = max(slopes) if side == "rising" else min(slopes)
     return Slope(top, steepest, max(error for _, error in equal))

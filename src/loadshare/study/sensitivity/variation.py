@@ -12,6 +12,7 @@ from functools import lru_cache
 
 from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
+from loadshare.settings import SENSITIVITY
 from loadshare.study.answers import certified
 from loadshare.study.follow.active import ActiveSet
 from loadshare.study.parameter import Value
@@ -19,9 +20,6 @@ from loadshare.study.sensitivity.branch import Branch, BranchLost, Setting
 from loadshare.study.sensitivity.differences import Derivative, differentiate
 from loadshare.train import Train
 from loadshare.train.equilibrium import Equilibrium
-
-BESIDE = 1e-6
-"""Change of an input, relative to its value, within which a step of the answer is told."""
 
 
 class Variation:
@@ -92,7 +90,7 @@ class Variation:
 
     def steps(self, sign: float, step: float) -> tuple[str, ...]:
         """Meshes that pass to another place of their cycle right beside the value."""
-        least = min(step, BESIDE * max(abs(self.value.si), step))
+        least = min(step, SENSITIVITY.beside * max(abs(self.value.si), step))
         for amount in (step, least):
             there = self._trains(self._number(sign * amount)).mesh_positions(self.position)
             passing = tuple(m for m, k in there.items() if k != self.cycle[m])

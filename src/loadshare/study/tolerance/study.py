@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 
 from loadshare.case import Case, Study
-from loadshare.certify.tolerance import TOLERANCE
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.machine import ENGINES, FEW
 from loadshare.job.positions import wanted_positions
+from loadshare.settings import CERTIFY
 from loadshare.study.positions import loaded
 from loadshare.study.tolerance.figures import KINDS, SYSTEM
 from loadshare.study.tolerance.folder import WORST as WORST_FILE
@@ -206,7 +206,7 @@ def _job(case: Case, name: str, chunk: int, engine: str) -> Job:
         sampling=sampling,
         indices=rows,
         positions=wanted,
-        tolerance=TOLERANCE,
+        tolerance=CERTIFY.tolerance,
         engine=engine,
         chunk=chunk,
     )
