@@ -1,12 +1,17 @@
 """The numbers by which solvers, studies and certificates decide: what is small, when to stop.
 
 One table for all rooms. Every number stands with its meaning and the reason for its size; what is
-not a ratio says its unit. Compiled code is handed them as data, so that it never keeps old ones.
+not a ratio says its unit. What is compiled with them is compiled anew when one changes
+(`compilation.fingerprint`).
 """
 
 from __future__ import annotations
 
+import sys
 from typing import NamedTuple
+
+EPS = sys.float_info.epsilon
+"""Distance from 1 to the next double: two roundings."""
 
 
 class Laws(NamedTuple):
@@ -130,6 +135,8 @@ class Certify(NamedTuple):
     largest: float = 1e-3
     """Largest tolerance: an answer that misses by more than a thousandth is not certified, it is
     guessed, and Ω is read to three digits behind the point."""
+    rounded: float = 16.0 * EPS
+    """Rounding of energies, relative to the sum of their sizes."""
     together: int = 2048
     """Answers judged together: as many as a processor's own memory holds."""
     trains: int = 64
@@ -224,6 +231,12 @@ class Bound(NamedTuple):
     alone."""
     shared: float = 1e-7
     """Part of a force in a self-stress of rigid parts from which on it is undetermined."""
+    balanced: float = 1e-12
+    """Load along a move that nothing resists, over the load, that is rounding."""
+    rounded: float = 64.0 * EPS
+    """The same over any force: sums of many terms."""
+    wider_lines: tuple[float, float] = (2.0, 10.0)
+    """Times the error without it, over which the turn of lines is bounded."""
     sets_told_apart: int = 1000
     """Sets of elements that are told apart in a batch."""
     sets: int = 2000
@@ -387,6 +400,177 @@ class Sensitivity(NamedTuple):
     """Change of an input, relative to its value, within which a step of the answer is told."""
 
 
+class Contact(NamedTuple):
+    """Programmes of contact: exact active sets, the proximal method and the outer loop."""
+
+    tolerance: float = 1e-9
+    """Largest residual, in forces and lengths of the problem."""
+    directed: float = 1e-12
+    """Offset, in lengths of the problem, that has no direction."""
+    loose: float = 1e-9
+    """Part of a coordinate in a move that nothing resists from which on it is undetermined."""
+    sign: float = 1e-11
+    """Violation of a sign, in units of the programme, that counts as round-off."""
+    sign_of_size: float = 1e-14
+    """The same, relative to the largest quantity of its sort."""
+    newton_steps: int = 40
+    """Newton steps on one set; those that arrive mostly do in ten."""
+    definite: float = 1e-12
+    """Least eigenvalue of the stiffness, over its largest, with which it is inverted."""
+    rank: float = 1e-13
+    """Eigenvalues of the equilibrated matrix below this, relative to the largest, count as zero."""
+    consistent: float = 1e-11
+    """Relative residual above which a rank-deficient system has no solution. Rounding of a scene
+    leaves some 1e-12 along moves that only rounding resists."""
+    stalled: float = 1e-9
+    """A loop whose misfit no longer falls has arrived at round-off below this, and is stuck
+    above."""
+    stuck: int = 30
+    """Passes that do not halve the misfit, after which a loop goes around without end."""
+    shrink: float = 0.1
+    """An open flank's next tangent is taken at this fraction of its last force."""
+    singular: float = 1e-12
+    """Eigenvalue of a stiffness, over its largest entry, that is zero."""
+    arrived: float = 1e-13
+    """Residual of a pass, relative to the largest force or displacement, that is round-off."""
+
+
+class Exchange(NamedTuple):
+    """From set to set of elements that act."""
+
+    together: int = 6
+    """Exchanges of all wrong signs at once; after these, one at a time."""
+    returns: int = 3
+    """Visits of one set that show a sample to go around."""
+    turns: int = 24
+    """Turns allowed in all: of samples that are settled by exchange, one in a thousand takes
+    more."""
+    renewals: int = 40
+    """Passes that add tangents of round limits; each leaves about a quarter of what is left."""
+    fits: float = 1e-12
+    """Overlap that counts as none, over the largest room or move."""
+
+
+class Search(NamedTuple):
+    """The proximal search where exchange leads nowhere."""
+
+    stiffer: tuple[float, ...] = (1e-2, 1e-3, 1e-4, 1e-5, *[1e-6] * 3, *[1e-7] * 3, *[1e-8] * 6)
+    """Stiffness that every pass adds, in units of the elements: what one moves is load/ε at
+    most."""
+    softer: float = 1e-11
+    """Compliance that every pass adds: each brings forces nearer by ε over the compliance they
+    meet. Small from the first pass on, so that rigid arcs hold a gear on its side of a narrow
+    wedge."""
+    shared: float = 1e3
+    """How much softer a radial element is made than a contact at least, so that what both could
+    hold is held by the contact: friction is bounded, a contact is not."""
+    resolved: float = 1e3
+    """Round-offs of the lengths at hand by which the compliance presses a contact in at least."""
+    newton: int = 60
+    """Newton steps of a pass."""
+    slope: float = 0.1
+    """Part of the slope at its beginning to which a line search brings a step."""
+    secants: int = 6
+    """Steps of a line search between two kinks."""
+    looks: int = 1000
+    """Points at which a search looks in all: more than ever led to an answer, and half a second."""
+    patience: int = 12
+    """Newton steps in a row that do not halve the gradient, after which round-off stands in the
+    way."""
+    flat: float = 1e-11
+    """Gradient, over the largest force, at which a pass has arrived."""
+    still: float = 1e-15
+    """Step, over the largest coordinate, that is round-off."""
+    tries: int = 3
+    """Passes from which a set is solved exactly: a later one may stand nearer."""
+    idle: float = 1e-6
+    """Force, over the largest, up to which a contact may be idle: a pass adds some of its own."""
+    exchanges: int = 7
+    """Sets that an exact solve visits from where the passes stand: enough to tell to and fro."""
+
+
+class Places(NamedTuple):
+    """Places that forces leave open, limits that contradict one another, loads that drive."""
+
+    carries: float = 1e-11
+    """Force, over the largest, from which on a contact holds: far above the round-off of forces,
+    far below what a certificate vouches for."""
+    loose: float = 1e-9
+    """Part of a coordinate in a move from which on it takes part: round-off of the moves is
+    smaller."""
+    play: float = 1e-9
+    """Range, in lengths of the case, below which a place counts as determined: what contacts that
+    carry nothing leave between them but for round-off."""
+    renewals: int = 12
+    """Passes that renew the faces of arcs."""
+    inside: float = 1e-12
+    """How far a point may lie outside, in sizes of the region: round-off of what bounds it."""
+    almost: float = 1e-6
+    """Distance to a bound, in sizes of the region, at which an interior-point answer reaches it."""
+    passes: int = 20
+    """Newton passes on the bounds that are reached."""
+    arrived: float = 1e-14
+    """Step, in sizes of the region, that ends them."""
+    balanced: float = 1e-9
+    """Part of a pull, in sizes of the region, that its bounds may leave unbalanced."""
+    noise: float = 1e-12
+    """Force, over what a gap would cost if it were pressed shut, that counts as round-off."""
+    verified: float = 1e-11
+    """Violation of a removed inequality that counts as round-off, in deflections and loads."""
+    work: float = 1e-3
+    """Work of the load along a move, over load and move, from which on the load drives it."""
+    yields: float = 1e-10
+    """Part of a move that elements may still seem to resist: forces that balance the load in spite
+    of it would be ten million times as large."""
+    overlap: float = 1e-12
+    """Overlap, over the lengths at hand, that counts as round-off."""
+    named: float = 1e-6
+    """Share in a contradiction, or in a move that nothing holds, from which on a limit or a
+    coordinate is named."""
+    programmes: int = 20
+    """Programmes in which tangents of round limits are added to those before."""
+    pushed: float = 1e-9
+    """Load along a move, over the load, from which on it counts: less, and flanks whose normals are
+    opposite up to the digits of a case file would seem to give way."""
+
+
+class Job(NamedTuple):
+    """How cases and samples are taken through: rungs, engines, blocks."""
+
+    least: float = 1e-3
+    """Force, in loads, at which the law of a contact that carries less is taken as its tangent."""
+    plainly: float = 1e-6
+    """Overlap of rigid limits, over the lengths at hand, after which nothing else need be tried."""
+    steps: int = 20_000
+    """Newton steps in which the rungs after the hot path answer or give up: some ten seconds, and
+    twice what ever led to an answer that neither exchange nor search had found."""
+    few: int = 2000
+    """Equilibria up to which compiling, or reading what was compiled, costs more than it saves."""
+    loading: int = 100
+    """Equilibria, solved case by case, from which on reading what was compiled is worth while."""
+    pilots: int = 16
+    """Samples that show the others where to begin."""
+    worth: int = 32
+    """How many times as many samples it takes for that to be worth while."""
+    block: int = 4096
+    """Samples that are solved together, if every one has a few positions."""
+    together: int = 40960
+    """Equilibria that are solved together."""
+    workers: int = 2
+    """Threads; the compiled passes hold no lock."""
+    recent: int = 16
+    """Machines that are kept, for those who solve samples of one case again and again."""
+    starts: int = 64
+    """Starts: sets of contacts and places drawn at random."""
+    path: int = 12
+    """Steps of the path, each with half the extra clearance of the one before, and at last none."""
+    generous: float = 100.0
+    """Extra clearance at which the path begins, in deflections of the case: no arc carries
+    there."""
+    same: float = 1e-6
+    """Largest difference of flank forces, in loads, of answers that are the same."""
+
+
 LAWS = Laws()
 HOT = HotPath()
 LANES = Lanes()
@@ -395,3 +579,8 @@ CERTIFY = Certify()
 BOUND = Bound()
 FOLLOW = Follow()
 SENSITIVITY = Sensitivity()
+CONTACT = Contact()
+EXCHANGE = Exchange()
+SEARCH = Search()
+PLACES = Places()
+JOB = Job()

@@ -18,10 +18,10 @@ from loadshare.certify.residuals import turned
 from loadshare.contact.plan import Role
 from loadshare.errors import Refused
 from loadshare.job import ladder
-from loadshare.job.ladder import HOT, SEARCHED, STEPS, climb, climb_all, hot_answers, rungs
+from loadshare.job.ladder import HOT, SEARCHED, climb, climb_all, hot_answers, rungs
 from loadshare.job.machine import Machine
 from loadshare.scene import assemble
-from loadshare.settings import CERTIFY
+from loadshare.settings import CERTIFY, JOB
 from loadshare.solver import Options
 from loadshare.solver.contradiction import contradiction
 from loadshare.solver.hot import places, vectorised
@@ -437,7 +437,7 @@ def test_the_rungs_after_the_hot_path_give_up_after_so_many_steps():
     train = build_train(lost_contact())
     with pytest.raises(Refused, match="in the steps allowed"):
         climb(train, 1, Options(), CERTIFY.tolerance, steps=1)
-    assert climb(train, 1, Options(), CERTIFY.tolerance, steps=STEPS).certificate.passed
+    assert climb(train, 1, Options(), CERTIFY.tolerance, steps=JOB.steps).certificate.passed
 
 
 def test_a_refusal_tells_of_a_part_of_the_load_that_is_too_much_already():

@@ -9,8 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.mechanics import Mechanics
-from loadshare.certify.residuals import ROUNDED
-from loadshare.settings import CERTIFY, LAWS
 from loadshare.train.equilibria import CLAIMED, Equilibria
 from loadshare.train.situations import VARYING, Situations
 
@@ -23,7 +21,7 @@ class Arguments(NamedTuple):
     """What is the same for all answers: `Mechanics` as plain arrays.
 
     e flanks, g gears, w shafts, d drums, r round rings, n splines; radial elements are the round
-    rings, then the splines. Bands stand here so that compiled code never keeps an old one.
+    rings, then the splines.
     """
 
     driver: Numbers  # (e,)
@@ -52,9 +50,6 @@ class Arguments(NamedTuple):
     pull_gear: Numbers  # (r + n,)
     pull_centre: Array  # (r + n, 3)
     rounds: int
-    band: float
-    rounding: float
-    rounded: float
 
 
 Here = namedtuple("Here", VARYING)  # type: ignore[misc]
@@ -120,9 +115,6 @@ def arguments_of(of: Mechanics) -> Arguments:
         pull_gear=of.pulled[pulls].astype(np.uintp),
         pull_centre=of.centres[pulls],
         rounds=rounds,
-        band=CERTIFY.band,
-        rounding=LAWS.written,
-        rounded=ROUNDED,
     )
 
 

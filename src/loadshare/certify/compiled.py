@@ -6,9 +6,7 @@ answers, of which number `s` is at hand, and `scratch` what is found on the way.
 is kept on disk, so that only the first use of a new version waits for it; it holds no lock of the
 interpreter.
 
-All of it stands in this one file, because Numba looks at no other to tell whether what is kept is
-still valid: a law changed in a file of its own would go on being judged by the old one. It shares
-nothing with the compiled solver either, though both find the root of a law: what the solver gets
+It shares nothing with the compiled solver, though both find the root of a law: what the solver gets
 wrong must not be wrong here too.
 """
 
@@ -19,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from loadshare import compilation
+from loadshare.settings import CERTIFY, LAWS
 
 # Nothing is allocated in here, so Numba need not count who holds an array: counting would take
 # twice as long as judging. A call would hand over every array of the tuples below, and cost more
@@ -51,8 +50,8 @@ def judge_all(of, here, claim, scratch, residuals, loads, deflections):  # type:
             _moment_balance(of, scratch) / load,
             _penetration(scratch) / deflection,
             _complementarity(claim, s, scratch) / work,
-            _deformation_law(of, here, claim, s, scratch, of.band * load) / deflection,
-            _cone_membership(of, here, claim, s, scratch, of.band * deflection) / load,
+            _deformation_law(of, here, claim, s, scratch, CERTIFY.band * load) / deflection,
+            _cone_membership(of, here, claim, s, scratch, CERTIFY.band * deflection) / load,
             _energy_gap(of, here, claim, s, scratch, gap, sizes) / work,
         )
         bad = fault or not _finite(claim, s)
@@ -309,7 +308,7 @@ def _pulls(of, here, claim, s, scratch):  # type: ignore[no-untyped-def]
             stick = np.inf if reach < stick else stick
         else:
             stick = min(given, stick)
-            fault |= stiffness * given > bound * (1.0 + of.rounding) or reach < stick
+            fault |= stiffness * given > bound * (1.0 + LAWS.written) or reach < stick
         law[0], law[1], law[2], law[3], law[4] = stiffness, stick, bound, reach, stiffness
     return fault
 
@@ -539,7 +538,7 @@ def _energy_gap(of, here, claim, s, scratch, gap, sizes):  # type: ignore[no-unt
             work += reaction[k] * of.pull_centre[q, k]
         gap -= work
         sizes += abs(work)
-    left = abs(gap + stored) - of.rounded * (sizes + stored)
+    left = abs(gap + stored) - CERTIFY.rounded * (sizes + stored)
     return left if not left < 0.0 else 0.0
 
 

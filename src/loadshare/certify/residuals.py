@@ -24,8 +24,6 @@ Scalars = TypeVar("Scalars", float, Array)
 
 EPS = float(np.finfo(float).eps)
 """Round-off of a length, relative to it."""
-ROUNDED = 16.0 * EPS
-"""Rounding of energies, relative to the sum of their sizes."""
 
 
 def force_balance(state: State) -> Blocks:
@@ -189,7 +187,7 @@ def energy_gap(state: State) -> Blocks:
     held_in = sum(part.sum(axis=0) for part in stored)
     gap = np.abs(held_in - sum(part.sum(axis=0) for part in work))
     sizes = held_in + sum(np.abs(part).sum(axis=0) for part in work)
-    return [(np.maximum(gap - ROUNDED * sizes, 0.0)[None], ("the whole train",))]
+    return [(np.maximum(gap - CERTIFY.rounded * sizes, 0.0)[None], ("the whole train",))]
 
 
 FIGURES: dict[str, tuple[Callable[[State], Blocks], str]] = {

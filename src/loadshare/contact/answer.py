@@ -15,13 +15,7 @@ from loadshare.contact.problem import Array, ContactProblem
 from loadshare.contact.radial import RadialLaw
 from loadshare.contact.record import Options
 from loadshare.errors import Refused
-
-TOLERANCE = 1e-9
-"""Largest residual, in forces and lengths of the problem."""
-ROUNDING = 1e-12
-"""Offset, in lengths of the problem, that has no direction."""
-LOOSE = 1e-9
-"""Part of a coordinate in a move that nothing resists from which on it is undetermined."""
+from loadshare.settings import CONTACT
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +71,7 @@ class ContactAnswer:
     @property
     def passed(self) -> bool:
         """Whether it is an equilibrium to `TOLERANCE`."""
-        return self.residuals.worst <= TOLERANCE
+        return self.residuals.worst <= CONTACT.tolerance
 
 
 def solve_contact(
@@ -165,7 +159,7 @@ def _off_graph(offset: Array, pull: Array, law: RadialLaw, unit: float, length: 
     """
     radius, size = float(np.linalg.norm(offset)), float(np.linalg.norm(pull))
     across = 0.0
-    if size > 0.0 and radius > ROUNDING * length:
+    if size > 0.0 and radius > CONTACT.directed * length:
         across = float(np.linalg.norm(pull - size * offset / radius))
     nearest = np.inf
     for k, piece in enumerate(law.pieces):
@@ -208,6 +202,8 @@ def _undetermined(
     sizes = np.linalg.norm(resisting, axis=1)
     resisting = resisting[sizes > 0.0] / sizes[sizes > 0.0, None]
     _, values, right = np.linalg.svd(resisting, full_matrices=True)
-    rank = int((values > LOOSE * values.max(initial=0.0)).sum())
+    rank = int((values > CONTACT.loose * values.max(initial=0.0)).sum())
     moved = np.abs(right[rank:]).max(axis=0, initial=0.0)
-    return frozenset(c for c, v in zip(problem.coordinates, moved, strict=True) if v > LOOSE)
+    return frozenset(
+        c for c, v in zip(problem.coordinates, moved, strict=True) if v > CONTACT.loose
+    )

@@ -16,12 +16,8 @@ import numpy as np
 from loadshare.contact.findings import Work
 from loadshare.contact.kkt import solve_symmetric
 from loadshare.contact.programme import Array, Cone, Point, Programme
+from loadshare.settings import CONTACT
 
-SIGN = 1e-11
-"""Violation of a sign, in units of the programme, that counts as round-off."""
-ROUNDING = 1e-14
-"""The same, relative to the largest quantity of its sort."""
-NEWTON_STEPS = 40
 _NONE, _BOTH = np.zeros((0, 2)), np.eye(2)
 
 
@@ -161,7 +157,7 @@ def _solve_fixed(
     x, forces, cone_forces = start.x, start.forces, start.cone_forces
     curved = bool(programme.cones) or bool(programme.hertz.any())
     previous = np.inf
-    for _ in range(NEWTON_STEPS if curved else 1):
+    for _ in range(CONTACT.newton_steps if curved else 1):
         if work is not None:
             work.step()
         solved = _newton_system(programme, active, Point(x, forces, cone_forces))
@@ -289,8 +285,8 @@ def _direction(force: Array) -> Array:
 
 def _exchange(programme: Programme, active: ActiveSet, point: Point, one_only: bool) -> ActiveSet:
     """Flip rows with the wrong sign and move radial elements off places they have left."""
-    force_band = SIGN + ROUNDING * float(np.abs(point.forces).max(initial=0.0))
-    length_band = SIGN + ROUNDING * float(np.abs(point.x).max(initial=0.0))
+    force_band = CONTACT.sign + CONTACT.sign_of_size * float(np.abs(point.forces).max(initial=0.0))
+    length_band = CONTACT.sign + CONTACT.sign_of_size * float(np.abs(point.x).max(initial=0.0))
     wrong: list[tuple[float, int]] = []
     approach = programme.rows @ point.x - programme.gaps
     for e, closed in enumerate(active.closed):

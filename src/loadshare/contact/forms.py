@@ -22,12 +22,10 @@ import numpy as np
 
 from loadshare.contact.backends.conic import ConicForm, conic_form
 from loadshare.contact.programme import Array, Point, Programme
+from loadshare.settings import CONTACT
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_matrix
-
-DEFINITE = 1e-12
-"""Least eigenvalue of the stiffness, over its largest, with which it is inverted."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,7 +137,7 @@ def complementarity_form(programme: Programme) -> ComplementarityForm:
     h, a, n = programme.stiffness, programme.rows, len(programme.load)
     soft = np.diag(programme.linear)
     values = np.linalg.eigvalsh(h) if n else np.zeros(0)
-    if n and values[0] > DEFINITE * values[-1]:
+    if n and values[0] > CONTACT.definite * values[-1]:
         inverse = np.linalg.inv(h)
         matrix = a @ inverse @ a.T + soft
         vector = programme.gaps - a @ inverse @ programme.load

@@ -7,13 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loadshare.contact.programme import Array
-
-RANK = 1e-13
-"""Eigenvalues of the equilibrated matrix below this, relative to the largest, count as zero."""
-CONSISTENT = 1e-11
-"""Relative residual above which a rank-deficient system has no solution.
-
-Rounding of a scene leaves some 1e-12 along moves that only rounding resists."""
+from loadshare.settings import CONTACT
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,7 +44,7 @@ def solve_symmetric(matrix: Array, right: Array, size: int) -> Solved | None:
     factor, pivots, fault = lapack.dgetrf(scaled)
     if fault == 0:
         reciprocal, _ = lapack.dgecon(factor, np.abs(scaled).sum(axis=0).max())
-        if reciprocal > RANK:
+        if reciprocal > CONTACT.rank:
             values = np.zeros_like(right)
             for _ in range(3):  # the first pass solves, the others refine
                 residual = right - matrix @ values
@@ -72,14 +66,14 @@ def _least_norm(
     matrix: Array, scaled: Array, scale: Array, right: Array, size: int
 ) -> Solved | None:
     eigenvalues, vectors = np.linalg.eigh(scaled)
-    kept = np.abs(eigenvalues) > RANK * np.abs(eigenvalues).max()
+    kept = np.abs(eigenvalues) > CONTACT.rank * np.abs(eigenvalues).max()
     basis = vectors[:, kept]
     values = np.zeros_like(right)
     for _ in range(3):
         residual = scale * (right - matrix @ values)
         values = values + scale * (basis @ ((basis.T @ residual) / eigenvalues[kept]))
     left = np.abs(scale * (right - matrix @ values)).max()
-    if left > CONSISTENT * max(np.abs(scale * right).max(), 1e-300):
+    if left > CONTACT.consistent * max(np.abs(scale * right).max(), 1e-300):
         return None
     null = scale[:, None] * vectors[:, ~kept]
     if null.shape[1] == 0:

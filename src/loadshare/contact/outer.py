@@ -28,13 +28,7 @@ from loadshare.contact.problem import ContactProblem
 from loadshare.contact.programme import Array, Point
 from loadshare.contact.radial import RadialLaw
 from loadshare.contact.record import Iteration, Options
-
-STALLED = 1e-9
-"""A loop whose misfit no longer falls has arrived at round-off below this, and is stuck above."""
-STUCK = 30
-"""Passes that do not halve the misfit, after which a loop goes around without end."""
-SHRINK = 0.1
-"""An open flank's next tangent is taken at this fraction of its last force."""
+from loadshare.settings import CONTACT
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -119,7 +113,7 @@ def settle(
             step = _step(problem, plan, laws, state.x, x)
         now = Iteration(written.kind, warm.via, law_misfit, face_misfit, friction_misfit, step)
         history.append(now)
-        if now.misfit <= options.stop or (_stalled(history) and now.misfit <= STALLED):
+        if now.misfit <= options.stop or (_stalled(history) and now.misfit <= CONTACT.stalled):
             return Settled(
                 x,
                 forces,
@@ -254,7 +248,7 @@ def _next_forces(
         if approach > 0.0:
             forces[row.name] = max(row.law.force(approach), 1e-18 * unit)
         else:
-            forces[row.name] = max(SHRINK * before[row.name], 1e-18 * unit)
+            forces[row.name] = max(CONTACT.shrink * before[row.name], 1e-18 * unit)
     return forces
 
 
@@ -265,7 +259,7 @@ def _stalled(history: list[Iteration]) -> bool:
 
 def _stuck(history: list[Iteration]) -> bool:
     """Whether the misfit has not been halved for long."""
-    if len(history) <= STUCK:
+    if len(history) <= CONTACT.stuck:
         return False
-    least = min(h.misfit for h in history[:-STUCK])
-    return min(h.misfit for h in history[-STUCK:]) > 0.5 * least
+    least = min(h.misfit for h in history[: -CONTACT.stuck])
+    return min(h.misfit for h in history[-CONTACT.stuck :]) > 0.5 * least

@@ -24,11 +24,9 @@ from loadshare.contact.arc import Arc
 from loadshare.contact.condense import Condensation, condense
 from loadshare.contact.law import Law
 from loadshare.contact.radial import RadialLaw
+from loadshare.settings import CONTACT
 
 Array = NDArray[np.float64]
-
-ROUNDING = 1e-12
-"""Eigenvalue of a stiffness, over its largest entry, that is zero."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -205,7 +203,7 @@ class ContactProblem:
             not wrong
             and n
             and np.linalg.eigvalsh(self.stiffness)[0]
-            < -ROUNDING * np.abs(self.stiffness).max(initial=0.0)
+            < -CONTACT.singular * np.abs(self.stiffness).max(initial=0.0)
         ):
             wrong.append("stiffness: has a negative eigenvalue, so springs would push")
         names = [*self.coordinates, *(r.name for r in self.rows), *(a.name for a in self.arcs)]

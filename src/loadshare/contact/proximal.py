@@ -21,14 +21,13 @@ import numpy as np
 from loadshare.contact.exact import ActiveSet, at_rest, first_guess, solve_exact
 from loadshare.contact.findings import Unsolved, Work
 from loadshare.contact.programme import Array, Point, Programme
+from loadshare.settings import CONTACT
 
 PULLS = (*[1e-5] * 8, *(10.0**-k for k in range(6, 12)), *[1e-11] * 6)
 """ε of every pass, in the programme's units (where a flank's compliance is about 1).
 
 A pass moves a coordinate by load/ε at most, so a wide gap under a light load wants a weak pull.
 """
-ARRIVED = 1e-13
-"""Residual of a pass, relative to the largest force or displacement, that is round-off."""
 
 
 def solve_proximal(
@@ -95,6 +94,6 @@ def _arrived(point: Point, before: Point, pull: float) -> bool:
     unbalanced = pull * largest(point.x - before.x)
     misplaced = pull * largest(point.forces - before.forces)
     return bool(
-        unbalanced <= ARRIVED * max(1.0, largest(point.forces))
-        and misplaced <= ARRIVED * max(1.0, largest(point.x))
+        unbalanced <= CONTACT.arrived * max(1.0, largest(point.forces))
+        and misplaced <= CONTACT.arrived * max(1.0, largest(point.x))
     )

@@ -24,13 +24,12 @@ from loadshare.errors import Refused
 from loadshare.job.ladder import Answer, uncertified
 from loadshare.job.positions import explain
 from loadshare.scene import Scene
+from loadshare.settings import JOB
 from loadshare.solver.position import coordinates_of, equilibrium_of
 
 if TYPE_CHECKING:
     from loadshare.contact.backends.cvxpy_ import CvxpyForm
 
-LEAST = 1e-3
-"""Force, in loads, at which the law of a contact that carries less is taken as its tangent."""
 READ = "read back"
 """Rung of an answer that somebody else's solver found."""
 
@@ -167,7 +166,7 @@ def formulate(
     answer = explain(case, position, solver="clarabel", reduce=reduce)
     scene, found, record = answer.scene, answer.equilibrium, answer.record
     forces = {**found.flank_force, **found.ring_force}
-    least = LEAST * scene.force_unit()
+    least = JOB.least * scene.force_unit()
     at = Linearisation(
         coordinates_of(scene, found),
         tangents(scene, {n: f or least for n, f in forces.items()}),

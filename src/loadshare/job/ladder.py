@@ -27,9 +27,10 @@ from loadshare.scene import assemble
 from loadshare.scene.assemble import scene_of
 from loadshare.scene.elements import elements_of
 from loadshare.scene.scene import Scene
+from loadshare.settings import JOB, PLACES
 from loadshare.solver import Iteration, Options, Record, solve_scene
 from loadshare.solver.balance import is_unbalanced
-from loadshare.solver.contradiction import OVERLAP, contradiction
+from loadshare.solver.contradiction import contradiction
 from loadshare.solver.position import Known, coordinates_of
 from loadshare.solver.runaway import runaway
 from loadshare.train.equilibria import Equilibria
@@ -38,11 +39,6 @@ from loadshare.train.situations import situation_of
 from loadshare.train.train import Train
 
 HOT, SEARCHED = "hot path", "proximal search"
-PLAINLY = 1e-6
-"""Overlap of rigid limits, over the lengths at hand, after which nothing else need be tried."""
-STEPS = 20_000
-"""Newton steps in which the rungs after the hot path answer or give up: some ten seconds, and twice
-what ever led to an answer that neither exchange nor search had found."""
 LIGHTER = (0.5, 0.1)
 """Shares of the load that are looked at where arcs may have lost their hold under all of it."""
 AUTO = "auto"
@@ -123,7 +119,7 @@ def climb_all(
     quick: dict[int, Answer] = {}
     steps = math.inf
     if engine is not None and machine.train.slip is None:
-        quick, steps = hot_answers(machine, indices, tolerance, engine), STEPS
+        quick, steps = hot_answers(machine, indices, tolerance, engine), JOB.steps
     for index in indices:
         if index in quick:
             yield quick[index]
@@ -233,7 +229,7 @@ def climb(
     """
     elements = elements_of(train)
     scene = scene_of(elements, situation_of(train, index))
-    _refuse_if_contradicted(scene, PLAINLY)
+    _refuse_if_contradicted(scene, JOB.plainly)
     if is_unbalanced(elements, scene.load):
         _refuse_if_driven(scene)
     first: Refused | None = None
@@ -264,7 +260,7 @@ def climb(
     )
 
 
-def _refuse_if_contradicted(scene: Scene, overlap: float = OVERLAP) -> None:
+def _refuse_if_contradicted(scene: Scene, overlap: float = PLACES.overlap) -> None:
     """Refuse a position whose rigid limits are shown to leave no place, and name them."""
     against = contradiction(scene, overlap)
     if against:

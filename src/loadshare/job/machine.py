@@ -16,6 +16,7 @@ from loadshare.certify import Judge, Verdicts
 from loadshare.certify.validity import Measuring, measuring
 from loadshare.scene.data import Data, data_of
 from loadshare.scene.elements import Elements, elements_of
+from loadshare.settings import JOB
 from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.answer import equilibria, pin, without_noise
@@ -44,10 +45,6 @@ KERNELS = (
     ("loadshare.certify.compiled", "judge_all"),
 )
 """What is called at most to answer a case; the first, where it has many positions."""
-FEW = 2000
-"""Equilibria up to which compiling, or reading what was compiled, costs more than it saves."""
-LOADING = 100
-"""Equilibria, solved case by case, from which on reading what was compiled is worth while."""
 
 
 def _parts(count: int, parts: int) -> list[slice]:
@@ -69,7 +66,7 @@ def engine_named(name: str, count: int) -> Engine:
     """
     if name not in ENGINES:
         raise ValueError(f"unknown engine {name!r}; allowed: {', '.join(ENGINES)}")
-    if name == "vectorised" or (name == "auto" and count <= FEW):
+    if name == "vectorised" or (name == "auto" and count <= JOB.few):
         return vectorised.settle
     return _compiled() or vectorised.settle
 
@@ -92,7 +89,7 @@ def engine_at_hand(name: str, count: int) -> Engine:
     if name != "auto":
         return engine_named(name, count)
     _one_by_one += count
-    if COMPILED[0] not in sys.modules and _one_by_one <= LOADING:
+    if COMPILED[0] not in sys.modules and _one_by_one <= JOB.loading:
         return vectorised.settle
     try:
         lanes, *others = [getattr(import_module(module), name) for module, name in KERNELS]
@@ -116,10 +113,6 @@ def _compiled() -> Engine | None:
         return compiled.settle
     compilation.tell_why_not()
     return None
-
-
-PILOTS, WORTH = 16, 32
-"""Samples that show the others where to begin, and how many times as many it takes."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -250,11 +243,11 @@ class Machine:
         if beside is not None:
             self._begin(slice(None), beside, data, state, code)
         parts = _parts(data.count, len(starts))
-        many = bool(parts) and parts[0].stop >= WORTH * PILOTS
+        many = bool(parts) and parts[0].stop >= JOB.worth * JOB.pilots
         for part, index in zip(parts, starts, strict=True):
             begin = self._start(index, engine)
             if begin is not None:
-                first = slice(part.start, part.start + PILOTS) if many else part
+                first = slice(part.start, part.start + JOB.pilots) if many else part
                 self._begin(first, begin, data, state, code)
         found = self._pilots(parts, data, state, code, engine) if many else None
         more = exchange(
@@ -320,7 +313,7 @@ class Machine:
         self, parts: Sequence[slice], data: Data, state: State, code: Codes, engine: Engine
     ) -> Found:
         """Solve the first samples of every part; the others begin where most of these stand."""
-        pilots = np.concatenate([np.arange(p.start, p.start + PILOTS) for p in parts])
+        pilots = np.concatenate([np.arange(p.start, p.start + JOB.pilots) for p in parts])
         some = np.zeros(data.count, dtype=bool)
         some[pilots] = True
         found = exchange(self.elements, data, state, engine, code, only=some)
@@ -334,7 +327,7 @@ class Machine:
             share = np.abs(state.force[alike]) / pushes(data)[alike, None]
             begin = _Start(found.code[middle, : self.elements.rows], share.mean(axis=0))
             for part in parts:
-                self._begin(slice(part.start + PILOTS, part.stop), begin, data, state, code)
+                self._begin(slice(part.start + JOB.pilots, part.stop), begin, data, state, code)
         return found
 
     def _start(self, index: int, engine: Engine) -> _Start | None:

@@ -22,12 +22,12 @@ from loadshare.case import Case, load_case
 from loadshare.certify.nonconvex import arc_curvature, is_convex
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.errors import CaseError, Refused
-from loadshare.job.ladder import HOT, SEARCHED, STEPS, climb
+from loadshare.job.ladder import HOT, SEARCHED, climb
 from loadshare.job.least import least_places
 from loadshare.job.machine import Machine, engine_named
 from loadshare.job.positions import Progress, wanted_positions
 from loadshare.job.table import Table
-from loadshare.settings import CERTIFY
+from loadshare.settings import CERTIFY, JOB
 from loadshare.solver import Options
 from loadshare.solver.hot.exchange import Engine
 from loadshare.train import build_train
@@ -40,12 +40,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-BLOCK = 4096
-"""Samples that are solved together, if every one has a few positions."""
-TOGETHER = 40960
-"""Equilibria that are solved together."""
-WORKERS = 2
-"""Threads; the compiled passes hold no lock."""
 KEEP = ("torque", "share", "pair_share", "displacement", "contact_force")
 
 
@@ -100,7 +94,7 @@ def solve_blocks(
     positions: Iterable[int] | None = None,
     tolerance: float = CERTIFY.tolerance,
     engine: str = "auto",
-    workers: int = WORKERS,
+    workers: int = JOB.workers,
     least_norm: bool = False,
 ) -> Iterator[Block]:
     """Solve samples block by block, in order; memory does not grow with their number.
@@ -119,7 +113,7 @@ def solve_blocks(
     groups = samples_of(case, samples)
     total = sum(len(rows) for rows, _ in groups)
     wanted = tuple(wanted_positions(groups[0][1].train, positions))
-    size = max(BLOCK, TOGETHER // len(wanted))
+    size = max(JOB.block, JOB.together // len(wanted))
     tasks: list[tuple[Machine, NDArray[np.intp], Samples, slice]] = []
     for rows, group in groups:
         machine = _machine(case, group)
@@ -142,8 +136,6 @@ def solve_blocks(
             yield block
 
 
-RECENT = 16
-"""Machines that are kept, for those who solve samples of one case again and again."""
 _recent: OrderedDict[tuple[object, ...], tuple[Case, Machine]] = OrderedDict()
 
 
@@ -157,7 +149,7 @@ def _machine(case: Case, samples: Samples) -> Machine:
     else:
         # The case is kept with its machine, so that its id is not given to another.
         _recent[key] = case, machine
-        if len(_recent) > RECENT:
+        if len(_recent) > JOB.recent:
             _recent.popitem(last=False)
     return machine
 
@@ -170,7 +162,7 @@ def solve_many(
     keep: Iterable[str] = KEEP,
     tolerance: float = CERTIFY.tolerance,
     engine: str = "auto",
-    workers: int = WORKERS,
+    workers: int = JOB.workers,
     least_norm: bool = False,
     progress: Progress | None = None,
 ) -> xr.Dataset:
@@ -278,7 +270,7 @@ def _block(
     message: dict[tuple[int, int], str] = {}
     every: list[Equilibria] = []
     stands: list[Situations] = []
-    abreast = max(1, TOGETHER // count)
+    abreast = max(1, JOB.together // count)
     for at in range(0, len(positions), abreast):
         some = positions[at : at + abreast]
         stands += [samples.situations(index) for index in some]
@@ -302,7 +294,7 @@ def _block(
         index = positions[p]
         try:
             train = build_train(samples.one(row))
-            answer = climb(train, index, Options(), tolerance, STEPS)
+            answer = climb(train, index, Options(), tolerance, JOB.steps)
         except (CaseError, Refused) as refusal:
             message[int(rows[row]), index] = str(refusal)
             residual[row, p], bound[row, p], rung[row, p] = np.nan, np.nan, ""

@@ -18,7 +18,7 @@ from loadshare.job.machine import Machine
 from loadshare.results.claim import claim_of
 from loadshare.results.derive import position_of, result_from
 from loadshare.results.result import Effort, Position, Result, Stamp
-from loadshare.settings import CERTIFY
+from loadshare.settings import CERTIFY, JOB
 from loadshare.solver import Options
 from loadshare.tooth import resolve
 from loadshare.train import Train, build_train
@@ -174,8 +174,6 @@ def _options(solver: str, method: str, reduce: bool) -> tuple[Options, bool]:
 
 
 _recent: OrderedDict[int, tuple[Case, Case, Machine]] = OrderedDict()
-RECENT = 16
-"""Cases whose reduced machines are kept, for those who solve one again and again."""
 
 
 def prepared(case: Case | str | Path, near: Case | None = None) -> tuple[Case, Machine]:
@@ -192,7 +190,7 @@ def prepared(case: Case | str | Path, near: Case | None = None) -> tuple[Case, M
         beside = _recent.get(id(near))
         machine = Machine(build_train(solved), near=beside[2] if beside else None)
         known = _recent[id(case)] = (case, solved, machine)
-        if len(_recent) > RECENT:
+        if len(_recent) > JOB.recent:
             _recent.popitem(last=False)
     return known[1:]
 

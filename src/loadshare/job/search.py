@@ -18,7 +18,7 @@ from loadshare.job.ladder import Answer, climb_all
 from loadshare.job.machine import Machine
 from loadshare.job.positions import prepared
 from loadshare.scene.data import data_of
-from loadshare.settings import CERTIFY
+from loadshare.settings import CERTIFY, JOB
 from loadshare.solver import Options
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.answer import equilibria
@@ -28,15 +28,6 @@ from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.ring import DrumRing
 from loadshare.train.situations import situation_of, stack
 from loadshare.train.train import Train
-
-STARTS = 64
-"""Starts: sets of contacts and places drawn at random."""
-STEPS = 12
-"""Steps of the path, each with half the extra clearance of the one before, and at last none."""
-GENEROUS = 100.0
-"""Extra clearance at which the path begins, in deflections of the case: no arc carries there."""
-SAME = 1e-6
-"""Largest difference of flank forces, in loads, of answers that are the same."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -70,8 +61,8 @@ class Search:
         )
         path = {True: "leads to the same", False: "leads elsewhere", None: "broke off"}[self.path]
         return (
-            f"Search: {found} from {self.starts} of {STARTS} random starts that were certified; "
-            f"the path from generous clearance {path}."
+            f"Search: {found} from {self.starts} of {JOB.starts} random starts that were "
+            f"certified; the path from generous clearance {path}."
         )
 
 
@@ -110,22 +101,24 @@ def search(case: Case | str | Path, position: int = 1, *, seed: int = 0) -> Sear
 def _same(one: Equilibrium, other: Equilibrium, known: Answer) -> bool:
     forces = (one.flank_force, one.ring_force), (other.flank_force, other.ring_force)
     apart = [abs(a[name] - b[name]) for a, b in zip(*forces, strict=True) for name in a]
-    return max(apart, default=0.0) <= SAME * known.certificate.load
+    return max(apart, default=0.0) <= JOB.same * known.certificate.load
 
 
 def _starts(machine: Machine, position: int, rng: np.random.Generator) -> list[Equilibrium]:
     """Certified equilibria from random sets of contacts and random places."""
     elements = machine.elements
-    situations = stack([situation_of(machine.train, position)] * STARTS)
+    situations = stack([situation_of(machine.train, position)] * JOB.starts)
     data = data_of(elements, situations)
     state, code = at_rest(elements, data), first_sets(elements, data)
     rows = elements.rows
     code[:, :rows] = np.where(
-        rng.random((STARTS, rows)) < 0.5, rng.integers(0, 2, (STARTS, rows)), code[:, :rows]
+        rng.random((JOB.starts, rows)) < 0.5, rng.integers(0, 2, (JOB.starts, rows)), code[:, :rows]
     )
     scale = np.abs(data.nominal).max(initial=0.0)
     # From a thousandth of a millionth of the rings' distance up to a tenth of it.
-    state.x[:] = rng.normal(size=state.x.shape) * scale * 10.0 ** -rng.uniform(1, 9, (STARTS, 1))
+    state.x[:] = (
+        rng.normal(size=state.x.shape) * scale * 10.0 ** -rng.uniform(1, 9, (JOB.starts, 1))
+    )
     found = exchange(elements, data, state, vectorised.settle, code)
     answers = equilibria(elements, state, False)
     verdicts = machine.judge.judge(situations, answers, CERTIFY.tolerance)
@@ -136,7 +129,7 @@ def _starts(machine: Machine, position: int, rng: np.random.Generator) -> list[E
 def _path(train: Train, position: int, deflection: float) -> Equilibrium | None:
     """The answer at the end of a path on which clearances shrink to what they are."""
     near: Machine | None = None
-    extra = [GENEROUS * deflection * 0.5**k for k in range(STEPS)] + [0.0]
+    extra = [JOB.generous * deflection * 0.5**k for k in range(JOB.path)] + [0.0]
     found: Answer | Refused | None = None
     for more in extra:
         near = Machine(_widened(train, more), near=near)

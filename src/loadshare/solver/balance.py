@@ -9,12 +9,7 @@ import numpy as np
 
 from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
-
-WORK = 1e-3
-"""Work of the load along a move, over load and move, from which on the load drives it."""
-YIELDS = 1e-10
-"""Part of a move that elements may still seem to resist: forces that balance the load in spite of
-it would be ten million times as large."""
+from loadshare.settings import PLACES
 
 
 def is_unbalanced(elements: Elements, load: Array) -> bool:
@@ -44,7 +39,7 @@ def is_unbalanced(elements: Elements, load: Array) -> bool:
         return False
     left = load / size - np.concatenate([held, -held, pushing]).T @ forces
     length = float(np.linalg.norm(left))
-    if left @ load <= WORK * size * length:
+    if left @ load <= PLACES.work * size * length:
         return False
-    gives = float(np.abs(held @ left).max(initial=0.0)) <= YIELDS * length
-    return gives and bool((pushing @ left <= YIELDS * length).all())
+    gives = float(np.abs(held @ left).max(initial=0.0)) <= PLACES.yields * length
+    return gives and bool((pushing @ left <= PLACES.yields * length).all())

@@ -12,19 +12,14 @@ from loadshare.contact.law import PowerLaw
 from loadshare.contact.problem import Row
 from loadshare.contact.programme import Array
 from loadshare.scene.scene import GearRadial, Scene
+from loadshare.settings import PLACES
 
-OVERLAP = 1e-12
-"""Overlap, over the lengths at hand, that counts as round-off."""
-SHARE = 1e-6
-"""Share in a contradiction from which on a limit is named."""
-PASSES = 20
-"""Programmes in which tangents of round limits are added to those before."""
 RIGID = PowerLaw(0.0, 0.0)
 AXES = np.vstack([np.eye(2), -np.eye(2)])
 """Directions of the first tangents."""
 
 
-def contradiction(scene: Scene, overlap: float = OVERLAP) -> tuple[str, ...]:
+def contradiction(scene: Scene, overlap: float = PLACES.overlap) -> tuple[str, ...]:
     r"""Return the rigid limits that contradict one another; empty if all can hold.
 
     The least overlap t of any displacement,
@@ -46,7 +41,7 @@ def contradiction(scene: Scene, overlap: float = OVERLAP) -> tuple[str, ...]:
     unit = max(scene.length_unit(), *(abs(r.gap) for r in rows))
     bounds = [(None, None)] * scene.size + [(-1.0, None)]
     cost = np.append(np.zeros(scene.size), 1.0)
-    for _ in range(PASSES):
+    for _ in range(PLACES.programmes):
         matrix = np.array([[*r.vector, -1.0] for r in rows])
         found = linprog(cost, matrix, [r.gap / unit for r in rows], bounds=bounds, method="highs")
         if found.status != 0 or found.x is None:
@@ -55,7 +50,9 @@ def contradiction(scene: Scene, overlap: float = OVERLAP) -> tuple[str, ...]:
         if least > overlap:
             weights = np.abs(np.asarray(found.ineqlin.marginals))
             named = (
-                r.name for r, w in zip(rows, weights, strict=True) if w > SHARE * weights.max()
+                r.name
+                for r, w in zip(rows, weights, strict=True)
+                if w > PLACES.named * weights.max()
             )
             return tuple(dict.fromkeys(named))
         offsets = [r.matrix @ found.x[:-1] * unit - r.centre for r, _ in rounds]

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from loadshare.contact.backends.backend import Backend, backend
-from loadshare.contact.exact import ROUNDING
 from loadshare.contact.findings import Unsolved, Work
 from loadshare.contact.outer import Settled, settle
 from loadshare.contact.plan import Plan, Role
@@ -15,14 +14,10 @@ from loadshare.contact.programme import Array
 from loadshare.contact.record import Options, Record
 from loadshare.errors import Refused
 from loadshare.scene.scene import Scene
+from loadshare.settings import CONTACT, PLACES
 from loadshare.solver.undetermined import free_set, places
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.memory import SlipFriction
-
-NOISE = 1e-12
-"""Force, over what a gap would cost if it were pressed shut, that counts as round-off."""
-VERIFIED = 1e-11
-"""Violation of a removed inequality that counts as round-off, in deflections and loads."""
 
 
 @dataclass(slots=True)
@@ -140,9 +135,9 @@ def _wider(scene: Scene, plan: Plan) -> Plan | None:
 def _margins(scene: Scene, plan: Plan, settled: Settled) -> dict[str, tuple[bool, str]]:
     """For everything left out: whether leaving it out was right, and the figure that says so."""
     largest = max((abs(f) for f in settled.forces.values()), default=0.0)
-    force = VERIFIED * scene.force_unit() + ROUNDING * largest
+    force = PLACES.verified * scene.force_unit() + CONTACT.sign_of_size * largest
     furthest = float(np.abs(settled.x).max(initial=0.0))
-    length = VERIFIED * scene.length_unit() + ROUNDING * furthest
+    length = PLACES.verified * scene.length_unit() + CONTACT.sign_of_size * furthest
     found: dict[str, tuple[bool, str]] = {}
     for row in scene.rows_at(settled.x):
         role = plan.rows[row.name]
@@ -209,7 +204,7 @@ def _without_noise(scene: Scene, settled: Settled) -> Settled:
     if any(scene.torques.values()):
         return settled
     stiffest = [abs(r.gap) / b for r in scene.rows if (b := r.law.secant(1.0)) > 0.0]
-    noise = NOISE * max(stiffest, default=0.0)
+    noise = PLACES.noise * max(stiffest, default=0.0)
     every = [
         *settled.forces.values(),
         *(float(np.linalg.norm(f)) for f in settled.radial_forces.values()),

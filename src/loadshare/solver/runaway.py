@@ -5,12 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from loadshare.scene.scene import Scene
-
-PUSHED = 1e-9
-"""Load along a move, over the load, from which on it counts: less, and flanks whose normals are
-opposite up to the digits of a case file would seem to give way."""
-SHARE = 1e-6
-"""Share in the move from which on a coordinate is named."""
+from loadshare.settings import PLACES
 
 
 def runaway(scene: Scene) -> tuple[str, ...]:
@@ -40,8 +35,8 @@ def runaway(scene: Scene) -> tuple[str, ...]:
         bounds=(-1.0, 1.0),
         method="highs",
     )
-    if found.status != 0 or found.fun is None or found.x is None or found.fun >= -PUSHED:
+    if found.status != 0 or found.fun is None or found.x is None or found.fun >= -PLACES.pushed:
         return ()
     work = scene.load * found.x
-    moving = np.flatnonzero(np.abs(found.x) > SHARE).tolist()
+    moving = np.flatnonzero(np.abs(found.x) > PLACES.named).tolist()
     return tuple(scene.coordinates[k] for k in sorted(moving, key=lambda k: -float(work[k])))

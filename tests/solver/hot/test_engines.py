@@ -15,8 +15,8 @@ from tests.solver.hot.trains import VARIED, varied
 from tests.support import SHIPPED, shipped
 
 import loadshare as ls
-from loadshare.job.machine import FEW, Answers, Machine, engine_named
-from loadshare.settings import CERTIFY
+from loadshare.job.machine import Answers, Machine, engine_named
+from loadshare.settings import CERTIFY, JOB
 from loadshare.solver.hot import compiled, lanes, vectorised
 from loadshare.solver.hot import places as at
 from loadshare.train import build_train
@@ -178,8 +178,8 @@ def test_solve_many_with_either_engine():
         assert apart(one[name].values, other[name].values) < SAME
     for name in ("certified", "determined", "rung"):
         np.testing.assert_array_equal(one[name], other[name])
-    assert engine_named("vectorised", 10**6) is engine_named("auto", FEW) is vectorised.settle
-    assert engine_named("compiled", 1) is engine_named("auto", FEW + 1) is compiled.settle
+    assert engine_named("vectorised", 10**6) is engine_named("auto", JOB.few) is vectorised.settle
+    assert engine_named("compiled", 1) is engine_named("auto", JOB.few + 1) is compiled.settle
     with pytest.raises(ValueError, match="auto, compiled, vectorised"):
         engine_named("fast", 1)
 

@@ -21,11 +21,10 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.certify.bound.bound import BALANCED, ROUNDED
 from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.statics import Statics
-from loadshare.settings import BOUND, LAWS
+from loadshare.settings import BOUND
 from loadshare.train.equilibria import CLAIMED, Equilibria
 from loadshare.train.ring import transverse
 from loadshare.train.situations import VARYING, Situations
@@ -36,9 +35,6 @@ Flags = NDArray[np.bool_]
 Numbers = NDArray[np.intp]
 Places = NDArray[np.uintp]
 
-WIDER = (2.0, 10.0)
-"""Times the error without it, over which the turn of lines is bounded."""
-
 Here = namedtuple("Here", VARYING)  # type: ignore[misc]
 """The arrays of `Situations`."""
 Claims = namedtuple("Claims", CLAIMED)  # type: ignore[misc]
@@ -46,7 +42,7 @@ Claims = namedtuple("Claims", CLAIMED)  # type: ignore[misc]
 
 
 class Layout(NamedTuple):
-    """A train as compiled code reads it; constants stand here so that it never keeps an old one.
+    """A train as compiled code reads it.
 
     e flanks, c contacts (flanks, stops, arcs), d drums, q radial elements, k splines, m columns.
     """
@@ -81,17 +77,6 @@ class Layout(NamedTuple):
     rest_start: Places  # (m + 1,): what lengths take from clockings and offsets
     rest_at: Places
     rest_value: Array
-    eps: float = EPS
-    noise: float = BOUND.noise
-    apart_by: float = BOUND.apart
-    light: float = BOUND.light
-    near: float = BOUND.near
-    corner: float = BOUND.corner
-    rounding: float = LAWS.written
-    balanced: float = BALANCED
-    rounded: float = ROUNDED
-    gain: float = BOUND.gain
-    wider: tuple[float, float] = WIDER
 
 
 class Groups(NamedTuple):

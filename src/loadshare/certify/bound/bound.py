@@ -35,9 +35,6 @@ from loadshare.settings import BOUND
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-BALANCED, ROUNDED = 1e-12, 16.0 * EPS
-"""Load along a move that nothing resists that is rounding: part of the load, and of any force."""
-
 
 @dataclass(frozen=True, eq=False)
 class Box:
@@ -140,7 +137,7 @@ def rounding_of(force: Array, scale: Array) -> Array:
         Load of the claims [N].
     """
     largest = np.abs(force).max(axis=1, initial=0.0)
-    return np.asarray(np.maximum(BALANCED * scale, ROUNDED * largest))
+    return np.asarray(np.maximum(BOUND.balanced * scale, BOUND.rounded * largest))
 
 
 def _yielding(soft: Array, skew: Array, at: NDArray[np.intp], force: Array) -> Array:

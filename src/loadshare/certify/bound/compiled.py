@@ -2,9 +2,8 @@
 
 `of` is the train as columns, `here` the situations, `claim` the claims. First every claim is put
 into figures, `found`, and numbered by what acts in it; then, with what `batch` makes of each such
-`group`, they become bounds. The compiled code is kept on disk; all of it stands in this one file,
-because Numba looks at no other to tell whether what is kept is still valid. Nothing of it is shared
-with the certificate, nor with a solver.
+`group`, they become bounds. The compiled code is kept on disk. Nothing of it is shared with the
+certificate, nor with a solver.
 """
 
 from __future__ import annotations
@@ -14,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from loadshare import compilation
-from loadshare.settings import BOUND
+from loadshare.certify.bound.claim import EPS
+from loadshare.settings import BOUND, LAWS
 
 # As in the compiled certificate: nothing is allocated, and what takes tuples is inlined.
 _how: dict[str, Any] = {
@@ -48,7 +48,7 @@ def find_all(of, here, claim, sheet, found, sets):  # type: ignore[no-untyped-de
             _spread(sets, found.number[s], at, sheet.stiffest[q])
         residual = _balance(of, here, s, sheet, found)
         found.residual[s] = residual if fine else np.inf
-        found.width[s] = of.eps * (terms + longest + max(yielded, further))
+        found.width[s] = EPS * (terms + longest + max(yielded, further))
     return count
 
 
@@ -67,12 +67,12 @@ def bound_all(of, found, group, errors):  # type: ignore[no-untyped-def]
             stray = max(stray, abs(along))
         residual, scale = found.residual[s], found.scale[s]
         if group.is_loose[g]:
-            proved = stray <= max(of.balanced * scale, of.rounded * found.push[s])
-            residual += stray + of.eps * scale
+            proved = stray <= max(BOUND.balanced * scale, BOUND.rounded * found.push[s])
+            residual += stray + EPS * scale
         largest, moved, torque = _answered(of, found, group, g, s, residual)
         proved &= found.room[s] > moved + found.width[s]
         # Lighter Hertz contacts, which may yield more than any tangent tells, are for `quick`.
-        proved &= largest <= 0.1 * found.light[s] and found.light[s] >= of.light * scale
+        proved &= largest <= 0.1 * found.light[s] and found.light[s] >= BOUND.light * scale
         if proved and torque < np.inf and found.aside[s] < np.inf:
             errors[s] = max(torque, found.aside[s])
 
@@ -136,7 +136,7 @@ def _law(of, here, claim, s, q):  # type: ignore[no-untyped-def]
     if np.isnan(given):
         if reach < stick:
             stick = end = np.inf
-    elif stiffness * given > level * (1.0 + of.rounding) or reach < min(given, stick):
+    elif stiffness * given > level * (1.0 + LAWS.written) or reach < min(given, stick):
         stick = np.nan
     elif given < stick:
         stick, end = given, stiffness * given
@@ -240,8 +240,8 @@ def _acts(of, claim, s, sheet, found, top, deflection, widest):  # type: ignore[
     flanks, acts, gap = len(of.arm), found.acts, sheet.gap
     for c in range(len(of.twin)):
         force = abs(_contact_force(of, claim, s, c))
-        faint = force <= of.noise * top and gap[c] > of.apart_by * deflection
-        acts[s, c] = not (force == 0.0 or faint) or gap[c] <= of.near * widest
+        faint = force <= BOUND.noise * top and gap[c] > BOUND.apart * deflection
+        acts[s, c] = not (force == 0.0 or faint) or gap[c] <= BOUND.near * widest
     for c in range(flanks, len(of.twin)):
         other = of.twin[c]
         if other > c and acts[s, c] and acts[s, other]:
@@ -299,7 +299,7 @@ def _contacts(of, here, claim, s, sheet, found, sets):  # type: ignore[no-untype
     arcs = contacts - len(of.apart)
     rb, rc, rw = _row(here.bending, s), _row(here.hertz, s), _row(here.wall, s)
     yielded, weakest, lightest = 0.0, np.inf, np.inf
-    turned, bow, light = 0.0, 0.0, of.light * found.scale[s]
+    turned, bow, light = 0.0, 0.0, BOUND.light * found.scale[s]
     for c in range(contacts):
         acts = found.acts[s, c]
         force = _contact_force(of, claim, s, c) if acts else 0.0
@@ -379,12 +379,12 @@ def _pulls(of, here, claim, s, sheet, found, top, widest):  # type: ignore[no-un
         distance, force = np.sqrt(x * x + y * y), np.sqrt(fx * fx + fy * fy)
         fine &= force < np.inf and distance < np.inf
         fine &= stick >= 0.0 and level >= 0.0 and reach >= 0.0
-        noise = of.noise * top
-        acts = level > 0.0 or force > noise or reach - distance <= of.near * widest
+        noise = BOUND.noise * top
+        acts = level > 0.0 or force > noise or reach - distance <= BOUND.near * widest
         found.acts[s, contacts + q] = acts
         soft, spare, misfit_x, misfit_y, slips, near = 0.0, np.inf, 0.0, 0.0, 0.0, 0.0
         if acts:
-            near, along, soft, spare = _nearest(law, force, distance, of.corner)
+            near, along, soft, spare = _nearest(law, force, distance, BOUND.corner)
             if near <= 0.0 or distance == 0.0:
                 # On the first piece, or pinned: a spring about the centre.
                 misfit_x, misfit_y = x - fx * soft, y - fy * soft
@@ -471,7 +471,7 @@ def _balance(of, here, s, sheet, found):  # type: ignore[no-untyped-def]
     found.push[s], residual, total = largest, 0.0, 0.0
     for c in range(len(left)):
         found.left[s, c] = left[c]
-        most = abs(left[c]) + of.eps * sizes[c]
+        most = abs(left[c]) + EPS * sizes[c]
         residual, total = max(residual, most), total + most
     # The largest may have passed over what is not a number.
     return residual if total < np.inf else np.inf
@@ -493,7 +493,7 @@ def _answered(of, found, group, g, s, residual):  # type: ignore[no-untyped-def]
         more, back, blind = _carried(of, found, group, g, s)
         into += more
         # What a slip should carry along its line comes back as load.
-        residual = residual / (1.0 - back) if back < of.gain else np.inf
+        residual = residual / (1.0 - back) if back < BOUND.gain else np.inf
     gap, push, tilt = deepest + found.width[s], 0.0, 0.0
     due = bent, into, found.width[s]
     load, energy = _followed(of, found, group, g, s, residual, push, tilt, due)
@@ -504,7 +504,7 @@ def _answered(of, found, group, g, s, residual):  # type: ignore[no-untyped-def]
         proved = False
         pushed = _by(group, g, ARC, load, push, energy, gap)
         moved = _by(group, g, ARC_WAY, load, push, energy, gap) + blind
-        for wide in of.wider:
+        for wide in BOUND.wider_lines:
             if not proved:
                 box, room = wide * pushed, wide * moved
                 push = 2.0 * (found.turned[s] * box + found.bow[s] * room) / (1.0 - back)
@@ -597,7 +597,7 @@ def _followed(of, found, group, g, s, residual, push, tilt, due):  # type: ignor
                     each += by[2] * soft * group.pushed[g, q, i]
             gain += each * found.rate[s, of.rounds + i]
         back = max(back, gain)
-    more = rates * most / (1.0 - back) if back < of.gain else np.inf
+    more = rates * most / (1.0 - back) if back < BOUND.gain else np.inf
     if group.carries[g]:
         more *= 2.0
     return residual + more, energy + into * more

@@ -15,13 +15,11 @@ from numpy.typing import NDArray
 from loadshare.scene.data import Data
 from loadshare.scene.elements import Elements, unresisted
 from loadshare.scene.scene import Array
-from loadshare.settings import STATICS
+from loadshare.settings import PLACES, STATICS
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot.exchange import Codes
 from loadshare.solver.hot.state import State, pushes
 from loadshare.solver.hot.vectorised import arc_at, pick
-from loadshare.solver.undetermined.free_set import CARRIES
-from loadshare.solver.undetermined.places import LOOSE, PLAY
 
 Flags = NDArray[np.bool_]
 FREE, LEVEL, HELD = 0, 1, 2
@@ -46,15 +44,15 @@ def determined(
         With Numba where that is faster: the same answer.
     """
     first, last = elements.springs, elements.columns.contacts.stop
-    carries = CARRIES * pushes(data)
+    carries = PLACES.carries * pushes(data)
     if compiled:
         from loadshare.solver.hot import products
 
         acts = code[:, : elements.rows]
-        idle, carries = products.idle(state.force, first, acts, CARRIES, carries)
+        idle, carries = products.idle(state.force, first, acts, PLACES.carries, carries)
     else:
         force = state.force[:, first:last]
-        carries = np.maximum(carries, CARRIES * np.abs(force).max(axis=1, initial=0.0))
+        carries = np.maximum(carries, PLACES.carries * np.abs(force).max(axis=1, initial=0.0))
         idle = ((code[:, : elements.rows] != at.OPEN) & (force <= carries[:, None])).any(axis=1)
     kinds = _kinds(elements, data, state, carries)
     unlike = (kinds != HELD) & (code[:, elements.rows :] != at.OPEN)
@@ -103,7 +101,7 @@ def _fixed(
     level = [
         j
         for j in np.flatnonzero(kinds == LEVEL).tolist()
-        if np.abs(_radial(elements, j) @ moves).max() > LOOSE
+        if np.abs(_radial(elements, j) @ moves).max() > PLACES.loose
     ]
     directions, touches = _touched(elements, data, state, some, moves, rows)
     found = np.zeros(len(rows), dtype=bool)
@@ -148,7 +146,7 @@ def _touched(
 
     def add(direction: Array, room: Array) -> None:
         directions.append(np.broadcast_to(direction, (len(rows), moves.shape[1])))
-        touches.append((room <= PLAY) & (np.abs(direction).max(axis=-1) > LOOSE))
+        touches.append((room <= PLACES.play) & (np.abs(direction).max(axis=-1) > PLACES.loose))
 
     gaps = pick(data.gap, rows)
     for k in elements.springs + np.flatnonzero(some[:flat] == 0):
@@ -177,7 +175,7 @@ def _touched(
 
 
 def _meets(matrix: Array, moves: Array) -> bool:
-    return bool(np.abs(matrix @ moves).max() > LOOSE)
+    return bool(np.abs(matrix @ moves).max() > PLACES.loose)
 
 
 def _across(elements: Elements, state: State, j: int, rows: NDArray[np.intp]) -> Array:
@@ -197,4 +195,4 @@ def _pinched(limits: Array) -> bool:
         return False
     total = limits.sum(axis=0)
     left = float(nnls(limits.T, -total)[1])
-    return bool(left <= LOOSE * max(float(np.linalg.norm(total)), 1.0))
+    return bool(left <= PLACES.loose * max(float(np.linalg.norm(total)), 1.0))

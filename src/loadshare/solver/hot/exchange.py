@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from loadshare.scene.data import Data
 from loadshare.scene.elements import Basis, Elements
+from loadshare.settings import EXCHANGE
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot.state import State
 from loadshare.solver.hot.vectorised import pick
@@ -29,12 +30,6 @@ Engine = Callable[
 WORD = 8
 """Bytes of a word."""
 _KEYS = np.random.default_rng(11).integers(1 << 62, size=1 << 12) | 1
-TOGETHER = 6
-"""Exchanges of all wrong signs at once; after these, one at a time."""
-RETURNS = 3
-"""Visits of one set that show a sample to go around."""
-TURNS = 24
-"""Turns allowed in all: of samples that are settled by exchange, one in a thousand takes more."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -160,7 +155,7 @@ def exchange(
     turns = np.zeros(count, dtype=np.intp)
     held = np.zeros(count, dtype=bool)
     one_only = np.full(count, singly)
-    limit = limit or TURNS
+    limit = limit or EXCHANGE.turns
     rounds = _Rounds()
     waiting = _Waiting()
     rows = np.arange(count) if only is None else np.flatnonzero(only)
@@ -172,7 +167,7 @@ def exchange(
         basis = elements.basis(here[:switches])
         verdict, proposal = engine(elements, data, basis, here[:switches], rows, state, one_only)
         onward = (verdict == at.OTHER) & (visited < limit)
-        for k in np.flatnonzero(onward & (singly | (visited > TOGETHER))).tolist():
+        for k in np.flatnonzero(onward & (singly | (visited > EXCHANGE.together))).tolist():
             verdict[k] = rounds.judged(int(rows[k]), here[:switches], proposal[k])
             onward[k] = verdict[k] == at.OTHER
         stay, done = rows[~onward], verdict[~onward] == at.DONE
@@ -180,7 +175,7 @@ def exchange(
         held[stay] = done & (not basis.loose.shape[1])
         if onward.any():
             rows, visited = rows[onward], visited[onward]
-            one_only[rows[visited >= TOGETHER]] = True
+            one_only[rows[visited >= EXCHANGE.together]] = True
             other = np.zeros((len(rows), code.shape[1]), dtype=np.int8)
             other[:, :switches] = proposal[onward]
             waiting.add(_without_wedges(elements, data, here, other), rows)
@@ -202,7 +197,7 @@ class _Rounds:
         """DONE, OTHER or FAILED for a sample that is to go from one set to another."""
         visits = self._visits.setdefault(row, [])
         visits.append(here.tobytes())
-        if visits.count(visits[-1]) < RETURNS:
+        if visits.count(visits[-1]) < EXCHANGE.returns:
             return at.OTHER
         to_and_fro = visits[-2] == proposal.tobytes() == visits[-4:-3][0]
         if not to_and_fro:

@@ -22,7 +22,7 @@ import numpy as np
 from loadshare.scene.data import Data
 from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
-from loadshare.settings import HOT
+from loadshare.settings import HOT, SEARCH
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.exchange import Codes, Found, exchange, first_sets
@@ -30,39 +30,8 @@ from loadshare.solver.hot.softened import Laws
 from loadshare.solver.hot.state import State, at_rest
 from loadshare.solver.hot.vectorised import arc_at, beyond
 
-STIFFER = (1e-2, 1e-3, 1e-4, 1e-5, *[1e-6] * 3, *[1e-7] * 3, *[1e-8] * 6)
-"""Stiffness that every pass adds, in units of the elements: what one moves is load/ε at most."""
-SOFTER = 1e-11
-"""Compliance that every pass adds: each brings forces nearer by ε over the compliance they meet.
-
-Small from the first pass on, so that rigid arcs hold a gear on its side of a narrow wedge."""
-SHARED = 1e3
-"""How much softer a radial element is made than a contact at least, so that what both could hold is
-held by the contact: friction is bounded, a contact is not."""
-RESOLVED = 1e3
-"""Round-offs of the lengths at hand by which the compliance presses a contact in at least."""
-NEWTON = 60
-"""Newton steps of a pass."""
-SLOPE = 0.1
-"""Part of the slope at its beginning to which a line search brings a step."""
-SECANTS = 6
-"""Steps of a line search between two kinks."""
 HALVES = 0.5 ** np.arange(48, -1, -1)
 """Shares of the way between two kinks that are looked at together: a slope may rise by orders."""
-LOOKS = 1000
-"""Points at which a search looks in all: more than ever led to an answer, and half a second."""
-PATIENCE = 12
-"""Newton steps in a row that do not halve the gradient, after which round-off stands in the way."""
-FLAT = 1e-11
-"""Gradient, over the largest force, at which a pass has arrived."""
-STILL = 1e-15
-"""Step, over the largest coordinate, that is round-off."""
-TRIES = 3
-"""Passes from which a set is solved exactly: a later one may stand nearer."""
-IDLE = 1e-6
-"""Force, over the largest, up to which a contact may be idle: a pass adds some of its own."""
-EXCHANGES = 7
-"""Sets that an exact solve visits from where the passes stand: enough to tell to and fro."""
 
 
 @dataclass(slots=True)
@@ -103,24 +72,25 @@ class Proximal:
         self.x = np.zeros(elements.size)
         self.force = np.zeros(len(self.vectors))
         self.looks = 0
-        self.pull, self.laws = STIFFER[0], Laws(elements, data, self.force, SOFTER, STIFFER[0])
+        self.pull = SEARCH.stiffer[0]
+        self.laws = Laws(elements, data, self.force, SEARCH.softer, self.pull)
 
     def passes(self) -> Iterator[Codes]:
         """Make one pass after another; each gives the set (switches,) where it ends."""
-        for self.pull in STIFFER:
+        for self.pull in SEARCH.stiffer:
             extent = max(float(np.abs(v).max(initial=1.0)) for v in (self.gap, self.x))
-            softer = max(SOFTER, RESOLVED * np.finfo(float).eps * extent)
+            softer = max(SEARCH.softer, SEARCH.resolved * np.finfo(float).eps * extent)
             self._face_arcs()
             # A radius that gives way as much as the rest is held: steeper, and a float that has far
             # to roll would do so in tiny steps, each pressed out of the round and back again.
             # Slip that is remembered may have less room than that would tell apart.
             yielding = 0.0 if self.elements.train.slip is not None else self.pull
-            rounded = max(SHARED * softer, yielding)
+            rounded = max(SEARCH.shared * softer, yielding)
             self.laws = Laws(self.elements, self.data, self.force, softer, rounded)
             if not self.laws.graph.valid.all():
                 return
             found = self._minimise()
-            if self.looks > LOOKS:
+            if self.looks > SEARCH.looks:
                 return
             code = self._code(found)
             self.x, self.force = found.x, found.force
@@ -133,7 +103,7 @@ class Proximal:
 
     def without_idle(self, code: Codes) -> Codes:
         """Open what carries all but nothing where the passes stand."""
-        idle = np.abs(self.force) <= IDLE * np.abs(self.force).max(initial=0.0)
+        idle = np.abs(self.force) <= SEARCH.idle * np.abs(self.force).max(initial=0.0)
         apart = idle[self.scalar :].reshape(-1, 2).all(axis=1)
         law = self.laws.graph
         free = (law.bound == 0.0) & (law.stick == 0.0) & (law.reach > 0.0)
@@ -152,15 +122,16 @@ class Proximal:
         """Newton's method on the energy of a pass."""
         here = self._at(self.x)
         least, since = np.inf, 0
-        for _ in range(NEWTON):
+        for _ in range(SEARCH.newton):
             largest = max(1.0, float(np.abs(here.force).max(initial=0.0)))
             flat = float(np.abs(here.gradient).max(initial=0.0))
             least, since = (flat, 0) if flat < 0.5 * least else (least, since + 1)
-            if flat <= FLAT * largest or since > PATIENCE or self.looks > LOOKS:
+            tired = since > SEARCH.patience or self.looks > SEARCH.looks
+            if tired or flat <= SEARCH.flat * largest:
                 break
             step = self._step(here)
             here = self._along(here, step)
-            if np.abs(step).max() <= STILL * np.abs(here.x).max():
+            if np.abs(step).max() <= SEARCH.still * np.abs(here.x).max():
                 break
         return here
 
@@ -197,7 +168,7 @@ class Proximal:
         at together, and the place is sought between two of them.
         """
         start = float(here.gradient @ step)
-        enough = SLOPE * abs(start)
+        enough = SEARCH.slope * abs(start)
         there = self._at(here.x + step)
         slope = float(there.gradient @ step)
         if slope <= enough:
@@ -223,8 +194,8 @@ class Proximal:
             if k > 0:
                 low, at_low = float(between[k - 1]), float(found[k - 1])
         share, slope = high, at_high
-        for _ in range(SECANTS):
-            if abs(slope) <= enough or high - low <= STILL * high:
+        for _ in range(SEARCH.secants):
+            if abs(slope) <= enough or high - low <= SEARCH.still * high:
                 break
             share = low - at_low * (high - low) / (at_high - at_low)
             self.looks += 1
@@ -278,7 +249,7 @@ def search(elements: Elements, data: Data) -> tuple[State, Found]:
     for code in passes.passes():
         # A set that a pass confirms is worth an exact solve; near it, so are a few others.
         key = code.tobytes()
-        if key == before and tried.count(key) < TRIES:
+        if key == before and tried.count(key) < SEARCH.tries:
             tried.append(key)
             # What carries nothing where a set fails may only be in the way.
             lean = passes.without_idle(code)
@@ -291,7 +262,7 @@ def search(elements: Elements, data: Data) -> tuple[State, Found]:
                     vectorised.settle,
                     start[None, :],
                     singly=True,
-                    limit=EXCHANGES,
+                    limit=SEARCH.exchanges,
                 )
                 found = found.completed(more)
                 if found.solved[0]:

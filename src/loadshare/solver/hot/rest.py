@@ -11,11 +11,7 @@ import numpy as np
 from scipy.optimize import nnls
 
 from loadshare.scene.scene import Array
-
-RENEWALS = 40
-"""Passes that add tangents of round limits; each leaves about a quarter of what is left."""
-FITS = 1e-12
-"""Overlap that counts as none, over the largest room or move."""
+from loadshare.settings import EXCHANGE
 
 
 def rest(
@@ -36,7 +32,7 @@ def rest(
     """
     share = np.zeros(rows.shape[1])
     limits, bounds = rows, rooms
-    for _ in range(RENEWALS):
+    for _ in range(EXCHANGE.renewals):
         # Those of former passes stay: without, two discs may send the place to and fro.
         faces = [(along @ m, reach - along @ q) for m, q, reach, along in _tangents(discs, share)]
         limits = np.vstack([limits, *(f[0] for f in faces)])
@@ -47,7 +43,7 @@ def rest(
         share = found
         over = [float((rows @ share - rooms).max(initial=0.0))]
         over += [float(np.linalg.norm(q + m @ share)) - reach for m, q, reach in discs]
-        if max(over) <= FITS * max(size, float(np.abs(bounds).max(initial=0.0))):
+        if max(over) <= EXCHANGE.fits * max(size, float(np.abs(bounds).max(initial=0.0))):
             return share
     return None
 

@@ -19,11 +19,8 @@ from loadshare.contact.programme import Array
 from loadshare.contact.radial import RadialLaw
 from loadshare.scene.elements import unresisted
 from loadshare.scene.scene import GearRadial, Scene
+from loadshare.settings import PLACES
 from loadshare.solver.undetermined.norm import Norm, norm_of
-
-CARRIES = 1e-11
-"""Force, over the largest, from which on a contact holds: far above the round-off of forces, far
-below what a certificate vouches for."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,7 +90,7 @@ def free_set(
     laws : mapping of radial name to RadialLaw
         At the torques that are transmitted.
     """
-    carries = CARRIES * max([scene.force_unit(), *(abs(f) for f in forces.values())])
+    carries = PLACES.carries * max([scene.force_unit(), *(abs(f) for f in forces.values())])
     norm = norm_of(scene)
     ties = [*scene.springs, *_rows_of(scene.stiffness)]
     vectors: list[Array] = []

@@ -16,17 +16,10 @@ import numpy as np
 
 from loadshare.contact.programme import Array
 from loadshare.scene.scene import Scene
+from loadshare.settings import PLACES
 from loadshare.solver.undetermined.free_set import FreeSet, Round
-from loadshare.solver.undetermined.region import ALMOST, INSIDE, Disc, Region
+from loadshare.solver.undetermined.region import Disc, Region
 from loadshare.train.equilibrium import Range
-
-LOOSE = 1e-9
-"""Part of a coordinate in a move from which on it takes part: round-off of the moves is smaller."""
-PLAY = 1e-9
-"""Range, in lengths of the case, below which a place counts as determined: what contacts that
-carry nothing leave between them but for round-off."""
-RENEWALS = 12
-"""Passes that renew the faces of arcs."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,10 +52,12 @@ def places(free: FreeSet) -> Places:
     for part in parts:
         if part.moves_to_least:
             x = x + part.across @ (part.least - part.start) * part.unit
-    least_play = PLAY * scene.length_unit() + INSIDE * float(np.abs(x).max(initial=0.0))
+    least_play = PLACES.play * scene.length_unit() + PLACES.inside * float(
+        np.abs(x).max(initial=0.0)
+    )
     ranges: dict[str, Range] = {}
     for part in parts:
-        for k in np.flatnonzero(np.abs(part.moves).max(axis=1) > LOOSE).tolist():
+        for k in np.flatnonzero(np.abs(part.moves).max(axis=1) > PLACES.loose).tolist():
             low, high = (
                 float(x[k] + part.reach(sign * part.moves[k]) * sign / free.norm.root[k])
                 for sign in (-1.0, 1.0)
@@ -90,10 +85,14 @@ class _Part:
         self.across = moves / free.norm.root[:, None]
         limits = free.vectors @ self.across
         sizes = np.linalg.norm(limits, axis=1)
-        met = sizes > LOOSE
+        met = sizes > PLACES.loose
         self.limits, rooms = limits[met] / sizes[met, None], free.rooms[met] / sizes[met]
-        rounds = [r for r in free.rounds if np.linalg.norm(r.radial.matrix @ self.across) > LOOSE]
-        self.arcs = [a for a in free.arcs if np.linalg.norm(a.relative @ self.across) > LOOSE]
+        rounds = [
+            r for r in free.rounds if np.linalg.norm(r.radial.matrix @ self.across) > PLACES.loose
+        ]
+        self.arcs = [
+            a for a in free.arcs if np.linalg.norm(a.relative @ self.across) > PLACES.loose
+        ]
         shares = moves.T @ free.norm.lengths(free.x)
         sizes_met = [*rooms, *(r.radius for r in rounds), float(np.abs(shares).max())]
         self.unit = max(*sizes_met, free.scene.length_unit())
@@ -107,7 +106,7 @@ class _Part:
     @property
     def moves_to_least(self) -> bool:
         """Whether the least place is another than the one that is known."""
-        return float(np.abs(self.least - self.start).max()) > INSIDE
+        return float(np.abs(self.least - self.start).max()) > PLACES.inside
 
     def reach(self, direction: Array) -> float:
         """How far along a direction (d,) the part may move from its least place [m]."""
@@ -133,7 +132,7 @@ class _Part:
             row = arc.row(x)
             limit = row.vector @ self.across
             size = float(np.linalg.norm(limit))
-            if size > LOOSE:
+            if size > PLACES.loose:
                 room = max(row.gap - float(row.vector @ x), 0.0)
                 limits.append(limit[None] / size)
                 bounds.append(np.array([room / self.unit + float(limit @ u)]) / size)
@@ -141,13 +140,13 @@ class _Part:
 
     def _renewed(self, u: Array, find: Callable[[Region], Array | None]) -> Array | None:
         """Find a point from u on; None if it is infinitely far."""
-        for _ in range(RENEWALS):
+        for _ in range(PLACES.renewals):
             region = self._region(u)
             found = find(region)
-            if found is None or region.beyond(found) > ALMOST:
+            if found is None or region.beyond(found) > PLACES.almost:
                 # What is pinched up to round-off stays where it is.
                 return None if found is None else u
-            arrived = float(np.abs(found - u).max()) <= INSIDE
+            arrived = float(np.abs(found - u).max()) <= PLACES.inside
             u = found
             if arrived or not self.arcs:
                 break
@@ -157,10 +156,10 @@ class _Part:
 def _independent(free: FreeSet) -> Iterator[Array]:
     """Yield moves (n, d) that nothing ties to the others."""
     projector = free.moves @ free.moves.T
-    together = np.abs(projector) > LOOSE
+    together = np.abs(projector) > PLACES.loose
     limits = [v[None] for v in free.vectors] + [a.relative for a in free.arcs]
     for matrix in (*limits, *(r.radial.matrix for r in free.rounds)):
-        meets = (np.abs(matrix / free.norm.root @ projector) > LOOSE).any(axis=0)
+        meets = (np.abs(matrix / free.norm.root @ projector) > PLACES.loose).any(axis=0)
         together |= np.outer(meets, meets)
     for _ in range(len(together).bit_length()):
         together = (together.astype(int) @ together) > 0

@@ -17,17 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.contact.programme import Array
-
-INSIDE = 1e-12
-"""How far a point may lie outside, in sizes of the region: round-off of what bounds it."""
-ALMOST = 1e-6
-"""Distance to a bound, in sizes of the region, at which an interior-point answer reaches it."""
-PASSES = 20
-"""Newton passes on the bounds that are reached."""
-ARRIVED = 1e-14
-"""Step, in sizes of the region, that ends them."""
-BALANCED = 1e-9
-"""Part of a pull, in sizes of the region, that its bounds may leave unbalanced."""
+from loadshare.settings import PLACES
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -151,7 +141,7 @@ class Region:
         gap = np.array([-disc.beyond(u) for disc in self.discs])
         tries = (
             (limits > slack, discs > gap),
-            (slack < ALMOST, gap < ALMOST),
+            (slack < PLACES.almost, gap < PLACES.almost),
         )
         for rows, rounds in tries:
             exact = self._settled(u, curvature, slope, np.flatnonzero(rows), np.flatnonzero(rounds))
@@ -171,7 +161,7 @@ class Region:
         faces, discs = self.limits[rows], [self.discs[j] for j in rounds.tolist()]
         d, count = self.size, len(rows) + len(discs)
         pushes, reached = np.zeros(count), faces
-        for _ in range(PASSES):
+        for _ in range(PLACES.passes):
             normals, bends = [], curvature * np.eye(d)
             for disc, push in zip(discs, pushes[len(rows) :], strict=True):
                 normal, turning = disc.face(u)
@@ -182,14 +172,16 @@ class Region:
             matrix[:d, :d], matrix[:d, d:], matrix[d:, :d] = bends, reached.T, reached
             misfit = [*(self.bounds[rows] - faces @ u), *(-disc.beyond(u) for disc in discs)]
             right = np.concatenate([-curvature * u - slope, misfit])
-            step = np.linalg.lstsq(matrix, right, rcond=INSIDE)[0]
+            step = np.linalg.lstsq(matrix, right, rcond=PLACES.inside)[0]
             u, pushes = u + step[:d], step[d:]
-            if float(np.abs(step[:d]).max(initial=0.0)) <= ARRIVED * max(1.0, np.abs(u).max()):
+            if float(np.abs(step[:d]).max(initial=0.0)) <= PLACES.arrived * max(
+                1.0, np.abs(u).max()
+            ):
                 break
         scale = max(1.0, float(np.abs(u).max()))
         pulled = -(curvature * u + slope)
-        inside = self.beyond(u) <= INSIDE * scale
-        return u if inside and _pushed(reached, pulled) <= BALANCED * scale else None
+        inside = self.beyond(u) <= PLACES.inside * scale
+        return u if inside and _pushed(reached, pulled) <= PLACES.balanced * scale else None
 
 
 def _pushed(reached: Array, pulled: Array) -> float:

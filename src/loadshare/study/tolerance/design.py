@@ -8,8 +8,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.job.many import BLOCK
 from loadshare.scene.scene import Array
+from loadshare.settings import JOB
 from loadshare.study.tolerance.inputs import Inputs
 from loadshare.study.tolerance.points import uniforms
 
@@ -42,11 +42,11 @@ class Drawn:
     @property
     def blocks(self) -> int:
         """See `Design`."""
-        return -(-self.count // BLOCK)
+        return -(-self.count // JOB.block)
 
     def rows(self, block: int) -> Rows:
         """See `Design`."""
-        return np.arange(block * BLOCK, min((block + 1) * BLOCK, self.count))
+        return np.arange(block * JOB.block, min((block + 1) * JOB.block, self.count))
 
     def values(self, block: int) -> Array:
         """See `Design`."""
@@ -86,7 +86,7 @@ class PickFreeze:
 
     @property
     def _each(self) -> int:
-        return -(-self.count // BLOCK)
+        return -(-self.count // JOB.block)
 
     @property
     def blocks(self) -> int:
@@ -97,7 +97,7 @@ class PickFreeze:
         """See `Design`."""
         matrix, part = divmod(block, self._each)
         start = matrix * self.count
-        return np.arange(start + part * BLOCK, start + min((part + 1) * BLOCK, self.count))
+        return np.arange(start + part * JOB.block, start + min((part + 1) * JOB.block, self.count))
 
     def values(self, block: int) -> Array:
         """See `Design`."""

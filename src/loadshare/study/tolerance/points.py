@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.job.many import BLOCK
 from loadshare.scene.scene import Array
+from loadshare.settings import JOB
 
 SEQUENCES = 16
 """Scrambled Sobol sequences that take turns; they differ by chance alone, and so tell the error."""
@@ -36,14 +36,14 @@ def uniforms(sampling: str, seed: int, stream: tuple[int, ...], block: int, widt
     if sampling == "sobol":
         return _sobol(seed, stream, block, width)
     sequence = np.random.SeedSequence(seed, spawn_key=(block, *stream))
-    points = np.random.default_rng(sequence).random((BLOCK, width))
+    points = np.random.default_rng(sequence).random((JOB.block, width))
     return np.maximum(points, SMALLEST)
 
 
 def _sobol(seed: int, stream: tuple[int, ...], block: int, width: int) -> Array:
     from scipy.stats import qmc
 
-    each = BLOCK // SEQUENCES
+    each = JOB.block // SEQUENCES
     points = np.empty((each, SEQUENCES, width))
     for r in range(SEQUENCES):
         source = np.random.SeedSequence(seed, spawn_key=(r, *stream))
@@ -52,4 +52,4 @@ def _sobol(seed: int, stream: tuple[int, ...], block: int, width: int) -> Array:
             engine.fast_forward(block * each)
         points[:, r] = engine.random(each)
     # Points stand on a grid of 2^-30, zero included; the middle of a cell is as good as its edge.
-    return points.reshape(BLOCK, width) + 2.0**-31
+    return points.reshape(JOB.block, width) + 2.0**-31

@@ -17,9 +17,9 @@ import numpy as np
 from loadshare.case import Case, Study
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
-from loadshare.job.machine import ENGINES, FEW
+from loadshare.job.machine import ENGINES
 from loadshare.job.positions import wanted_positions
-from loadshare.settings import CERTIFY
+from loadshare.settings import CERTIFY, JOB
 from loadshare.study.positions import loaded
 from loadshare.study.tolerance.figures import KINDS, SYSTEM
 from loadshare.study.tolerance.folder import WORST as WORST_FILE
@@ -197,7 +197,7 @@ def _job(case: Case, name: str, chunk: int, engine: str) -> Job:
     wanted = wanted_positions(build_train(case), block.positions)
     if engine == "auto":
         total = equilibria(samples, rows, len(read.units), len(wanted))
-        engine = "vectorised" if total <= FEW else "compiled"
+        engine = "vectorised" if total <= JOB.few else "compiled"
     return Job.of(
         case,
         read,
@@ -352,7 +352,7 @@ def _apart(folder: Folder) -> list[str]:
 
 def _inputs_of(folder: Folder, rows: Iterable[int]) -> list[np.ndarray[Any, Any]]:
     """Draw the inputs of some samples again."""
-    from loadshare.job.many import BLOCK
+    from loadshare.settings import JOB
 
     design = folder.job.designs["samples"]
-    return [design.values(row // BLOCK)[row % BLOCK] for row in rows]
+    return [design.values(row // JOB.block)[row % JOB.block] for row in rows]

@@ -10,8 +10,8 @@ import numpy as np
 
 from loadshare.errors import CaseError, Problem, Refused, ResultError
 from loadshare.job import solve
-from loadshare.job.many import BLOCK
 from loadshare.scene.scene import Array
+from loadshare.settings import JOB
 from loadshare.study.tolerance.figures import KINDS, SYSTEM, Solver
 from loadshare.study.tolerance.inputs import Inputs
 
@@ -143,8 +143,8 @@ class _Search:
     def omega(self, scaled: Array) -> Array:
         """Ω at points of the box; minus infinity where there is no certified answer."""
         found = np.full(len(scaled), -np.inf)
-        for at in range(0, len(scaled), BLOCK):
-            part = slice(at, at + BLOCK)
+        for at in range(0, len(scaled), JOB.block):
+            part = slice(at, at + JOB.block)
             values = self.solver.solve(self.box.values(scaled[part])).columns[self.column]
             found[part] = np.where(np.isnan(values), -np.inf, values)
         self.solved += len(scaled)
