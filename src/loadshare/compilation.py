@@ -1,24 +1,19 @@
 """Compiling with Numba: kept on disk, told while it lasts, and never the reason of a failure.
 
 What is compiled is kept where Numba finds a folder to write in: beside the source, else in the
-user's cache folder (`NUMBA_CACHE_DIR` comes before both), with what tells the numbers and the other
-functions that were compiled into it. Where there is none, where Numba cannot
+user's cache folder (`NUMBA_CACHE_DIR` comes before both). Where there is none, where Numba cannot
 be imported, or where it does not compile, `why_not` says so once, in the log, and those who have
-another kernel use that. A file that was damaged on disk is found out by its digest and made anew.
+another kernel use that. What is damaged on disk or out of date is compiled anew (`kept_code`).
 """
 
 from __future__ import annotations
 
-import hashlib
 import logging
-import pickle
 import threading
 import time
 from collections.abc import Callable
-from functools import cache
-from pathlib import Path
-from types import CodeType, FunctionType, TracebackType
-from typing import Any, NamedTuple
+from types import TracebackType
+from typing import Any
 
 log = logging.getLogger("loadshare")
 
@@ -88,10 +83,14 @@ def jit(**how: Any) -> Callable[[Callable[..., Any]], Any]:
         made = within(**how)(function)
         if made is function:
             return function
+        # Imports Numba, which is there by now.
+        from loadshare.kept_code import Kept, Lost
+
         try:
-            made._cache = _caches().Kept(function)
+            made._cache = Kept(function, lambda e: _watch.not_kept(words_of(e)))
         except Exception as error:  # noqa: BLE001 -- there is another way, whatever it is
-            made._cache = _caches().Lost(words_of(error))
+            why = words_of(error)
+            made._cache = Lost(lambda: _watch.not_kept(why))
             give_up(
                 f"there is no folder in which compiled code could be kept ({words_of(error)}); set "
                 "NUMBA_CACHE_DIR to one that can be written"
@@ -117,37 +116,6 @@ def within(**how: Any) -> Callable[[Callable[..., Any]], Any]:
     return decorated
 
 
-def fingerprint(function: Callable[..., Any]) -> str:
-    """Return what tells a function, all that it calls and all numbers compiled into it from others.
-
-    Numba looks at a function's own file only, and would go on with old numbers of another one.
-
-    Parameters
-    ----------
-    function
-        The plain one, as it is written.
-    """
-    told: list[str] = []
-    seen = {function}
-    waiting = [function]
-    while waiting:
-        one = waiting.pop()
-        code = one.__code__
-        # What code itself looks like in print names its address in memory.
-        constants = [c for c in code.co_consts if not isinstance(c, CodeType)]
-        told.append(f"{one.__qualname__} {code.co_code.hex()} {constants!r} {code.co_names!r}")
-        for name in code.co_names:
-            value = one.__globals__.get(name)
-            called = getattr(value, "py_func", value)
-            if isinstance(called, FunctionType):
-                if called not in seen:
-                    seen.add(called)
-                    waiting.append(called)
-            elif isinstance(value, int | float | str | tuple):
-                told.append(f"{name} = {value!r}")
-    return hashlib.sha256("\n".join(told).encode()).hexdigest()
-
-
 def at_hand(*functions: Any) -> bool:
     """Tell whether functions run without compiling; what was kept on disk is loaded.
 
@@ -163,103 +131,6 @@ def words_of(error: BaseException) -> str:
     """Return the kind of an exception and the first line of what it says."""
     first = str(error).strip().splitlines()
     return f"{type(error).__name__}: {first[0]}" if first else type(error).__name__
-
-
-class _Caches(NamedTuple):
-    """Numba's cache of a function, made safe, and what stands where there is no folder for it."""
-
-    Kept: Any
-    Lost: Any
-
-
-@cache
-def _caches() -> _Caches:
-    """Return the caches; Numba is imported only when one is asked for."""
-    from numba.core.caching import FunctionCache, IndexDataCacheFile, NullCache
-
-    class Files(IndexDataCacheFile):
-        """Index and data of a function; what is damaged or out of date counts as not there."""
-
-        _function: Callable[..., Any]
-        _written: Any
-
-        @property
-        def _source_stamp(self) -> Any:
-            # What it calls may be defined further down: it is looked at as late as that.
-            return self._written, fingerprint(self._function)
-
-        @_source_stamp.setter
-        def _source_stamp(self, stamp: Any) -> None:
-            self._written = stamp
-
-        def _load_index(self) -> Any:
-            try:
-                return super()._load_index()
-            except Exception:  # noqa: BLE001 -- a damaged pickle may raise anything
-                return {}
-
-        def _load_data(self, name: str) -> Any:
-            """Load what was kept; nothing is unpickled or run before its digest was compared."""
-            data = Path(self._data_path(name)).read_bytes()
-            size = hashlib.sha256().digest_size
-            if hashlib.sha256(data[size:]).digest() != data[:size]:
-                raise OSError(f"{name} is damaged")
-            return pickle.loads(data[size:])
-
-        def _save_data(self, name: str, data: Any) -> None:
-            packed = self._dump(data)
-            with self._open_for_write(self._data_path(name)) as file:
-                file.write(hashlib.sha256(packed).digest() + packed)
-
-    class Kept(FunctionCache):
-        """Compiled code of a function on disk; what cannot be read or written is compiled anew."""
-
-        def __init__(self, function: Callable[..., Any]) -> None:
-            super().__init__(function)
-            self._cache_file = Files(
-                cache_path=self._cache_path,
-                filename_base=self._impl.filename_base,
-                source_stamp=self._impl.locator.get_source_stamp(),
-            )
-            self._cache_file._function = function
-
-        def load_overload(self, sig: Any, target_context: Any) -> Any:
-            try:
-                return super().load_overload(sig, target_context)
-            except Exception:  # noqa: BLE001 -- it is compiled anew
-                return None
-
-        def load_all(self, function: Any) -> bool:
-            """Load all that is kept of a function, and tell whether there is any."""
-            for sig, *_ in self._cache_file._load_index():
-                code = self.load_overload(sig, function.targetctx)
-                if code is not None:
-                    # As the dispatcher does when it is called.
-                    entry = (code.entry_point, code.fndesc, [code.library])
-                    function.targetctx.insert_user_function(*entry)
-                    function.add_overload(code)
-            return bool(function.signatures)
-
-        def save_overload(self, sig: Any, data: Any) -> None:
-            try:
-                super().save_overload(sig, data)
-            except Exception as error:  # noqa: BLE001 -- the compiled code is there, and runs
-                _watch.not_kept(words_of(error))
-
-    class Lost(NullCache):
-        """Nothing is kept; said when something was compiled."""
-
-        def __init__(self, why: str) -> None:
-            self._why = why
-
-        def load_all(self, function: Any) -> bool:
-            """Nothing is there."""
-            return False
-
-        def save_overload(self, sig: Any, data: Any) -> None:
-            _watch.not_kept(self._why)
-
-    return _Caches(Kept, Lost)
 
 
 class _Watch:

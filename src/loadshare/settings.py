@@ -2,7 +2,7 @@
 
 One table for all rooms. Every number stands with its meaning and the reason for its size; what is
 not a ratio says its unit. What is compiled with them is compiled anew when one changes
-(`compilation.fingerprint`).
+(`kept_code.py`).
 """
 
 from __future__ import annotations

@@ -18,6 +18,7 @@ import loadshare as ls
 from loadshare import compilation
 from loadshare.job import machine as machines
 from loadshare.job.machine import Machine, engine_at_hand, engine_named
+from loadshare.settings import JOB
 from loadshare.solver.hot import vectorised
 from loadshare.train import build_train
 
@@ -291,7 +292,7 @@ def test_case_by_case_nothing_is_loaded_before_it_is_worth_while_nor_compiled(mo
     monkeypatch.setattr(compilation, "at_hand", lambda *functions: needed.append(len(functions)))
     with monkeypatch.context() as new:
         new.delitem(sys.modules, machines.COMPILED[0])
-        assert engine_at_hand("auto", machines.LOADING) is vectorised.settle
+        assert engine_at_hand("auto", JOB.loading) is vectorised.settle
     assert not needed
     assert engine_at_hand("auto", 1) is vectorised.settle
     assert engine_at_hand("auto", compiled.FEW + 1) is vectorised.settle
@@ -310,7 +311,7 @@ import loadshare as ls
 from loadshare.job import machine
 from loadshare.solver.hot import compiled
 from numba.core.dispatcher import Dispatcher
-machine._one_by_one = machine.LOADING
+machine._one_by_one = {JOB.loading}
 assert machine.engine_at_hand("auto", compiled.FEW + 1) is compiled.settle
 asked, ask = [], Dispatcher._compile_for_args
 Dispatcher._compile_for_args = lambda self, *a, **k: asked.append(str(self)) or ask(self, *a, **k)

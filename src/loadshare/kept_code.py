@@ -1,0 +1,132 @@
+"""Numba's cache of a function, made safe: what is damaged or out of date is compiled anew."""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+from collections.abc import Callable
+from pathlib import Path
+from types import CodeType, FunctionType
+from typing import Any
+
+from numba.core.caching import FunctionCache, IndexDataCacheFile, NullCache
+
+
+def fingerprint(function: Callable[..., Any]) -> str:
+    """Return what tells a function, all that it calls and all numbers compiled into it from others.
+
+    Numba looks at a function's own file only, and would go on with old numbers of another one.
+
+    Parameters
+    ----------
+    function
+        The plain one, as it is written.
+    """
+    told: list[str] = []
+    seen = {function}
+    waiting = [function]
+    while waiting:
+        one = waiting.pop()
+        code = one.__code__
+        # What code itself looks like in print names its address in memory.
+        constants = [c for c in code.co_consts if not isinstance(c, CodeType)]
+        told.append(f"{one.__qualname__} {code.co_code.hex()} {constants!r} {code.co_names!r}")
+        for name in code.co_names:
+            value = one.__globals__.get(name)
+            called = getattr(value, "py_func", value)
+            if isinstance(called, FunctionType):
+                if called not in seen:
+                    seen.add(called)
+                    waiting.append(called)
+            elif isinstance(value, int | float | str | tuple):
+                told.append(f"{name} = {value!r}")
+    return hashlib.sha256("\n".join(told).encode()).hexdigest()
+
+
+class _Files(IndexDataCacheFile):
+    """Index and data of a function; what is damaged or out of date counts as not there."""
+
+    _function: Callable[..., Any]
+    _written: Any
+
+    @property
+    def _source_stamp(self) -> Any:
+        # What it calls may be defined further down: it is looked at as late as that.
+        return self._written, fingerprint(self._function)
+
+    @_source_stamp.setter
+    def _source_stamp(self, stamp: Any) -> None:
+        self._written = stamp
+
+    def _load_index(self) -> Any:
+        try:
+            return super()._load_index()
+        except Exception:  # noqa: BLE001 -- a damaged pickle may raise anything
+            return {}
+
+    def _load_data(self, name: str) -> Any:
+        """Load what was kept; nothing is unpickled or run before its digest was compared."""
+        data = Path(self._data_path(name)).read_bytes()
+        size = hashlib.sha256().digest_size
+        if hashlib.sha256(data[size:]).digest() != data[:size]:
+            raise OSError(f"{name} is damaged")
+        return pickle.loads(data[size:])
+
+    def _save_data(self, name: str, data: Any) -> None:
+        packed = self._dump(data)
+        with self._open_for_write(self._data_path(name)) as file:
+            file.write(hashlib.sha256(packed).digest() + packed)
+
+
+class Kept(FunctionCache):
+    """Compiled code of a function on disk; what cannot be read or written is compiled anew."""
+
+    def __init__(self, function: Callable[..., Any], not_kept: Callable[[Exception], None]) -> None:
+        super().__init__(function)
+        self._not_kept = not_kept
+        self._cache_file = _Files(
+            cache_path=self._cache_path,
+            filename_base=self._impl.filename_base,
+            source_stamp=self._impl.locator.get_source_stamp(),
+        )
+        self._cache_file._function = function
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Load what was kept for some types; None where that cannot be read."""
+        try:
+            return super().load_overload(sig, target_context)
+        except Exception:  # noqa: BLE001 -- it is compiled anew
+            return None
+
+    def load_all(self, function: Any) -> bool:
+        """Load all that is kept of a function, and tell whether there is any."""
+        for sig, *_ in self._cache_file._load_index():
+            code = self.load_overload(sig, function.targetctx)
+            if code is not None:
+                # As the dispatcher does when it is called.
+                entry = (code.entry_point, code.fndesc, [code.library])
+                function.targetctx.insert_user_function(*entry)
+                function.add_overload(code)
+        return bool(function.signatures)
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep what was compiled for some types, if that can be written."""
+        try:
+            super().save_overload(sig, data)
+        except Exception as error:  # noqa: BLE001 -- the compiled code is there, and runs
+            self._not_kept(error)
+
+
+class Lost(NullCache):
+    """Nothing is kept; said when something was compiled."""
+
+    def __init__(self, not_kept: Callable[[], None]) -> None:
+        self._not_kept = not_kept
+
+    def load_all(self, function: Any) -> bool:
+        """Nothing is there."""
+        return False
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Say so."""
+        self._not_kept()
