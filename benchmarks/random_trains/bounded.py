@@ -10,8 +10,8 @@ from benchmarks.reference.settle import Settled
 from loadshare.results.result import Position
 from loadshare.train import Train
 
-NO_FORCE = 1e-20
-"""Force, in loads, that is none: what acts at less hangs on the last of the reference's digits."""
+NONE = 1e-20
+"""Force, in loads, or place, in deflections, that is none: the last of the reference's digits."""
 ROUNDING = 2.0**-52
 """Of a place when it is written as a double, part of itself."""
 
@@ -44,14 +44,14 @@ def _errors(
     of, claim, at = machine.arithmetic.mpf, found.equilibrium, settled.at
     unit, length = of(machine.force), of(machine.length)
     for name, force in {**claim.flank_force, **claim.ring_force}.items():
-        yield name, abs(of(force) - at.forces.get(name, 0) * unit), NO_FORCE * unit
+        yield name, abs(of(force) - at.forces.get(name, 0) * unit), NONE * unit
     for name, pulled in claim.radial_reaction.items():
         parts = train.gears[machine.graphs[name].gear].frame @ pulled
         apart = [of(float(v)) + p * unit for v, p in zip(parts, at.pulls[name], strict=True)]
-        yield name, machine.arithmetic.hypot(*apart), NO_FORCE * unit
+        yield name, machine.arithmetic.hypot(*apart), NONE * unit
     for gear, i in machine.moves.items():
         moved = train.gears[gear].frame @ claim.displacement[gear]
         for k, axis in enumerate("xy"):
             value = float(moved[k])
             error = abs(of(value) - at.x[i + k] * length)
-            yield f"{gear} {axis}", error, ROUNDING * abs(value)
+            yield f"{gear} {axis}", error, ROUNDING * abs(value) + NONE * length

@@ -214,6 +214,8 @@ class Bound(NamedTuple):
     """Gap, over the widest one, within which a contact counts among those that may carry."""
     opposed: float = 1.0 - 1e-6
     """Cosine from which on two arcs are opposed."""
+    in_line: float = 1e-12
+    """Angle [rad] between two arcs' lines that is rounding: what they squeeze stays in between."""
     angle: float = 0.02
     """Angle [rad] between two lines that still count as nearly the same."""
     references: int = 16

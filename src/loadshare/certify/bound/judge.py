@@ -17,6 +17,7 @@ from loadshare.certify.bound.laws import Act, Codes, first_acts
 from loadshare.certify.bound.locked import locked, without
 from loadshare.certify.bound.open_slips import is_inside, open_slips, reaction_error
 from loadshare.certify.bound.quick import quick_boxes
+from loadshare.certify.bound.squeezed import squeezed
 from loadshare.certify.bound.verge import on_the_verge
 from loadshare.settings import BOUND, CERTIFY
 from loadshare.train.equilibria import Equilibria
@@ -126,6 +127,7 @@ def _boxes(claim: Claim, rigorous: bool) -> Bounds:
             box.force[rows[better]] = other.force[better]
             box.coordinate[rows[better]] = other.coordinate[better]
     torques = _torques(columns, box.force, flanks)
+    box.force[squeezed(claim)] = np.inf
     return Bounds(columns, relative, torques, box.force, box.coordinate)
 
 
