@@ -126,12 +126,17 @@ class Radial:
         return not isinstance(self.source, RadialLaw) and self.source.friction_force is None
 
     @property
-    def lengths(self) -> tuple[float, ...]:
-        """Finite extents of its pieces without torque; none where its law would drop then [m]."""
+    def at_rest(self) -> RadialLaw | None:
+        """Law without torque; None where it has no meaning, which solving tells of."""
         try:
-            pieces = self.law(0.0).pieces
+            return self.law(0.0)
         except ValueError:
-            return ()
+            return None
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """Finite extents of the pieces of that law [m]."""
+        pieces = self.at_rest.pieces if self.at_rest else ()
         return tuple(p.length for p in pieces if p.length < np.inf)
 
     def torque(self, forces: Mapping[str, float]) -> float:

@@ -32,8 +32,8 @@ def contradiction(scene: Scene, overlap: float = PLACES.overlap) -> tuple[str, .
     """
     from scipy.optimize import linprog
 
-    laws = {r: r.law(0.0) for r in scene.radials if not r.follows_torque}
-    rounds = [(r, law.reach) for r, law in laws.items() if math.isfinite(law.reach)]
+    laws = {r: r.at_rest for r in scene.radials if not r.follows_torque}
+    rounds = [(r, law.reach) for r, law in laws.items() if law and math.isfinite(law.reach)]
     rows = list(_straight(scene, rounds))
     rows += [_tangent(r, reach, along) for r, reach in rounds for along in AXES]
     if not rows:

@@ -18,10 +18,10 @@ def squeezed(claim: Claim) -> NDArray[np.bool_]:
     columns, here = claim.columns, claim.situations
     found = np.zeros((claim.count, len(columns.names)), dtype=bool)
     rigid = here.wall == 0.0
-    stop = here.stop.reshape(len(here.stop), -1, 2)
+    stop = here.stop
     closed = rigid & (stop.sum(axis=2) <= EPS * np.abs(stop).sum(axis=2))
     found[:, columns.stops] = np.repeat(closed, 2, axis=1)
-    way = claim.arcs[0].reshape(claim.count, -1, 2, 2)
+    way = claim.arcs[0].reshape(claim.count, here.stop.shape[1], 2, 2)
     along = way / np.sqrt((way**2).sum(axis=3, keepdims=True))
     one, other = along[:, :, 0], along[:, :, 1]
     # Off the line between its neighbours a float leans on one arc, and no squeeze can hold it.
