@@ -7,8 +7,11 @@ import json
 import multiprocessing
 import sys
 from collections.abc import Callable, Iterator, Mapping
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
+
+import loadshare
 
 Row = dict[str, Any]
 
@@ -35,7 +38,28 @@ def parser(description: str, what: str, count: int, folder: str) -> argparse.Arg
     found.add_argument(
         "--out", type=Path, default=Path("build") / folder, help="folder of what is found"
     )
+    found.add_argument("--page", type=Path, help="Markdown file to write")
     return found
+
+
+def publish(page: Path | None, about: str, asked: str, found: str) -> None:
+    """Print what was found, and write it to a page where one is asked for.
+
+    Parameters
+    ----------
+    page : Path or None
+    about : str
+        Title and what was measured, as Markdown.
+    asked : str
+        Words after ``python -m`` by which it is measured.
+    found : str
+        Tables.
+    """
+    print(found)  # noqa: T201
+    if page is not None:
+        today = datetime.now(tz=UTC).date().isoformat()
+        by = f"Printed by `python -m {asked}`, version {loadshare.__version__}, {today}."
+        page.write_text(f"{about.strip()}\n\n{by}\n\n{found.strip()}\n", encoding="utf-8")
 
 
 def numbers(asked: argparse.Namespace) -> range:

@@ -8,10 +8,9 @@ from __future__ import annotations
 import argparse
 import multiprocessing
 import sys
-from datetime import UTC, datetime
 from pathlib import Path
 
-import loadshare
+from benchmarks import kept
 from benchmarks.attack.judge import ALLOWED, ROUNDING, Attack, part
 from benchmarks.attack.ways import WAYS
 
@@ -43,7 +42,7 @@ def text(found: list[Attack]) -> str:
     return "\n".join(lines)
 
 
-PAGE = """# Attack on the certificate
+ABOUT = """# Attack on the certificate
 
 Answers are tampered with so that they look like equilibria, and judged by `certify`. None may pass
 of which a torque is off by more than 1e-9 of the largest torque (that of a flank, or one from
@@ -54,9 +53,6 @@ over the decades: numbers by 1e-12 to 1e-6 of themselves, self-stress and moved 
 1e-2 of the load. Self-stress is the null space of the balance of forces and moments, assembled
 from the train by code that shares nothing with solver, scene or certificate.
 
-Printed by `python -m benchmarks.attack {words}`, version {version}, {date}.
-
-{text}
 """
 
 
@@ -72,15 +68,9 @@ def main() -> None:
     shares = [(seed, asked.count // len(asked.seeds)) for seed in asked.seeds]
     with multiprocessing.get_context("spawn").Pool(len(shares)) as pool:
         found = [attack for some in pool.imap(part, shares) for attack in some]
-    print(text(found))  # noqa: T201
-    if asked.page is not None:
-        told = PAGE.format(
-            words=f"--count {asked.count} --seeds {' '.join(map(str, asked.seeds))}",
-            version=loadshare.__version__,
-            date=datetime.now(tz=UTC).date().isoformat(),
-            text=text(found),
-        )
-        asked.page.write_text(told, encoding="utf-8")
+    seeds = " ".join(map(str, asked.seeds))
+    words = f"benchmarks.attack --count {asked.count} --seeds {seeds}"
+    kept.publish(asked.page, ABOUT, words, text(found))
     sys.exit(any(a.slipped or a.margin < -ROUNDING for a in found))
 
 

@@ -16,6 +16,14 @@ from benchmarks import kept
 from benchmarks.critical_paths.judge import one
 from benchmarks.critical_paths.table import text
 
+ABOUT = """# Critical values against scans
+
+Random trains (stars and split-torque trains with rings, splines, backlash, Hertz contact, tabulated
+laws, errors, elastic shafts and bearings) are followed along one to three inputs that take the same
+value. Their events are compared with the states of all elements in dense scans by the batch path;
+a path with another end must give the same events.
+"""
+
 
 def main() -> None:
     """Judge many paths and print a Markdown table."""
@@ -31,7 +39,8 @@ def main() -> None:
         processes=asked.processes,
         warm=partial(one, 100, asked.engine, 0),
     )
-    print(text(rows))  # noqa: T201
+    words = f"benchmarks.critical_paths --count {len(rows)} --points {asked.points}"
+    kept.publish(asked.page, ABOUT, words, text(rows))
 
 
 if __name__ == "__main__":

@@ -14,8 +14,9 @@ FAULTS = ("missed", "invented", "moved")
 
 
 def text(rows: Sequence[Row]) -> str:
-    """Return the paths with something to look into, and a table of all."""
-    return "\n".join([*(line for row in rows for line in _told(row)), summary(rows)])
+    """Return a table of all paths, and those with something to look into."""
+    told = [line for row in rows for line in _told(row)]
+    return "\n".join([summary(rows), *(["", "To be looked into:", "", *told] if told else [])])
 
 
 def _told(row: Row) -> Iterator[str]:
@@ -23,8 +24,8 @@ def _told(row: Row) -> Iterator[str]:
     if any(told) or row["unproved"]:
         ends = f"{row['start']:.6g} to {row['stop']:.6g} {row['unit']}"
         gaps = f"{row['unproved']} unproved, {row['width']:.1e} of the range"
-        yield f"{row['number']}: {', '.join(row['keys'])} {ends}: {gaps}"
-        yield from (f"    {line}" for line in told if line)
+        yield f"- {row['number']}: {', '.join(row['keys'])} {ends}: {gaps}"
+        yield from (f"    - {line}" for line in told if line)
 
 
 def summary(every: Sequence[Row]) -> str:
