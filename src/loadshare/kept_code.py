@@ -38,6 +38,10 @@ def fingerprint(function: Callable[..., Any]) -> str:
                 if called not in seen:
                     seen.add(called)
                     waiting.append(called)
+            elif isinstance(value, tuple) and hasattr(value, "_fields"):
+                # Of a table only what is read.
+                used = [field for field in value._fields if field in code.co_names]
+                told += [f"{name}.{field} = {getattr(value, field)!r}" for field in used]
             elif isinstance(value, int | float | str | tuple):
                 told.append(f"{name} = {value!r}")
     return hashlib.sha256("\n".join(told).encode()).hexdigest()

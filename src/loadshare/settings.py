@@ -64,8 +64,10 @@ class HotPath(NamedTuple):
     """Factor on the cube root of the force of a flank that is not compressed: a tenth of the force
     a pass."""
     patience: int = 6
-    """Passes after which a flank that stays uncompressed is taken for open, and a rigid stop that
-    holds inward."""
+    """Passes after which a flank that stays uncompressed is taken for open."""
+    inward: int = 20
+    """Passes after which a rigid stop that goes on holding inward is taken for open; directions
+    of those that act settle in fifteen."""
     outside: int = 2
     """Passes after which a radial element that stays beyond its level piece has left it."""
     beyond: float = 1.01

@@ -176,7 +176,7 @@ class _Passes:
         self.hurried_to = np.repeat(code[None, :], count, axis=0)
         self.loose = np.zeros((count, len(self.power)), dtype=int)
         self.outside = np.zeros((count, elements.switches - elements.rows), dtype=int)
-        self.patience = np.where(code[elements.rows :] == at.WALL, HOT.patience, HOT.outside)
+        self.patience = np.where(code[elements.rows :] == at.WALL, HOT.inward, HOT.outside)
         self.fixed: dict[int, at.Graph] = {}
         self.linear: dict[int, _Block] = {}
 
