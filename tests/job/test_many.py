@@ -20,7 +20,7 @@ from loadshare.errors import CaseError
 from loadshare.job import many
 from loadshare.job.ladder import HOT
 from loadshare.job.many import KEEP, solve_blocks
-from loadshare.settings import CERTIFY
+from loadshare.settings import CERTIFY, JOB
 from loadshare.train.samples import samples_of
 
 RINGS = {
@@ -32,8 +32,7 @@ LIMIT_RING = "fgfbstts/limit_ring"
 
 def small_blocks(monkeypatch, samples: int) -> None:
     """Take so many samples at a time, and one position after another."""
-    monkeypatch.setattr(many, "BLOCK", samples)
-    monkeypatch.setattr(many, "TOGETHER", 1)
+    monkeypatch.setattr(many, "JOB", JOB._replace(block=samples, together=1))
 
 
 def apart(one, other, name: str) -> float:
