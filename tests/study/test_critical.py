@@ -318,7 +318,7 @@ def test_a_table_tells_what_a_run_came_to():
     fine = {"number": 6, **asdict(Outcome(("operating.torque",), "N*m", 1.0, 2.0, events=2))}
     wrong = {**fine, "number": 7, "missed": ["sun-planet at 1.5: 1 changes, 0 events"]}
     told = text([fine, wrong])
-    assert told.startswith("7: operating.torque 1 to 2 N*m: 0 unproved")
+    assert "\n- 7: operating.torque 1 to 2 N*m: 0 unproved" in told
     assert "| events | 4 |" in told
     assert "| missed | 1 |" in told
     assert "| invented | 0 |" in told

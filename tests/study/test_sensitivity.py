@@ -161,7 +161,7 @@ def test_drawn_and_critical_cases():
     assert told.count("agrees") >= 6
     assert f"| one-sided derivatives | {len(told)} |" in text(rows)
     rows[0]["verdicts"][0]["outcome"] = "outside"
-    assert text(rows).startswith("2: ")
+    assert "\n- 2: " in text(rows)
 
 
 @pytest.mark.slow
