@@ -255,16 +255,20 @@ class Machine:
         )
         found = found.completed(more) if found else more
         begun = bool(starts) or beside is not None or engine is not vectorised.settle
-        if begun and not found.solved.all():
-            # A beginning that leads nowhere, or steps that do: once more from rest, with NumPy's.
-            rest, only = at_rest(self.elements, data), ~found.solved
-            more = exchange(self.elements, data, rest, vectorised.settle, only=only)
-            state, found = state.completed(rest, only & more.solved), found.completed(more)
-        if not starts and found.solved.all():
-            self._last = self._as_start(data, state, found)
-        searched = np.zeros(data.count, dtype=bool)
         left = ~found.solved
+        again, searched = np.full(data.count, not begun), np.zeros(data.count, dtype=bool)
         while True:
+            found = found.without(left)
+            fresh = left & ~again
+            if fresh.any():
+                # A beginning that leads nowhere, or steps that do: once more from rest, with NumPy.
+                rest = at_rest(self.elements, data)
+                more = exchange(self.elements, data, rest, vectorised.settle, only=fresh)
+                state, found = state.completed(rest, fresh & more.solved), found.completed(more)
+                again |= fresh
+            if not (starts or searched.any()) and found.solved.all():
+                self._last = self._as_start(data, state, found)
+            left = ~found.solved & ~searched
             found = self._search(data, state, found, left)
             searched |= left
             pin(self.elements, data, state, found.code)

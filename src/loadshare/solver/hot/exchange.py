@@ -7,7 +7,7 @@ first, so that few visits serve many.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from heapq import heappop, heappush
 from itertools import permutations
 
@@ -62,6 +62,10 @@ class Found:
             self.turns + other.turns,
             np.where(mine, self.held, other.held),
         )
+
+    def without(self, rows: NDArray[np.bool_]) -> Found:
+        """Return the same with some samples as not solved."""
+        return replace(self, solved=self.solved & ~rows)
 
     def replaced(self, row: int, other: Found) -> Found:
         """Return the same with a sample as the only one of another finding."""
