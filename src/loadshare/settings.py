@@ -1,8 +1,8 @@
 """The numbers by which solvers, studies and certificates decide: what is small, when to stop.
 
-One table for all rooms. Every number stands with its meaning and the reason for its size; what is
-not a ratio says its unit. What is compiled with them is compiled anew when one changes
-(`kept_code.py`).
+One table for all rooms. Every number stands with its meaning and, where it is known, the reason for
+its size; what is not a ratio says its unit. What is compiled with them is compiled anew when one
+changes (`kept_code.py`).
 """
 
 from __future__ import annotations

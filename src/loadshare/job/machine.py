@@ -256,16 +256,16 @@ class Machine:
         found = found.completed(more) if found else more
         begun = bool(starts) or beside is not None or engine is not vectorised.settle
         left = ~found.solved
-        again, searched = np.full(data.count, not begun), np.zeros(data.count, dtype=bool)
+        retried, searched = np.full(data.count, not begun), np.zeros(data.count, dtype=bool)
         while True:
             found = found.without(left)
-            fresh = left & ~again
+            fresh = left & ~retried
             if fresh.any():
                 # A beginning that leads nowhere, or steps that do: once more from rest, with NumPy.
                 rest = at_rest(self.elements, data)
                 more = exchange(self.elements, data, rest, vectorised.settle, only=fresh)
                 state, found = state.completed(rest, fresh & more.solved), found.completed(more)
-                again |= fresh
+                retried |= fresh
             if not (starts or searched.any()) and found.solved.all():
                 self._last = self._as_start(data, state, found)
             left = ~found.solved & ~searched

@@ -125,7 +125,8 @@ def alike(codes: Codes) -> list[NDArray[np.intp]]:
 def _groups(claim: Claim, act: Codes) -> list[NDArray[np.intp]]:
     """Rows with the same codes; of few claims that lean on a ring or spline, each by itself.
 
-    By itself the turn of a line is known; among many it is left to chance.
+    By itself the turn of its line is one more compliance. Many share the line of one of them, and
+    those whose lines point elsewhere are left to twice the precision.
     """
     groups = alike(act)
     first = act.shape[1] - len(claim.radial_gears)

@@ -266,12 +266,12 @@ def search(elements: Elements, data: Data) -> tuple[State, Found]:
                 )
                 found = found.completed(more)
                 if found.solved[0]:
-                    return _without_noise(elements, data, state, found)
+                    return _with_idle_open(elements, data, state, found)
         before = key
     return state, found
 
 
-def _without_noise(
+def _with_idle_open(
     elements: Elements, data: Data, state: State, found: Found
 ) -> tuple[State, Found]:
     """Open contacts that carry round-off, if the set holds without them where the gears are.
