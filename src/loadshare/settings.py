@@ -187,6 +187,9 @@ class Bound(NamedTuple):
     """Friction, in loads of the claim, that may be put aside where nothing else bounds a torque."""
     enough: float = 1e-11
     """Relative bound with which double precision is content."""
+    enough_for_many: float = 1e-10
+    """The same for large batches: a tenth of what is certified. A closer look costs as much as many
+    answers."""
     together: int = 512
     """Claims that are looked at in twice the precision at a time."""
     many: int = 1000
@@ -243,6 +246,8 @@ class Bound(NamedTuple):
     """Times the error without it, over which the turn of lines is bounded."""
     sets_told_apart: int = 1000
     """Sets of elements that are told apart in a batch."""
+    sets_together: int = 64
+    """Sets whose figures are found at a time, so that memory is bounded."""
     sets: int = 2000
     """Sets of elements of which the statics are kept, so that memory is bounded."""
     slip_turns: float = 1e-6

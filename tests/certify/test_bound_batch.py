@@ -7,19 +7,26 @@ far from the exact equilibrium as its own bound says, at most.
 
 import importlib.util
 from dataclasses import replace
+from itertools import islice
+from pathlib import Path
 
+import mpmath
 import numpy as np
 import pytest
 from tests.certify.test_many import CLAIMS, WAYS, claims, positions, scales_of, taken
 from tests.support import shipped
 
+from benchmarks.reference import reference
+from benchmarks.workloads import workloads
 from loadshare import compilation
 from loadshare.certify import Judge
 from loadshare.certify.bound import Columns, bounds
 from loadshare.certify.bound import compiled as kernel
 from loadshare.certify.bound.batch import is_covered, relative_bounds
-from loadshare.train import build_train
+from loadshare.job.machine import Machine, engine_named
+from loadshare.train import Train, build_train
 from loadshare.train.equilibria import Equilibria
+from loadshare.train.situations import Situations
 
 NAMES = (
     "fgfbstts/limit_ring",
@@ -33,6 +40,7 @@ NAMES = (
     "elastic round ring",
     "coast flanks",
     "spline that never slips",
+    "tables",
 )
 COUNT = 400
 SAME = 1e-6
@@ -58,10 +66,11 @@ def spoilt(found: Equilibria, scales: dict[str, float], seed: int) -> Equilibria
     return wrong
 
 
-def errors(columns: Columns, one: Equilibria, other: Equilibria) -> np.ndarray:
-    """Largest distance of a torque, in torques of the first."""
+def errors(columns: Columns, here: Situations, one: Equilibria, other: Equilibria) -> np.ndarray:
+    """Largest distance of a torque, over the largest torque of the first."""
     apart = np.abs(one.flank_force - other.flank_force) * columns.arms
-    return apart.max(axis=1) / (np.abs(one.flank_force) * columns.arms).max(axis=1)
+    largest = (np.abs(one.flank_force) * columns.arms).max(axis=1)
+    return apart.max(axis=1) / np.maximum(largest, np.abs(here.torque).max(axis=1))
 
 
 @pytest.fixture(scope="module")
@@ -92,7 +101,7 @@ def test_bounds_hold_and_are_those_of_the_source(name, plain, monkeypatch):
     with np.errstate(all="ignore"):
         exact, off = (relative_bounds(columns, here, claim) for claim in (right, wrong))
     assert (exact <= 1e-11).all()
-    assert (errors(columns, wrong, right) <= off + 2.0 * exact).all()
+    assert (errors(columns, here, wrong, right) <= off + 2.0 * exact).all()
     assert (off <= 1e-9).any()
     monkeypatch.setattr(kernel, "find_all", plain.find_all)
     monkeypatch.setattr(kernel, "bound_all", plain.bound_all)
@@ -163,3 +172,101 @@ def test_large_batches_are_bounded_as_small_ones():
     assert (told.relative[::100] > 1e-9).all()
     assert single.relative[0] > 1e-9
     assert 0.0 < single.relative[1] <= told.relative[1] <= 1e-11
+
+
+IDLING = (212, 278, 555, 721)
+"""Samples of the workload `law` with a Hertz flank that carries some 1e-12 of the load."""
+
+
+def idling(number: int) -> tuple[Train, Situations, Equilibria, int]:
+    """One of them as the hot path answers it, and the flank."""
+    (law,) = (w for w in workloads(Path("cases"), False) if w.name == "law")
+    train = build_train(next(islice(law.cases(number + 1), number, None)))
+    machine = Machine(train)
+    situations = machine.situations([1])
+    found = machine.answer(situations, 1e-9, engine_named("compiled", 1)).equilibria
+    force = found.flank_force[0]
+    (flank,) = np.flatnonzero((force > 0.0) & (force < 1e-11 * force.max()))
+    return train, situations, found, int(flank)
+
+
+def true_errors(train: Train, found: Equilibria, largest: float) -> np.ndarray:
+    """Largest error of a mesh's torque in 50 digits, over the largest torque."""
+    truth = reference(train, 1, found.one(0, 1))
+    worst = []
+    for row in range(len(found.rotation)):
+        forces = found.one(row, 1).flank_force
+        with mpmath.workdps(50):
+            off = [
+                abs(
+                    sum(
+                        (1 if drive else -1) * mpmath.mpf(forces[mesh.flank_name(drive)])
+                        for drive in mesh.flanks
+                    )
+                    * mpmath.mpf(mesh.radii[0])
+                    - mpmath.mpf(truth.exact[name])
+                )
+                for name, mesh in train.meshes.items()
+            ]
+            # Both flanks of a mesh may be off.
+            worst.append(float(max(off)) / largest / 2.0)
+    return np.array(worst)
+
+
+@pytest.mark.parametrize("number", IDLING)
+def test_an_idling_hertz_flank_is_bounded(number):
+    """It is endlessly soft, whatever little it is claimed to carry; others tell of it all the same.
+
+    Its tangent, and the secant to no force, are many times those of its neighbours.
+    """
+    train, situations, found, flank = idling(number)
+    columns = Columns(train)
+    wrong = taken(found, np.zeros(COUNT, dtype=int))
+    rng = np.random.default_rng(number)
+    load = wrong.flank_force.max()
+    wrong.flank_force[1::4, flank] = load * 10.0 ** rng.uniform(-16.0, -8.0, COUNT // 4)
+    spread = 10.0 ** rng.uniform(-15.0, -9.0, (COUNT // 4, 1)) * load
+    wrong.flank_force[2::4] += spread * rng.normal(size=wrong.flank_force[2::4].shape)
+    np.maximum(wrong.flank_force, 0.0, out=wrong.flank_force)
+    wrong.displacement[3::4] *= 1.0 + 1e-12 * rng.normal(size=wrong.displacement[3::4].shape)
+    with np.errstate(all="ignore"):
+        told, alone = (relative_bounds(columns, situations, c) for c in (wrong, found))
+    largest = max((found.flank_force * columns.arms).max(), np.abs(situations.torque).max())
+    assert (true_errors(train, wrong, largest) <= told * (1.0 + 1e-6)).all()
+    assert alone[0] <= 1e-11
+    assert np.isfinite(told[1::4]).mean() > 0.25
+
+
+@pytest.mark.parametrize("name", ["tables", "fgfbstts/all_elements"])
+def test_compiled_bounds_of_right_claims_are_those_of_single_ones(name):
+    """Both hold, and neither is a multiple of what the claim deserves."""
+    train = build_train(WAYS[name]())
+    columns = Columns(train)
+    situations, found = claims(train, positions(train)[:2])
+    told = relative_bounds(columns, situations, found)
+    single = bounds(columns, situations, found).relative
+    assert (told <= 1e-11).all()
+    assert (single <= 1e-11).all()
+    largest = max((found.flank_force * columns.arms).max(), np.abs(situations.torque).max())
+    for bound in (told, single):
+        assert true_errors(train, taken(found, np.array([0])), largest)[0] <= bound[0]
+
+
+@pytest.mark.parametrize("where", [-1e-7, 0.0, 1e-7])
+def test_a_corner_of_a_table_within_reach(where):
+    """Laws on both sides of it are allowed for."""
+    train = build_train(WAYS["tables"]())
+    columns = Columns(train)
+    situations, found = claims(train, [1])
+    flank = int(columns.tabled[0])
+    force = found.flank_force[0, flank]
+    table = situations.table.copy()
+    mesh = columns.meshes[flank]
+    forces = table[0, mesh, 0]
+    corner = int(np.argmin(np.abs(forces[1:-1] - force))) + 1
+    law = np.interp(force, forces, table[0, mesh, 1])
+    forces[corner] = force * (1.0 + where * 1e-3)
+    table[0, mesh, 1, corner] = law * (1.0 + where * 1e-3)
+    assert (np.diff(forces[~np.isnan(forces)]) > 0.0).all()
+    told = relative_bounds(columns, replace(situations, table=table), found)
+    assert told[0] <= 1e-9

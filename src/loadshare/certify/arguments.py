@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections import namedtuple
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.mechanics import Mechanics
-from loadshare.train.equilibria import CLAIMED, Equilibria
-from loadshare.train.situations import VARYING, Situations
+from loadshare.certify.plain import plain
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.situations import Situations
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.uintp]
@@ -50,12 +50,6 @@ class Arguments(NamedTuple):
     pull_gear: Numbers  # (r + n,)
     pull_centre: Array  # (r + n, 3)
     rounds: int
-
-
-Here = namedtuple("Here", VARYING)  # type: ignore[misc]
-"""What a position brings, one row or one per answer: the arrays of `Situations`."""
-Claim = namedtuple("Claim", CLAIMED)  # type: ignore[misc]
-"""What is claimed: the arrays of `Equilibria`."""
 
 
 class Scratch(NamedTuple):
@@ -144,17 +138,11 @@ def judged(
     """
     from loadshare.certify.compiled import judge_all
 
-    here = Here(*(_plain(getattr(situations, name)) for name in VARYING))
-    claim = Claim(*(_plain(array) for array in answers.arrays))
+    here, claim = plain(situations, answers)
     count = len(answers.rotation)
     found = np.empty((count, 7)), np.empty(count), np.empty(count)
     judge_all(of, here, claim, _scratch(of), *found)
     return found
-
-
-def _plain(array: Array) -> Array:
-    """Return an array of the one kind that code is compiled for."""
-    return np.require(array, np.float64, ["C", "W"])
 
 
 def _scratch(of: Arguments) -> Scratch:

@@ -8,13 +8,12 @@ the rounding of lengths,
 
 A radial element is two columns here, and as stiff each way as its graph is anywhere: laws are
 monotone, so that it need not be known on which piece the exact equilibrium has it. Residuals are
-found by compiled code. Trains with tables, or whose slip is remembered, are not for it. Source:
-formulation, section 16.
+found by compiled code. Trains whose slip is remembered are not for it. Source: formulation,
+section 16.
 """
 
 from __future__ import annotations
 
-from collections import namedtuple
 from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
@@ -23,22 +22,20 @@ from numpy.typing import NDArray
 
 from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.columns import Columns
+from loadshare.certify.bound.laws import CLOSED, LIGHT, OPEN
 from loadshare.certify.bound.statics import Statics
+from loadshare.certify.plain import plain
 from loadshare.settings import BOUND
-from loadshare.train.equilibria import CLAIMED, Equilibria
+from loadshare.train.equilibria import Equilibria
 from loadshare.train.ring import transverse
-from loadshare.train.situations import VARYING, Situations
+from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
+Codes = NDArray[np.int8]
 Flags = NDArray[np.bool_]
 Numbers = NDArray[np.intp]
 Places = NDArray[np.uintp]
-
-Here = namedtuple("Here", VARYING)  # type: ignore[misc]
-"""The arrays of `Situations`."""
-Claims = namedtuple("Claims", CLAIMED)  # type: ignore[misc]
-"""The arrays of `Equilibria`."""
 
 
 class Layout(NamedTuple):
@@ -49,6 +46,7 @@ class Layout(NamedTuple):
 
     mesh: Numbers  # (e,)
     is_drive: Flags  # (e,)
+    is_tabled: Flags  # (e,)
     arm: Array  # (e,)
     twin: Numbers  # (c,): opposed contact of the same ring, or −1
     drum: Numbers  # (c − e,): drum of a ring's contact
@@ -102,13 +100,17 @@ class Groups(NamedTuple):
     moment_by: Array  # (G, k, 3): torque over splines by load, push and energy
     gain: Array  # (G, k, k): of that torque per push along a spline's offset
     pushed: Array  # (G, q, k): force of a radial element per such push
+    particular: Array  # (G, rows, n): P
+    passed: Array  # (G, rows): force of every row by load
+    size: Array  # (G, rows): length of every row of L
+    softest: Array  # (G, rows): compliance that no claim exceeds; 0 of radial elements [m/N]
 
 
 class Found(NamedTuple):
     """Figures of S claims."""
 
     number: Numbers  # (S,): of what acts; −1 if there is too much of it
-    acts: Flags  # (S, c + q)
+    acts: Codes  # (S, c + q)
     misfit: Array  # (S, rows) [m]
     left: Array  # (S, n): of the balance [N]
     soft: Array  # (S, q): compliance where a radial element stands [m/N]
@@ -120,8 +122,9 @@ class Found(NamedTuple):
     largest: Array  # torque [N·m]
     push: Array  # largest force [N]
     residual: Array  # largest one of balance [N]
+    rounding: Array  # of that [N]
     width: Array  # rounding of lengths [m]
-    light: Array  # smallest force of a flank with a Hertz contact [N]
+    reach: Array  # error of a force up to which laws of flanks are what is said of them [N]
     room: Array  # smallest gap of what does not act [m]
     aside: Array  # largest torque of what is put aside [N·m]
     turned: Array  # largest turn of an arc's line
@@ -154,10 +157,7 @@ class Sheet(NamedTuple):
 
 def is_covered(columns: Columns) -> bool:
     """Whether claims of a train are for this bound."""
-    train = columns.train
-    return train.slip is None and not any(
-        hasattr(law, "forces") for m in train.meshes.values() for law in m.laws
-    )
+    return columns.train.slip is None
 
 
 def relative_bounds(columns: Columns, situations: Situations, answers: Equilibria) -> Array:
@@ -168,27 +168,23 @@ def relative_bounds(columns: Columns, situations: Situations, answers: Equilibri
     plan = _plans.get(columns)
     if plan is None or not np.array_equal(plan.layout.spring, held[0]):
         plan = _plans[columns] = Plan(columns, *held)
-    here = Here(*(_plain(getattr(situations, name)) for name in VARYING))
-    claim = Claims(*(_plain(array) for array in answers.arrays))
+    here, claim = plain(situations, answers)
     found, sets = plan.found(len(answers.rotation)), plan.sets()
     count = compiled.find_all(plan.layout, here, claim, plan.sheet(), found, sets)
     acts = found.acts[sets.first[:count]]
     errors = np.empty_like(found.largest)
-    compiled.bound_all(plan.layout, found, plan.groups(acts, sets.least, sets.most), errors)
+    groups = plan.groups(acts, sets.least[:count], sets.most[:count])
+    compiled.bound_all(plan.layout, here, claim, found, groups, errors)
     return np.asarray(errors / found.largest + EPS)
 
 
-def _plain(array: Array) -> Array:
-    """Return an array of the one kind that code is compiled for."""
-    return np.require(array, np.float64, ["C", "W"])
-
-
 class Operators(NamedTuple):
-    """Statics of what acts, P and L, without rows of what is idle."""
+    """Statics of a set of elements, without rows of what is idle."""
 
-    statics: Statics
-    particular: Array
-    root: Array
+    particular: Array  # P
+    redundant: Array  # N
+    moves: Array
+    is_covered: bool  # whether a load is carried without what yields without end
 
 
 class Plan:
@@ -215,7 +211,7 @@ class Plan:
         self.across = np.abs(pairs).sum(axis=1)
         self.springs = matrix[of.spring[:, 0]]
         self.pulls = matrix[columns.radials].reshape(-1, 2, width)
-        self._statics: dict[bytes, tuple[Statics, Array]] = {}
+        self._statics: dict[bytes, Operators] = {}
 
     @property
     def _rows(self) -> int:
@@ -233,12 +229,12 @@ class Plan:
         """Return room for the figures of so many claims."""
         pulls, n = len(self.pulls), self.contacts.shape[1]
         rows, number = (self._rows, n, pulls, pulls), np.empty(count, dtype=np.intp)
-        acts = np.empty((count, len(self.contacts) + pulls), dtype=np.bool_)
+        acts = np.empty((count, len(self.contacts) + pulls), dtype=np.int8)
         sizes = [
             *((count, k) for k in rows),
             (count, pulls, 2),
             *[(count, pulls)] * 2,
-            *[(count,)] * 10,
+            *[(count,)] * 11,
         ]
         return Found._make([number, acts, *map(np.empty, sizes)])
 
@@ -251,44 +247,60 @@ class Plan:
         )
         return Sets(first, key, np.full(size, np.inf), np.zeros(size))
 
-    def _known(self, acts: Flags) -> tuple[Statics, Array]:
-        """Statics of what acts, and P, by radial elements only if nothing else carries a load."""
+    def _known(self, acts: Codes) -> Operators:
+        """Statics of what acts.
+
+        A load is carried by radial elements only where nothing else does, and by what yields
+        without end not at all.
+        """
         found = self._statics.get(acts.tobytes())
-        if found is None:
-            contacts = len(self.contacts)
-            some = self.pulls[acts[contacts:]].reshape(-1, self.springs.shape[1])
-            firm = np.concatenate([self.contacts[acts[:contacts]], self.springs])
-            statics, known = Statics.of(np.concatenate([firm, some])), Statics.of(firm)
+        if found is not None:
+            return found
+        contacts = acts[: len(self.contacts)]
+        some = self.pulls[acts[len(contacts) :] != OPEN].reshape(-1, self.springs.shape[1])
+        closed = self.contacts[contacts != OPEN]
+        whole = Statics.of(np.concatenate([closed, self.springs, some]))
+        lasting = np.ones(len(whole.directions), dtype=bool)
+        # What is light carries a load only where nothing else does.
+        for softest in (CLOSED, LIGHT):
+            lasting[: len(closed)] = contacts[contacts != OPEN] <= softest
+            carrying = whole if lasting.all() else Statics.of(whole.directions[lasting])
+            is_covered = carrying.moves.shape == whole.moves.shape
+            if is_covered:
+                break
+        particular = np.zeros(whole.particular.shape)
+        particular[lasting] = carrying.particular
+        if len(some):
+            first = len(lasting) - len(some)
+            firm = np.flatnonzero(lasting[:first])
+            known = Statics.of(whole.directions[firm])
             held = some @ known.moves
             held[np.abs(held) < BOUND.rank] = 0.0
             part = np.linalg.pinv(held.T, rcond=BOUND.rank) @ known.moves.T
-            by_firm = known.particular @ (np.eye(len(part.T)) - some.T @ part)
-            particular = np.concatenate([by_firm, part])
-            if len(self._statics) >= BOUND.sets:
-                self._statics.clear()
-            found = self._statics[acts.tobytes()] = statics, particular
+            particular[firm] = known.particular @ (np.eye(len(part.T)) - some.T @ part)
+            particular[first:] = part
+        if len(self._statics) >= BOUND.sets:
+            self._statics.clear()
+        found = Operators(particular, whole.redundant, whole.moves, is_covered)
+        self._statics[acts.tobytes()] = found
         return found
 
-    def groups(self, acts: Flags, least: Array, most: Array) -> Groups:
+    def groups(self, acts: Codes, least: Array, most: Array) -> Groups:
         """Return what is the same for the claims of some sets.
 
         Parameters
         ----------
-        acts : ndarray of bool, shape (G, c + q)
-        least, most : ndarray, shape (G or more, c + springs + q)
+        acts : ndarray of int8, shape (G, c + q)
+        least, most : ndarray, shape (G, c + springs + q)
             Smallest and largest compliance of contacts, springs and radial elements [m/N].
         """
-        count, n, of = len(acts), self.contacts.shape[1], self.layout
-        pulls, splines = len(self.pulls), len(of.moment)
-        known = [self._operators(acts[g], least[g]) for g in range(count)]
-        self_stresses = max((k.root.shape[1] for k in known if k), default=0)
-        moves = max((k.statics.moves.shape[1] for k in known if k), default=0)
-        flags = [
-            np.array([k is not None for k in known], dtype=np.bool_),
-            *np.zeros((2, count), bool),
-        ]
+        count, n, rows = len(acts), self.contacts.shape[1], self._rows
+        pulls, splines = len(self.pulls), len(self.layout.moment)
+        known = [self._known(each) for each in acts]
+        self_stresses = max((k.redundant.shape[1] for k in known), default=0)
+        moves = max((k.moves.shape[1] for k in known), default=0)
         sizes = (
-            (self_stresses, self._rows),
+            (self_stresses, rows),
             (moves, n),
             *[()] * 6,
             (5, 4),
@@ -297,78 +309,120 @@ class Plan:
             (splines, 3),
             (splines, splines),
             (pulls, splines),
+            (rows, n),
+            *[(rows,)] * 3,
         )
-        found = Groups._make([*flags, *(np.zeros((count, *size)) for size in sizes)])
-        for g, operators in enumerate(known):
-            if operators is not None:
-                self._put(found, g, acts[g], operators, most[g])
+        found = Groups._make(
+            [*np.zeros((3, count), bool), *(np.zeros((count, *size)) for size in sizes)]
+        )
+        for at in range(0, count, BOUND.sets_together):
+            some = slice(at, at + BOUND.sets_together)
+            part = Groups._make(array[some] for array in found)
+            self._put(part, acts[some], known[some], least[some], most[some])
         return found
-
-    def _on(self, acts: Flags) -> Flags:
-        """Rows of L of what acts."""
-        contacts = len(self.contacts)
-        springs = np.ones(len(self.springs), dtype=bool)
-        return np.concatenate([acts[:contacts], springs, np.repeat(acts[contacts:], 2)])
-
-    def _operators(self, acts: Flags, least: Array) -> Operators | None:
-        """Return statics and L; None if rigid parts share by themselves."""
-        statics, particular = self._known(acts)
-        soft, n = self._both(least)[self._on(acts)], statics.redundant
-        if not np.isfinite(soft).all():
-            return None
-        stiff = n.T @ (BOUND.secant * soft[:, None] * n)
-        values, vectors = np.linalg.eigh(stiff)
-        if values.size and values.min() <= BOUND.singular * values.max():
-            return None
-        return Operators(statics, particular, n @ (vectors / np.sqrt(values)))
 
     def _both(self, figures: Array) -> Array:
         """Figures of the elements, those of radial ones twice."""
-        first = len(figures) - len(self.pulls)
-        return np.append(figures[:first], np.repeat(figures[first:], 2))
+        first = figures.shape[1] - len(self.pulls)
+        return np.append(figures[:, :first], np.repeat(figures[:, first:], 2, axis=1), axis=1)
 
-    def _put(self, found: Groups, g: int, acts: Flags, known: Operators, most: Array) -> None:
-        """Write what is known of a set in its place."""
-        of, on, contacts = self.layout, self._on(acts), len(self.contacts)
+    def _put(
+        self, found: Groups, acts: Codes, every: list[Operators], least: Array, most: Array
+    ) -> None:
+        """Write what is known of some sets in its place."""
+        springs = np.ones((len(acts), len(self.springs)))
+        contacts = acts[:, : len(self.contacts)]
+        on = self._both(np.concatenate([contacts, springs, acts[:, contacts.shape[1] :]], axis=1))
+        on = on != OPEN
+        redundant = np.zeros((len(acts), self._rows, found.root.shape[1]))
+        for g, operators in enumerate(every):
+            found.particular[g, on[g]] = operators.particular
+            redundant[g, on[g], : operators.redundant.shape[1]] = operators.redundant
+            found.moves[g, : operators.moves.shape[1]] = operators.moves.T
+            found.is_loose[g], found.known[g] = operators.moves.size > 0, operators.is_covered
+        soft, softest = (np.where(on, self._both(figures), 0.0) for figures in (least, most))
+        found.known[:] &= np.isfinite(soft + softest).all(axis=1)
+        self._put_roots(found, redundant, soft)
+        known = found.known[:, None]
+        self._put_figures(found, acts, np.where(known, softest / BOUND.secant, 0.0))
+
+    def _put_roots(self, found: Groups, redundant: Array, soft: Array) -> None:
+        """Write L, from the smallest compliances; rigid parts must not share by themselves."""
+        soft = np.where(found.known[:, None], BOUND.secant * soft, 1.0)
+        stiff = redundant.transpose(0, 2, 1) @ (soft[:, :, None] * redundant)
+        # Columns that fill up are as soft as any, so that they do not count among the stiffest.
+        filling = np.abs(redundant).max(axis=1, initial=0.0) == 0.0
+        diagonal = np.einsum("gii->gi", stiff)
+        largest = diagonal.max(axis=1, initial=0.0)
+        largest[filling.all(axis=1)] = 1.0
+        diagonal[filling] = np.broadcast_to(largest[:, None], filling.shape)[filling]
+        values, vectors = np.linalg.eigh(stiff)
+        smallest = values.min(axis=1, initial=np.inf)
+        found.known[:] &= smallest > BOUND.singular * values.max(axis=1, initial=0.0)
+        values[~found.known] = 1.0
+        root = redundant @ (vectors / np.sqrt(values)[:, None, :])
+        found.root[:] = root.transpose(0, 2, 1)
+
+    def _put_figures(self, found: Groups, acts: Codes, soft: Array) -> None:
+        """Write sizes of forces and ways, from the largest compliances."""
+        of, contacts = self.layout, len(self.contacts)
         flanks, pulls, arcs = len(of.arm), self._rows - 2 * len(self.pulls), len(of.apart)
-        root = np.zeros((self._rows, known.root.shape[1]))
-        particular = np.zeros((self._rows, self.contacts.shape[1]))
-        root[on], particular[on] = known.root, known.particular
-        passes, sizes = np.abs(particular), np.sqrt((root**2).sum(axis=1))
+        passes, sizes = np.abs(found.particular), np.sqrt((found.root**2).sum(axis=1))
         # What radial elements yield is told by every claim itself.
-        soft = np.where(on, self._both(most) / BOUND.secant, 0.0)
-        soft[pulls:] = 0.0
-        some = acts[contacts - arcs : contacts]
-        across = self.across[some].sum(axis=0)
-        figures = np.array([passes.sum(axis=1), passes @ across, sizes])
-        open_ = np.abs(self.pulls[~acts[contacts:]]).sum(axis=1)
-        rows = np.concatenate([np.abs(self.contacts), open_, self.across[some]])
-        ways = rows @ passes.T
-        by_way = np.append(ways @ (soft * figures).T, ways.sum(axis=1)[:, None], axis=1)
-        arcs_on = contacts - arcs + np.flatnonzero(some)
-        arms = of.arm * (1.0 + EPS)
-        by = found.by[g]
-        by[0, :3], by[2, :3] = figures.max(axis=1), (figures[:, :flanks] * arms).max(axis=1)
-        by[3, :3] = figures[:, arcs_on].max(axis=1, initial=0.0)
-        by[1], by[4] = (
-            v.max(axis=0, initial=0.0) for v in (by_way, by_way[len(by_way) - len(arcs_on) :])
+        soft[:, pulls:] = 0.0
+        some = acts[:, contacts - arcs : contacts] != OPEN
+        across = np.tensordot(some, self.across, 1)
+        figures = np.stack(
+            [passes.sum(axis=2), (passes @ across[:, :, None])[:, :, 0], sizes], axis=1
         )
-        found.spread[g], found.spread_of_arcs[g] = sizes.sum(), sizes[arcs_on].sum()
-        found.into[g], found.into_by_push[g], _ = figures @ (soft * sizes)
-        found.bows[g] = (1.0 / of.apart[some]).max(initial=0.0)
-        found.widest[g] = rows.max(initial=0.0)
-        found.pull_by[g, :, :3] = figures[:, pulls:].reshape(3, -1, 2).sum(axis=2).T
-        found.pull_by[g, :, 3] = ways[:, pulls:].max(axis=0, initial=0.0).reshape(-1, 2).sum(axis=1)
-        found.part[g] = particular[pulls:].reshape(-1, 2, len(rows.T))
-        found.carries[g] = found.pull_by[g, :, 0].any()
-        moments, pushed = np.abs(of.moment), passes @ np.abs(self.pulls[of.rounds :]).sum(axis=1).T
-        gain = pushed + sizes[:, None] * ((soft * sizes) @ pushed)
-        found.moment_by[g] = moments @ figures[:, :flanks].T
-        found.gain[g] = moments @ gain[:flanks]
-        found.pushed[g] = pushed[pulls:].reshape(len(self.pulls), 2, len(moments)).sum(axis=1)
-        moves = known.statics.moves.T
-        found.root[g, : root.shape[1]], found.moves[g, : len(moves)] = root.T, moves
-        found.is_loose[g] = len(moves) > 0
+        idle = acts[:, contacts:, None, None] == OPEN
+        away = np.where(idle, np.abs(self.pulls), 0.0).sum(axis=2)
+        turning = np.where(some[:, :, None], self.across, 0.0)
+        still = np.broadcast_to(np.abs(self.contacts), (len(acts), *self.contacts.shape))
+        rows = np.concatenate([still, away, turning], axis=1)
+        ways = rows @ passes.transpose(0, 2, 1)
+        by_way = np.append(
+            ways @ (soft[:, None, :] * figures).transpose(0, 2, 1),
+            ways.sum(axis=2)[:, :, None],
+            axis=2,
+        )
+        arms = of.arm * (1.0 + EPS)
+        pushing = np.where(some[:, None], figures[:, :, contacts - arcs : contacts], 0.0)
+        by = found.by
+        by[:, 0, :3], by[:, 2, :3] = (
+            figures.max(axis=2),
+            (figures[:, :, :flanks] * arms).max(axis=2, initial=0.0),
+        )
+        by[:, 3, :3] = pushing.max(axis=2, initial=0.0)
+        by[:, 1] = by_way.max(axis=1, initial=0.0)
+        by[:, 4] = by_way[:, by_way.shape[1] - arcs :].max(axis=1, initial=0.0)
+        found.spread[:], found.spread_of_arcs[:] = sizes.sum(axis=1), pushing[:, 2].sum(axis=1)
+        weighed = (figures @ (soft * sizes)[:, :, None])[:, :, 0]
+        found.into[:], found.into_by_push[:] = weighed[:, 0], weighed[:, 1]
+        found.bows[:] = np.where(some, 1.0 / of.apart, 0.0).max(axis=1, initial=0.0)
+        found.widest[:] = rows.max(axis=(1, 2), initial=0.0)
+        found.passed[:], found.size[:], found.softest[:] = figures[:, 0], sizes, soft
+        self._put_pulls(found, figures, passes, ways, soft * sizes)
+
+    def _put_pulls(
+        self, found: Groups, figures: Array, passes: Array, ways: Array, weights: Array
+    ) -> None:
+        """Write what concerns radial elements, and torques over splines."""
+        of, first, count = self.layout, self._rows - 2 * len(self.pulls), len(figures)
+        pairs = (count, len(self.pulls), 2)
+        found.pull_by[:, :, :3] = (
+            figures[:, :, first:].reshape(count, 3, *pairs[1:]).sum(axis=3).transpose(0, 2, 1)
+        )
+        found.pull_by[:, :, 3] = ways[:, :, first:].max(axis=1, initial=0.0).reshape(pairs).sum(2)
+        found.part[:] = found.particular[:, first:].reshape(found.part.shape)
+        found.carries[:] = found.pull_by[:, :, 0].any(axis=1)
+        moments = np.abs(of.moment)
+        pushed = passes @ np.abs(self.pulls[of.rounds :]).sum(axis=1).T
+        gain = pushed + found.size[:, :, None] * (weights[:, None, :] @ pushed)
+        flanks = moments.shape[1]
+        found.moment_by[:] = moments @ figures[:, :, :flanks].transpose(0, 2, 1)
+        found.gain[:] = moments @ gain[:, :flanks]
+        found.pushed[:] = pushed[:, first:].reshape(*pairs, len(moments)).sum(axis=2)
 
 
 _plans: WeakKeyDictionary[Columns, Plan] = WeakKeyDictionary()
@@ -434,6 +488,7 @@ def _layout(columns: Columns, spring: Numbers, spring_arm: Array) -> Layout:
     return Layout(
         columns.meshes,
         np.array([d for _, d in columns.all_flanks], dtype=np.bool_),
+        np.isin(np.arange(columns.flanks.stop), columns.tabled),
         columns.arms,
         _twins(columns, nominal, apart),
         np.concatenate([np.repeat(drums, 2)] * 2),

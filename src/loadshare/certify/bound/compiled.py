@@ -14,6 +14,7 @@ import numpy as np
 
 from loadshare import compilation
 from loadshare.certify.bound.claim import EPS
+from loadshare.certify.bound.laws import CLOSED, ENDLESS, LIGHT, OPEN
 from loadshare.settings import BOUND, LAWS
 
 # As in the compiled certificate: nothing is allocated, and what takes tuples is inlined.
@@ -37,15 +38,15 @@ def find_all(of, here, claim, sheet, found, sets):  # type: ignore[no-untyped-de
         top = _loads(of, here, claim, s, found)
         terms, deflection = _lengths(of, here, claim, s, sheet)
         widest = _gaps(of, here, s, sheet)
-        _acts(of, claim, s, sheet, found, top, deflection, widest)
+        _acts(of, here, claim, s, sheet, found, top, deflection, widest)
         longest, fine = _pulls(of, here, claim, s, sheet, found, top, widest)
         count, last = _numbered(s, found.acts, sets, count, last)
         found.number[s] = last
         yielded = _contacts(of, here, claim, s, sheet, found, sets)
         further = _springs(of, here, claim, s, sheet, found, sets)
         for q in range(len(of.pull_gear)):
-            at = len(of.twin) + len(of.spring) + q
-            _spread(sets, found.number[s], at, sheet.stiffest[q])
+            at, soft = len(of.twin) + len(of.spring) + q, sheet.stiffest[q]
+            _spread(sets, found.number[s], at, soft, soft)
         residual = _balance(of, here, s, sheet, found)
         found.residual[s] = residual if fine else np.inf
         found.width[s] = EPS * (terms + longest + max(yielded, further))
@@ -53,28 +54,41 @@ def find_all(of, here, claim, sheet, found, sets):  # type: ignore[no-untyped-de
 
 
 @compiled
-def bound_all(of, found, group, errors):  # type: ignore[no-untyped-def]
+def bound_all(of, here, claim, found, group, errors):  # type: ignore[no-untyped-def]
     """Largest error of a torque [N·m] of every claim; infinite where it is not shown."""
     for s in range(len(errors)):
         errors[s], g = np.inf, found.number[s]
         if g < 0 or not group.known[g]:
             continue
-        stray, proved = 0.0, True
+        stray, balanced = 0.0, True
         for k in range(group.moves.shape[1]):
             along = 0.0
             for c in range(group.moves.shape[2]):
                 along += group.moves[g, k, c] * found.left[s, c]
             stray = max(stray, abs(along))
         residual, scale = found.residual[s], found.scale[s]
+        rest = found.rounding[s]
         if group.is_loose[g]:
-            proved = stray <= max(BOUND.balanced * scale, BOUND.rounded * found.push[s])
+            balanced = stray <= max(BOUND.balanced * scale, BOUND.rounded * found.push[s])
             residual += stray + EPS * scale
-        largest, moved, torque = _answered(of, found, group, g, s, residual)
-        proved &= found.room[s] > moved + found.width[s]
-        # Lighter Hertz contacts, which may yield more than any tangent tells, are for `quick`.
-        proved &= largest <= 0.1 * found.light[s] and found.light[s] >= BOUND.light * scale
-        if proved and torque < np.inf and found.aside[s] < np.inf:
-            errors[s] = max(torque, found.aside[s])
+            rest += stray + EPS * scale
+        if not balanced or not found.aside[s] < np.inf:
+            continue
+        by_norm = group.by[g, TORQUE, 0] * residual, group.into[g] * residual
+        errors[s] = _proved(of, found, group, g, s, residual, by_norm)
+        if not errors[s] <= BOUND.enough * found.largest[s]:
+            closely = _passed(of, here, claim, found, group, g, s, rest)
+            errors[s] = min(errors[s], _proved(of, found, group, g, s, residual, closely))
+
+
+@inlined
+def _proved(of, found, group, g, s, residual, carried):  # type: ignore[no-untyped-def]
+    """Error of a torque [N·m] if all holds that was assumed; else infinite."""
+    largest, moved, torque = _answered(of, found, group, g, s, residual, carried)
+    # Beyond their reach laws, above all of light Hertz contacts, are not what is said of them.
+    if found.room[s] > moved + found.width[s] and largest <= found.reach[s] and torque < np.inf:
+        return max(torque, found.aside[s])
+    return np.inf
 
 
 @inlined
@@ -235,24 +249,29 @@ def _gaps(of, here, s, sheet):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _acts(of, claim, s, sheet, found, top, deflection, widest):  # type: ignore[no-untyped-def]
+def _acts(of, here, claim, s, sheet, found, top, deflection, widest):  # type: ignore[no-untyped-def]
     """Tell which contacts act, as `quick` does, and by how much the others are apart."""
-    flanks, acts, gap = len(of.arm), found.acts, sheet.gap
+    flanks, acts, gap, rc = len(of.arm), found.acts, sheet.gap, _row(here.hertz, s)
     for c in range(len(of.twin)):
         force = abs(_contact_force(of, claim, s, c))
         faint = force <= BOUND.noise * top and gap[c] > BOUND.apart * deflection
-        acts[s, c] = not (force == 0.0 or faint) or gap[c] <= BOUND.near * widest
+        acts[s, c] = OPEN
+        if not (force == 0.0 or faint) or gap[c] <= BOUND.near * widest:
+            acts[s, c] = CLOSED
+            is_light = c < flanks and force < BOUND.light * found.scale[s]
+            if is_light and here.hertz[rc, of.mesh[c]] > 0.0:
+                acts[s, c] = LIGHT if force >= EPS * found.scale[s] else ENDLESS
     for c in range(flanks, len(of.twin)):
         other = of.twin[c]
-        if other > c and acts[s, c] and acts[s, other]:
+        if other > c and acts[s, c] != OPEN and acts[s, other] != OPEN:
             # Two opposed contacts of a ring are one that holds both ways.
             second = _contact_force(of, claim, s, c) >= _contact_force(of, claim, s, other)
             idle = other if second else c
-            acts[s, idle], gap[idle] = False, np.inf
+            acts[s, idle], gap[idle] = OPEN, np.inf
     room, aside, known = np.inf, 0.0, True
     for c in range(len(of.twin)):
         known &= gap[c] == gap[c]
-        if not acts[s, c]:
+        if acts[s, c] == OPEN:
             room = min(room, gap[c])
             if c < flanks:
                 aside = max(aside, abs(claim.flank_force[s, c]) * of.arm[c])
@@ -285,23 +304,75 @@ def _same(acts, one, other):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _spread(sets, number, at, soft):  # type: ignore[no-untyped-def]
-    """Let the compliances of a set hold one more [m/N]."""
+def _spread(sets, number, at, least, most):  # type: ignore[no-untyped-def]
+    """Let the compliances of a set hold some more [m/N]."""
     if number >= 0:
-        sets.least[number, at] = min(sets.least[number, at], soft)
-        sets.most[number, at] = max(sets.most[number, at], soft)
+        sets.least[number, at] = min(sets.least[number, at], least)
+        sets.most[number, at] = max(sets.most[number, at], most)
+
+
+@inlined
+def _flank(of, here, s, e, force, scale):  # type: ignore[no-untyped-def]
+    """Law of a flank at a force.
+
+    Compression [m], smallest and largest compliance [m/N] next to it, and the error of the force
+    up to which they hold [N]. A Hertz contact that is light may lose its force: its largest is the
+    secant to none, which has no end where there is none.
+    """
+    m, light = of.mesh[e], BOUND.light * scale
+    if of.is_tabled[e]:
+        r = _row(here.table, s)
+        return _by_table(here.table[r, m, 0], here.table[r, m, 1], force, light)
+    bending, hertz = here.bending[_row(here.bending, s), m], here.hertz[_row(here.hertz, s), m]
+    if not hertz > 0.0:
+        return bending * force, bending, bending, np.inf
+    root = np.cbrt(max(force, 0.0))
+    compression = bending * force + hertz * root * root
+    if force >= light:
+        soft = bending + 2.0 / 3.0 * hertz / root
+        return compression, soft, soft, 0.1 * force
+    least = bending + 2.0 / 3.0 * hertz / np.cbrt(light)
+    most = bending + hertz / root if root > 0.0 else np.inf
+    return compression, least, most, 0.1 * light
+
+
+@compiled
+def _by_table(forces, compressions, force, near):  # type: ignore[no-untyped-def]
+    """Law of a table at a force, as `_flank`; it is straight beyond the last point.
+
+    Corners that are near do not end it: laws on both sides of them are among those it tells of.
+    """
+    last = len(forces) - 2
+    while last > 0 and np.isnan(forces[last + 1]):
+        last -= 1
+    k = 0
+    while k < last and forces[k + 1] <= force:
+        k += 1
+    slope = (compressions[k + 1] - compressions[k]) / (forces[k + 1] - forces[k])
+    first, final = k, k
+    while first > 0 and force - forces[first] <= near:
+        first -= 1
+    while final < last and forces[final + 1] - force <= near:
+        final += 1
+    least, most, reach = slope, slope, np.inf
+    for i in range(first, final + 1):
+        other = (compressions[i + 1] - compressions[i]) / (forces[i + 1] - forces[i])
+        least, most = min(least, other), max(most, other)
+    if first > 0:
+        reach = min(reach, force - forces[first])
+    if final < last:
+        reach = min(reach, forces[final + 1] - force)
+    return compressions[k] + slope * (force - forces[k]), least, most, reach
 
 
 @inlined
 def _contacts(of, here, claim, s, sheet, found, sets):  # type: ignore[no-untyped-def]
     """Forces and misfits of contacts; returns their largest compression [m]."""
     flanks, contacts, number = len(of.arm), len(of.twin), found.number[s]
-    arcs = contacts - len(of.apart)
-    rb, rc, rw = _row(here.bending, s), _row(here.hertz, s), _row(here.wall, s)
-    yielded, weakest, lightest = 0.0, np.inf, np.inf
-    turned, bow, light = 0.0, 0.0, BOUND.light * found.scale[s]
+    arcs, rw = contacts - len(of.apart), _row(here.wall, s)
+    yielded, weakest, reach, turned, bow = 0.0, np.inf, np.inf, 0.0, 0.0
     for c in range(contacts):
-        acts = found.acts[s, c]
+        acts = found.acts[s, c] != OPEN
         force = _contact_force(of, claim, s, c) if acts else 0.0
         misfit = 0.0
         if c < flanks:
@@ -314,28 +385,23 @@ def _contacts(of, here, claim, s, sheet, found, sets):  # type: ignore[no-untype
                 sheet.force[of.first_arc + 2 * k + a] = -force * sheet.line[k, a]
         if acts:
             if c < flanks:
-                m = of.mesh[c]
-                soft = here.bending[rb, m]
-                compression = soft * force
-                if here.hertz[rc, m] > 0.0:
-                    lightest = min(lightest, force)
-                    root = np.cbrt(max(force, 0.0))
-                    compression += here.hertz[rc, m] * root * root
-                    root = root if force >= light else np.cbrt(light)
-                    soft += 2.0 / 3.0 * here.hertz[rc, m] / root
+                law = _flank(of, here, s, c, force, found.scale[s])
+                compression, least, most, holds = law
+                reach = min(reach, holds)
             else:
-                soft = here.wall[rw, of.drum[c - flanks]]
-                compression = soft * force
+                least = most = here.wall[rw, of.drum[c - flanks]]
+                compression = least * force
                 if c >= arcs:
                     turned = max(turned, sheet.turn[c - arcs])
                     bow = max(bow, abs(force) / of.apart[c - arcs])
-            _spread(sets, number, c, soft)
+            # What yields without end carries no load.
+            _spread(sets, number, c, least, least if found.acts[s, c] == ENDLESS else most)
             weakest, yielded = min(weakest, force), max(yielded, abs(compression))
             misfit = -sheet.gap[c] - compression
             if force == 0.0:
                 misfit = max(misfit, 0.0)
         found.misfit[s, c] = misfit
-    found.turned[s], found.bow[s], found.light[s] = turned, bow, lightest
+    found.turned[s], found.bow[s], found.reach[s] = turned, bow, reach
     # A contact that pulls is none.
     return yielded if weakest >= 0.0 else np.inf
 
@@ -352,7 +418,7 @@ def _springs(of, here, claim, s, sheet, found, sets):  # type: ignore[no-untyped
         else:
             soft = 1.0 / here.support[_row(here.support, s), number, axis]
             force = claim.support_force[s, number, axis]
-        _spread(sets, found.number[s], first + k, soft)
+        _spread(sets, found.number[s], first + k, soft, soft)
         sheet.force[j] = force
         found.misfit[s, first + k] = sheet.length[j] - soft * force
         yielded = max(yielded, abs(soft * force))
@@ -381,7 +447,7 @@ def _pulls(of, here, claim, s, sheet, found, top, widest):  # type: ignore[no-un
         fine &= stick >= 0.0 and level >= 0.0 and reach >= 0.0
         noise = BOUND.noise * top
         acts = level > 0.0 or force > noise or reach - distance <= BOUND.near * widest
-        found.acts[s, contacts + q] = acts
+        found.acts[s, contacts + q] = CLOSED if acts else OPEN
         soft, spare, misfit_x, misfit_y, slips, near = 0.0, np.inf, 0.0, 0.0, 0.0, 0.0
         if acts:
             near, along, soft, spare = _nearest(law, force, distance, BOUND.corner)
@@ -468,34 +534,72 @@ def _balance(of, here, s, sheet, found):  # type: ignore[no-untyped-def]
                 term, c = of.value[i] * force[j], of.at[i]
                 left[c] -= term
                 sizes[c] += abs(term)
-    found.push[s], residual, total = largest, 0.0, 0.0
+    found.push[s], residual, rounding, total = largest, 0.0, 0.0, 0.0
     for c in range(len(left)):
         found.left[s, c] = left[c]
         most = abs(left[c]) + EPS * sizes[c]
         residual, total = max(residual, most), total + most
+        rounding = max(rounding, EPS * sizes[c])
+    found.rounding[s] = rounding + EPS * residual
     # The largest may have passed over what is not a number.
     return residual if total < np.inf else np.inf
 
 
 @inlined
-def _answered(of, found, group, g, s, residual):  # type: ignore[no-untyped-def]
-    """Largest error of a force [N], way of an element [m] and error of a torque [N·m]."""
+def _passed(of, here, claim, found, group, g, s, rest):  # type: ignore[no-untyped-def]
+    """Largest torque [N·m] and energy [√J] of what carries the load that is left over.
+
+    Row by row, with the compliances of the claim itself.
+
+    Parameters
+    ----------
+    rest : float
+        Load that may be anywhere [N].
+    """
+    torque, energy = 0.0, 0.0
+    for k in range(group.particular.shape[1]):
+        force, soft = 0.0, group.softest[g, k]
+        for c in range(group.particular.shape[2]):
+            force += group.particular[g, k, c] * found.left[s, c]
+        force = abs(force) + group.passed[g, k] * rest
+        if k < len(of.arm):
+            torque = max(torque, force * of.arm[k] * (1.0 + EPS))
+            if found.acts[s, k] == CLOSED or found.acts[s, k] == LIGHT:
+                _, _, most, _ = _flank(of, here, s, k, claim.flank_force[s, k], found.scale[s])
+                soft = most / BOUND.secant
+        energy += soft * group.size[g, k] * force
+    return torque, energy
+
+
+@inlined
+def _answered(of, found, group, g, s, residual, carried):  # type: ignore[no-untyped-def]
+    """Largest error of a force [N], way of an element [m] and error of a torque [N·m].
+
+    Parameters
+    ----------
+    residual : float
+        Load that is left over [N].
+    carried : tuple of float
+        Torque [N·m] and energy [√J] of what carries it.
+    """
     bent, deepest, into, back, blind = 0.0, 0.0, group.into[g], 0.0, 0.0
     for i in range(group.root.shape[1]):
         along = 0.0
         for k in range(group.root.shape[2]):
             along += group.root[g, i, k] * found.misfit[s, k]
         bent += along * along
-    bent = np.sqrt(bent)
+    bent, (own, spent), by_load = np.sqrt(bent), carried, group.by[g, TORQUE, 0]
     for k in range(found.misfit.shape[1]):
         deepest = max(deepest, abs(found.misfit[s, k]))
     if group.carries[g]:
         more, back, blind = _carried(of, found, group, g, s)
         into += more
+        spent += more * residual
         # What a slip should carry along its line comes back as load.
-        residual = residual / (1.0 - back) if back < BOUND.gain else np.inf
+        again = residual * (back / (1.0 - back)) if back < BOUND.gain else np.inf
+        own, spent, residual = own + by_load * again, spent + into * again, residual + again
     gap, push, tilt = deepest + found.width[s], 0.0, 0.0
-    due = bent, into, found.width[s]
+    due = bent + spent, into, found.width[s]
     load, energy = _followed(of, found, group, g, s, residual, push, tilt, due)
     proved = True
     if group.bows[g] > 0.0:
@@ -524,7 +628,7 @@ def _answered(of, found, group, g, s, residual):  # type: ignore[no-untyped-def]
     largest = _by(group, g, FORCE, load, push, energy, gap)
     moved = _by(group, g, WAY, load, push, energy, gap + tilt) + blind
     moved += _pulled_way(found, group, g, s, load, push, energy)
-    torque = _by(group, g, TORQUE, load, push, energy, gap)
+    torque = own + _by(group, g, TORQUE, load - residual, push, energy, gap)
     return largest, moved, torque if proved else np.inf
 
 
@@ -578,8 +682,8 @@ def _carried(of, found, group, g, s):  # type: ignore[no-untyped-def]
 @inlined
 def _followed(of, found, group, g, s, residual, push, tilt, due):  # type: ignore[no-untyped-def]
     """Load left over and energy, with what friction that follows the torque adds to them."""
-    bent, into, width = due
-    energy = bent + into * residual + group.into_by_push[g] * push
+    spent, into, width = due
+    energy = spent + group.into_by_push[g] * push
     energy += group.spread[g] * width + group.spread_of_arcs[g] * tilt
     most, back, rates = 0.0, 0.0, 0.0
     for k in range(len(of.moment)):

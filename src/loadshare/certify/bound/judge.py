@@ -96,7 +96,7 @@ def _bounds(claim: Claim, rigorous: bool, compiled: bool, wanted: Flags | None) 
     relative: Array | None = None
     if compiled and not rigorous and claim.count >= BOUND.many and is_covered(columns):
         relative = relative_bounds(columns, claim.situations, answers)
-        poor = ~(relative <= BOUND.enough)
+        poor = ~(relative <= BOUND.enough_for_many)
         left = np.flatnonzero(poor if wanted is None else poor & wanted)
         if len(left):
             more = _boxes(claim.take(left), rigorous).relative

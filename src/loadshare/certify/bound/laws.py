@@ -47,6 +47,14 @@ class Act:
     """How many there are."""
 
 
+OPEN, CLOSED, LIGHT, ENDLESS = range(4)
+"""How an element acts in large batches.
+
+Not at all; by its law; by that of a light Hertz contact, which is soft; without force, where it
+yields without end.
+"""
+
+
 @dataclass(frozen=True, eq=False)
 class Elements:
     """Elements at S claims.

@@ -1,0 +1,34 @@
+"""Situations and claims as compiled code reads them: tuples of arrays of one kind.
+
+There is one such tuple of each: Numba takes two that are alike for the same, and looks at all types
+anew in every call that it took for the other.
+"""
+
+from __future__ import annotations
+
+from collections import namedtuple
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.train.equilibria import CLAIMED, Equilibria
+from loadshare.train.situations import VARYING, Situations
+
+Array = NDArray[np.float64]
+
+Here = namedtuple("Here", VARYING)  # type: ignore[misc]
+"""What a position brings, one row or one per answer: the arrays of `Situations`."""
+Claim = namedtuple("Claim", CLAIMED)  # type: ignore[misc]
+"""What is claimed: the arrays of `Equilibria`."""
+
+
+def plain(situations: Situations, answers: Equilibria) -> tuple[Any, Any]:
+    """Return situations and claims as tuples."""
+    here = Here(*(_plain(getattr(situations, name)) for name in VARYING))
+    return here, Claim(*(_plain(array) for array in answers.arrays))
+
+
+def _plain(array: Array) -> Array:
+    """Return an array of the one kind that code is compiled for."""
+    return np.require(array, np.float64, ["C", "W"])
