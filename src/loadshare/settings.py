@@ -217,6 +217,8 @@ class Bound(NamedTuple):
     """Compliance, over the tangent's, of a Hertz contact without force: there is no largest."""
     near: float = 1e-6
     """Gap, over the widest one, within which a contact counts among those that may carry."""
+    touching: float = 1e-9
+    """The same in large batches, whose claims are exact to rounding: fewer sets of elements."""
     opposed: float = 1.0 - 1e-6
     """Cosine from which on two arcs are opposed."""
     in_line: float = 1e-12
@@ -250,7 +252,7 @@ class Bound(NamedTuple):
     """Sets whose figures are found at a time, so that memory is bounded."""
     sets: int = 2000
     """Sets of elements of which the statics are kept, so that memory is bounded."""
-    slip_turns: float = 1e-6
+    slip_turns: float = 1e-4
     """Angle by which a slip may turn."""
     slack: float = 1e-6
     """Part of the level within which a force is on it where the place says that something slips."""

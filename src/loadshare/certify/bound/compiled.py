@@ -256,7 +256,7 @@ def _acts(of, here, claim, s, sheet, found, top, deflection, widest):  # type: i
         force = abs(_contact_force(of, claim, s, c))
         faint = force <= BOUND.noise * top and gap[c] > BOUND.apart * deflection
         acts[s, c] = OPEN
-        if not (force == 0.0 or faint) or gap[c] <= BOUND.near * widest:
+        if not (force == 0.0 or faint) or gap[c] <= BOUND.touching * widest:
             acts[s, c] = CLOSED
             is_light = c < flanks and force < BOUND.light * found.scale[s]
             if is_light and here.hertz[rc, of.mesh[c]] > 0.0:
