@@ -36,13 +36,37 @@ class Statics:
 
     @classmethod
     def of(cls, directions: Array) -> Statics:
-        """Return the statics of some rows of A."""
-        left, sizes, right = np.linalg.svd(directions, full_matrices=True)
-        rank = int((sizes > BOUND.rank * sizes.max(initial=0.0)).sum())
-        particular = left[:, :rank] / sizes[:rank] @ right[:rank]
-        return cls(directions, particular, left[:, rank:], right[rank:].T)
+        """Return the statics of some rows of A.
+
+        With Q R = Aᵀ, columns in the order of their pivots, and Z T the transpose of the rows of R
+        that are not zero: a tenth of the work of singular values.
+        """
+        from scipy.linalg import lapack
+
+        count, n = directions.shape
+        if not directions.any():
+            return cls(directions, np.zeros((count, n)), np.eye(count), np.eye(n))
+        factors, order, scales, *_ = lapack.dgeqp3(directions.T)
+        sizes = np.abs(np.diagonal(factors))
+        rank = int((sizes > BOUND.rank * sizes.max()).sum())
+        q = _orthogonal(factors[:, :n], scales, n)
+        rest, scales, *_ = lapack.dgeqrf(np.triu(factors[:rank]).T)
+        z = np.empty((count, count))
+        z[order - 1] = _orthogonal(rest, scales, count)
+        # Aᵀ P = 1 on what they can carry: Tᵀ Zᵀ P = Qᵀ.
+        solved, _ = lapack.dtrtrs(rest[:rank], q[:, :rank].T, trans=1)
+        return cls(directions, z[:, :rank] @ solved, z[:, rank:], q[:, rank:])
 
     @cached_property
     def loose(self) -> NDArray[np.bool_]:
         """Coordinates that a move shifts, shape (n,)."""
         return np.asarray(np.abs(self.moves).max(axis=1, initial=0.0) > BOUND.loose)
+
+
+def _orthogonal(factors: Array, scales: Array, size: int) -> Array:
+    """Return the square orthogonal matrix of a factorisation by reflections."""
+    from scipy.linalg import lapack
+
+    reflections = np.zeros((size, size), order="F")
+    reflections[:, : factors.shape[1]] = factors
+    return np.asarray(lapack.dorgqr(reflections, scales)[0])
