@@ -15,6 +15,7 @@ from benchmarks.reference import NoReference, reference
 from benchmarks.stress.families import FAMILIES
 from loadshare.certify import certify
 from loadshare.certify.bound import Columns, bound_of, bounds
+from loadshare.certify.bound.statics import Statics
 from loadshare.certify.bound.twofold import power_two_thirds, product, two_product, two_sum
 from loadshare.job.machine import Machine, engine_named
 from loadshare.train import build_train
@@ -185,3 +186,17 @@ def test_not_a_number_is_bounded_by_nothing() -> None:
     train, answer = stiff_split()
     wrong = replace(answer, flank_force=dict.fromkeys(answer.flank_force, float("nan")))
     assert bound_of(train, wrong).relative == float("inf")
+
+
+def test_statics_are_those_of_singular_values() -> None:
+    """Of rows of any rank, with no rows, and of rows that are all zero."""
+    rng = np.random.default_rng(4)
+    for count, n, rank in ((9, 6, 6), (9, 6, 4), (5, 8, 5), (5, 8, 2), (4, 4, 0), (0, 3, 0)):
+        directions = rng.normal(size=(count, rank)) @ rng.normal(size=(rank, n))
+        found = Statics.of(directions)
+        left, _, right = np.linalg.svd(directions, full_matrices=True)
+        inverse = np.linalg.pinv(directions.T, rcond=1e-11)
+        np.testing.assert_allclose(found.particular, inverse, atol=1e-12)
+        for told, true in ((found.redundant, left[:, rank:]), (found.moves, right[rank:].T)):
+            assert told.shape == true.shape
+            np.testing.assert_allclose(told @ told.T, true @ true.T, atol=1e-12)

@@ -29,7 +29,9 @@ from numpy.typing import NDArray
 
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
-from loadshare.certify.bound.laws import Act, Codes, Elements, elements
+from loadshare.certify.bound.laws import Codes, Elements, elements
+from loadshare.certify.bound.response import Part, Response, yielding
+from loadshare.certify.bound.signs import doubts
 from loadshare.settings import BOUND
 
 Array = NDArray[np.float64]
@@ -115,7 +117,7 @@ def _boxes(claim: Claim, act: Codes, scale: Array, verge: Flags, softest: float)
     )
     for number, sample in enumerate(first):
         rows = np.flatnonzero(group.reshape(-1) == number)
-        part = _Part(claim, found, rows, np.flatnonzero(found.active[sample]), left, rounding)
+        part = _Enclosure(claim, found, rows, np.flatnonzero(found.active[sample]), left, rounding)
         force, coordinate = part.solve(scale[rows])
         # What goes along a free move may end at a contact that does not act.
         box.force[rows] = aside(claim, found, rows) + part.stray[:, None]
@@ -138,14 +140,6 @@ def rounding_of(force: Array, scale: Array) -> Array:
     """
     largest = np.abs(force).max(axis=1, initial=0.0)
     return np.asarray(np.maximum(BOUND.balanced * scale, BOUND.rounded * largest))
-
-
-def _yielding(soft: Array, skew: Array, at: NDArray[np.intp], force: Array) -> Array:
-    """D F: compliances, and those off the diagonal of the pairs that begin at some columns."""
-    moved = soft * force
-    moved[..., at] += skew * force[..., at + 1]
-    moved[..., at + 1] += skew * force[..., at]
-    return np.asarray(moved)
 
 
 def aside(claim: Claim, found: Elements, rows: NDArray[np.intp] | slice) -> Array:
@@ -180,159 +174,8 @@ def put_aside(columns: Columns, spare: Array, torques: Array) -> Array:
     return np.asarray(pushed @ np.abs(columns.matrix.high[columns.radials]))
 
 
-class _Response:
-    """How forces and coordinates answer a load [N] and a gap [m], with one claim's compliances.
-
-    Friction that follows a torque T is part of the answer: with levels B per torque, rooms C per
-    torque and T = M F of the response without them, the torque that comes is
-    (1 + M P Aᵀ B − M G C)⁻¹ T, G the forces by gaps.
-
-    Parameters
-    ----------
-    part : _Part
-    row : int
-        The claim.
-    """
-
-    def __init__(self, part: _Part, row: int) -> None:
-        known = part.statics
-        p, n = known.particular, known.redundant
-        self.soft, self.skew = part.soft[row], part.skew[row]
-        self.level, self.room = part.level[row], part.room[row]
-
-        def bent(forces: Array) -> Array:
-            return _yielding(self.soft, self.skew, part.at, forces.T).T
-
-        m = n.T @ bent(n)
-        if not np.isfinite(m).all():
-            m = np.zeros_like(m)
-        values, vectors = np.linalg.eigh(0.5 * (m + m.T))
-        # A self-stress among rigid parts has no compliance: it is left as it is claimed.
-        kept = np.abs(values) > BOUND.singular * np.abs(values).max(initial=0.0)
-        basis = n @ vectors[:, kept]
-        free = n @ vectors[:, ~kept]
-        self.shared = np.where(np.abs(free).max(axis=1, initial=0.0) > BOUND.shared, np.inf, 0.0)
-        by_gap = basis / values[kept] @ basis.T
-        by_load = p - by_gap @ bent(p)
-        self.force_by = by_load, by_gap
-        self.moved_by = p.T @ bent(by_load), p.T @ (bent(by_gap) - np.eye(len(p)))
-        exact = vectors[:, kept].T @ m @ vectors[:, kept] / values[kept]
-        self.defect = float(np.abs(exact - np.eye(int(kept.sum()))).sum(axis=1).max(initial=0.0))
-        self._follow(part)
-        self._sizes = tuple(np.abs(v) for v in (*self.force_by, *self.moved_by))
-
-    def _follow(self, part: _Part) -> None:
-        """Let levels and rooms follow the torques over their splines."""
-        twist, unit = part.twist, np.eye(len(part.twist))
-        by = [twist @ v for v in self.force_by]
-        sizes = [np.abs(twist) @ np.abs(v) for v in self.force_by]
-        back = part.spread(self.level), part.spread(self.room)
-        pushed = part.statics.directions.T @ back[0]
-        around = unit + by[0] @ pushed - by[1] @ back[1]
-        inverse = np.linalg.pinv(around) if np.isfinite(around).all() else np.zeros_like(unit)
-        wrong = np.abs(inverse @ around - unit).sum(axis=1).max(initial=0.0)
-        self.defect = float(np.maximum(self.defect, wrong))
-        torque_by = inverse @ by[0], inverse @ by[1]
-
-        def followed(ways: tuple[Array, Array]) -> tuple[Array, Array]:
-            more = ways[1] @ back[1] - ways[0] @ pushed
-            return ways[0] + more @ torque_by[0], ways[1] + more @ torque_by[1]
-
-        elastic, self.moved_by = followed(self.force_by), followed(self.moved_by)
-        self.force_by = (
-            elastic[0] + back[0] @ torque_by[0],
-            elastic[1] + back[0] @ torque_by[1],
-        )
-        # What cancels over a spline is known to the rounding of its parts.
-        spread = EPS * len(part.columns) + min(self.defect, 1.0)
-        self._torques = tuple(
-            np.abs(v) + spread * np.abs(inverse) @ size
-            for v, size in zip(torque_by, sizes, strict=True)
-        )
-
-    def step(self, load: Array, gap: Array) -> tuple[Array, Array]:
-        """Forces and coordinates, of S loads and gaps."""
-        forces, moved = self.force_by, self.moved_by
-        return load @ forces[0].T + gap @ forces[1].T, load @ moved[0].T + gap @ moved[1].T
-
-    def reach(self, load: Array, gap: Array) -> tuple[Array, Array, Array]:
-        """Largest forces, coordinates and torques over splines under loads and gaps of sizes."""
-        f, g, x, y = self._sizes
-        t, u = self._torques
-        enough = 1.0 / (1.0 - self.defect) if self.defect < 0.5 else np.inf
-        return (
-            enough * (load @ f.T + gap @ g.T),
-            enough * (load @ x.T + gap @ y.T),
-            enough * (load @ t.T + gap @ u.T),
-        )
-
-
-class _Part:
-    """Claims of which the same columns act."""
-
-    def __init__(
-        self,
-        claim: Claim,
-        found: Elements,
-        rows: NDArray[np.intp],
-        columns: NDArray[np.intp],
-        left: Array,
-        rounding: Array,
-    ) -> None:
-        self.claim, self.found, self.rows, self.columns = claim, found, rows, columns
-        self.statics = claim.columns.statics(columns)
-        pick = np.ix_(rows, columns)
-        self.soft, self.misfit, self.width = found.soft[pick], found.misfit[pick], found.width[pick]
-        self.left, self.rounding = left[rows], rounding[rows]
-        moves = self.statics.moves
-        # Balance along moves that nothing resists is the case's own; only rounding may be left.
-        self.stray = np.abs(self.left @ moves).max(axis=1, initial=0.0)
-        if moves.size:
-            self.stray += EPS * np.abs(found.force[rows]).max(axis=1, initial=0.0)
-        self.left = self.left - self.left @ moves @ moves.T
-        first = claim.columns.first_pair
-        at = np.searchsorted(columns, np.arange(first, found.active.shape[1], 2))
-        self.pairs = np.flatnonzero(found.active[rows[0], first::2])
-        self.at = at[self.pairs]
-        self.skew = found.skew[np.ix_(rows, self.pairs)]
-        self._set_following()
-        self.shared = np.zeros(len(columns))
-
-    def _set_following(self) -> None:
-        """Find the torques over splines [N·m], and what follows them.
-
-        Along the line of each pair a level [1/m] and a room [1/N] per torque, (rows, pairs, 2);
-        where next to no torque decides the sense nothing is said to follow. Where nothing follows,
-        no torques are looked at.
-        """
-        columns, found, where = self.claim.columns, self.found, np.ix_(self.rows, self.pairs)
-        rates = found.follows[where], found.shrinks[where], found.spare[self.rows]
-        splines = len(columns.moments) if any(v.any() for v in rates) else 0
-        flanks = self.columns[self.columns < columns.flanks.stop]
-        self.twist = np.zeros((splines, len(self.columns)))
-        self.twist[:, : len(flanks)] = columns.moments[:splines, flanks]
-        self.splined = columns.splined[self.pairs, :splines]
-        claimed = found.force[np.ix_(self.rows, self.columns)]
-        torque = claimed @ self.twist.T
-        sure = np.abs(torque) > BOUND.light * (np.abs(claimed) @ np.abs(self.twist).T)
-        self.torque = np.where(sure, np.abs(torque), 0.0)
-        sense = np.where(sure, np.sign(torque), 0.0) @ self.splined.T
-        line = found.line[where] * sense[:, :, None]
-        self.level, self.room = (v[:, :, None] * line for v in rates[:2])
-
-    def spread(self, pairs: Array) -> Array:
-        """Put vectors of the pairs, (pairs, 2), in their columns, by spline: (columns, splines)."""
-        spread = np.zeros((len(self.columns), len(self.twist)))
-        for k in (0, 1):
-            spread[self.at + k] = pairs[:, k, None] * self.splined
-        return spread
-
-    def _per_torque(self, vectors: Array, torque: Array) -> Array:
-        """Vectors of the pairs per torque, (S, pairs, 2), under torques, in their columns."""
-        total = np.zeros((len(torque), len(self.columns)))
-        for k in (0, 1):
-            total[:, self.at + k] = vectors[:, :, k] * (torque @ self.splined.T)
-        return total
+class _Enclosure(Part):
+    """Claims of which the same columns act, and the boxes that hold their errors."""
 
     def solve(self, scale: Array) -> tuple[Array, Array]:
         """Largest errors of the forces of these columns and of the coordinates.
@@ -348,22 +191,22 @@ class _Part:
             if not len(left):
                 break
             middle = int(left[len(left) // 2])
-            response = _Response(self, middle)
+            response = Response(self, middle)
             force[left], coordinate[left] = self._errors(response, left)
             self.shared = np.maximum(self.shared, response.shared)
             left = left[(left != middle) & np.isinf(force[left]).any(axis=1)]
         return force, coordinate
 
-    def _errors(self, response: _Response, rows: NDArray[np.intp]) -> tuple[Array, Array]:
+    def _errors(self, response: Response, rows: NDArray[np.intp]) -> tuple[Array, Array]:
         """Errors of some claims; infinite where they are not proved."""
         known, size = self.statics, len(self.columns)
         soft, skew, misfit = self.soft[rows], self.skew[rows], self.misfit[rows]
         force, moved = response.step(self.left[rows], misfit)
         # What the step leaves of the linear equations, and the rounding of this very figure.
         torque = force @ self.twist.T
-        followed = self._per_torque(self.level[rows], torque)
-        yielded = _yielding(soft, skew, self.at, force - followed)
-        misfit = misfit + self._per_torque(self.room[rows], torque)
+        followed = self.per_torque(self.level[rows], torque)
+        yielded = yielding(soft, skew, self.at, force - followed)
+        misfit = misfit + self.per_torque(self.room[rows], torque)
         over = np.abs(self.left[rows] - force @ known.directions) + self.rounding[rows]
         over += EPS * size * (np.abs(force) @ np.abs(known.directions))
         # What goes along a free move may end at any contact, and push what that joins.
@@ -371,7 +214,7 @@ class _Part:
         apart = np.abs(misfit + moved @ known.directions.T - yielded) + self.width[rows]
         apart += EPS * size * (np.abs(moved) @ np.abs(known.directions).T + np.abs(misfit))
         sizes = np.abs(force) + np.abs(followed)
-        apart += EPS * size * _yielding(np.abs(soft), np.abs(skew), self.at, sizes)
+        apart += EPS * size * yielding(np.abs(soft), np.abs(skew), self.at, sizes)
         unlike = tuple(
             np.abs(one - other)
             for one, other in (
@@ -393,10 +236,10 @@ class _Part:
             )
             ends = tuple(b + s[left] for b, s in zip(boxes, steps, strict=True))
             push, gap = self._left_out(rows[left], *ends)
-            elastic = boxes[0] + self._per_torque(levels[left], boxes[2])
-            gap += _yielding(unlike[0][left], unlike[1][left], self.at, elastic)
-            push += self._per_torque(unlike[2][left], boxes[2])
-            gap += self._per_torque(unlike[3][left], boxes[2])
+            elastic = boxes[0] + self.per_torque(levels[left], boxes[2])
+            gap += yielding(unlike[0][left], unlike[1][left], self.at, elastic)
+            push += self.per_torque(unlike[2][left], boxes[2])
+            gap += self.per_torque(unlike[3][left], boxes[2])
             load = over[left] + push @ np.abs(known.directions)
             if len(self.twist):
                 load += put_aside(
@@ -468,100 +311,3 @@ class _Part:
         # Errors without a bound tell nothing of the elements.
         bounded = np.asarray(np.isfinite(coordinate).all(axis=1))[:, None]
         return doubtful & bounded, above & bounded
-
-
-def doubts(
-    claim: Claim, found: Elements, rows: NDArray[np.intp], errors: Array, moved: Array
-) -> tuple[Flags, Flags]:
-    """Elements whose force or gap may change its sign within errors, shape (rows, elements).
-
-    Parameters
-    ----------
-    claim : Claim
-    found : Elements
-    rows : ndarray of int
-        Claims.
-    errors, moved : ndarray, shape (rows, m)
-        Errors of the forces [N] and of the lengths [m] of all columns.
-
-    Returns
-    -------
-    doubtful, above : ndarray of bool
-        As in `Box`.
-    """
-    columns = claim.columns
-    pick = slice(None) if len(rows) == claim.count else rows
-    act = found.act[pick]
-    length = claim.lengths[0].value[pick]
-    doubtful, above = np.zeros(act.shape, bool), np.zeros(act.shape, bool)
-    scalar = columns.contacts
-    acting = found.force[pick][:, scalar] > errors[:, scalar]
-    away = -length[:, scalar] > moved[:, scalar] + found.width[pick][:, scalar]
-    closed = act[:, : len(scalar)] != Act.OPEN
-    doubtful[:, : len(scalar)] = ~np.where(closed, acting, away)
-    if columns.pairs:
-        first = columns.first_pair
-        error, way = (
-            np.sqrt((v[:, first:].reshape(len(v), -1, 2) ** 2).sum(axis=2)) for v in (errors, moved)
-        )
-        level = _level_errors(claim, errors, pick)
-        low, high = _room(claim, found, pick, act[:, len(scalar) :], error, way, level)
-        doubtful[:, len(scalar) :] = ~(low & high)
-        above[:, len(scalar) :] = ~high
-    return doubtful, above
-
-
-def _level_errors(claim: Claim, errors: Array, rows: NDArray[np.intp] | slice) -> Array:
-    """Errors of the levels of splines that follow the torque, shape (rows, radials) [N]."""
-    columns, train = claim.columns, claim.columns.train
-    found = np.zeros((len(errors), len(claim.radial_gears)))
-    torque = errors[:, columns.flanks] @ np.abs(columns.moments).T
-    for q in range(len(train.rounds), found.shape[1]):
-        k = (q - len(train.rounds)) % len(train.splines)
-        spline = claim.situations.spline[:, k]
-        spline = spline[rows] if len(spline) > 1 else spline
-        rate, follows = np.abs(spline[:, 4]), np.isnan(spline[:, 3])
-        found[:, q] = np.where(follows, np.where(follows, rate, 0.0) * torque[:, k], 0.0)
-    return found
-
-
-def _room(
-    claim: Claim,
-    found: Elements,
-    rows: NDArray[np.intp] | slice,
-    act: Codes,
-    error: Array,
-    moved: Array,
-    level_error: Array,
-) -> tuple[Flags, Flags]:
-    """Whether each arc and radial element stays above and below the ends of its piece."""
-    arcs = claim.arcs[1].shape[1]
-    size, distance = found.size[rows], found.distance[rows]
-    low, high = np.ones(act.shape, bool), np.ones(act.shape, bool)
-    gap = claim.arcs[1][rows]
-    low[:, :arcs] = np.where(
-        act[:, :arcs] != Act.OPEN, size[:, :arcs] > error[:, :arcs], gap > moved[:, :arcs]
-    )
-    stiffness, stick, level, reach, _ = claim.graphs[rows].transpose(2, 0, 1)
-    part, acts = slice(arcs, None), act[:, arcs:]
-    size, distance, error, moved = (v[:, part] for v in (size, distance, error, moved))
-    ends = np.isfinite(stick) & (stiffness > 0.0)
-    stick_error = np.where(ends, level_error / np.where(ends, stiffness, 1.0), 0.0)
-    end = np.where(np.isinf(stick), np.inf, np.where(stick > 0.0, stiffness * stick, 0.0))
-    is_low = {
-        Act.STEP: size - error > end,
-        Act.SLIP: distance - moved > stick + stick_error,
-        Act.STOP: size - error > level + level_error,
-    }
-    is_high = {
-        Act.OPEN: distance + moved < reach,
-        Act.STICK: np.isinf(stick) | (reach == 0.0) | (size + error < end - level_error),
-        Act.PINNED: (level == 0.0) | (size + error < level - level_error),
-        Act.STEP: size + error < level - level_error,
-        Act.SLIP: distance + moved < reach,
-    }
-    for kind, held in is_low.items():
-        low[:, part] &= (acts != kind) | held
-    for kind, held in is_high.items():
-        high[:, part] &= (acts != kind) | held
-    return low, high

@@ -23,9 +23,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.certify.bound.bound import Box, aside, doubts, put_aside, rounding_of
+from loadshare.certify.bound.bound import Box, aside, put_aside, rounding_of
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.laws import Act, Codes, Elements, elements
+from loadshare.certify.bound.signs import doubts
 from loadshare.certify.bound.statics import Statics
 from loadshare.settings import BOUND
 

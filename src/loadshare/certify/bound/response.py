@@ -1,0 +1,178 @@
+"""How forces and coordinates of a set of columns answer loads and gaps, to first order.
+
+For the claims of which the same columns act. Source: formulation, section 16.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.certify.bound.claim import EPS, Claim
+from loadshare.certify.bound.laws import Elements
+from loadshare.settings import BOUND
+
+Array = NDArray[np.float64]
+
+
+class Part:
+    """Claims of which the same columns act."""
+
+    def __init__(
+        self,
+        claim: Claim,
+        found: Elements,
+        rows: NDArray[np.intp],
+        columns: NDArray[np.intp],
+        left: Array,
+        rounding: Array,
+    ) -> None:
+        self.claim, self.found, self.rows, self.columns = claim, found, rows, columns
+        self.statics = claim.columns.statics(columns)
+        pick = np.ix_(rows, columns)
+        self.soft, self.misfit, self.width = found.soft[pick], found.misfit[pick], found.width[pick]
+        self.left, self.rounding = left[rows], rounding[rows]
+        moves = self.statics.moves
+        # Balance along moves that nothing resists is the case's own; only rounding may be left.
+        self.stray = np.abs(self.left @ moves).max(axis=1, initial=0.0)
+        if moves.size:
+            self.stray += EPS * np.abs(found.force[rows]).max(axis=1, initial=0.0)
+        self.left = self.left - self.left @ moves @ moves.T
+        first = claim.columns.first_pair
+        at = np.searchsorted(columns, np.arange(first, found.active.shape[1], 2))
+        self.pairs = np.flatnonzero(found.active[rows[0], first::2])
+        self.at = at[self.pairs]
+        self.skew = found.skew[np.ix_(rows, self.pairs)]
+        self._set_following()
+        self.shared = np.zeros(len(columns))
+
+    def _set_following(self) -> None:
+        """Find the torques over splines [N·m], and what follows them.
+
+        Along the line of each pair a level [1/m] and a room [1/N] per torque, (rows, pairs, 2);
+        where next to no torque decides the sense nothing is said to follow. Where nothing follows,
+        no torques are looked at.
+        """
+        columns, found, where = self.claim.columns, self.found, np.ix_(self.rows, self.pairs)
+        rates = found.follows[where], found.shrinks[where], found.spare[self.rows]
+        splines = len(columns.moments) if any(v.any() for v in rates) else 0
+        flanks = self.columns[self.columns < columns.flanks.stop]
+        self.twist = np.zeros((splines, len(self.columns)))
+        self.twist[:, : len(flanks)] = columns.moments[:splines, flanks]
+        self.splined = columns.splined[self.pairs, :splines]
+        claimed = found.force[np.ix_(self.rows, self.columns)]
+        torque = claimed @ self.twist.T
+        sure = np.abs(torque) > BOUND.light * (np.abs(claimed) @ np.abs(self.twist).T)
+        self.torque = np.where(sure, np.abs(torque), 0.0)
+        sense = np.where(sure, np.sign(torque), 0.0) @ self.splined.T
+        line = found.line[where] * sense[:, :, None]
+        self.level, self.room = (v[:, :, None] * line for v in rates[:2])
+
+    def spread(self, pairs: Array) -> Array:
+        """Put vectors of the pairs, (pairs, 2), in their columns, by spline: (columns, splines)."""
+        spread = np.zeros((len(self.columns), len(self.twist)))
+        for k in (0, 1):
+            spread[self.at + k] = pairs[:, k, None] * self.splined
+        return spread
+
+    def per_torque(self, vectors: Array, torque: Array) -> Array:
+        """Vectors of the pairs per torque, (S, pairs, 2), under torques, in their columns."""
+        total = np.zeros((len(torque), len(self.columns)))
+        for k in (0, 1):
+            total[:, self.at + k] = vectors[:, :, k] * (torque @ self.splined.T)
+        return total
+
+
+def yielding(soft: Array, skew: Array, at: NDArray[np.intp], force: Array) -> Array:
+    """D F: compliances, and those off the diagonal of the pairs that begin at some columns."""
+    moved = soft * force
+    moved[..., at] += skew * force[..., at + 1]
+    moved[..., at + 1] += skew * force[..., at]
+    return np.asarray(moved)
+
+
+class Response:
+    """How forces and coordinates answer a load [N] and a gap [m], with one claim's compliances.
+
+    Friction that follows a torque T is part of the answer: with levels B per torque, rooms C per
+    torque and T = M F of the response without them, the torque that comes is
+    (1 + M P Aᵀ B − M G C)⁻¹ T, G the forces by gaps.
+
+    Parameters
+    ----------
+    part : Part
+    row : int
+        The claim.
+    """
+
+    def __init__(self, part: Part, row: int) -> None:
+        known = part.statics
+        p, n = known.particular, known.redundant
+        self.soft, self.skew = part.soft[row], part.skew[row]
+        self.level, self.room = part.level[row], part.room[row]
+
+        def bent(forces: Array) -> Array:
+            return yielding(self.soft, self.skew, part.at, forces.T).T
+
+        m = n.T @ bent(n)
+        if not np.isfinite(m).all():
+            m = np.zeros_like(m)
+        values, vectors = np.linalg.eigh(0.5 * (m + m.T))
+        # A self-stress among rigid parts has no compliance: it is left as it is claimed.
+        kept = np.abs(values) > BOUND.singular * np.abs(values).max(initial=0.0)
+        basis = n @ vectors[:, kept]
+        free = n @ vectors[:, ~kept]
+        self.shared = np.where(np.abs(free).max(axis=1, initial=0.0) > BOUND.shared, np.inf, 0.0)
+        by_gap = basis / values[kept] @ basis.T
+        by_load = p - by_gap @ bent(p)
+        self.force_by = by_load, by_gap
+        self.moved_by = p.T @ bent(by_load), p.T @ (bent(by_gap) - np.eye(len(p)))
+        exact = vectors[:, kept].T @ m @ vectors[:, kept] / values[kept]
+        self.defect = float(np.abs(exact - np.eye(int(kept.sum()))).sum(axis=1).max(initial=0.0))
+        self._follow(part)
+        self._sizes = tuple(np.abs(v) for v in (*self.force_by, *self.moved_by))
+
+    def _follow(self, part: Part) -> None:
+        """Let levels and rooms follow the torques over their splines."""
+        twist, unit = part.twist, np.eye(len(part.twist))
+        by = [twist @ v for v in self.force_by]
+        sizes = [np.abs(twist) @ np.abs(v) for v in self.force_by]
+        back = part.spread(self.level), part.spread(self.room)
+        pushed = part.statics.directions.T @ back[0]
+        around = unit + by[0] @ pushed - by[1] @ back[1]
+        inverse = np.linalg.pinv(around) if np.isfinite(around).all() else np.zeros_like(unit)
+        wrong = np.abs(inverse @ around - unit).sum(axis=1).max(initial=0.0)
+        self.defect = float(np.maximum(self.defect, wrong))
+        torque_by = inverse @ by[0], inverse @ by[1]
+
+        def followed(ways: tuple[Array, Array]) -> tuple[Array, Array]:
+            more = ways[1] @ back[1] - ways[0] @ pushed
+            return ways[0] + more @ torque_by[0], ways[1] + more @ torque_by[1]
+
+        elastic, self.moved_by = followed(self.force_by), followed(self.moved_by)
+        self.force_by = (
+            elastic[0] + back[0] @ torque_by[0],
+            elastic[1] + back[0] @ torque_by[1],
+        )
+        # What cancels over a spline is known to the rounding of its parts.
+        spread = EPS * len(part.columns) + min(self.defect, 1.0)
+        self._torques = tuple(
+            np.abs(v) + spread * np.abs(inverse) @ size
+            for v, size in zip(torque_by, sizes, strict=True)
+        )
+
+    def step(self, load: Array, gap: Array) -> tuple[Array, Array]:
+        """Forces and coordinates, of S loads and gaps."""
+        forces, moved = self.force_by, self.moved_by
+        return load @ forces[0].T + gap @ forces[1].T, load @ moved[0].T + gap @ moved[1].T
+
+    def reach(self, load: Array, gap: Array) -> tuple[Array, Array, Array]:
+        """Largest forces, coordinates and torques over splines under loads and gaps of sizes."""
+        f, g, x, y = self._sizes
+        t, u = self._torques
+        enough = 1.0 / (1.0 - self.defect) if self.defect < 0.5 else np.inf
+        return (
+            enough * (load @ f.T + gap @ g.T),
+            enough * (load @ x.T + gap @ y.T),
+            enough * (load @ t.T + gap @ u.T),
+        )
