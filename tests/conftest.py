@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from loadshare.job import ladder
+from loadshare.job import hot
 from loadshare.job.machine import engine_named
 
 # Mesh laws that tests compute stay out of the user's cache.
@@ -17,5 +17,5 @@ os.environ["LOADSHARE_CACHE"] = str(Path(__file__).parent.parent / ".pytest_cach
 def numpy_alone() -> Iterator[None]:
     """Which kernel is at hand depends on what ran before: who asks for none here has NumPy's."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(ladder, "engine_at_hand", engine_named)
+        patch.setattr(hot, "engine_at_hand", engine_named)
         yield

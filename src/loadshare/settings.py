@@ -578,6 +578,9 @@ class Job(NamedTuple):
     generous: float = 100.0
     """Extra clearance at which the path begins, in deflections of the case: no arc carries
     there."""
+    small: float = 0.9
+    """Part of what is refused below which displacements, measured of many answers at once, are not
+    measured one by one; the two ways differ by round-off."""
     same: float = 1e-6
     """Largest difference of flank forces, in loads, of answers that are the same."""
 

@@ -17,8 +17,9 @@ from loadshare.certify import certify
 from loadshare.certify.residuals import turned
 from loadshare.contact.plan import Role
 from loadshare.errors import Refused
-from loadshare.job import ladder
-from loadshare.job.ladder import HOT, SEARCHED, climb, climb_all, hot_answers, rungs
+from loadshare.job import hot, ladder
+from loadshare.job.hot import HOT, SEARCHED, hot_answers
+from loadshare.job.ladder import climb, climb_all, rungs
 from loadshare.job.machine import Machine
 from loadshare.scene import assemble
 from loadshare.settings import CERTIFY, JOB
@@ -41,7 +42,7 @@ CASES = {
 @pytest.fixture(autouse=True)
 def by_numpy(monkeypatch):
     """The engine that tests put another in place of, whatever was compiled before."""
-    monkeypatch.setattr(ladder, "engine_at_hand", lambda _name, _count: vectorised.settle)
+    monkeypatch.setattr(hot, "engine_at_hand", lambda _name, _count: vectorised.settle)
 
 
 def failing(elements, data, basis, code, rows, state, one_only):

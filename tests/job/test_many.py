@@ -18,7 +18,7 @@ import loadshare as ls
 from benchmarks import families
 from loadshare.errors import CaseError
 from loadshare.job import many
-from loadshare.job.ladder import HOT
+from loadshare.job.hot import HOT
 from loadshare.job.many import KEEP, solve_blocks
 from loadshare.settings import CERTIFY, JOB
 from loadshare.train.samples import samples_of

@@ -6,6 +6,7 @@ runs thousands, this test the first of another seed.
 
 import dataclasses
 from collections.abc import Iterable
+from types import SimpleNamespace
 
 import pytest
 
@@ -15,7 +16,7 @@ from benchmarks.random_trains.draw import LAYOUTS, draw
 from benchmarks.random_trains.judge import AGREES, judged
 from benchmarks.random_trains.run import PROBLEMS, STRESS, failures, one, run
 from benchmarks.random_trains.table import text
-from loadshare.job.ladder import HOT, SEARCHED
+from loadshare.job.hot import HOT, SEARCHED
 
 SEED = 7
 
@@ -120,8 +121,11 @@ def test_a_bound_that_is_too_small_is_found(monkeypatch, part):
         first = result.positions[0]
         none = dict.fromkeys(getattr(first.certificate.bound, part), 0.0)
         bound = dataclasses.replace(first.certificate.bound, **{part: none})
-        certificate = dataclasses.replace(first.certificate, bound=bound)
-        false = dataclasses.replace(first, certificate=certificate)
+        certificate = dataclasses.replace(first.certificate, prove=lambda: bound)
+        answer = SimpleNamespace(
+            equilibrium=first.equilibrium, certificate=certificate, effort=first.effort
+        )
+        false = dataclasses.replace(first, answer=answer)
         return dataclasses.replace(result, positions=(false, *result.positions[1:]))
 
     monkeypatch.setattr(ls, "solve", lying)

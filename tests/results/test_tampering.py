@@ -8,6 +8,7 @@ import math
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -244,8 +245,8 @@ def test_a_meaningless_equilibrium_is_refused_on_loading_too(small):
     certificate = certify(train, found)
     assert certificate.passed
     p = small.positions[0]
-    claim = claim_of(train, found)
-    position = position_of(train, 1, claim, certificate, found.undetermined, p.effort)
+    judged = SimpleNamespace(equilibrium=found, certificate=certificate, effort=p.effort)
+    position = position_of(train, 1, found.flank_force, judged)
     stamp = replace(small.stamp, case=soft.name, case_hash=soft.hash, positions=(1,))
     made = result_from(soft, train, [position], stamp)
     assert "the displacements are too large for the geometry" in told(made.to_json())

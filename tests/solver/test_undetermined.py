@@ -17,7 +17,7 @@ from tests.support import answer, coordinates
 import loadshare as ls
 from benchmarks import families
 from loadshare.certify import certify
-from loadshare.job.ladder import hot_answers
+from loadshare.job.hot import hot_answers
 from loadshare.job.machine import Machine
 from loadshare.scene import assemble
 from loadshare.settings import CERTIFY

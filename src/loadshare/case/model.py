@@ -44,6 +44,7 @@ class Case(Content):
     """
 
     _name: str = PrivateAttr()
+    _hash: str | None = PrivateAttr(default=None)
 
     def __init__(
         self,
@@ -71,9 +72,11 @@ class Case(Content):
     @property
     def hash(self) -> str:
         """SHA-256 of what bears on the mechanics: the values in SI units, no titles and notes."""
-        content = self.model_dump(mode="json", by_alias=True, exclude=set(ABOUT), context="SI")
-        text = json.dumps(content, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
-        return hashlib.sha256(text.encode()).hexdigest()
+        if self._hash is None:
+            content = self.model_dump(mode="json", by_alias=True, exclude=set(ABOUT), context="SI")
+            text = json.dumps(content, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
+            self._hash = hashlib.sha256(text.encode()).hexdigest()
+        return self._hash
 
     def to_dict(self) -> dict[str, Any]:
         """Return the case as plain data, with every value as it was written.

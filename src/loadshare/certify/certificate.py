@@ -7,10 +7,9 @@ programme and no row enters it: a slip in any of them shows here.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TypeVar
 
 import numpy as np
 
@@ -22,6 +21,7 @@ from loadshare.certify.pulls import fault_of
 from loadshare.certify.residuals import FIGURES, RESIDUALS, scales, worst_of_one
 from loadshare.certify.state import State
 from loadshare.certify.tolerance import checked_tolerance
+from loadshare.later import Later, known
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
@@ -50,7 +50,7 @@ class Residual:
     where: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Certificate:
     """Verdict on an answer.
 
@@ -62,19 +62,37 @@ class Certificate:
     floats : mapping of gear to FloatState
     tolerance : float
         Largest scaled residual allowed.
-    load, deflection : float
-        Scales [N], [m].
-    bound : Bound
-        How far every torque, force and displacement is from the exact equilibrium, at most.
+    scales : mapping of str to float
+        Of the case: its load by "N", its deflection by "m", and their product by "J".
+    proved : float
+        Largest distance of a torque from the exact one, over the largest torque, that was proved.
+    prove : callable
+        Returns the bounds on everything.
     """
 
     residuals: Mapping[str, Residual]
     floats: Mapping[str, FloatState]
     tolerance: float
-    load: float
-    deflection: float
+    scales: Mapping[str, float]
     # Many claims are bounded another way than one: both bounds hold, and results are the same.
-    bound: Bound = field(compare=False)
+    proved: float = field(compare=False)
+    prove: Callable[[], Bound] = field(compare=False, repr=False)
+
+    @property
+    def load(self) -> float:
+        """Load of the case [N]."""
+        return self.scales["N"]
+
+    @property
+    def deflection(self) -> float:
+        """Deflection of the case [m]."""
+        return self.scales["m"]
+
+    @cached_property
+    def bound(self) -> Bound:
+        """How far every torque, force and displacement is from the exact equilibrium, at most."""
+        found = self.prove()
+        return replace(found, relative=min(found.relative, self.proved))
 
     @property
     def worst(self) -> float:
@@ -87,8 +105,7 @@ class Certificate:
 
         The error of a torque counts over the largest torque of the train.
         """
-        proved = self.bound.relative <= self.tolerance
-        return self.worst <= self.tolerance and proved
+        return self.worst <= self.tolerance and self.proved <= self.tolerance
 
     @property
     def failing(self) -> dict[str, Residual]:
@@ -96,31 +113,13 @@ class Certificate:
         return {n: r for n, r in self.residuals.items() if not r.scaled <= self.tolerance}
 
 
-Value = TypeVar("Value")
-
-
-@dataclass(frozen=True, eq=False)
-class _Later(Mapping[str, Value]):
-    """A mapping that is made when it is first looked into."""
-
-    make: Callable[[], Mapping[str, Value]]
-
-    @cached_property
-    def _made(self) -> Mapping[str, Value]:
-        return self.make()
-
-    def __getitem__(self, key: str) -> Value:
-        return self._made[key]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._made)
-
-    def __len__(self) -> int:
-        return len(self._made)
-
-
 def certify_later(
-    train: Train, answer: Equilibrium, claimed: Equilibria, tolerance: float, bound: Bound
+    train: Train,
+    answer: Equilibrium,
+    claimed: Equilibria,
+    tolerance: float,
+    proved: float,
+    prove: Callable[[], Bound],
 ) -> Certificate:
     """Return the certificate of an answer that passed when it was judged with many others.
 
@@ -132,18 +131,18 @@ def certify_later(
         As for `certify`.
     claimed : Equilibria
         The answer as the only sample.
-    bound : Bound
-        As it was found with the many others.
+    proved, prove
+        As in `Certificate`.
     """
     # The batch's scales may differ in the last digit, and a result that is loaded again would.
     single = _Single(train, answer, claimed)
     return Certificate(
-        residuals=_Later(single.residuals),
-        floats=_Later(single.floats),
+        residuals=Later(single.residuals),
+        floats=Later(single.floats),
         tolerance=tolerance,
-        load=float(single.state.load[0]),
-        deflection=float(single.state.deflection[0]),
-        bound=bound,
+        scales=Later(single.scales),
+        proved=proved,
+        prove=prove,
     )
 
 
@@ -178,13 +177,14 @@ def certify(
     """
     tolerance = checked_tolerance(tolerance)
     single = _Single(train, answer)
+    bound = single.bound(rigorous)
     return Certificate(
         residuals=single.residuals(),
         floats=single.floats(),
         tolerance=tolerance,
-        load=single.scale["N"],
-        deflection=single.scale["m"],
-        bound=single.bound(rigorous),
+        scales=single.scales(),
+        proved=bound.relative,
+        prove=known(bound),
     )
 
 
@@ -198,7 +198,11 @@ class _Single:
         self.situation = situation_of(train, answer.index)
         with np.errstate(all="ignore"):
             self.claimed = claimed or Equilibria.of(train, answer)
-            self.state = State(mechanics_of(train), self.situation, self.claimed)
+
+    @cached_property
+    def state(self) -> State:
+        with np.errstate(all="ignore"):
+            return State(mechanics_of(self.train), self.situation, self.claimed)
 
     @cached_property
     def fault(self) -> str:
@@ -206,10 +210,13 @@ class _Single:
             return fault_of(self.state)
 
     @cached_property
-    def scale(self) -> dict[str, float]:
+    def _scales(self) -> dict[str, float]:
         if self.fault:
             return dict.fromkeys("NmJ", 1.0)
         return {unit: float(size[0]) for unit, size in scales(self.state).items()}
+
+    def scales(self) -> Mapping[str, float]:
+        return self._scales
 
     def residuals(self) -> Mapping[str, Residual]:
         with np.errstate(all="ignore"):
@@ -218,7 +225,7 @@ class _Single:
     def _residual(self, name: str) -> Residual:
         figures, unit = FIGURES[name]
         value, where = (math.inf, self.fault) if self.fault else worst_of_one(figures(self.state))
-        ratio = value / self.scale[unit]
+        ratio = value / self._scales[unit]
         return Residual(value, unit, math.inf if math.isnan(ratio) else ratio, where)
 
     def floats(self) -> Mapping[str, FloatState]:

@@ -223,10 +223,24 @@ class Measuring:
         turned = np.sqrt((away**2).sum(axis=3)) / of.distance
         return np.asarray(turned.reshape(len(moved), -1).T)
 
-    def worst(self, situations: Situations, answers: Equilibria, deflection: Array) -> Array:
-        """Return how far S answers go to a warning: the largest figure over its bound, (S,)."""
+    def worst(
+        self,
+        situations: Situations,
+        answers: Equilibria,
+        deflection: Array,
+        refusal: bool = False,
+    ) -> Array:
+        """Return how far S answers go to a warning, (S,): the largest figure over its bound.
+
+        Parameters
+        ----------
+        situations, answers, deflection
+            As for `bounded`.
+        refusal : bool
+            How far to a refusal instead.
+        """
         found, bounds = self.bounded(situations, answers, deflection), self.bounds
-        shares = [v.max(axis=0, initial=0.0) / bounds[name][0] for name, v in found.items()]
+        shares = [v.max(axis=0, initial=0.0) / bounds[name][refusal] for name, v in found.items()]
         return np.maximum.reduce(shares) if shares else np.zeros(len(answers.rotation))
 
     def refusals(

@@ -21,7 +21,8 @@ from loadshare.contact.outer import Settled, tangents
 from loadshare.contact.plan import Linearisation, Plan, Units, programme
 from loadshare.contact.programme import Point, Programme
 from loadshare.errors import Refused
-from loadshare.job.ladder import Answer, uncertified
+from loadshare.job.answer import Answer
+from loadshare.job.ladder import uncertified
 from loadshare.job.positions import explain
 from loadshare.scene import Scene
 from loadshare.settings import JOB
@@ -128,7 +129,7 @@ class Formulation:
         certificate = certify(train, equilibrium)
         if not certificate.passed:
             raise uncertified(equilibrium.index, certificate)
-        return Answer(train, equilibrium, certificate, self.answer.record, READ)
+        return Answer.of(train, equilibrium, certificate, self.answer.record, READ)
 
 
 def formulate(

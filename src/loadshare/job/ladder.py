@@ -9,76 +9,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
-
-import numpy as np
+from dataclasses import replace
 
 from loadshare.certify import Certificate, certify
-from loadshare.certify.bound import Bound, bound_of
-from loadshare.certify.certificate import certify_later
-from loadshare.certify.validity import TOLD, Validity, refusal_told, validity
+from loadshare.certify.validity import TOLD
 from loadshare.contact.findings import Work
-from loadshare.contact.plan import Plan, Role
 from loadshare.errors import Refused
-from loadshare.job.least import least_places
-from loadshare.job.machine import Answers, Machine, engine_at_hand
-from loadshare.scene import assemble
+from loadshare.job.answer import Answer
+from loadshare.job.hot import hot_answers
+from loadshare.job.machine import Machine
 from loadshare.scene.assemble import scene_of
 from loadshare.scene.elements import elements_of
 from loadshare.scene.scene import Scene
 from loadshare.settings import JOB, PLACES
-from loadshare.solver import Iteration, Options, Record, solve_scene
+from loadshare.solver import Iteration, Options, solve_scene
 from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.contradiction import contradiction
-from loadshare.solver.position import Known, coordinates_of
+from loadshare.solver.position import Known
 from loadshare.solver.runaway import runaway
-from loadshare.train.equilibria import Equilibria
-from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import situation_of
 from loadshare.train.train import Train
 
-HOT, SEARCHED = "hot path", "proximal search"
 LIGHTER = (0.5, 0.1)
 """Shares of the load that are looked at where arcs may have lost their hold under all of it."""
 AUTO = "auto"
 """Instead of a back-end's name: the hot path, and Clarabel for what it leaves."""
-
-
-@dataclass(frozen=True, eq=False)
-class Answer:
-    """A certified equilibrium, and how it was found.
-
-    Attributes
-    ----------
-    train : Train
-    equilibrium : Equilibrium
-    certificate : Certificate
-    record : Record
-        Plan, passes of the outer loop, and what was left out.
-    rung : str
-        Rung of the ladder that answered.
-    claimed : Equilibria or None
-        The equilibrium as the only sample, where that is at hand.
-    """
-
-    train: Train
-    equilibrium: Equilibrium
-    certificate: Certificate
-    record: Record
-    rung: str
-    claimed: Equilibria | None = None
-
-    @property
-    def scene(self) -> Scene:
-        """The contact problem, assembled anew."""
-        return assemble(self.train, self.equilibrium.index)
-
-    @cached_property
-    def validity(self) -> Validity:
-        """Whether its displacements are small enough for the geometry in which it was found."""
-        deflection = self.certificate.deflection
-        return validity(self.train, self.equilibrium, deflection, self.claimed)
 
 
 def rungs(options: Options) -> Iterator[tuple[str, Options]]:
@@ -130,81 +85,6 @@ def climb_all(
             yield refusal
 
 
-def hot_answers(
-    machine: Machine,
-    indices: Sequence[int],
-    tolerance: float,
-    engine: str = "auto",
-) -> dict[int, Answer]:
-    """Answer what the hot path can, by position."""
-    train = machine.train
-    situations = machine.situations(indices)
-    found = machine.answer(situations, tolerance, engine_at_hand(engine, len(indices)))
-    answers = {}
-    loose = np.flatnonzero(found.passed & ~found.determined).tolist()
-    least, proved = least_places(machine, situations, found, loose, tolerance)
-    for row in np.flatnonzero(found.passed).tolist():
-        index = indices[row]
-        equilibrium = least.get(row) or found.equilibria.one(row, index)
-        before = found.verdicts.bounds
-        bounds, at = proved.get(row, (before, row))
-        every = bounds.force is not None
-        bound = Bound.of(bounds, at) if every else bound_of(train, equilibrium)
-        if before.force is not None and math.isinf(bound.relative):
-            # The forces, and so the bound on torques, are those of the answer before it was moved.
-            bound = Bound.of(before, row)
-        claimed = found.equilibria.part(slice(row, row + 1))
-        certificate = certify_later(train, equilibrium, claimed, tolerance, bound)
-        record = _hot_record(machine, found, row)
-        rung = SEARCHED if found.searched[row] else HOT
-        answers[index] = Answer(train, equilibrium, certificate, record, rung, claimed)
-    return answers
-
-
-def _hot_record(machine: Machine, found: Answers, row: int) -> Record:
-    """How the hot path answered."""
-    elements, code = machine.elements, found.code[row]
-    basis = elements.basis(code)
-    acting = code[: elements.rows] != 0
-    rows = {
-        name: Role.IN_PLAY if acts else Role.OPEN
-        for name, acts in zip(elements.row_names, acting, strict=True)
-    }
-    radials = {
-        r.name: Role.IN_PLAY if place else Role.OPEN
-        for r, place in zip(elements.radials, code[elements.rows :], strict=True)
-    }
-    redundants = basis.redundant.shape[1]
-    return Record(
-        solver=HOT,
-        method="force",
-        kind=f"force method, {redundants} redundant{'' if redundants == 1 else 's'}",
-        iterations=(),
-        plan=Plan(rows, radials),
-        rounds=int(found.turns[row]),
-        removed=elements.removed,
-        coordinates=elements.coordinates.names,
-    )
-
-
-def left_out(answer: Answer) -> tuple[tuple[str, str], ...]:
-    """What did not act in an answer of the hot path, and the figure that says so."""
-    scene, found = answer.scene, answer.equilibrium
-    plan = answer.record.plan
-    x = coordinates_of(scene, found)
-    idle = [
-        (row.name, f"open by {(row.gap - float(row.vector @ x)) * 1e6:.4g} µm")
-        for row in scene.rows_at(x)
-        if plan.rows[row.name] is Role.OPEN
-    ]
-    idle += [
-        (r.name, f"moves freely, {float(np.linalg.norm(r.matrix @ x - r.centre)) * 1e6:.4g} µm out")
-        for r in scene.radials
-        if plan.radials[r.name] is Role.OPEN
-    ]
-    return scene.removed + tuple(idle)
-
-
 def climb(
     train: Train, index: int, options: Options, tolerance: float, steps: float = math.inf
 ) -> Answer:
@@ -249,7 +129,7 @@ def climb(
         seen.append(record.iterations)
         certificate = certify(train, equilibrium, tolerance)
         if certificate.passed:
-            return Answer(train, equilibrium, certificate, record, rung)
+            return Answer.of(train, equilibrium, certificate, record, rung)
         first = first or uncertified(index, certificate)
         if not options.polish:
             break
@@ -305,15 +185,6 @@ def _far_before(train: Train, index: int, tolerance: float, refusal: Refused) ->
     return refusal
 
 
-def displaced(answer: Answer) -> Refused | None:
-    """Return why an answer is refused for its displacements; None if it is not."""
-    beyond = answer.validity.refused
-    if not beyond:
-        return None
-    told = f"position {answer.equilibrium.index}: {refusal_told(beyond)}"
-    return Refused(told, {name: m.value for name, m in beyond.items()})
-
-
 def uncertified(index: int, certificate: Certificate) -> Refused:
     """Return the refusal of an answer whose certificate does not pass."""
     failing = certificate.failing
@@ -325,7 +196,7 @@ def uncertified(index: int, certificate: Certificate) -> Refused:
     figures = {name: r.scaled for name, r in failing.items()}
     if failing:
         return Refused(f"position {index}: the answer is not an equilibrium: {told}", figures)
-    error, allowed = certificate.bound.relative, certificate.tolerance
+    error, allowed = certificate.proved, certificate.tolerance
     proved = "not proved at all" if math.isinf(error) else f"proved to {error:.1e} only"
     return Refused(
         f"position {index}: forces and laws are in balance to {certificate.worst:.1e}, but the "

@@ -25,7 +25,8 @@ def least_places(
     """Move some answers to their least places, in place, and return them with what is open.
 
     An answer whose least place is not certified, because round-off of a move far away shows in a
-    stiff element, stays where it is.
+    stiff element, stays where it is, and so does one whose least place is refused as too far away
+    for the geometry.
 
     Parameters
     ----------
@@ -45,7 +46,10 @@ def least_places(
     dict of int to (Bounds, int)
         Where the bounds of those that moved stand.
     """
-    scenes = {row: scene_of(machine.elements, situations.take(slice(row, row + 1))) for row in rows}
+    scenes = {
+        row: scene_of(machine.elements, situations.take(slice(row, row + 1)), found.data.one(row))
+        for row in rows
+    }
     claimed = {row: found.equilibria.one(row, scene.position) for row, scene in scenes.items()}
     least = {row: of_least_norm(scenes[row], claimed[row]) for row in rows}
     moved = [row for row in rows if least[row].displacement is not claimed[row].displacement]
@@ -54,10 +58,13 @@ def least_places(
     placed = found.equilibria.take(np.array(moved))
     for k, row in enumerate(moved):
         placed.put(k, least[row])
-    verdicts = machine.judge.judge(situations.take(np.array(moved)), placed, tolerance)
+    here = situations.take(np.array(moved))
+    verdicts = machine.judge.judge(here, placed, tolerance)
+    far = machine.measuring.worst(here, placed, verdicts.deflection, refusal=True) >= 1.0
+    residuals = np.where(far, np.inf, verdicts.worst).tolist()
     # Forces, and with them the bound on torques, are those that were certified before.
     proved: dict[int, tuple[Bounds, int]] = {}
-    for k, (row, residual) in enumerate(zip(moved, verdicts.worst.tolist(), strict=True)):
+    for k, (row, residual) in enumerate(zip(moved, residuals, strict=True)):
         if residual <= tolerance:
             found.equilibria.put(row, least[row])
             proved[row] = verdicts.bounds, k

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from importlib import import_module
 
 import numpy as np
@@ -115,34 +115,44 @@ def _compiled() -> Engine | None:
     return None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Answers:
     """What the hot path makes of many samples.
 
     Attributes
     ----------
+    data : Data
+        The numbers of the samples.
     equilibria : Equilibria
     verdicts : Verdicts
     passed : ndarray of bool, shape (S,)
         Certified.
-    determined : ndarray of bool, shape (S,)
-        Whether the forces determine every displacement; where they do not, the place given is one
-        possible choice.
     code : ndarray of int8, shape (S, switches)
         Which elements act.
     turns : ndarray of int, shape (S,)
         Sets visited.
     searched : ndarray of bool, shape (S,)
         Whether exchange alone found nothing, and the proximal method went ahead.
+    determine : callable
+        Returns `determined`.
     """
 
+    data: Data
     equilibria: Equilibria
     verdicts: Verdicts
     passed: NDArray[np.bool_]
-    determined: NDArray[np.bool_]
     code: Codes
     turns: NDArray[np.intp]
     searched: NDArray[np.bool_]
+    determine: Callable[[], NDArray[np.bool_]]
+
+    @cached_property
+    def determined(self) -> NDArray[np.bool_]:
+        """Whether the forces determine every displacement of a sample, shape (S,).
+
+        Where they do not, the place given is one possible choice.
+        """
+        return self.determine()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -281,13 +291,14 @@ class Machine:
                 break
         quick = engine is not vectorised.settle
         return Answers(
+            data,
             answers,
             verdicts,
             found.solved & verdicts.passed,
-            determined(self.elements, data, state, found.code, found.held, quick),
             found.code,
             found.turns,
             searched,
+            partial(determined, self.elements, data, state, found.code, found.held, quick),
         )
 
     def _judged(

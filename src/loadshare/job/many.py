@@ -22,7 +22,8 @@ from loadshare.case import Case, load_case
 from loadshare.certify.nonconvex import arc_curvature, is_convex
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.errors import CaseError, Refused
-from loadshare.job.ladder import HOT, SEARCHED, climb
+from loadshare.job.hot import HOT, SEARCHED
+from loadshare.job.ladder import climb
 from loadshare.job.least import least_places
 from loadshare.job.machine import Machine, engine_named
 from loadshare.job.positions import Progress, wanted_positions
@@ -303,7 +304,7 @@ def _block(
         every[p].put(row, answer.equilibrium)
         certified[row, p], rung[row, p] = True, answer.rung
         residual[row, p] = answer.certificate.worst
-        bound[row, p] = answer.certificate.bound.relative
+        bound[row, p] = answer.certificate.proved
         deflection[row, p] = answer.certificate.deflection
         load[row, p] = answer.certificate.load
         determined[row, p] = not answer.equilibrium.undetermined

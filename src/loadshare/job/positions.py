@@ -13,11 +13,13 @@ from loadshare._version import __version__
 from loadshare.case import Case, load_case
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.errors import Refused
-from loadshare.job.ladder import AUTO, HOT, SEARCHED, Answer, climb_all, displaced, left_out
+from loadshare.job.answer import Answer
+from loadshare.job.hot import HOT, SEARCHED, left_out
+from loadshare.job.ladder import AUTO, climb_all
 from loadshare.job.machine import Machine
-from loadshare.results.claim import claim_of
+from loadshare.later import known
 from loadshare.results.derive import position_of, result_from
-from loadshare.results.result import Effort, Position, Result, Stamp
+from loadshare.results.result import Result, Stamp
 from loadshare.settings import CERTIFY, JOB
 from loadshare.solver import Options
 from loadshare.tooth import resolve
@@ -100,7 +102,7 @@ def solve(
     answers: list[Answer] = []
     refusals: list[Refused] = []
     for done, found in enumerate(climb_all(machine, wanted, options, tolerance, settle), start=1):
-        refused = found if isinstance(found, Refused) else displaced(found)
+        refused = found if isinstance(found, Refused) else found.refused()
         if refused is not None:
             refusals.append(refused)
         elif isinstance(found, Answer):
@@ -159,7 +161,8 @@ def explain(
     if isinstance(found, Refused):
         raise found
     if found.rung in (HOT, SEARCHED):
-        return replace(found, record=replace(found.record, removed=left_out(found)))
+        record = replace(found.record, removed=left_out(found))
+        return replace(found, how=known(record))
     return found
 
 
@@ -255,23 +258,5 @@ def result_of(
         stop=options.stop,
         positions=tuple(wanted),
     )
-    return result_from(case, train, [_position(a) for a in answers], stamp)
-
-
-def _position(answer: Answer) -> Position:
-    found, record = answer.equilibrium, answer.record
-    return position_of(
-        answer.train,
-        found.index,
-        claim_of(answer.train, found),
-        answer.certificate,
-        found.undetermined,
-        Effort(
-            rung=answer.rung,
-            method=record.method,
-            kind=record.kind,
-            iterations=len(record.iterations),
-            rounds=record.rounds,
-        ),
-        answer.validity,
-    )
+    found = [position_of(a.train, a.index, a.flank_force, a) for a in answers]
+    return result_from(case, train, found, stamp)

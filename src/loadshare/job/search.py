@@ -14,7 +14,8 @@ import numpy as np
 
 from loadshare.case import Case
 from loadshare.errors import Refused
-from loadshare.job.ladder import Answer, climb_all
+from loadshare.job.answer import Answer
+from loadshare.job.ladder import climb_all
 from loadshare.job.machine import Machine
 from loadshare.job.positions import prepared
 from loadshare.scene.data import data_of

@@ -13,7 +13,20 @@ if TYPE_CHECKING:
 
 FORMAT = 2
 """Of the files that are written; it changes with what a file holds."""
-_CERTIFICATE = ("residuals", "floats", "tolerance", "load", "deflection")
+_TOLD = (
+    "position",
+    "torque",
+    "coast_torque",
+    "share",
+    "pair_share",
+    "rotation",
+    "displacement",
+    "floats",
+    "undetermined",
+    "effort",
+    "claim",
+)
+"""Of a position, as it is; certificate, validity and uniqueness in more words."""
 
 
 def to_document(result: Result) -> dict[str, Any]:
@@ -44,8 +57,8 @@ def plain(given: Any) -> Any:
 
 
 def _told(p: Position) -> dict[str, Any]:
-    """Every field of a position; those of its certificate stand beside one another."""
-    told = {f.name: plain(getattr(p, f.name)) for f in fields(p) if f.name != "certificate"}
+    """What a position tells; parts of its certificate stand beside one another."""
+    told = {name: plain(getattr(p, name)) for name in _TOLD}
     told["validity"] = {"verdict": p.validity.verdict} | plain(p.validity)
     told["uniqueness"] = plain(p.uniqueness) | {"told": p.uniqueness.told}
     return told | _judged(p.certificate)
@@ -55,10 +68,6 @@ def _judged(certificate: Certificate) -> dict[str, Any]:
     verdict: dict[str, Any] = {"passed": certificate.passed}
     verdict |= {name: r.scaled for name, r in certificate.residuals.items()}
     scales = {name: getattr(certificate, name) for name in ("load", "deflection", "tolerance")}
-    more = {
-        f.name: plain(getattr(certificate, f.name))
-        for f in fields(certificate)
-        if f.name not in _CERTIFICATE
-    }
+    verdict["bound"] = plain(certificate.bound)
     residuals = plain(certificate.residuals)
-    return {"certificate": verdict | more, "residuals": residuals, "scales": scales}
+    return {"certificate": verdict, "residuals": residuals, "scales": scales}

@@ -17,7 +17,7 @@ from loadshare.case import Case
 from loadshare.case.keys import Path, dotted
 from loadshare.case.origin import Origin
 from loadshare.case.words import as_given
-from loadshare.certify import certify
+from loadshare.certify import Certificate, certify
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.certify.validity import refusal_told
 from loadshare.errors import CaseError, Problem, ResultError
@@ -29,7 +29,7 @@ from loadshare.results.result import Effort, Position, Result, Stamp
 from loadshare.scene import assemble
 from loadshare.solver.position import of_least_norm
 from loadshare.train import Train, build_train
-from loadshare.train.equilibrium import Range
+from loadshare.train.equilibrium import Equilibrium, Range
 from loadshare.train.memory import slip_of
 
 AGAIN = "Solve the case again: loadshare run CASE.toml --json FILE."
@@ -51,6 +51,15 @@ class _Position:
             name: (-math.inf if low is None else low, math.inf if high is None else high)
             for name, (low, high) in self.undetermined.items()
         }
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Claimed:
+    """What a file claims of a position, judged."""
+
+    equilibrium: Equilibrium
+    certificate: Certificate
+    effort: Effort
 
 
 @dataclass(frozen=True, slots=True)
@@ -228,10 +237,8 @@ def _wrong_names(given: _File, train: Train) -> Iterator[Wrong]:
 def _position(train: Train, given: _Position, tolerance: float) -> Position:
     found = given.claim.equilibrium(given.position, given.ranges)
     remembering = given.claim.train(train)
-    certificate = certify(remembering, found, tolerance)
-    return position_of(
-        remembering, given.position, given.claim, certificate, given.ranges, given.effort
-    )
+    answer = _Claimed(found, certify(remembering, found, tolerance), given.effort)
+    return position_of(remembering, given.position, given.claim.flank_force, answer)
 
 
 def _uncertified(positions: Iterable[Position]) -> Iterator[Wrong]:

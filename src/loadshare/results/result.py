@@ -7,15 +7,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from loadshare.certify import Certificate, FloatState
-from loadshare.certify.uniqueness import TOLD, Uniqueness
-from loadshare.certify.validity import Measure, Validity
+from loadshare.certify.uniqueness import TOLD, Uniqueness, uniqueness
+from loadshare.certify.validity import Measure, Validity, validity
 from loadshare.pictures import picture
-from loadshare.results.claim import Claim, Pair
+from loadshare.results.claim import Claim, Pair, claim_of
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.train import Train
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -82,9 +83,28 @@ class Effort:
     rounds: int
 
 
-@dataclass(frozen=True, slots=True)
+class Answered(Protocol):
+    """An equilibrium, its certificate, and how it was found."""
+
+    @property
+    def equilibrium(self) -> Equilibrium:
+        """At its place of least norm."""
+
+    @property
+    def certificate(self) -> Certificate:
+        """Of the equilibrium."""
+
+    @property
+    def effort(self) -> Effort:
+        """How it was found."""
+
+
+@dataclass(frozen=True, eq=False)
 class Position:
     """What was found at one position.
+
+    What few look at is worked out when it is first asked for. Two positions are equal if their
+    claims, certificates and efforts are.
 
     Attributes
     ----------
@@ -96,23 +116,10 @@ class Position:
         Part on the coast flank [N·m], ≥ 0.
     share, pair_share : mapping of mesh to float or None
         Ω over the mean of the stage, and of the branch's group.
-    rotation : mapping of gear to float
-        φ [rad], positive in the running sense.
-    displacement : mapping of gear to (float, float)
-        [m], in the gear's transverse frame; the global x, y for a gear whose axis is z.
-    floats : mapping of gear to FloatState
-    certificate : Certificate
-    validity : Validity
-        Whether displacements are small enough for the geometry in which they were found.
-    uniqueness : Uniqueness
-        Whether it is proved to be the only answer.
-    undetermined : mapping of coordinate to (float, float)
-        What the forces leave open, as "gear 4 x" [m] or "gear 4 rotation" [rad]: the least and the
-        largest value that it may take, infinite without a limit. Rotation and displacement are
-        those of least norm: Σ r_b²φ² + |p|² over all gears.
-    effort : Effort
-    claim : Claim
-        The displacements and forces from which, with the case, all the rest was computed.
+    train : Train
+        As this position finds it.
+    answer : Answered
+        From which all the rest is computed.
     """
 
     position: int
@@ -120,20 +127,88 @@ class Position:
     coast_torque: Mapping[str, float]
     share: Mapping[str, float | None]
     pair_share: Mapping[str, float | None]
-    rotation: Mapping[str, float]
-    displacement: Mapping[str, Pair]
-    floats: Mapping[str, FloatState]
-    certificate: Certificate
-    validity: Validity
-    uniqueness: Uniqueness
-    undetermined: Mapping[str, Pair]
-    effort: Effort
-    claim: Claim
+    train: Train = field(repr=False)
+    answer: Answered = field(repr=False)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether another position was claimed, judged and found alike."""
+        if not isinstance(other, Position):
+            return NotImplemented
+        return all(getattr(self, name) == getattr(other, name) for name in _COMPARED)
+
+    __hash__ = None  # type: ignore[assignment]
 
     @property
     def equilibrium(self) -> Equilibrium:
         """The claim as `loadshare.certify.certify` takes it."""
-        return self.claim.equilibrium(self.position, self.undetermined)
+        return self.answer.equilibrium
+
+    @property
+    def certificate(self) -> Certificate:
+        """Verdict on the claim."""
+        return self.answer.certificate
+
+    @property
+    def effort(self) -> Effort:
+        """How the position was solved."""
+        return self.answer.effort
+
+    @cached_property
+    def claim(self) -> Claim:
+        """The displacements and forces from which, with the case, all the rest is computed."""
+        return claim_of(self.train, self.equilibrium)
+
+    @property
+    def rotation(self) -> Mapping[str, float]:
+        """Rotation φ of every gear [rad], positive in the running sense."""
+        return self.claim.rotation
+
+    @cached_property
+    def displacement(self) -> Mapping[str, Pair]:
+        """Displacement [m] of every gear, in its transverse frame.
+
+        The global x, y for a gear whose axis is z.
+        """
+        gears, moved = self.train.gears, self.claim.displacement
+        plane = {name: gears[name].frame @ p for name, p in moved.items()}
+        return {name: (float(p[0]), float(p[1])) for name, p in plane.items()}
+
+    @property
+    def undetermined(self) -> Mapping[str, Pair]:
+        """What the forces leave open, as "gear 4 x" [m] or "gear 4 rotation" [rad].
+
+        The least and the largest value that it may take, infinite without a limit. Rotation and
+        displacement are those of least norm: Σ r_b²φ² + |p|² over all gears.
+        """
+        return self.equilibrium.undetermined
+
+    @property
+    def floats(self) -> Mapping[str, FloatState]:
+        """Where every float rests, by gear."""
+        return self.certificate.floats
+
+    @cached_property
+    def validity(self) -> Validity:
+        """Whether displacements are small enough for the geometry in which they were found."""
+        return validity(self.train, self.equilibrium, self.certificate.deflection)
+
+    @cached_property
+    def uniqueness(self) -> Uniqueness:
+        """Whether it is proved to be the only answer."""
+        return uniqueness(self.train, self.equilibrium)
+
+
+_COMPARED = (
+    "position",
+    "torque",
+    "coast_torque",
+    "share",
+    "pair_share",
+    "claim",
+    "undetermined",
+    "certificate",
+    "effort",
+)
 
 
 @dataclass(frozen=True)

@@ -23,10 +23,19 @@ def assemble(train: Train, index: int) -> Scene:
     return scene_of(elements_of(train), situation_of(train, index))
 
 
-def scene_of(elements: Elements, situations: Situations) -> Scene:
-    """Assemble the scene of the first sample of some situations."""
-    situation = situations.take(slice(0, 1))
-    data, columns, vectors = data_of(elements, situation), elements.columns, elements.vectors
+def scene_of(elements: Elements, situation: Situations, data: Data | None = None) -> Scene:
+    """Assemble the scene of a single sample.
+
+    Parameters
+    ----------
+    elements : Elements
+    situation : Situations
+        Of one sample.
+    data : Data, optional
+        Its numbers, where they are at hand.
+    """
+    data = data or data_of(elements, situation)
+    columns, vectors = elements.columns, elements.vectors
     force, length = elements.force, elements.length
     gap, springs = data.gap[0] * length, vectors[columns.springs]
     stiffness = force / length / data.bending[0, columns.springs]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from loadshare.errors import Refused
-from loadshare.job.ladder import Answer, climb, climb_all, displaced
+from loadshare.job.answer import Answer
+from loadshare.job.ladder import climb, climb_all
 from loadshare.job.machine import Machine
 from loadshare.settings import CERTIFY
 from loadshare.solver import Options
@@ -26,7 +27,7 @@ def certified(train: Train, position: int) -> Answer:
         found = climb(train, position, BACKEND, CERTIFY.tolerance)
     else:
         (found,) = climb_all(Machine(train), [position], Options(), CERTIFY.tolerance)
-    refused = found if isinstance(found, Refused) else displaced(found)
+    refused = found if isinstance(found, Refused) else found.refused()
     if refused is not None:
         raise refused
     assert isinstance(found, Answer)

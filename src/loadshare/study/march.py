@@ -17,7 +17,7 @@ import numpy as np
 from loadshare.case import Case
 from loadshare.errors import CaseError, Refused
 from loadshare.job import Progress
-from loadshare.job.ladder import Answer, displaced
+from loadshare.job.answer import Answer
 from loadshare.job.positions import result_of
 from loadshare.results import Result
 from loadshare.settings import CERTIFY
@@ -155,7 +155,7 @@ def _marched(case: Case, train: Train, progress: Progress | None) -> March:
         remembering = train.remembering(before)
         try:
             answer = stepped(remembering, index)
-            refused = displaced(answer)
+            refused = answer.refused()
             if refused is not None:
                 raise refused
         except Refused as refusal:

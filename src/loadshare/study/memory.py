@@ -21,7 +21,9 @@ from loadshare.contact.findings import Work
 from loadshare.contact.outer import Settled
 from loadshare.contact.plan import Plan
 from loadshare.errors import Refused
-from loadshare.job.ladder import SEARCHED, Answer, rungs
+from loadshare.job.answer import Answer
+from loadshare.job.hot import SEARCHED
+from loadshare.job.ladder import rungs
 from loadshare.scene import assemble
 from loadshare.scene.assemble import scene_of
 from loadshare.scene.data import data_of
@@ -125,7 +127,7 @@ def _followed(train: Train, index: int) -> Answer | None:
 def _judged(train: Train, found: Equilibrium, record: Record, rung: str) -> Answer | None:
     """Return an equilibrium as an answer if its certificate passes."""
     certificate = certify(train, found, CERTIFY.tolerance)
-    return Answer(train, found, certificate, record, rung) if certificate.passed else None
+    return Answer.of(train, found, certificate, record, rung) if certificate.passed else None
 
 
 def _bounded(train: Train, bounds: Mapping[str, float]) -> Train:
@@ -307,7 +309,7 @@ def _held(
             ranges = of_least_norm(assemble(train, index), split).undetermined
             split = replace(split, undetermined=ranges)
             certificate = certify(train, split, CERTIFY.tolerance)
-            return replace(answer, equilibrium=split, certificate=certificate)
+            return Answer.of(train, split, certificate, answer.record, answer.rung)
     return None
 
 

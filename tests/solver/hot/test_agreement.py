@@ -13,7 +13,7 @@ from tests.support import SHIPPED, answer, disagreement, forces, furthest, shipp
 
 import loadshare as ls
 from loadshare.certify import certify
-from loadshare.job.ladder import HOT, hot_answers
+from loadshare.job.hot import HOT, hot_answers
 from loadshare.job.machine import Machine
 from loadshare.results.result import Position
 from loadshare.settings import CERTIFY

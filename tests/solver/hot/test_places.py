@@ -16,7 +16,7 @@ from tests.solver.hot.trains import varied
 import loadshare as ls
 from benchmarks import families
 from loadshare.contact.radial import RadialLaw, round_ring_law, spline_law
-from loadshare.job.ladder import HOT
+from loadshare.job.hot import HOT
 from loadshare.job.machine import Machine
 from loadshare.scene import assemble
 from loadshare.scene.data import data_of

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import minimize
 
 import loadshare as ls
-from loadshare.job.ladder import HOT
+from loadshare.job.hot import HOT
 from loadshare.solver.hot.rest import rest
 
 

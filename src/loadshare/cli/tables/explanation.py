@@ -10,7 +10,7 @@ from loadshare.cli.console import say
 from loadshare.cli.exits import counted
 from loadshare.cli.tables.table import show, table
 from loadshare.contact.plan import Role
-from loadshare.job.ladder import Answer
+from loadshare.job.answer import Answer
 from loadshare.report.numbers import fixed, small
 from loadshare.report.words import range_told
 from loadshare.solver import Record

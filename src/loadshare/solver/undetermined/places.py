@@ -8,13 +8,14 @@ least place by renewing the arcs' tangent faces.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from loadshare.contact.programme import Array
+from loadshare.later import Later
 from loadshare.scene.scene import Scene
 from loadshare.settings import PLACES
 from loadshare.solver.undetermined.free_set import FreeSet, Round
@@ -30,13 +31,13 @@ class Places:
     ----------
     x : ndarray, shape (n,)
         The place of least norm [m]; the one that was known, if it is that.
-    ranges : dict of name to (float, float)
+    ranges : mapping of name to (float, float)
         Least and largest value of what the forces leave undetermined: [rad] of a gear's rotation,
         [m] of a displacement or slip; infinite where nothing limits it.
     """
 
     x: Array
-    ranges: dict[str, Range]
+    ranges: Mapping[str, Range]
 
 
 def places(free: FreeSet) -> Places:
@@ -47,11 +48,20 @@ def places(free: FreeSet) -> Places:
     free : FreeSet
         Its places (see `free_set`).
     """
-    scene, x = free.scene, free.x
     parts = [_Part(free, moves) for moves in _independent(free)]
-    for part in parts:
-        if part.moves_to_least:
-            x = x + part.across @ (part.least - part.start) * part.unit
+    moved = [part for part in parts if part.moves_to_least]
+    x = free.x
+    for part in moved:
+        x = x + part.across @ (part.least - part.start) * part.unit
+    if not moved:
+        return Places(x, Later(lambda: _ranges(free, parts, x)))
+    ranges = _ranges(free, parts, x)
+    return Places(x, ranges) if ranges else Places(free.x, {})
+
+
+def _ranges(free: FreeSet, parts: Sequence[_Part], x: Array) -> dict[str, Range]:
+    """Least and largest values of coordinates, about the least place x."""
+    scene = free.scene
     least_play = PLACES.play * scene.length_unit() + PLACES.inside * float(
         np.abs(x).max(initial=0.0)
     )
@@ -64,7 +74,7 @@ def places(free: FreeSet) -> Places:
             )
             if high - low > least_play:
                 ranges |= _named(scene, k, low, high)
-    return Places(x, ranges) if ranges else Places(free.x, {})
+    return ranges
 
 
 class _Part:

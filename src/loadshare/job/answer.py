@@ -1,0 +1,113 @@
+"""Answers: certified equilibria, and how they were found."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from loadshare.certify import Certificate
+from loadshare.certify.validity import Validity, refusal_told, validity
+from loadshare.errors import Refused
+from loadshare.later import known
+from loadshare.results.result import Effort
+from loadshare.scene import assemble
+from loadshare.scene.scene import Scene
+from loadshare.solver import Record
+from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.train import Train
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """An equilibrium that is certified.
+
+    Its forces are at hand. Its place, where forces leave that open, the figures of its certificate
+    and how it was found are worked out when they are first asked for.
+
+    Attributes
+    ----------
+    train : Train
+    index : int
+        1-based position.
+    rung : str
+        Rung of the ladder that answered.
+    flank_force : mapping of flank to float
+        [N].
+    find : callable
+        Returns the equilibrium at its place of least norm, and its certificate.
+    how : callable
+        Returns plan, passes of the outer loop, and what was left out.
+    small : bool
+        Whether its displacements are known to be clear of where they are refused.
+    """
+
+    train: Train
+    index: int
+    rung: str
+    flank_force: Mapping[str, float]
+    find: Callable[[], tuple[Equilibrium, Certificate]]
+    how: Callable[[], Record]
+    small: bool = False
+
+    @classmethod
+    def of(
+        cls,
+        train: Train,
+        equilibrium: Equilibrium,
+        certificate: Certificate,
+        record: Record,
+        rung: str,
+    ) -> Answer:
+        """Return an answer of which everything is known."""
+        return cls(
+            train,
+            equilibrium.index,
+            rung,
+            equilibrium.flank_force,
+            known((equilibrium, certificate)),
+            known(record),
+        )
+
+    @cached_property
+    def _found(self) -> tuple[Equilibrium, Certificate]:
+        return self.find()
+
+    @property
+    def equilibrium(self) -> Equilibrium:
+        """The equilibrium, at its place of least norm."""
+        return self._found[0]
+
+    @property
+    def certificate(self) -> Certificate:
+        """Its certificate."""
+        return self._found[1]
+
+    @cached_property
+    def record(self) -> Record:
+        """Plan, passes of the outer loop, and what was left out."""
+        return self.how()
+
+    @property
+    def effort(self) -> Effort:
+        """How it was found, in short."""
+        record = self.record
+        return Effort(self.rung, record.method, record.kind, len(record.iterations), record.rounds)
+
+    @property
+    def scene(self) -> Scene:
+        """The contact problem, assembled anew."""
+        return assemble(self.train, self.index)
+
+    @cached_property
+    def validity(self) -> Validity:
+        """Whether its displacements are small enough for the geometry in which it was found."""
+        return validity(self.train, self.equilibrium, self.certificate.deflection)
+
+    def refused(self) -> Refused | None:
+        """Return why it is refused for its displacements; None if it is not."""
+        beyond = {} if self.small else self.validity.refused
+        if not beyond:
+            return None
+        told = f"position {self.index}: {refusal_told(beyond)}"
+        return Refused(told, {name: m.value for name, m in beyond.items()})
