@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter, OrderedDict
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 from numbers import Integral
 from pathlib import Path
 from typing import Protocol
@@ -246,7 +247,13 @@ def result_of(
     wanted : sequence of int
         1-based positions that were asked for.
     """
-    stamp = Stamp(
+    found = [position_of(a.train, a.index, a.flank_force, a) for a in answers]
+    return result_from(case, train, found, partial(_stamp, case, options, tolerance, wanted))
+
+
+def _stamp(case: Case, options: Options, tolerance: float, wanted: Sequence[int]) -> Stamp:
+    """Where a result comes from."""
+    return Stamp(
         version=__version__,
         case=case.name,
         title=case.title,
@@ -258,5 +265,3 @@ def result_of(
         stop=options.stop,
         positions=tuple(wanted),
     )
-    found = [position_of(a.train, a.index, a.flank_force, a) for a in answers]
-    return result_from(case, train, found, stamp)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from loadshare.case import Case
 from loadshare.results.result import Answered, Position, Result, Stamp
@@ -41,7 +41,9 @@ def position_of(
     )
 
 
-def result_from(case: Case, train: Train, positions: Sequence[Position], stamp: Stamp) -> Result:
+def result_from(
+    case: Case, train: Train, positions: Sequence[Position], stamped: Callable[[], Stamp]
+) -> Result:
     """Put positions together as a result.
 
     Parameters
@@ -51,11 +53,11 @@ def result_from(case: Case, train: Train, positions: Sequence[Position], stamp: 
     train : Train
         Of that case.
     positions : sequence of Position
-    stamp : Stamp
+    stamped : callable
+        Returns the stamp.
     """
     stages = train.stages
     return Result(
-        stamp=stamp,
         frames={
             n: (tuple(g.frame[0].tolist()), tuple(g.frame[1].tolist()))
             for n, g in train.gears.items()
@@ -65,4 +67,5 @@ def result_from(case: Case, train: Train, positions: Sequence[Position], stamp: 
         omega=largest([p.share for p in positions], stages),
         pair_omega=largest([p.pair_share for p in positions], stages),
         case=case,
+        stamped=stamped,
     )

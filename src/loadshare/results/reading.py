@@ -21,6 +21,7 @@ from loadshare.certify import Certificate, certify
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.certify.validity import refusal_told
 from loadshare.errors import CaseError, Problem, ResultError
+from loadshare.later import known
 from loadshare.results.claim import Claim, misnamed
 from loadshare.results.derive import position_of, result_from
 from loadshare.results.differences import DIGITS, ROUND_OFF, differences
@@ -102,7 +103,7 @@ def read_document(text: str, file: str) -> tuple[Result, dict[str, Any]]:
     _raise(_forgotten(train, positions), file)
     _raise(_loosened(positions, train), file)
     stamp = replace(given.stamp, title=case.title, case_hash=case.hash)
-    result = result_from(case, train, positions, stamp)
+    result = result_from(case, train, positions, known(stamp))
     _raise(differences(to_document(result), document, names=_elements(given, train)), file)
     return result, document
 

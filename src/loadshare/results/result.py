@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -211,13 +211,14 @@ _COMPARED = (
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Result:
     """Certified equilibria of a case.
 
+    Two results are equal if their stamps and positions are.
+
     Attributes
     ----------
-    stamp : Stamp
     frames : mapping of gear to ((float, float, float), (float, float, float))
         Directions of the two displacement components.
     stages : mapping of stage to tuple of mesh names
@@ -225,17 +226,31 @@ class Result:
     omega, pair_omega : mapping of stage to float or None
         Largest Ω of each stage and of the system, by stage mean and by group mean.
     case : Case
-        What was solved, its mesh laws computed. Two results are compared without it: the stamp
-        holds its hash.
+        What was solved, its mesh laws computed.
+    stamped : callable
+        Returns the stamp, which holds the hash of the case.
     """
 
-    stamp: Stamp
     frames: Mapping[str, tuple[tuple[float, float, float], tuple[float, float, float]]]
     stages: Mapping[str, tuple[str, ...]]
     positions: tuple[Position, ...]
     omega: Mapping[str, float | None]
     pair_omega: Mapping[str, float | None]
-    case: Case = field(compare=False)
+    case: Case
+    stamped: Callable[[], Stamp] = field(repr=False)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether another result is of the same case, and says the same."""
+        if not isinstance(other, Result):
+            return NotImplemented
+        return self.stamp == other.stamp and self.positions == other.positions
+
+    __hash__ = None  # type: ignore[assignment]
+
+    @cached_property
+    def stamp(self) -> Stamp:
+        """Where it comes from."""
+        return self.stamped()
 
     def __repr__(self) -> str:
         """Tell what was solved, how good the answer is, and how load is shared."""

@@ -104,8 +104,7 @@ def geometry_of(case: spec.Case) -> Geometry:
     problems = [case.problem(c.key, c.message) for c in kinematics.conflicts]
     if problems:
         raise CaseError(problems)
-    gears = _with_teeth(kinematics.gears, case)
-    return Geometry(gears, _pairs(case, gears, kinematics.contacts))
+    return Geometry(kinematics.gears, _pairs(case, kinematics.gears, kinematics.contacts))
 
 
 def train_of(
@@ -183,26 +182,28 @@ def train_of(
 def _kinematics(case: spec.Case) -> Kinematics:
     running = 1 if case.operating.running == "counter-clockwise" else -1
     centres = centres_of(case.gears)
-    unsettled = {n: _gear(n, g, centres[n], running) for n, g in case.gears.items()}
+    pairs = {n: (m.driver, m.driven) for n, m in case.meshes.items()}
+    # What follows from the counts that are given is a count as well.
+    teeth, _ = tooth_counts(
+        {n: g.teeth for n, g in case.gears.items()},
+        {n: g.acting_radius for n, g in case.gears.items()},
+        pairs.values(),
+    )
     return settle(
-        unsettled,
-        {n: (m.driver, m.driven) for n, m in case.meshes.items()},
+        {n: _gear(n, g, centres[n], running, teeth.get(n)) for n, g in case.gears.items()},
+        pairs,
         {n: s.ends for n, s in case.shafts.items()},
         case.operating.input,
     )
 
 
-def _with_teeth(gears: Mapping[str, Gear], case: spec.Case) -> dict[str, Gear]:
-    """Gears with the tooth counts that follow from those given."""
-    counts, _ = tooth_counts(
-        {name: gear.teeth for name, gear in case.gears.items()},
-        {name: gear.base_radius for name, gear in gears.items()},
-        [(mesh.driver, mesh.driven) for mesh in case.meshes.values()],
-    )
-    return {name: replace(gear, teeth=counts.get(name)) for name, gear in gears.items()}
-
-
-def _gear(name: str, gear: spec.Gear, centre: tuple[float, float, float], running: int) -> Gear:
+def _gear(
+    name: str,
+    gear: spec.Gear,
+    centre: tuple[float, float, float],
+    running: int,
+    teeth: float | None,
+) -> Gear:
     axis = np.array(axis_of(gear))
     return Gear(
         name=name,
@@ -212,7 +213,7 @@ def _gear(name: str, gear: spec.Gear, centre: tuple[float, float, float], runnin
         frame=transverse_frame(axis),
         base_radius=gear.acting_radius,
         sense=running,
-        teeth=gear.teeth,
+        teeth=teeth,
         support=None,
         ratio=1.0,
     )

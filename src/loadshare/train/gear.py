@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,14 +22,21 @@ def transverse_frame(axis: Vector) -> NDArray[np.float64]:
     """Two unit vectors (2, 3) that span the plane across `axis`, right-handed about it.
 
     The first is the global x direction projected into the plane; y for a gear whose axis is x
-    itself. For an axis along z the frame is the global x, y.
+    itself. For an axis along z the frame is the global x, y. Gears along one axis share the array.
     """
-    seed = np.array([1.0, 0.0, 0.0])
+    return _frame_across(tuple(axis.tolist()))
+
+
+@lru_cache(maxsize=64)
+def _frame_across(along: tuple[float, ...]) -> NDArray[np.float64]:
+    axis, seed = np.array(along), np.array([1.0, 0.0, 0.0])
     if abs(axis @ seed) > 1.0 - 1e-9:
         seed = np.array([0.0, 1.0, 0.0])
     first = seed - (seed @ axis) * axis
     first /= np.linalg.norm(first)
-    return np.array([first, cross(axis, first)])
+    frame = np.array([first, cross(axis, first)])
+    frame.flags.writeable = False
+    return frame
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from loadshare.contact.law import Law
 from loadshare.train.gear import Gear, Vector, cross
 
@@ -64,7 +62,7 @@ def parallel_contact(
     """
     between = driven_centre - driver_centre
     between = between - (between @ driver_axis) * driver_axis
-    distance = float(np.linalg.norm(between))
+    distance = math.hypot(*between.tolist())
     if distance == 0.0:
         raise MeshGeometryError("the two centres coincide in the transverse plane")
     outward = between / distance
