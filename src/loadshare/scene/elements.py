@@ -29,37 +29,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.scene.coordinates import Array, Coordinates, coordinates_of
+from loadshare.scene.statics import Basis, basis_of
 from loadshare.settings import STATICS
 from loadshare.train.mesh import Mesh
 from loadshare.train.ring import DrumRing
 from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Train
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Basis:
-    """Statics of one set of acting elements.
-
-    Attributes
-    ----------
-    columns : ndarray of int, shape (k,)
-        The acting elements.
-    directions : ndarray, shape (k, n)
-        Their rows of A.
-    particular : ndarray, shape (k, n)
-        P.
-    redundant : ndarray, shape (k, r)
-        N, orthonormal.
-    loose : ndarray, shape (n, l)
-        Moves of the coordinates that no acting element resists, orthonormal. P is the
-        pseudo-inverse, so that coordinates are of least norm.
-    """
-
-    columns: NDArray[np.intp]
-    directions: Array
-    particular: Array
-    redundant: Array
-    loose: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -333,7 +308,7 @@ class Elements:
             ).astype(np.intp)
             if len(self._bases) >= STATICS.sets:
                 self._bases.clear()
-            known = self._bases[key] = _basis(columns, self.vectors[columns])
+            known = self._bases[key] = basis_of(columns, self.vectors[columns])
         return known
 
 
@@ -453,22 +428,3 @@ def _units(elements: Elements, here: Situations) -> tuple[float, float]:
         return force, 1e-6
     yielded = median(mesh.law(positions[mesh.name]).compression(force) for _, mesh in drive)
     return force, max(yielded, 1e-3 * max(abs(gaps[e]) for e, _ in drive))
-
-
-def unresisted(directions: Array) -> Array:
-    """Orthonormal moves (n, l) across all of some directions (k, n)."""
-    _, sizes, right = np.linalg.svd(directions, full_matrices=True)
-    return np.asarray(right[_rank(sizes) :].T)
-
-
-def _rank(sizes: Array) -> int:
-    return int((sizes > STATICS.rank * sizes.max(initial=0.0)).sum())
-
-
-def _basis(columns: NDArray[np.intp], directions: Array) -> Basis:
-    left, sizes, right = np.linalg.svd(directions, full_matrices=True)
-    rank = _rank(sizes)
-    particular = left[:, :rank] / sizes[:rank] @ right[:rank]
-    return Basis(
-        columns, directions, particular, np.ascontiguousarray(left[:, rank:]), right[rank:].T
-    )

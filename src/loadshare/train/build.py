@@ -1,4 +1,4 @@
-"""From a case to a train: everything in SI, geometry settled once.
+"""From a case to a train: everything in SI.
 
 A number may be an array of S values, one per sample (see `samples`): what stands here is written so
 that it does for both.
@@ -8,58 +8,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
 
 from loadshare import case as spec
-from loadshare.case.place import axis_of, centres_of
-from loadshare.case.power_flow import against_the_names
-from loadshare.case.teeth import tooth_counts
 from loadshare.contact.law import Law, PowerLaw, TableLaw
 from loadshare.errors import CaseError, Problem
-from loadshare.train.gear import Gear, Vector, cross, transverse_frame
-from loadshare.train.kinematics import Kinematics, settle
-from loadshare.train.mesh import Contact, Mesh, contact_of
+from loadshare.train.gear import Gear, Vector, cross
+from loadshare.train.geometry import Geometry, Pair, geometry_of
+from loadshare.train.mesh import Mesh
 from loadshare.train.offset import Offset, polar
 from loadshare.train.ring import DrumRing, Ring, RoundRing, transverse
 from loadshare.train.train import Shaft, Spline, Stage, Train
 
 Element = TypeVar("Element")
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Pair:
-    """Geometry of a mesh.
-
-    Attributes
-    ----------
-    driver, driven : Gear
-    normals : (ndarray, ndarray)
-        n and n'.
-    turned : bool
-        See `Mesh`.
-    """
-
-    driver: Gear
-    driven: Gear
-    normals: tuple[Vector, Vector]
-    turned: bool
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Geometry:
-    """What samples that share a machine have in common.
-
-    Attributes
-    ----------
-    gears : mapping of str to Gear
-    pairs : mapping of mesh to Pair
-    """
-
-    gears: Mapping[str, Gear]
-    pairs: Mapping[str, Pair]
 
 
 def build_train(case: spec.Case) -> Train:
@@ -90,21 +54,6 @@ def with_laws(case: spec.Case) -> spec.Case:
 
         return resolve(case)
     return case
-
-
-def geometry_of(case: spec.Case) -> Geometry:
-    """Settle the geometry of a case.
-
-    Raises
-    ------
-    CaseError
-        As `build_train`.
-    """
-    kinematics = _kinematics(case)
-    problems = [case.problem(c.key, c.message) for c in kinematics.conflicts]
-    if problems:
-        raise CaseError(problems)
-    return Geometry(kinematics.gears, _pairs(case, kinematics.gears, kinematics.contacts))
 
 
 def train_of(
@@ -179,46 +128,6 @@ def train_of(
     )
 
 
-def _kinematics(case: spec.Case) -> Kinematics:
-    running = 1 if case.operating.running == "counter-clockwise" else -1
-    centres = centres_of(case.gears)
-    pairs = {n: (m.driver, m.driven) for n, m in case.meshes.items()}
-    # What follows from the counts that are given is a count as well.
-    teeth, _ = tooth_counts(
-        {n: g.teeth for n, g in case.gears.items()},
-        {n: g.acting_radius for n, g in case.gears.items()},
-        pairs.values(),
-    )
-    return settle(
-        {n: _gear(n, g, centres[n], running, teeth.get(n)) for n, g in case.gears.items()},
-        pairs,
-        {n: s.ends for n, s in case.shafts.items()},
-        case.operating.input,
-    )
-
-
-def _gear(
-    name: str,
-    gear: spec.Gear,
-    centre: tuple[float, float, float],
-    running: int,
-    teeth: float | None,
-) -> Gear:
-    axis = np.array(axis_of(gear))
-    return Gear(
-        name=name,
-        kind=gear.type,
-        centre=np.array(centre),
-        axis=axis,
-        frame=transverse_frame(axis),
-        base_radius=gear.acting_radius,
-        sense=running,
-        teeth=teeth,
-        support=None,
-        ratio=1.0,
-    )
-
-
 def _vector(lengths: tuple[spec.Quantity, ...]) -> Vector:
     """Three components, the last of them 0 where it is not given."""
     components = [*(q.si for q in lengths), 0.0][:3]
@@ -241,23 +150,6 @@ def _each(
     if value is None:
         return ()
     return value if isinstance(value, tuple) else (value,)
-
-
-def _pairs(
-    case: spec.Case, gears: Mapping[str, Gear], contacts: Mapping[str, Contact]
-) -> dict[str, Pair]:
-    """Meshes with the flanks that the torque presses, whichever way it runs through them."""
-    against = all(against_the_names(case.operating, case.meshes, case.shafts) or (False,))
-    found = {}
-    for name, mesh in case.meshes.items():
-        driver, driven, contact = gears[mesh.driver], gears[mesh.driven], contacts[name]
-        turned = against and not mesh.given("backlash", "normal_backlash")
-        if turned:
-            driver, driven = driven, driver
-            contact = contact_of(driver, driven)
-        normals = [contact.normal(mesh.pressure_angle.si, drive) for drive in (True, False)]
-        found[name] = Pair(driver, driven, (normals[0], normals[1]), turned)
-    return found
 
 
 def _mesh(name: str, mesh: spec.Mesh, pair: Pair) -> Mesh:

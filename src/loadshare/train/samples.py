@@ -19,8 +19,9 @@ from loadshare import case as spec
 from loadshare.case.element import Element
 from loadshare.case.keys import Path, dotted
 from loadshare.train.array_keys import array_unit
-from loadshare.train.build import Geometry, geometry_of, train_of, with_laws
+from loadshare.train.build import train_of, with_laws
 from loadshare.train.columns import Column, columns_of
+from loadshare.train.geometry import Geometry, geometry_of
 from loadshare.train.situations import Situations, situations_of
 from loadshare.train.train import Train
 

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from loadshare.compilation import jit
 from loadshare.scene.data import Data
-from loadshare.scene.elements import Basis, Elements
+from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
+from loadshare.scene.statics import Basis
 from loadshare.settings import HOT, LAWS
 from loadshare.solver.hot import lanes
 from loadshare.solver.hot import places as at

@@ -13,8 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.scene.data import Data
-from loadshare.scene.elements import Elements, unresisted
+from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
+from loadshare.scene.statics import unresisted
 from loadshare.settings import PLACES, STATICS
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot.exchange import Codes

@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.scene.data import Data
-from loadshare.scene.elements import Basis, Elements
+from loadshare.scene.elements import Elements
+from loadshare.scene.statics import Basis
 from loadshare.settings import EXCHANGE
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot.state import State

@@ -18,8 +18,9 @@ from numpy.typing import NDArray
 
 from loadshare.compilation import jit, within
 from loadshare.scene.data import Data
-from loadshare.scene.elements import Basis, Elements
+from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
+from loadshare.scene.statics import Basis
 from loadshare.settings import HOT, LANES
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot.plain import Codes, Rows, plain_set

@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.scene.data import Data
-from loadshare.scene.elements import Basis, Elements
+from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
+from loadshare.scene.statics import Basis
 from loadshare.solver.hot.places import OPEN
 
 Rows = NDArray[np.intp]

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.scene.data import Data
-from loadshare.scene.elements import Basis, Elements
+from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
+from loadshare.scene.statics import Basis
 from loadshare.settings import HOT
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot.rest import rest

@@ -17,8 +17,8 @@ import numpy as np
 from loadshare.contact.problem import ArcRow
 from loadshare.contact.programme import Array
 from loadshare.contact.radial import RadialLaw
-from loadshare.scene.elements import unresisted
 from loadshare.scene.scene import GearRadial, Scene
+from loadshare.scene.statics import unresisted
 from loadshare.settings import PLACES
 from loadshare.solver.undetermined.norm import Norm, norm_of
 

@@ -1,0 +1,57 @@
+"""Statics of elements that act: what balances a load, what holds itself, and what moves freely."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.scene.coordinates import Array
+from loadshare.settings import STATICS
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Basis:
+    """Statics of one set of acting elements.
+
+    Attributes
+    ----------
+    columns : ndarray of int, shape (k,)
+        The acting elements.
+    directions : ndarray, shape (k, n)
+        Their rows of A.
+    particular : ndarray, shape (k, n)
+        P.
+    redundant : ndarray, shape (k, r)
+        N, orthonormal.
+    loose : ndarray, shape (n, l)
+        Moves of the coordinates that no acting element resists, orthonormal. P is the
+        pseudo-inverse, so that coordinates are of least norm.
+    """
+
+    columns: NDArray[np.intp]
+    directions: Array
+    particular: Array
+    redundant: Array
+    loose: Array
+
+
+def unresisted(directions: Array) -> Array:
+    """Orthonormal moves (n, l) across all of some directions (k, n)."""
+    _, sizes, right = np.linalg.svd(directions, full_matrices=True)
+    return np.asarray(right[_rank(sizes) :].T)
+
+
+def _rank(sizes: Array) -> int:
+    return int((sizes > STATICS.rank * sizes.max(initial=0.0)).sum())
+
+
+def basis_of(columns: NDArray[np.intp], directions: Array) -> Basis:
+    """Return the statics of a set whose elements push along some directions (k, n)."""
+    left, sizes, right = np.linalg.svd(directions, full_matrices=True)
+    rank = _rank(sizes)
+    particular = left[:, :rank] / sizes[:rank] @ right[:rank]
+    return Basis(
+        columns, directions, particular, np.ascontiguousarray(left[:, rank:]), right[rank:].T
+    )

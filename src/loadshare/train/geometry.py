@@ -1,0 +1,125 @@
+"""The geometry of a case: where gears stand, how they turn, which way their teeth push.
+
+It is settled once for all samples that share a machine.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from loadshare import case as spec
+from loadshare.case.place import axis_of, centres_of
+from loadshare.case.power_flow import against_the_names
+from loadshare.case.teeth import tooth_counts
+from loadshare.errors import CaseError
+from loadshare.train.gear import Gear, Vector, transverse_frame
+from loadshare.train.kinematics import Kinematics, settle
+from loadshare.train.mesh import Contact, contact_of
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pair:
+    """Geometry of a mesh.
+
+    Attributes
+    ----------
+    driver, driven : Gear
+    normals : (ndarray, ndarray)
+        n and n'.
+    turned : bool
+        See `Mesh`.
+    """
+
+    driver: Gear
+    driven: Gear
+    normals: tuple[Vector, Vector]
+    turned: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Geometry:
+    """What samples that share a machine have in common.
+
+    Attributes
+    ----------
+    gears : mapping of str to Gear
+    pairs : mapping of mesh to Pair
+    """
+
+    gears: Mapping[str, Gear]
+    pairs: Mapping[str, Pair]
+
+
+def geometry_of(case: spec.Case) -> Geometry:
+    """Settle the geometry of a case.
+
+    Raises
+    ------
+    CaseError
+        As `build_train`.
+    """
+    kinematics = _kinematics(case)
+    problems = [case.problem(c.key, c.message) for c in kinematics.conflicts]
+    if problems:
+        raise CaseError(problems)
+    return Geometry(kinematics.gears, _pairs(case, kinematics.gears, kinematics.contacts))
+
+
+def _kinematics(case: spec.Case) -> Kinematics:
+    running = 1 if case.operating.running == "counter-clockwise" else -1
+    centres = centres_of(case.gears)
+    pairs = {n: (m.driver, m.driven) for n, m in case.meshes.items()}
+    # What follows from the counts that are given is a count as well.
+    teeth, _ = tooth_counts(
+        {n: g.teeth for n, g in case.gears.items()},
+        {n: g.acting_radius for n, g in case.gears.items()},
+        pairs.values(),
+    )
+    return settle(
+        {n: _gear(n, g, centres[n], running, teeth.get(n)) for n, g in case.gears.items()},
+        pairs,
+        {n: s.ends for n, s in case.shafts.items()},
+        case.operating.input,
+    )
+
+
+def _gear(
+    name: str,
+    gear: spec.Gear,
+    centre: tuple[float, float, float],
+    running: int,
+    teeth: float | None,
+) -> Gear:
+    axis = np.array(axis_of(gear))
+    return Gear(
+        name=name,
+        kind=gear.type,
+        centre=np.array(centre),
+        axis=axis,
+        frame=transverse_frame(axis),
+        base_radius=gear.acting_radius,
+        sense=running,
+        teeth=teeth,
+        support=None,
+        ratio=1.0,
+    )
+
+
+def _pairs(
+    case: spec.Case, gears: Mapping[str, Gear], contacts: Mapping[str, Contact]
+) -> dict[str, Pair]:
+    """Meshes with the flanks that the torque presses, whichever way it runs through them."""
+    against = all(against_the_names(case.operating, case.meshes, case.shafts) or (False,))
+    found = {}
+    for name, mesh in case.meshes.items():
+        driver, driven, contact = gears[mesh.driver], gears[mesh.driven], contacts[name]
+        turned = against and not mesh.given("backlash", "normal_backlash")
+        if turned:
+            driver, driven = driven, driver
+            contact = contact_of(driver, driven)
+        normals = [contact.normal(mesh.pressure_angle.si, drive) for drive in (True, False)]
+        found[name] = Pair(driver, driven, (normals[0], normals[1]), turned)
+    return found
