@@ -54,6 +54,7 @@ class Judge:
         answers: Equilibria,
         tolerance: float = CERTIFY.tolerance,
         compiled: bool = False,
+        bounded: bool = True,
     ) -> Verdicts:
         """Judge S claimed equilibria.
 
@@ -67,6 +68,8 @@ class Judge:
             With Numba, one answer after another, instead of NumPy: the same figures up to
             round-off, several times as fast once it is compiled. Splines with memory are judged
             with NumPy all the same.
+        bounded : bool
+            Whether errors are bounded; without a bound nothing passes.
         """
         if compiled and self.train.slip is None:
             residuals, load, deflection = judged(self.arguments, situations, answers)
@@ -74,8 +77,11 @@ class Judge:
             wanted = residuals.max(axis=1) <= tolerance
             limits = self.bounds(situations, answers, wanted)
             return Verdicts(residuals, tolerance, load, deflection, limits)
-        limits = self.bounds(situations, answers)
         count = len(answers.rotation)
+        if bounded:
+            limits = self.bounds(situations, answers)
+        else:
+            limits = Bounds(self.columns, np.full(count, np.inf), None, None, None)
         if count <= CERTIFY.together:
             return self._together(situations, answers, tolerance, limits)
         parts = [slice(at, at + CERTIFY.together) for at in range(0, count, CERTIFY.together)]

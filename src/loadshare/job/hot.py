@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from loadshare.certify import Certificate
-from loadshare.certify.bound import Bound, Bounds, bound_of
+from loadshare.certify.bound import Bound, bound_of
 from loadshare.certify.certificate import certify_later
 from loadshare.contact.plan import Plan, Role
 from loadshare.job.answer import Answer
@@ -20,6 +20,7 @@ from loadshare.solver import Record
 from loadshare.solver.position import coordinates_of
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import Situations
+from loadshare.train.train import Train
 
 HOT, SEARCHED = "hot path", "proximal search"
 
@@ -61,27 +62,23 @@ def _placed(
     tolerance: float,
 ) -> tuple[Equilibrium, Certificate]:
     """Return an answer at its place of least norm, and its certificate."""
-    train, before = machine.train, found.verdicts.bounds
-    after = before, row
-    equilibrium = found.equilibria.one(row, index)
+    train, first = machine.train, found.equilibria.one(row, index)
+    equilibrium = first
     if not found.determined[row]:
-        least, proved = least_places(machine, situations, found, [row], tolerance)
-        equilibrium, after = least[row], proved.get(row, after)
+        equilibrium = least_places(machine, situations, found, [row], tolerance)[row]
     claimed = found.equilibria.part(slice(row, row + 1))
-    prove = partial(bound_of, train, equilibrium)
-    if before.force is not None:
-        prove = partial(_bound, before, row, *after)
-    torques = float(before.relative[row])
+    torques = float(found.verdicts.bounds.relative[row])
+    prove = partial(_bound, train, equilibrium, first)
     return equilibrium, certify_later(train, equilibrium, claimed, tolerance, torques, prove)
 
 
-def _bound(before: Bounds, row: int, bounds: Bounds, at: int) -> Bound:
-    """Return the bound of an answer; that before it was moved, if nothing is proved after it.
+def _bound(train: Train, equilibrium: Equilibrium, first: Equilibrium) -> Bound:
+    """Bound an answer; where nothing is proved at its least place, where it was found first.
 
     The forces, and so the bounds on torques, are the same.
     """
-    bound = Bound.of(bounds, at)
-    return Bound.of(before, row) if math.isinf(bound.relative) else bound
+    bound = bound_of(train, equilibrium)
+    return bound_of(train, first) if math.isinf(bound.relative) else bound
 
 
 def _record(machine: Machine, found: Answers, row: int) -> Record:

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from loadshare.certify.bound import Bounds
 from loadshare.job.machine import Answers, Machine
 from loadshare.scene.assemble import scene_of
 from loadshare.solver.position import of_least_norm
@@ -21,7 +20,7 @@ def least_places(
     found: Answers,
     rows: Sequence[int],
     tolerance: float,
-) -> tuple[dict[int, Equilibrium], dict[int, tuple[Bounds, int]]]:
+) -> dict[int, Equilibrium]:
     """Move some answers to their least places, in place, and return them with what is open.
 
     An answer whose least place is not certified, because round-off of a move far away shows in a
@@ -43,8 +42,6 @@ def least_places(
     -------
     dict of int to Equilibrium
         All of these answers, by number.
-    dict of int to (Bounds, int)
-        Where the bounds of those that moved stand.
     """
     scenes = {
         row: scene_of(machine.elements, situations.take(slice(row, row + 1)), found.data.one(row))
@@ -54,20 +51,17 @@ def least_places(
     least = {row: of_least_norm(scenes[row], claimed[row]) for row in rows}
     moved = [row for row in rows if least[row].displacement is not claimed[row].displacement]
     if not moved:
-        return least, {}
+        return least
     placed = found.equilibria.take(np.array(moved))
     for k, row in enumerate(moved):
         placed.put(k, least[row])
     here = situations.take(np.array(moved))
-    verdicts = machine.judge.judge(here, placed, tolerance)
+    verdicts = machine.judge.judge(here, placed, tolerance, bounded=False)
     far = machine.measuring.worst(here, placed, verdicts.deflection, refusal=True) >= 1.0
     residuals = np.where(far, np.inf, verdicts.worst).tolist()
-    # Forces, and with them the bound on torques, are those that were certified before.
-    proved: dict[int, tuple[Bounds, int]] = {}
-    for k, (row, residual) in enumerate(zip(moved, residuals, strict=True)):
+    for row, residual in zip(moved, residuals, strict=True):
         if residual <= tolerance:
             found.equilibria.put(row, least[row])
-            proved[row] = verdicts.bounds, k
         else:
             least[row] = replace(claimed[row], undetermined=least[row].undetermined)
-    return least, proved
+    return least
