@@ -9,6 +9,8 @@ import warnings
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
+import numpy as np
+
 import loadshare as ls
 from benchmarks.random_trains.bounded import below_error
 from benchmarks.random_trains.far import is_far, is_far_before
@@ -23,6 +25,7 @@ from loadshare.case import Case
 from loadshare.errors import CaseError, Refused
 from loadshare.results.result import Position
 from loadshare.train import Train, build_train
+from loadshare.train.situations import situation_of
 
 AGREES = 1e-9
 """Largest error of a certified torque, over the largest torque of its position."""
@@ -63,7 +66,7 @@ class Finding:
         Places that are given as determined and are not where they are given, error in deflections;
         infinite where they are open.
     bound : list of [float, float]
-        Claimed bound and true error of every torque [N·m].
+        Claimed bound and true error of every torque, and of the worst of them [N·m].
     others : int
         Bounds on forces and places that were compared with true errors.
     below : dict of element or coordinate to [float, float]
@@ -155,6 +158,9 @@ def _compare(case: Case, train: Train, found: Position | None, told: str, findin
     finding.misplaced = misplaced(train, found, exact, machine, settled)
     claimed = found.certificate.bound.torque
     finding.bound = [[claimed[n], error] for n, error in errors.items()]
+    # What was proved with many others, before single torques were bounded, is over the largest.
+    driving = np.abs(situation_of(train, finding.position).torque).max(initial=largest)
+    finding.bound.append([found.certificate.proved * float(driving), max(errors.values())])
     finding.others, finding.below = below_error(train, found, machine, settled)
 
 

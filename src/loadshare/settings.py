@@ -188,12 +188,10 @@ class Bound(NamedTuple):
     enough: float = 1e-11
     """Relative bound with which double precision is content."""
     enough_for_many: float = 1e-10
-    """The same for large batches: a tenth of what is certified. A closer look costs as much as many
-    answers."""
+    """The same for what Numba finds: a tenth of what is certified. A closer look costs as much as
+    many answers."""
     together: int = 512
     """Claims that are looked at in twice the precision at a time."""
-    many: int = 1000
-    """Claims from which on only the largest error is found where that is enough."""
     soft: float = 1e5
     """Largest compliance of a turn of a line, at first, in compliances of the claim: what is softer
     hardly carries."""

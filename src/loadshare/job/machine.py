@@ -43,6 +43,8 @@ KERNELS = (
     ("loadshare.solver.hot.products", "_push"),
     ("loadshare.solver.hot.products", "_idle"),
     ("loadshare.certify.compiled", "judge_all"),
+    ("loadshare.certify.bound.compiled", "find_all"),
+    ("loadshare.certify.bound.compiled", "bound_all"),
 )
 """What is called at most to answer a case; the first, where it has many positions."""
 

@@ -39,7 +39,7 @@ class Bounds:
     relative : ndarray, shape (S,)
         Largest error of a torque, over the largest torque.
     torque : ndarray, shape (S, flanks), or None
-        Of the torques of all flanks on their drivers [N·m]; None for large batches.
+        Of the torques of all flanks on their drivers [N·m]; None if Numba was enough.
     force : ndarray, shape (S, m), or None
         Of the forces of all columns [N]; likewise.
     coordinate : ndarray, shape (S, n), or None
@@ -81,9 +81,10 @@ def bounds(
     rigorous : bool
         Find all residuals in twice the working precision; otherwise only where that is needed.
     compiled : bool
-        Use Numba for large batches.
+        Use Numba, where it covers a train, and find no more than the largest error of a torque
+        where that is enough.
     wanted : ndarray of bool, shape (S,), optional
-        Claims of a large batch that are worth every effort; all by default.
+        Of those that Numba bounds, which are worth every effort; all by default.
     """
     if not len(answers.rotation):
         return Bounds(columns, np.zeros(0), None, None, None)
@@ -94,7 +95,7 @@ def bounds(
 def _bounds(claim: Claim, rigorous: bool, compiled: bool, wanted: Flags | None) -> Bounds:
     columns, answers = claim.columns, claim.answers
     relative: Array | None = None
-    if compiled and not rigorous and claim.count >= BOUND.many and is_covered(columns):
+    if compiled and not rigorous and is_covered(columns):
         relative = relative_bounds(columns, claim.situations, answers)
         poor = ~(relative <= BOUND.enough_for_many)
         left = np.flatnonzero(poor if wanted is None else poor & wanted)
