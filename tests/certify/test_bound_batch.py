@@ -237,6 +237,23 @@ def test_an_idling_hertz_flank_is_bounded(number):
     assert np.isfinite(told[1::4]).mean() > 0.25
 
 
+def test_a_stop_that_is_touched_carries_nothing():
+    """A gear is out of balance by what its stop should pull: it is the flanks that bear it.
+
+    What opens moves by any length, so that a stop without force is no support for what is left.
+    """
+    train, situations, found, _ = idling(34)
+    columns = Columns(train)
+    largest = max((found.flank_force * columns.arms).max(), np.abs(situations.torque).max())
+    (error,) = true_errors(train, found, largest)
+    assert error > 1e-13
+    for bound in (
+        bounds(columns, situations, found).relative,
+        relative_bounds(columns, situations, found),
+    ):
+        assert error <= bound[0]
+
+
 @pytest.mark.parametrize("name", ["tables", "fgfbstts/all_elements"])
 def test_compiled_bounds_of_right_claims_are_those_of_single_ones(name):
     """Both hold, and neither is a multiple of what the claim deserves."""

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.columns import Columns
-from loadshare.certify.bound.laws import CLOSED, LIGHT, OPEN
+from loadshare.certify.bound.laws import CLOSED, OPEN
 from loadshare.certify.bound.statics import Statics
 from loadshare.certify.plain import plain
 from loadshare.settings import BOUND
@@ -88,6 +88,7 @@ class Groups(NamedTuple):
     carries: Flags  # (G,): whether radial elements take part in carrying a load
     root: Array  # (G, …, rows): L, transposed
     moves: Array  # (G, …, n)
+    held: Array  # (G, …, n): moves that only light contacts hold, per force of these
     spread: Array  # (G,): sum of the lengths of the rows of L
     spread_of_arcs: Array  # (G,): of arcs alone
     into: Array  # (G,): energy per load, and per push across the lines of arcs
@@ -124,7 +125,7 @@ class Found(NamedTuple):
     residual: Array  # largest one of balance [N]
     rounding: Array  # of that [N]
     width: Array  # rounding of lengths [m]
-    reach: Array  # error of a force up to which laws of flanks are what is said of them [N]
+    reach: Array  # error of a force up to which laws of contacts are what is said of them [N]
     room: Array  # smallest gap of what does not act [m]
     aside: Array  # largest torque of what is put aside [N·m]
     turned: Array  # largest turn of an arc's line
@@ -184,7 +185,8 @@ class Operators(NamedTuple):
     particular: Array  # P
     redundant: Array  # N
     moves: Array
-    is_covered: bool  # whether a load is carried without what yields without end
+    held: Array  # moves that only light contacts hold, per force of these
+    is_covered: bool  # whether balance tells these forces
 
 
 class Plan:
@@ -260,14 +262,13 @@ class Plan:
         some = self.pulls[acts[len(contacts) :] != OPEN].reshape(-1, self.springs.shape[1])
         closed = self.contacts[contacts != OPEN]
         whole = Statics.of(np.concatenate([closed, self.springs, some]))
-        lasting = np.ones(len(whole.directions), dtype=bool)
-        # What is light carries a load only where nothing else does.
-        for softest in (CLOSED, LIGHT):
-            lasting[: len(closed)] = contacts[contacts != OPEN] <= softest
-            carrying = whole if lasting.all() else Statics.of(whole.directions[lasting])
-            is_covered = carrying.moves.shape == whole.moves.shape
-            if is_covered:
-                break
+        classes = np.full(len(whole.directions), CLOSED)
+        classes[: len(closed)] = contacts[contacts != OPEN]
+        lasting = classes == CLOSED
+        carrying = whole if lasting.all() else Statics.of(whole.directions[lasting])
+        # What is light may open, and then move by any length: it carries no load, but may hold what
+        # nothing else does, where balance alone tells its force.
+        left, is_covered = _held(carrying.moves, whole.directions[~lasting])
         particular = np.zeros(whole.particular.shape)
         particular[lasting] = carrying.particular
         if len(some):
@@ -281,7 +282,7 @@ class Plan:
             particular[first:] = part
         if len(self._statics) >= BOUND.sets:
             self._statics.clear()
-        found = Operators(particular, whole.redundant, whole.moves, is_covered)
+        found = Operators(particular, whole.redundant, whole.moves, left, is_covered)
         self._statics[acts.tobytes()] = found
         return found
 
@@ -299,9 +300,11 @@ class Plan:
         known = [self._known(each) for each in acts]
         self_stresses = max((k.redundant.shape[1] for k in known), default=0)
         moves = max((k.moves.shape[1] for k in known), default=0)
+        held = max((k.held.shape[1] for k in known), default=0)
         sizes = (
             (self_stresses, rows),
             (moves, n),
+            (held, n),
             *[()] * 6,
             (5, 4),
             (pulls, 4),
@@ -339,6 +342,7 @@ class Plan:
             found.particular[g, on[g]] = operators.particular
             redundant[g, on[g], : operators.redundant.shape[1]] = operators.redundant
             found.moves[g, : operators.moves.shape[1]] = operators.moves.T
+            found.held[g, : operators.held.shape[1]] = operators.held.T
             found.is_loose[g], found.known[g] = operators.moves.size > 0, operators.is_covered
         soft, softest = (np.where(on, self._both(figures), 0.0) for figures in (least, most))
         found.known[:] &= np.isfinite(soft + softest).all(axis=1)
@@ -423,6 +427,31 @@ class Plan:
         found.moment_by[:] = moments @ figures[:, :, :flanks].transpose(0, 2, 1)
         found.gain[:] = moments @ gain[:, :flanks]
         found.pushed[:] = pushed[:, first:].reshape(*pairs, len(moments)).sum(axis=2)
+
+
+def _held(moves: Array, directions: Array) -> tuple[Array, bool]:
+    """Moves (n, k) that others hold, as long as forces of all of these at most per load.
+
+    Parameters
+    ----------
+    moves : ndarray, shape (n, l)
+        Orthonormal; of what carries.
+    directions : ndarray, shape (k, n)
+        Of others.
+
+    Returns
+    -------
+    ndarray, shape (n, k)
+    bool
+        Whether balance alone tells the forces of those that hold something.
+    """
+    if not (moves.size and directions.size):
+        return moves[:, :0], True
+    along = directions @ moves
+    along = along[np.abs(along).max(axis=1) > BOUND.rank]
+    _, sizes, turn = np.linalg.svd(along, full_matrices=False)
+    count = int((sizes > BOUND.rank).sum())
+    return np.asarray(moves @ (turn[:count].T * count**1.5 / sizes[:count])), count == len(along)
 
 
 _plans: WeakKeyDictionary[Columns, Plan] = WeakKeyDictionary()

@@ -60,7 +60,7 @@ def bound_all(of, here, claim, found, group, errors):  # type: ignore[no-untyped
         errors[s], g = np.inf, found.number[s]
         if g < 0 or not group.known[g]:
             continue
-        stray, balanced = 0.0, True
+        stray, taken, balanced = 0.0, 0.0, True
         for k in range(group.moves.shape[1]):
             along = 0.0
             for c in range(group.moves.shape[2]):
@@ -72,7 +72,19 @@ def bound_all(of, here, claim, found, group, errors):  # type: ignore[no-untyped
             balanced = stray <= max(BOUND.balanced * scale, BOUND.rounded * found.push[s])
             residual += stray + EPS * scale
             rest += stray + EPS * scale
-        if not balanced or not found.aside[s] < np.inf:
+        for k in range(group.held.shape[1]):
+            along = 0.0
+            for c in range(group.held.shape[2]):
+                along += group.held[g, k, c] * found.left[s, c]
+            taken = max(taken, abs(along))
+        if taken > 0.0:
+            taken += EPS * scale
+            residual += taken
+            rest += taken
+            for c in range(len(of.arm)):
+                if found.acts[s, c] == LIGHT or found.acts[s, c] == ENDLESS:
+                    found.aside[s] = max(found.aside[s], taken * of.arm[c])
+        if not balanced or not found.aside[s] < np.inf or not taken <= found.reach[s]:
             continue
         by_norm = group.by[g, TORQUE, 0] * residual, group.into[g] * residual
         errors[s] = _proved(of, found, group, g, s, residual, by_norm)
@@ -251,23 +263,22 @@ def _gaps(of, here, s, sheet):  # type: ignore[no-untyped-def]
 @inlined
 def _acts(of, here, claim, s, sheet, found, top, deflection, widest):  # type: ignore[no-untyped-def]
     """Tell which contacts act, as `quick` does, and by how much the others are apart."""
-    flanks, acts, gap, rc = len(of.arm), found.acts, sheet.gap, _row(here.hertz, s)
+    flanks, acts, gap = len(of.arm), found.acts, sheet.gap
     for c in range(len(of.twin)):
         force = abs(_contact_force(of, claim, s, c))
         faint = force <= BOUND.noise * top and gap[c] > BOUND.apart * deflection
         acts[s, c] = OPEN
         if not (force == 0.0 or faint) or gap[c] <= BOUND.touching * widest:
             acts[s, c] = CLOSED
-            is_light = c < flanks and force < BOUND.light * found.scale[s]
-            if is_light and here.hertz[rc, of.mesh[c]] > 0.0:
+            if force < BOUND.light * found.scale[s]:
                 acts[s, c] = LIGHT if force >= EPS * found.scale[s] else ENDLESS
     for c in range(flanks, len(of.twin)):
         other = of.twin[c]
         if other > c and acts[s, c] != OPEN and acts[s, other] != OPEN:
             # Two opposed contacts of a ring are one that holds both ways.
             second = _contact_force(of, claim, s, c) >= _contact_force(of, claim, s, other)
-            idle = other if second else c
-            acts[s, idle], gap[idle] = OPEN, np.inf
+            idle, held = (other, c) if second else (c, other)
+            acts[s, idle], gap[idle], acts[s, held] = OPEN, np.inf, CLOSED
     room, aside, known = np.inf, 0.0, True
     for c in range(len(of.twin)):
         known &= gap[c] == gap[c]
@@ -394,6 +405,9 @@ def _contacts(of, here, claim, s, sheet, found, sets):  # type: ignore[no-untype
                 if c >= arcs:
                     turned = max(turned, sheet.turn[c - arcs])
                     bow = max(bow, abs(force) / of.apart[c - arcs])
+            # What opens may move by any length; of two that touch, one takes what the other cannot.
+            if of.twin[c] < 0 or sheet.gap[of.twin[c]] < np.inf:
+                reach = min(reach, force if found.acts[s, c] == CLOSED else np.inf)
             # What yields without end carries no load.
             _spread(sets, number, c, least, least if found.acts[s, c] == ENDLESS else most)
             weakest, yielded = min(weakest, force), max(yielded, abs(compression))

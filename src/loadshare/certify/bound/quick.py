@@ -14,8 +14,9 @@ D that no element undercuts
 
 with compliances that no element exceeds in the last term. D, the smallest compliances among claims
 of which the same elements act, makes L the same for all of them: a claim costs two small
-products. What cannot be shown so is left to `boxes`. Source:
-formulation, section 16.
+products. The last term holds for what stays closed: a contact that opens may move by any length.
+So a load is carried by what has more force than its error, or by what cannot open. What cannot be
+shown so is left to `boxes`. Source: formulation, section 16.
 """
 
 from __future__ import annotations
@@ -209,6 +210,7 @@ class _Group:
         flanks = np.flatnonzero(self.plain < columns.flanks.stop)
         self.over[:, flanks] = over[:, self.plain[flanks]]
         self.is_endless = (self.over > 1.0 / BOUND.secant).any(axis=0)
+        self.may_open = (self._at_ends(self._pushed()) < BOUND.light * scale[:, None]).any(axis=0)
         self._set_particular()
         self._set_stiffness()
 
@@ -217,11 +219,38 @@ class _Group:
         rest = np.zeros((len(lined), int(self.turning.sum())))
         return np.concatenate([plain[self.pick][:, self.plain], lined, rest], axis=1)
 
+    def _pushed(self) -> Array:
+        """Forces of what may open, shape (rows, m): infinite of what cannot."""
+        claim, found, pick = self.claim, self.found, self.pick
+        columns, flanks, arcs = claim.columns, claim.columns.flanks.stop, claim.arcs[1].shape[1]
+        contacts = len(columns.contacts)
+        pushed = np.full(found.force[pick].shape, np.inf)
+        pushed[:, columns.contacts] = found.force[pick][:, columns.contacts]
+        size = found.size[pick].copy()
+        size[:, arcs:][claim.graphs[pick][:, :, 2] > 0.0] = np.inf
+        first = columns.first_pair
+        pushed[:, first::2] = pushed[:, first + 1 :: 2] = size
+        # Of two without clearance between them, one takes what the other cannot.
+        doubled = self.doubled[pick]
+        for e in np.flatnonzero(doubled[:, : contacts + arcs].any(axis=0)).tolist():
+            twin = flanks + ((e - flanks) ^ 1)
+            for k in (0,) if e < contacts else (0, 1):
+                at = columns.contacts[twin] if e < contacts else first + 2 * (twin - contacts) + k
+                pushed[doubled[:, e], at] = np.inf
+        return pushed
+
+    def _at_ends(self, figures: Array) -> Array:
+        """Figures of all columns (rows, m), as directions are; those of turns infinite."""
+        at = self.claim.columns.first_pair + 2 * self.lined
+        turns = np.full((len(figures), int(self.turning.sum())), np.inf)
+        return np.concatenate([figures[:, self.plain], figures[:, at], turns], axis=1)
+
     def _set_particular(self) -> None:
         """Find how a load is carried by what yields in proportion."""
         self.particular = self.statics.particular
-        for left in (self.is_left | self.is_endless, self.is_left, self.is_sliding):
-            # What yields without end carries a load only where nothing else does.
+        light = self.is_left | self.is_endless
+        for left in (light | self.may_open, light, self.is_left, self.is_sliding):
+            # What may open, or yields without end, carries a load only where nothing else does.
             self.is_left = left
             known = Statics.of(self.directions[~left]) if left.any() else self.statics
             self.is_covered = self._is_idle(known.moves)
@@ -419,6 +448,8 @@ class _Group:
         radials = found.act[pick][:, pushed.shape[1] :]
         doubtful[:, pushed.shape[1] :] &= ~(loose & (radials == Act.STOP))
         proved &= ~(doubtful & ~self.doubled[pick]).any(axis=1)
+        opening = self._at_ends(self._pushed()) <= self._at_ends(errors)
+        proved &= ~(opening & self.particular.any(axis=1)).any(axis=1)
         one_sided = columns.is_contact.copy()
         one_sided[columns.arcs] = True
         one_sided[columns.radials] = loose.any()
