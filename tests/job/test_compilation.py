@@ -295,7 +295,8 @@ def test_case_by_case_nothing_is_loaded_before_it_is_worth_while_nor_compiled(mo
         assert engine_at_hand("auto", JOB.loading) is vectorised.settle
     assert not needed
     assert engine_at_hand("auto", 1) is vectorised.settle
-    assert needed == [len(machines.KERNELS)]
+    assert engine_at_hand("auto", compiled.FEW + 1) is vectorised.settle
+    assert needed == [len(machines.KERNELS) - 1, len(machines.KERNELS)]
     monkeypatch.setattr(compilation, "at_hand", lambda *_: True)
     assert engine_at_hand("auto", 1) is compiled.settle
     assert engine_at_hand("vectorised", 1) is vectorised.settle
@@ -311,7 +312,7 @@ from loadshare.job import machine
 from loadshare.solver.hot import compiled
 from numba.core.dispatcher import Dispatcher
 machine._one_by_one = {JOB.loading}
-assert machine.engine_at_hand("auto", 1) is compiled.settle
+assert machine.engine_at_hand("auto", compiled.FEW + 1) is compiled.settle
 asked, ask = [], Dispatcher._compile_for_args
 Dispatcher._compile_for_args = lambda self, *a, **k: asked.append(str(self)) or ask(self, *a, **k)
 for name in {KINDS!r}:

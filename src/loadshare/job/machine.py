@@ -37,6 +37,7 @@ COMPILED = (
 )
 """What a quick answer calls, all of which must be there."""
 KERNELS = (
+    ("loadshare.solver.hot.lanes", "_settle_all"),
     ("loadshare.solver.hot.compiled", "_settle_all"),
     ("loadshare.solver.hot.products", "_times"),
     ("loadshare.solver.hot.products", "_push"),
@@ -45,7 +46,7 @@ KERNELS = (
     ("loadshare.certify.bound.compiled", "find_all"),
     ("loadshare.certify.bound.compiled", "bound_all"),
 )
-"""What is called at most to answer a case."""
+"""What is called at most to answer a case; the first, where it has many positions."""
 
 
 def _parts(count: int, parts: int) -> list[slice]:
@@ -93,10 +94,11 @@ def engine_at_hand(name: str, count: int) -> Engine:
     if COMPILED[0] not in sys.modules and _one_by_one <= JOB.loading:
         return vectorised.settle
     try:
-        needed = [getattr(import_module(module), name) for module, name in KERNELS]
+        lanes, *others = [getattr(import_module(module), name) for module, name in KERNELS]
         from loadshare.solver.hot import compiled
     except Exception:  # noqa: BLE001 -- those who ask for the compiled one are told
         return vectorised.settle
+    needed = [lanes, *others] if count > compiled.FEW else others
     return compiled.settle if compilation.at_hand(*needed) else vectorised.settle
 
 
