@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.laws import CLOSED, OPEN
-from loadshare.certify.bound.statics import Statics
+from loadshare.certify.bound.statics import Statics, held_moves
 from loadshare.certify.plain import plain
 from loadshare.settings import BOUND
 from loadshare.train.equilibria import Equilibria
@@ -268,7 +268,7 @@ class Plan:
         carrying = whole if lasting.all() else Statics.of(whole.directions[lasting])
         # What is light may open, and then move by any length: it carries no load, but may hold what
         # nothing else does, where balance alone tells its force.
-        left, is_covered = _held(carrying.moves, whole.directions[~lasting])
+        left, is_covered = held_moves(carrying.moves, whole.directions[~lasting])
         particular = np.zeros(whole.particular.shape)
         particular[lasting] = carrying.particular
         if len(some):
@@ -427,31 +427,6 @@ class Plan:
         found.moment_by[:] = moments @ figures[:, :, :flanks].transpose(0, 2, 1)
         found.gain[:] = moments @ gain[:, :flanks]
         found.pushed[:] = pushed[:, first:].reshape(*pairs, len(moments)).sum(axis=2)
-
-
-def _held(moves: Array, directions: Array) -> tuple[Array, bool]:
-    """Moves (n, k) that others hold, as long as forces of all of these at most per load.
-
-    Parameters
-    ----------
-    moves : ndarray, shape (n, l)
-        Orthonormal; of what carries.
-    directions : ndarray, shape (k, n)
-        Of others.
-
-    Returns
-    -------
-    ndarray, shape (n, k)
-    bool
-        Whether balance alone tells the forces of those that hold something.
-    """
-    if not (moves.size and directions.size):
-        return moves[:, :0], True
-    along = directions @ moves
-    along = along[np.abs(along).max(axis=1) > BOUND.rank]
-    _, sizes, turn = np.linalg.svd(along, full_matrices=False)
-    count = int((sizes > BOUND.rank).sum())
-    return np.asarray(moves @ (turn[:count].T * count**1.5 / sizes[:count])), count == len(along)
 
 
 _plans: WeakKeyDictionary[Columns, Plan] = WeakKeyDictionary()

@@ -247,7 +247,9 @@ def _of_rounding(claim: Claim, scale: Array) -> Flags:
     columns, noise = claim.columns, BOUND.noise * scale[:, None]
     contacts = np.abs(claim.forces[:, columns.contacts])
     found = np.zeros((claim.count, len(columns.contacts) + columns.pairs), dtype=bool)
-    found[:, : contacts.shape[1]] = (contacts > 0.0) & (contacts <= noise)
+    arcs = np.hypot(*np.moveaxis(claim.forces[:, columns.arcs].reshape(claim.count, -1, 2), 2, 0))
+    pushes = np.concatenate([contacts, arcs], axis=1)
+    found[:, : pushes.shape[1]] = (pushes > 0.0) & (pushes <= noise)
     if claim.radial_gears:
         size = np.hypot(
             *np.moveaxis(claim.forces[:, columns.radials].reshape(claim.count, -1, 2), 2, 0)

@@ -28,7 +28,7 @@ from loadshare.certify.bound.bound import Box, aside, put_aside, rounding_of
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.laws import Act, Codes, Elements, elements
 from loadshare.certify.bound.signs import doubts
-from loadshare.certify.bound.statics import Statics
+from loadshare.certify.bound.statics import Statics, held_moves
 from loadshare.settings import BOUND
 
 Array = NDArray[np.float64]
@@ -248,12 +248,17 @@ class _Group:
     def _set_particular(self) -> None:
         """Find how a load is carried by what yields in proportion."""
         self.particular = self.statics.particular
+        self.held = self.statics.moves[:, :0]
         light = self.is_left | self.is_endless
         for left in (light | self.may_open, light, self.is_left, self.is_sliding):
             # What may open, or yields without end, carries a load only where nothing else does.
             self.is_left = left
             known = Statics.of(self.directions[~left]) if left.any() else self.statics
             self.is_covered = self._is_idle(known.moves)
+            if np.any(self.may_open & left):
+                # What may open bears what nothing else does, as balance alone tells.
+                self.held, is_told = held_moves(known.moves, self.directions[left])
+                self.is_covered &= is_told
             if self.is_covered:
                 self.particular = np.zeros(self.particular.shape)
                 self.particular[~left] = known.particular
@@ -323,9 +328,13 @@ class _Group:
         stray = np.zeros(len(left))
         if self.statics.moves.size:
             stray = np.abs(left @ self.statics.moves).max(axis=1) + EPS * scale
+        taken = np.zeros(len(left))
+        if self.held.size:
+            taken = np.abs(left @ self.held).max(axis=1) + EPS * scale
         # What goes along a free move may end at any contact, and push what that joins.
-        rounding = rounding + found.rounding[pick] @ matrix + stray[:, None]
+        rounding = rounding + found.rounding[pick] @ matrix + (stray + taken)[:, None]
         base, energy = self._under(left, misfit)
+        base = base + taken[:, None] * self.is_left
         # By what rigid parts contradict one another, one of them stands open.
         width = width + np.abs(misfit @ self.rigid) @ np.abs(self.rigid).T
         base, energy = self._with(base, energy, rounding, width)

@@ -70,3 +70,28 @@ def _orthogonal(factors: Array, scales: Array, size: int) -> Array:
     reflections = np.zeros((size, size), order="F")
     reflections[:, : factors.shape[1]] = factors
     return np.asarray(lapack.dorgqr(reflections, scales)[0])
+
+
+def held_moves(moves: Array, directions: Array) -> tuple[Array, bool]:
+    """Moves (n, k) that others hold, as long as forces of all of these at most per load.
+
+    Parameters
+    ----------
+    moves : ndarray, shape (n, l)
+        Orthonormal; of what carries.
+    directions : ndarray, shape (k, n)
+        Of others.
+
+    Returns
+    -------
+    ndarray, shape (n, k)
+    bool
+        Whether balance alone tells the forces of those that hold something.
+    """
+    if not (moves.size and directions.size):
+        return moves[:, :0], True
+    along = directions @ moves
+    along = along[np.abs(along).max(axis=1) > BOUND.rank]
+    _, sizes, turn = np.linalg.svd(along, full_matrices=False)
+    count = int((sizes > BOUND.rank).sum())
+    return np.asarray(moves @ (turn[:count].T * count**1.5 / sizes[:count])), count == len(along)

@@ -9,6 +9,7 @@ formulation, section 4.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -90,7 +91,8 @@ def free_set(
     laws : mapping of radial name to RadialLaw
         At the torques that are transmitted.
     """
-    carries = PLACES.carries * max([scene.force_unit(), *(abs(f) for f in forces.values())])
+    every = [*(abs(f) for f in forces.values()), *(math.hypot(*p) for p in pulls.values())]
+    carries = PLACES.carries * max([scene.force_unit(), *every])
     norm = norm_of(scene)
     ties = [*scene.springs, *_rows_of(scene.stiffness)]
     vectors: list[Array] = []
