@@ -258,7 +258,7 @@ class _Group:
             if np.any(self.may_open & left):
                 # What may open bears what nothing else does, as balance alone tells.
                 self.held, is_told = held_moves(known.moves, self.directions[left])
-                self.is_covered &= is_told
+                self.is_covered &= is_told or not (self.load @ np.abs(self.held)).any()
             if self.is_covered:
                 self.particular = np.zeros(self.particular.shape)
                 self.particular[~left] = known.particular
@@ -328,9 +328,7 @@ class _Group:
         stray = np.zeros(len(left))
         if self.statics.moves.size:
             stray = np.abs(left @ self.statics.moves).max(axis=1) + EPS * scale
-        taken = np.zeros(len(left))
-        if self.held.size:
-            taken = np.abs(left @ self.held).max(axis=1) + EPS * scale
+        taken = (self.load @ np.abs(self.held)).max(axis=1, initial=0.0)
         # What goes along a free move may end at any contact, and push what that joins.
         rounding = rounding + found.rounding[pick] @ matrix + (stray + taken)[:, None]
         base, energy = self._under(left, misfit)
@@ -457,7 +455,8 @@ class _Group:
         radials = found.act[pick][:, pushed.shape[1] :]
         doubtful[:, pushed.shape[1] :] &= ~(loose & (radials == Act.STOP))
         proved &= ~(doubtful & ~self.doubled[pick]).any(axis=1)
-        opening = self._at_ends(self._pushed()) <= self._at_ends(errors)
+        error = self._at_ends(errors)
+        opening = (self._at_ends(self._pushed()) <= error) & (error > 0.0)
         proved &= ~(opening & self.particular.any(axis=1)).any(axis=1)
         one_sided = columns.is_contact.copy()
         one_sided[columns.arcs] = True
