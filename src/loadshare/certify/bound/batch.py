@@ -1,4 +1,4 @@
-r"""The bound of large batches: residuals of every claim, one small matrix for all that act alike.
+r"""The bound of one claim or many: residuals, and one small matrix for all that act alike.
 
 It is the bound of `quick`, with all that is the same for claims of which the same elements act put
 into a few numbers. With r the largest residual of balance, q the norm of :math:`L^T \epsilon` and w
@@ -268,7 +268,7 @@ class Plan:
         carrying = whole if lasting.all() else Statics.of(whole.directions[lasting])
         # What is light may open, and then move by any length: it carries no load, but may hold what
         # nothing else does, where balance alone tells its force.
-        left, is_covered = held_moves(carrying.moves, whole.directions[~lasting])
+        borne, is_covered = held_moves(carrying.moves, whole.directions[~lasting])
         particular = np.zeros(whole.particular.shape)
         particular[lasting] = carrying.particular
         if len(some):
@@ -282,7 +282,7 @@ class Plan:
             particular[first:] = part
         if len(self._statics) >= BOUND.sets:
             self._statics.clear()
-        found = Operators(particular, whole.redundant, whole.moves, left, is_covered)
+        found = Operators(particular, whole.redundant, whole.moves, borne, is_covered)
         self._statics[acts.tobytes()] = found
         return found
 
