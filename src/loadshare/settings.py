@@ -87,12 +87,14 @@ class HotPath(NamedTuple):
 
 
 class Lanes(NamedTuple):
-    """Samples of a plain set side by side; what is out of the ordinary is left undecided."""
+    """Samples of a set side by side; what is out of the ordinary is left undecided."""
 
     rounds: int = 4
     """Times that samples begin again beside those that took as long."""
     few: float = 0.125
     """Share of the lanes that is not waited for, but in the last round."""
+    fewest: int = 4
+    """Samples up to which no lane is filled up with what is in another."""
     passes: int = 30
     """Passes after which a sample is left undecided."""
     haste: int = 2
@@ -110,6 +112,8 @@ class Lanes(NamedTuple):
     close: float = 1e-5
     """Halley's last step on a root, relative, from which on the root counts as found: the error is
     its cube."""
+    yields: float = 1.0
+    """Largest compliance along the direction of a slip, where its border leaves the length free."""
 
 
 class Statics(NamedTuple):
@@ -451,6 +455,9 @@ class Exchange(NamedTuple):
     """Exchanges of all wrong signs at once; after these, one at a time."""
     returns: int = 3
     """Visits of one set that show a sample to go around."""
+    nothing: float = 1e-9
+    """Force, over the largest, that is none where a sample goes to and fro between a set that has
+    the contact and one that has it not: what a certificate lets pass."""
     turns: int = 24
     """Turns allowed in all: of samples that are settled by exchange, one in a thousand takes
     more."""

@@ -45,7 +45,7 @@ def test_lines_of_code_are_counted():
     ("file", "name"),
     [
         ("src/loadshare/errors.py", "loadshare"),
-        ("src/loadshare/solver/hot/lanes.py", "loadshare.solver"),
+        ("src/loadshare/solver/hot/compiled.py", "loadshare.solver"),
         ("benchmarks/peers/form.py", "benchmarks.peers"),
         ("benchmarks/kept.py", "benchmarks"),
     ],

@@ -37,16 +37,12 @@ COMPILED = (
 )
 """What a quick answer calls, all of which must be there."""
 KERNELS = (
-    ("loadshare.solver.hot.lanes", "_settle_all"),
     ("loadshare.solver.hot.compiled", "_settle_all"),
-    ("loadshare.solver.hot.products", "_times"),
-    ("loadshare.solver.hot.products", "_push"),
-    ("loadshare.solver.hot.products", "_idle"),
     ("loadshare.certify.compiled", "judge_all"),
     ("loadshare.certify.bound.compiled", "find_all"),
     ("loadshare.certify.bound.compiled", "bound_all"),
 )
-"""What is called at most to answer a case; the first, where it has many positions."""
+"""What takes long to compile of all that answers a case; the rest takes a moment."""
 
 
 def _parts(count: int, parts: int) -> list[slice]:
@@ -94,11 +90,10 @@ def engine_at_hand(name: str, count: int) -> Engine:
     if COMPILED[0] not in sys.modules and _one_by_one <= JOB.loading:
         return vectorised.settle
     try:
-        lanes, *others = [getattr(import_module(module), name) for module, name in KERNELS]
+        needed = [getattr(import_module(module), name) for module, name in KERNELS]
         from loadshare.solver.hot import compiled
     except Exception:  # noqa: BLE001 -- those who ask for the compiled one are told
         return vectorised.settle
-    needed = [lanes, *others] if count > compiled.FEW else others
     return compiled.settle if compilation.at_hand(*needed) else vectorised.settle
 
 
@@ -268,16 +263,21 @@ class Machine:
         found = found.completed(more) if found else more
         begun = bool(starts) or beside is not None or engine is not vectorised.settle
         left = ~found.solved
-        retried, searched = np.full(data.count, not begun), np.zeros(data.count, dtype=bool)
+        tries = np.full(data.count, 0 if begun else 1)
+        searched = np.zeros(data.count, dtype=bool)
         while True:
             found = found.without(left)
-            fresh = left & ~retried
-            if fresh.any():
-                # A beginning that leads nowhere, or steps that do: once more from rest, with NumPy.
-                rest = at_rest(self.elements, data)
-                more = exchange(self.elements, data, rest, vectorised.settle, only=fresh)
-                state, found = state.completed(rest, fresh & more.solved), found.completed(more)
-                retried |= fresh
+            for number, singly in enumerate((False, True)):
+                # A beginning that leads nowhere, or steps that do: once more from rest, with NumPy,
+                # at last one element at a time.
+                fresh = ~found.solved & ~searched & (tries == number)
+                if fresh.any():
+                    rest = at_rest(self.elements, data)
+                    more = exchange(
+                        self.elements, data, rest, vectorised.settle, only=fresh, singly=singly
+                    )
+                    state, found = state.completed(rest, fresh & more.solved), found.completed(more)
+                    tries[fresh] += 1
             if not (starts or searched.any()) and found.solved.all():
                 self._last = self._as_start(data, state, found)
             left = ~found.solved & ~searched

@@ -93,9 +93,18 @@ class Data:
 
     @cached_property
     def laws(self) -> bytes:
-        """What the structure of a set depends on: power laws, and compliances that do not vary."""
-        constant = np.where(self.steady, self.bending[0], np.nan)
-        return self.curved.tobytes() + constant.tobytes()
+        """What the structure of a set depends on: kinds of laws, compliances that do not vary."""
+        first = self.radial[:, :, 0]
+        constant = np.append(
+            np.where(self.steady, self.bending[0], np.nan),
+            np.where((first == first[:1]).all(axis=0), first[0], np.nan),
+        )
+        return self.curved.tobytes() + self.tabulated.tobytes() + constant.tobytes()
+
+    @cached_property
+    def follows(self) -> NDArray[np.bool_]:
+        """Radial elements whose friction follows the torque in some sample, shape (radials,)."""
+        return np.asarray(np.isnan(self.radial[:, :, 3]).any(axis=0))
 
 
 def data_of(elements: Elements, situations: Situations) -> Data:

@@ -1,4 +1,4 @@
-"""NumPy for all samples of a set, Numba in lanes and for one after another: the same passes.
+"""NumPy for all samples of a set, Numba for samples side by side: the same passes.
 
 Each is the other's check: every formula stands in both. They may take another number of passes, as
 NumPy ends when the last sample of a set has settled; so they differ by round-off, and 1e-12 of the
@@ -17,8 +17,9 @@ from tests.support import SHIPPED, shipped
 import loadshare as ls
 from loadshare.job.machine import Answers, Machine, engine_named
 from loadshare.settings import CERTIFY, JOB
-from loadshare.solver.hot import compiled, lanes, vectorised
+from loadshare.solver.hot import compiled, vectorised
 from loadshare.solver.hot import places as at
+from loadshare.solver.hot.lanes.signs import misplaced
 from loadshare.train import build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.samples import samples_of
@@ -63,32 +64,26 @@ def contact_forces(machine: Machine, found: Answers) -> np.ndarray:
     return np.pad(rows, ((0, 0), (0, radials)), constant_values=np.nan)
 
 
-def in_lanes(*given):
-    """Plain sets in lanes however few samples there are; the others one by one."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compiled, "FEW", 0)
-        return compiled.settle(*given)
-
-
 def in_few_lanes(*given):
     """Eight at a time, so that samples wait, and the slow ones begin again beside one another."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(lanes, "WIDTHS", (8,))
-        return in_lanes(*given)
-
-
-def one_by_one(*given):
-    """All sets one by one."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compiled, "FEW", len(given[4]))
+        patch.setattr(compiled, "WIDTHS", (8,))
         return compiled.settle(*given)
+
+
+def alone(*given):
+    """Every sample by itself."""
+    *before, rows, state, one_only = given
+    found = [compiled.settle(*before, rows[k : k + 1], state, one_only) for k in range(len(rows))]
+    verdicts, proposals = zip(*found, strict=True)
+    return np.concatenate(verdicts), np.concatenate(proposals)
 
 
 def agree(machine: Machine, situations: Situations) -> Answers:
     """All engines certify the same samples, with the same elements and the same figures."""
     one, *others = (
         machine.answer(situations, CERTIFY.tolerance, engine)
-        for engine in (vectorised.settle, in_lanes, in_few_lanes, one_by_one)
+        for engine in (vectorised.settle, compiled.settle, in_few_lanes, alone)
     )
     for other in others:
         same(machine, one, other)
@@ -163,7 +158,7 @@ def test_radial_elements_move_alike_from_place_to_place(data):
     bands = (np.array([1e-12]),) * 3
     offset, force = np.array([[0.6 * u, 0.8 * u]]), np.array([[0.6 * p, 0.8 * p]])
     wrong, moved = vectorised.misplaced(place, graph, offset, force, *bands)
-    other = compiled._misplaced(place, law, *offset[0], *force[0], 1e-12, 1e-12, 1e-12)
+    other = misplaced(place, law, *offset[0], *force[0], 1e-12, 1e-12, 1e-12)
     assert other == (moved[0] if wrong[0] else place)
 
 

@@ -8,7 +8,6 @@ torque are renewed in the same passes, and there is no outer loop. Then the sign
 has the wrong sign is exchanged, all at once first and one at a time when that goes on too long; a
 sample that finds no consistent set is left to the next rung of the ladder.
 
-`vectorised` does this with NumPy for all samples of a set together, `compiled` with Numba for one
-after another, and `lanes` with Numba for samples of a plain set side by side; `exchange` leads any
-of them from set to set.
+`vectorised` does this with NumPy for all samples of a set together, `compiled` with Numba for
+samples side by side (`lanes`); `exchange` leads either of them from set to set.
 """

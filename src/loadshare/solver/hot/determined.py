@@ -8,6 +8,7 @@ together as a set once, and serves all samples that have it. Source: formulation
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,29 +88,64 @@ def _alike(codes: Codes) -> Iterator[tuple[NDArray[np.intp], Codes]]:
         yield part, codes[part[0]]
 
 
-def _fixed(
-    elements: Elements, data: Data, state: State, some: Codes, rows: NDArray[np.intp]
-) -> Flags:
-    """Whether samples of one set of carrying elements are determined, shape (len(rows),)."""
+class _Moves(NamedTuple):
+    """How what a set of carrying elements holds may still move, shape (n, d), and what it meets."""
+
+    moves: Array
+    level: tuple[int, ...]  # radial elements on a level piece
+    flat: NDArray[np.intp]  # columns of flanks and stops that carry nothing
+    arcs: tuple[int, ...]
+    radials: tuple[int, ...]
+    # Whether level pieces, whatever their directions, leave some move.
+    some_left: bool
+
+
+def _moves(elements: Elements, data: Data, some: Codes) -> _Moves:
+    """Put together what a set of carrying elements leaves; computed once."""
+    key = ("moves", some.tobytes())
+    known = elements.kept.get(key)
+    if known is not None:
+        return cast(_Moves, known)
     carry, kinds = some[: elements.rows], some[elements.rows :]
     flat, columns, vectors = elements.flat, elements.columns, elements.vectors
     holding = [vectors[columns.springs], vectors[columns.flat][carry[:flat] != 0]]
     holding += [data.relative[a] for a in np.flatnonzero(carry[flat:])]
     holding += [_radial(elements, j) for j in np.flatnonzero(kinds == HELD).tolist()]
     moves = unresisted(np.vstack(holding))
+
+    def meets(matrix: Array) -> bool:
+        return bool(np.abs(matrix @ moves).max(initial=0.0) > PLACES.loose)
+
+    def radials(which: Flags) -> tuple[int, ...]:
+        return tuple(j for j in np.flatnonzero(which).tolist() if meets(_radial(elements, j)))
+
+    idle = elements.springs + np.flatnonzero(carry[:flat] == 0)
+    level = radials(kinds == LEVEL)
+    met = np.vstack([np.zeros((1, moves.shape[1])), *(_radial(elements, j) @ moves for j in level)])
+    found = _Moves(
+        moves,
+        level,
+        idle[np.abs(vectors[idle] @ moves).max(axis=1, initial=0.0) > PLACES.loose],
+        tuple(a for a in np.flatnonzero(carry[flat:] == 0).tolist() if meets(data.relative[a])),
+        radials(kinds != HELD),
+        unresisted(met).shape[1] > 0,
+    )
+    elements.keep(key, found)
+    return found
+
+
+def _fixed(
+    elements: Elements, data: Data, state: State, some: Codes, rows: NDArray[np.intp]
+) -> Flags:
+    """Whether samples of one set of carrying elements are determined, shape (len(rows),)."""
+    left_by = _moves(elements, data, some)
+    moves, level = left_by.moves, left_by.level
     if not moves.shape[1]:
         return np.ones(len(rows), dtype=bool)
-    level = [
-        j
-        for j in np.flatnonzero(kinds == LEVEL).tolist()
-        if np.abs(_radial(elements, j) @ moves).max() > PLACES.loose
-    ]
-    directions, touches = _touched(elements, data, state, some, moves, rows)
+    directions, touches = _touched(elements, data, state, some, left_by, rows)
     found = np.zeros(len(rows), dtype=bool)
-    met = np.vstack([np.zeros((1, moves.shape[1])), *(_radial(elements, j) @ moves for j in level)])
-    # What no level piece could hold, whatever its direction, is pinched by contacts or moves.
-    some_left = unresisted(met).shape[1] > 0
-    these = np.flatnonzero(touches.any(axis=1)) if some_left else np.arange(len(rows))
+    # What no level piece could hold is pinched by contacts or moves.
+    these = np.flatnonzero(touches.any(axis=1)) if left_by.some_left else np.arange(len(rows))
     if not len(these):
         return found
     across = np.zeros((len(these), len(level), moves.shape[1]))
@@ -130,7 +166,12 @@ def _radial(elements: Elements, j: int) -> Array:
 
 
 def _touched(
-    elements: Elements, data: Data, state: State, some: Codes, moves: Array, rows: NDArray[np.intp]
+    elements: Elements,
+    data: Data,
+    state: State,
+    some: Codes,
+    left_by: _Moves,
+    rows: NDArray[np.intp],
 ) -> tuple[Array, Flags]:
     """What carries nothing and must not close further, seen by the moves.
 
@@ -141,42 +182,31 @@ def _touched(
     ndarray of bool, shape (k, m)
         Whether a sample touches it.
     """
-    flat, x = elements.flat, state.x[rows]
-    directions: list[Array] = []
-    touches: list[Flags] = []
+    moves, flat, x = left_by.moves, left_by.flat, state.x[rows]
+    shape = (len(rows), len(flat), moves.shape[1])
+    vectors = elements.vectors[flat]
+    directions = [np.broadcast_to(vectors @ moves, shape)]
+    room = pick(data.gap[:, flat], rows) - x @ vectors.T
+    touches = [room <= PLACES.play]
 
     def add(direction: Array, room: Array) -> None:
-        directions.append(np.broadcast_to(direction, (len(rows), moves.shape[1])))
-        touches.append((room <= PLACES.play) & (np.abs(direction).max(axis=-1) > PLACES.loose))
+        directions.append(direction[:, None])
+        near = (room <= PLACES.play) & (np.abs(direction).max(axis=1) > PLACES.loose)
+        touches.append(near[:, None])
 
-    gaps = pick(data.gap, rows)
-    for k in elements.springs + np.flatnonzero(some[:flat] == 0):
-        vector = elements.vectors[k]
-        if _meets(vector, moves):
-            add(vector @ moves, gaps[:, k] - x @ vector)
-    for a in np.flatnonzero(some[flat : elements.rows] == 0).tolist():
-        if not _meets(data.relative[a], moves):
-            continue
+    for a in left_by.arcs:
         normal, margin = arc_at(data, a, rows, x)
         add(-normal @ data.relative[a] @ moves, margin)
-    for j in np.flatnonzero(some[elements.rows :] != HELD).tolist():
+    for j in left_by.radials:
         column, matrix = elements.radial_column(j), _radial(elements, j)
-        if not _meets(matrix, moves):
-            continue
         law = at.graph(pick(data.radial, rows)[:, j], state.force[rows] @ data.carried[j])
-        offset = x @ matrix.T - gaps[:, column : column + 2]
+        offset = x @ matrix.T - pick(data.gap[:, column : column + 2], rows)
         radius = np.linalg.norm(offset, axis=1)
         outward = offset / np.where(radius > 0.0, radius, 1.0)[:, None] @ matrix @ moves
         add(outward, law.reach - radius)
         if some[elements.rows + j] == LEVEL:
             add(-outward, radius - law.stick)
-    if not directions:
-        return np.zeros((len(rows), 0, moves.shape[1])), np.zeros((len(rows), 0), dtype=bool)
-    return np.stack(directions, axis=1), np.stack(np.broadcast_arrays(*touches), axis=1)
-
-
-def _meets(matrix: Array, moves: Array) -> bool:
-    return bool(np.abs(matrix @ moves).max() > PLACES.loose)
+    return np.concatenate(directions, axis=1), np.concatenate(touches, axis=1)
 
 
 def _across(elements: Elements, state: State, j: int, rows: NDArray[np.intp]) -> Array:

@@ -9,13 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from heapq import heappop, heappush
-from itertools import permutations
+from itertools import pairwise, permutations
 
 import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.scene.data import Data
 from loadshare.scene.elements import Elements
+from loadshare.scene.scene import Array
 from loadshare.scene.statics import Basis
 from loadshare.settings import EXCHANGE
 from loadshare.solver.hot import places as at
@@ -161,7 +162,7 @@ def exchange(
     held = np.zeros(count, dtype=bool)
     one_only = np.full(count, singly)
     limit = limit or EXCHANGE.turns
-    rounds = _Rounds()
+    rounds = _Rounds(elements)
     waiting = _Waiting()
     rows = np.arange(count) if only is None else np.flatnonzero(only)
     waiting.add(code[rows], rows)
@@ -172,17 +173,22 @@ def exchange(
         basis = elements.basis(here[:switches])
         verdict, proposal = engine(elements, data, basis, here[:switches], rows, state, one_only)
         onward = (verdict == at.OTHER) & (visited < limit)
-        for k in np.flatnonzero(onward & (singly | (visited > EXCHANGE.together))).tolist():
-            verdict[k] = rounds.judged(int(rows[k]), here[:switches], proposal[k])
+        judged = onward if singly else onward & (visited > EXCHANGE.together)
+        for k in judged.nonzero()[0].tolist():
+            force = state.force[rows[k]]
+            verdict[k] = rounds.judged(int(rows[k]), here[:switches], proposal[k], force)
             onward[k] = verdict[k] == at.OTHER
-        stay, done = rows[~onward], verdict[~onward] == at.DONE
-        code[stay], solved[stay] = here, done
-        held[stay] = done & (not basis.loose.shape[1])
-        if onward.any():
-            rows, visited = rows[onward], visited[onward]
-            one_only[rows[visited >= EXCHANGE.together]] = True
+        goes = onward.nonzero()[0]
+        if len(goes) < len(rows):
+            stay = rows[~onward]
+            done = verdict[~onward] == at.DONE
+            code[stay], solved[stay] = here, done
+            held[stay] = False if basis.loose.shape[1] else done
+        if len(goes):
+            rows = rows[goes]
+            one_only[rows] |= visited[goes] >= EXCHANGE.together
             other = np.zeros((len(rows), code.shape[1]), dtype=np.int8)
-            other[:, :switches] = proposal[onward]
+            other[:, :switches] = proposal[goes]
             waiting.add(_without_wedges(elements, data, here, other), rows)
     return Found(solved, code[:, :switches], turns, held)
 
@@ -195,10 +201,11 @@ class _Rounds:
     the certificate says whether it may.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, elements: Elements) -> None:
+        self.elements = elements
         self._visits: dict[int, list[bytes]] = {}
 
-    def judged(self, row: int, here: Codes, proposal: Codes) -> int:
+    def judged(self, row: int, here: Codes, proposal: Codes, force: Array) -> int:
         """DONE, OTHER or FAILED for a sample that is to go from one set to another."""
         visits = self._visits.setdefault(row, [])
         visits.append(here.tobytes())
@@ -207,8 +214,20 @@ class _Rounds:
         to_and_fro = visits[-2] == proposal.tobytes() == visits[-4:-3][0]
         if not to_and_fro:
             return at.FAILED
-        larger = np.count_nonzero(here) >= np.count_nonzero(proposal)
-        return at.DONE if larger else at.OTHER
+        if np.count_nonzero(here) < np.count_nonzero(proposal):
+            return at.OTHER
+        return at.DONE if self._is_idle(here, proposal, force) else at.FAILED
+
+    def _is_idle(self, here: Codes, proposal: Codes, force: Array) -> bool:
+        """Whether all that differs acts here, not in the proposal, and carries nothing."""
+        rows, columns = self.elements.rows, self.elements.columns
+        differ = here != proposal
+        if proposal[differ].any():
+            return False
+        size = np.abs(force)
+        radial = size[columns.radials].reshape(-1, 2)[differ[rows:]]
+        found = np.append(size[columns.contacts][differ[:rows]], radial)
+        return bool((found <= EXCHANGE.nothing * size.max()).all())
 
 
 class _Waiting:
@@ -243,12 +262,11 @@ class _Waiting:
         if (keys == keys[0]).all():
             self._put(int(keys[0]), code[0], rows)
             return
-        order = np.argsort(keys)
-        keys = keys[order]
-        starts = np.flatnonzero(np.append(True, keys[1:] != keys[:-1]))
-        parts = np.split(rows[order], starts[1:])
-        for key, first, part in zip(keys[starts].tolist(), order[starts], parts, strict=True):
-            self._put(key, code[first], part)
+        order = keys.argsort()
+        keys, rows = keys[order], rows[order]
+        ends = (keys[1:] != keys[:-1]).nonzero()[0] + 1
+        for first, end in pairwise([0, *ends.tolist(), len(rows)]):
+            self._put(int(keys[first]), code[order[first]], rows[first:end])
 
     def _put(self, key: int, code: Codes, rows: NDArray[np.intp]) -> None:
         self.sets.setdefault(key, code)

@@ -759,15 +759,14 @@ def misplaced(
         up = (size > law.bound + force_band) & yields
         down, after, before = False, level, stays
     elif place == at.SLIP:
-        up = (radius > law.reach + length_band) & rubs
+        up = (radius > law.reach + length_band) & rubs & ~inward
         down = (radius < law.stick - length_band) | inward | ~rubs
         after, before = past, np.where(rubs, back, level)
     elif place == at.STOP:
         up, down = False, ((radius < law.reach - length_band) | inward) & (law.reach > 0.0)
-        after, before = (
-            stays,
-            np.where((law.reach > law.stick) & (radius >= law.stick), level, back),
-        )
+        # A stop that carries next to nothing sticks: it does not use up its friction.
+        slips = (law.reach > law.stick) & (radius >= law.stick) & (size > HOT.hurry * law.bound)
+        after, before = stays, np.where(slips, level, back)
     else:
         up, down = False, inward | (size <= force_band)
         after, before = stays, np.full(len(radius), at.OPEN)

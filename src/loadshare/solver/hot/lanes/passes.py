@@ -1,0 +1,185 @@
+"""Newton passes of all lanes until they have settled or ask for another set."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loadshare.settings import HOT, LANES
+from loadshare.solver.hot.lanes.arcs import follow_arcs, turn_arcs
+from loadshare.solver.hot.lanes.laws import renew_laws, renew_tables
+from loadshare.solver.hot.lanes.options import bare
+from loadshare.solver.hot.lanes.radials import follow_radials, lengthen, turn_radials
+from loadshare.solver.hot.lanes.sums import add_product, solve
+from loadshare.solver.hot.lanes.work import (
+    BAND,
+    BEYONDS,
+    BOUND,
+    DRIFTS,
+    DU,
+    DV,
+    EXTRA,
+    INNER,
+    OUTER,
+    PATIENT,
+    PREVIOUS,
+)
+
+
+@bare
+def _matrix(s, work, lanes):  # type: ignore[no-untyped-def]
+    """Lower triangle of the redundants' matrix, with a border for every slip."""
+    r, matrix, tangent = s.redundant.shape[1], work.matrix, work.tangent
+    for c in range(r):
+        for d in range(c + 1):
+            for m in range(lanes):
+                matrix[c, d, m] = work.linear[c, d, m]
+        add_product(matrix[c, : c + 1], s.products[c * r : c * r + c + 1], tangent, lanes)
+    for t in range(s.turning_radials.shape[0]):
+        law = work.radial[t]
+        excess = work.one
+        for m in range(lanes):
+            excess[m] = law[INNER, m] - law[OUTER, m]
+        for c in range(r):
+            for d in range(c + 1):
+                for m in range(lanes):
+                    matrix[c, d, m] += excess[m] * work.along[t, c, m] * work.along[t, d, m]
+        border = s.borders[t]
+        if border >= 0:
+            p, q = work.force[2 * t], work.force[2 * t + 1]
+            for m in range(lanes):
+                held = law[DU, m] * p[m] + law[DV, m] * q[m]
+                work.right[r + border, m] = work.go[m] * (law[BOUND, m] - held)
+            for c in range(r):
+                for m in range(lanes):
+                    matrix[r + border, c, m] = work.along[t, c, m]
+            for d in range(border + 1):
+                for m in range(lanes):
+                    matrix[r + border, r + d, m] = 0.0
+
+
+@bare
+def _pass(s, work, lanes):  # type: ignore[no-untyped-def]
+    """One Newton pass: redundants from compatibility, then forces and compressions."""
+    r = s.redundant.shape[1]
+    force, stretch, tangent, shift = work.force, work.stretch, work.tangent, work.shift
+    z, right = work.z, work.right[:r]
+    turning, pairs = s.turning.shape[0], s.turning_radials.shape[0]
+    if turning > 0:
+        turn_arcs(s, work, lanes)
+    if pairs > 0:
+        turn_radials(s, work, lanes)
+    for c in range(r):
+        for m in range(lanes):
+            right[c, m] = work.base[c, m]
+    add_product(right, s.springs_matrix, z, lanes)
+    for e in range(s.contacts.shape[0]):
+        for m in range(lanes):
+            force[e, m] = work.fixed[e, m]
+    add_product(force, s.redundant, z, lanes)
+    if turning > 0:
+        add_product(right, s.turned_gap, work.load, lanes)
+        add_product(force, s.turned, work.load, lanes)
+    for e in range(s.contacts.shape[0]):
+        for m in range(lanes):
+            stretch[e, m] = work.gap[e, m] + shift[e, m] + tangent[e, m] * force[e, m]
+    lengthen(work.radial, force, stretch, lanes)
+    add_product(right, s.across, stretch, lanes)
+    for c in range(r):
+        for m in range(lanes):
+            right[c, m] *= -work.go[m]
+    if s.inverse.shape[0] > 0:
+        for c in range(r):
+            for m in range(lanes):
+                work.matrix[0, c, m] = right[c, m]
+        for c in range(r):
+            for m in range(lanes):
+                right[c, m] = 0.0
+        add_product(right, s.inverse, work.matrix[0], lanes)
+    else:
+        _matrix(s, work, lanes)
+        size = work.right.shape[0]
+        solve(work.matrix, work.right, r, size, lanes, work.singular, work.one, work.two)
+        for t in range(pairs):
+            if s.borders[t] >= 0:
+                for m in range(lanes):
+                    work.radial[t, EXTRA, m] += work.right[r + s.borders[t], m]
+    for m in range(lanes):
+        work.largest[m] = 0.0
+        work.strongest[m] = 0.0
+        work.weakest[m] = 0.0
+    for c in range(r):
+        for m in range(lanes):
+            z[c, m] += right[c, m]
+    add_product(force, s.redundant, right, lanes)
+    for e in range(s.contacts.shape[0]):
+        # Of radial elements neither the signs nor the compressions are looked at here.
+        row = 1.0 if s.first_row <= e < s.end_row else 0.0
+        for m in range(lanes):
+            f = force[e, m]
+            y = shift[e, m] + tangent[e, m] * f
+            stretch[e, m] = work.gap[e, m] + y
+            y = row * abs(y)
+            work.largest[m] = y if y > work.largest[m] else work.largest[m]
+            y = row * f
+            work.weakest[m] = y if y < work.weakest[m] else work.weakest[m]
+            f = abs(f)
+            work.strongest[m] = f if f > work.strongest[m] else work.strongest[m]
+    lengthen(work.radial, force, stretch, lanes)
+
+
+@bare
+def _judge(s, work, law_misfit, number, one_only, lanes):  # type: ignore[no-untyped-def]
+    """Judge lanes that have settled or ask for another set; return how many."""
+    misfit, judged = work.misfit, 0
+    for m in range(lanes):
+        if work.live[m] == 0.0:
+            continue
+        stalled = number > 2 and misfit[m] <= HOT.stalled
+        stalled = stalled and misfit[m] >= 0.5 * work.lane[PREVIOUS, m]
+        settled = misfit[m] <= HOT.settled or stalled
+        work.lane[PREVIOUS, m] = misfit[m]
+        # A set that is clearly wrong need not be settled.
+        pulled = law_misfit[m] <= HOT.nearly and not one_only[work.samples[m]]
+        wrong = work.lane[DRIFTS, m] > 0.0 or work.weakest[m] < -HOT.hurry * work.strongest[m]
+        pulled = pulled and wrong
+        # Forces without bound and what is not a number are left undecided.
+        burst = not work.strongest[m] <= HOT.burst * (work.push[m] if work.push[m] > 0.0 else 1.0)
+        undecided = work.singular[m] > 0.0 or (burst and not settled)
+        hopeless = work.longest[m] >= work.lane[PATIENT, m]
+        for t in range(s.turning_radials.shape[0]):
+            hopeless = hopeless or work.radial[t, BEYONDS, m] >= HOT.outside
+        if settled or pulled or undecided or hopeless:
+            sign = HOT.sign if settled else (HOT.hurry if pulled else np.inf)
+            work.lane[BAND, m] = 0.0 if undecided else sign
+            work.live[m], work.go[m] = 0.0, 1.0 if settled and not undecided else 0.0
+            judged += 1
+    return judged
+
+
+@bare
+def run(s, work, one_only, enough, lanes):  # type: ignore[no-untyped-def]
+    """Pass until no more than `enough` lanes are live."""
+    distance = np.inf
+    for w in range(s.arcs.shape[0]):
+        square = 0.0
+        for c in range(3):
+            square += s.nominal[s.arcs[w], c] ** 2
+        distance = min(distance, np.sqrt(square))
+    lives = 0
+    for m in range(lanes):
+        lives += work.live[m] > 0.0
+    law_misfit, misfit = work.waits, work.misfit
+    for number in range(LANES.passes):
+        if lives <= enough:
+            break
+        _pass(s, work, lanes)
+        renew_laws(s, work, misfit, lanes)
+        renew_tables(s, work, misfit, lanes)
+        for m in range(lanes):
+            # Where a flank waits for its law, no law fits.
+            law_misfit[m], waits = misfit[m], work.waits[m] > 0.0
+            misfit[m] = 1.0 if waits else misfit[m] * (HOT.settled / HOT.law)
+        follow_radials(s, work, misfit, lanes)
+        if s.turning.shape[0] > 0:
+            follow_arcs(s, work, distance, lanes)
+        lives -= _judge(s, work, law_misfit, number, one_only, lanes)

@@ -1,0 +1,171 @@
+"""Splines and round rings whose direction turns: laws, tangents, and what these leave."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loadshare.settings import HOT, LANES, LAWS
+from loadshare.solver.hot.lanes.options import bare
+from loadshare.solver.hot.lanes.work import (
+    BEGIN,
+    BEYONDS,
+    BOUND,
+    DU,
+    DV,
+    EXTRA,
+    FIRST_END,
+    INNER,
+    LAST,
+    OUTER,
+    REACH,
+    U,
+    V,
+)
+from loadshare.solver.hot.places import CORNER, SLIP, STOP, WALL
+
+
+@bare
+def graph(s, i, j, torque):  # type: ignore[no-untyped-def]
+    """Five numbers of a radial law, and whether it has a meaning; see `places.graph`."""
+    here = i if s.radial.shape[0] > 1 else 0
+    first, given, reach = s.radial[here, j, 0], s.radial[here, j, 1], s.radial[here, j, 2]
+    bound = s.radial[here, j, 3]
+    if np.isnan(bound):
+        bound = s.radial[here, j, 4] * abs(torque)
+    continuous = bound / first if first > 0.0 else 0.0
+    valid = True
+    if np.isnan(given):
+        stick = continuous if reach >= continuous else np.inf
+    else:
+        stick = min(given, continuous)
+        valid = first * given <= bound * (1.0 + LAWS.written) and reach >= stick
+    return first, stick, bound, reach, s.radial[here, j, 5], valid
+
+
+@bare
+def torque_of(follows, carried, force, lanes, torque):  # type: ignore[no-untyped-def]
+    """Torque (lanes,) over force unit that a radial element carries, if its friction follows it."""
+    for m in range(lanes):
+        torque[m] = 0.0
+    if follows:
+        for e in range(carried.shape[0]):
+            arm = carried[e]
+            if arm != 0.0:
+                for m in range(lanes):
+                    torque[m] += arm * force[e, m]
+
+
+@bare
+def renew_bound(s, work, t, lanes):  # type: ignore[no-untyped-def]
+    """Law of a radial element that turns, with the friction that the forces allow."""
+    j = s.turning_radials[t]
+    torque_of(s.follows[j], s.carried[j], work.force, lanes, work.one)
+    for m in range(lanes):
+        _, stick, bound, reach, last, _ = graph(s, work.samples[m], j, work.one[m])
+        work.radial[t, FIRST_END, m], work.radial[t, BOUND, m] = stick, bound
+        work.radial[t, REACH, m], work.radial[t, LAST, m] = reach, last
+
+
+@bare
+def turn_radials(s, work, lanes):  # type: ignore[no-untyped-def]
+    """Directions and tangents of the radial elements where they are; see `vectorised.block`."""
+    one, two = work.one, work.two
+    for t in range(s.turning_radials.shape[0]):
+        place = s.code[s.first_radial - s.first_column + s.turning_radials[t]]
+        law = work.radial[t]
+        p, q = work.force[2 * t], work.force[2 * t + 1]
+        by_force = place in (CORNER, WALL)
+        for m in range(lanes):
+            a, b = (p[m], q[m]) if by_force else (law[U, m], law[V, m])
+            other_a, other_b = (law[U, m], law[V, m]) if by_force else (p[m], q[m])
+            square = a * a + b * b
+            a, b = (a, b) if square > 0.0 else (other_a, other_b)
+            one[m] = np.sqrt(square)
+            square = a * a + b * b
+            inverse = 1.0 / np.sqrt(square) if square > 0.0 else 0.0
+            a = a * inverse if square > 0.0 else 1.0
+            law[DU, m] = a if work.go[m] > 0.0 else law[DU, m]
+            law[DV, m] = b * inverse if work.go[m] > 0.0 else law[DV, m]
+            two[m] = work.push[m] if work.push[m] > 1e-300 else 1e-300
+        for m in range(lanes):
+            size, push, reach, bound = one[m], two[m], law[REACH, m], law[BOUND, m]
+            if by_force:
+                begin = law[FIRST_END, m] if place == CORNER else reach
+                inner, outer = 0.0, begin / (size if size > 0.0 else push)
+            elif place == SLIP:
+                begin = 0.0
+                outer = max(size, law[FIRST_END, m])
+                outer = min(outer, reach) / max(bound, HOT.faint * push)
+                inner = min(outer, LANES.yields)
+            else:
+                inner, reached = 1.0 / law[LAST, m], max(size, reach)
+                begin = reach - bound * inner
+                pull = bound + law[LAST, m] * (reached - reach)
+                outer = reached / pull if pull > 0.0 else inner
+            outer = min(outer, HOT.softest)
+            going = work.go[m] > 0.0
+            law[INNER, m] = inner if going else law[INNER, m]
+            law[OUTER, m] = outer if going else law[OUTER, m]
+            law[BEGIN, m] = begin if going else law[BEGIN, m]
+            work.tangent[2 * t, m] = work.tangent[2 * t + 1, m] = law[OUTER, m]
+        for c in range(s.redundant.shape[1]):
+            here, there = s.redundant[2 * t, c], s.redundant[2 * t + 1, c]
+            along = work.along[t, c]
+            for m in range(lanes):
+                along[m] = law[DU, m] * here + law[DV, m] * there
+
+
+@bare
+def lengthen(radial, force, stretch, lanes):  # type: ignore[no-untyped-def]
+    """Add to the stretch of turning radial elements what is not across their direction."""
+    for t in range(radial.shape[0]):
+        law = radial[t]
+        p, q = force[2 * t], force[2 * t + 1]
+        for m in range(lanes):
+            du, dv = law[DU, m], law[DV, m]
+            size = law[BEGIN, m] + law[EXTRA, m]
+            size += (law[INNER, m] - law[OUTER, m]) * (du * p[m] + dv * q[m])
+            stretch[2 * t, m] += size * du
+            stretch[2 * t + 1, m] += size * dv
+
+
+@bare
+def follow_radials(s, work, misfit, lanes):  # type: ignore[no-untyped-def]
+    """Offsets and friction that belong to the forces; add what the tangents leave to the misfit.
+
+    As with power laws, what a tangent leaves of the law is of second order.
+    """
+    for t in range(s.turning_radials.shape[0]):
+        j = s.turning_radials[t]
+        place = s.code[s.first_radial - s.first_column + j]
+        law = work.radial[t]
+        p, q = work.force[2 * t], work.force[2 * t + 1]
+        if s.follows[j]:
+            renew_bound(s, work, t, lanes)
+        for m in range(lanes):
+            u = work.stretch[2 * t, m] - work.gap[2 * t, m]
+            v = work.stretch[2 * t + 1, m] - work.gap[2 * t + 1, m]
+            law[U, m], law[V, m] = u, v
+            radius, size = np.sqrt(u * u + v * v), np.sqrt(p[m] * p[m] + q[m] * q[m])
+            scale = work.largest[m] if work.largest[m] > radius else radius
+            scale = scale if scale > 0.0 else 1.0
+            strongest = work.strongest[m] if work.strongest[m] > 0.0 else 1.0
+            product, across = u * p[m] + v * q[m], abs(u * q[m] - v * p[m])
+            over_radius = 1.0 / radius if radius > 0.0 else 0.0
+            over_size = 1.0 / size if size > 0.0 else 0.0
+            bound = law[BOUND, m]
+            if place == SLIP:
+                gone = abs(product * over_radius - bound) / strongest
+                more = across / (bound if bound > HOT.faint * strongest else strongest) / scale
+                left = radius > HOT.beyond * law[REACH, m] or bound <= HOT.sign * work.push[m]
+                law[BEYONDS, m] = law[BEYONDS, m] + 1.0 if left else 0.0
+            elif place == STOP:
+                gone = law[REACH, m] + (product * over_radius - bound) / law[LAST, m] - radius
+                gone = abs(gone) / scale
+                more = across * over_radius * law[OUTER, m] / scale
+            else:
+                limit = law[FIRST_END, m] if place == CORNER else law[REACH, m]
+                gone = abs(product * over_size - limit) / scale
+                more = across * over_size / scale
+            gone = (gone if gone > more else more) * (HOT.settled / HOT.law)
+            misfit[m] = gone if gone > misfit[m] else misfit[m]

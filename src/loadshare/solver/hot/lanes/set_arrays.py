@@ -1,0 +1,362 @@
+"""What the compiled kernel reads of a set of acting elements and of the samples.
+
+Springs that are the same in all samples never change from pass to pass: what they add to the
+redundants' matrix is written down once. All other columns, `contacts` here, stand in the order in
+which the passes treat them: the two columns of every radial element whose direction turns, flanks
+with a power law, with a table, linear rows, and at last what is linear and no row (springs that
+differ from sample to sample, radial elements on their first piece or pinned).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.scene.data import Data
+from loadshare.scene.elements import Elements
+from loadshare.scene.scene import Array
+from loadshare.scene.statics import Basis
+from loadshare.solver.hot.lanes.options import allocating
+from loadshare.solver.hot.places import OPEN, PINNED, SLIP, STICK
+
+Rows = NDArray[np.intp]
+Codes = NDArray[np.int8]
+
+
+class Packed(NamedTuple):
+    """A set and samples as they are handed over: every array more costs a tenth of a microsecond.
+
+    The tables of a set stand in `floats`, its lists and numbers in `rows`, one after another; where
+    each begins stands at the front of `rows`.
+    """
+
+    floats: Array
+    rows: Rows
+    code: Codes
+    follows: NDArray[np.bool_]
+    loaded: Rows
+    load: Array
+    gap: Array
+    bending: Array
+    hertz: Array
+    tables: Array
+    nominal: Array
+    shift: Array
+    clearance: Array
+    relative: Array
+    radial: Array
+
+
+class SetArrays(NamedTuple):
+    """Numbers of a set and of the samples.
+
+    The set has r redundants on n coordinates. s of its elements are springs that never change and c
+    are contacts, the first q of which are renewed from pass to pass; j radial elements in all, t of
+    them turn; acting arcs turn with u coordinates.
+    """
+
+    particular: Array  # (n, c)
+    particular_springs: Array  # (n, s)
+    redundant: Array  # (c, r)
+    redundant_springs: Array  # (s, r)
+    across: Array  # (r, c): the redundants, transposed
+    across_springs: Array  # (r, s)
+    inverse: Array  # (r, r) of the redundants' matrix where it never changes, else (0, 0)
+    springs_matrix: Array  # (r, r): what the springs add to the redundants' matrix
+    products: Array  # (r r, q): of the redundants at the contacts
+    products_still: Array  # (r r, c − q)
+    turned: Array  # (c, u): forces per turned load
+    turned_springs: Array  # (s, u)
+    turned_gap: Array  # (r, u): what the springs open per turned load
+    moved: Array  # (u, c): turning coordinates per length of the contacts
+    moved_springs: Array  # (u, s): per length of the springs
+    moved_redundant: Array  # (u, r): as the springs yield to a redundant
+    moved_turned: Array  # (u, u): to a turned load
+    compliances: Array  # (s,): of the springs
+    loose: Array  # (n, l)
+    entries: Array
+    base: Array  # (acting arcs, n): rows of A
+    carried: Array  # (j, c): torque that each radial element carries per force of the contacts
+    springs: Rows  # (s,): their columns
+    contacts: Rows  # (c,): columns of all others
+    switches: Rows  # (rows that act,): their numbers in the code
+    arc_contacts: Rows  # (acting arcs,)
+    arcs: Rows  # (acting arcs,): their numbers
+    turning: Rows  # (u,): coordinates that acting arcs know of
+    open_arcs: Rows  # numbers of the arcs that do not act
+    open_rows: Rows  # numbers of the other rows that do not act
+    starts: Rows  # CSR of A
+    coordinates: Rows
+    arc_starts: Rows  # coordinates that an arc knows of
+    arc_coordinates: Rows
+    radial_at: Rows  # (j,): first contact of each radial element, −1 where it does not act
+    turning_radials: Rows  # (t,): numbers of the radial elements whose direction turns
+    borders: Rows  # (t,): number of the border of each that slips, −1 for the others
+    tables_of: Rows  # numbers of the tables of the flanks that have one
+    powers: int  # flanks with a power law
+    first_row: int  # first contact that is a row, 2t
+    end_row: int  # first contact after them that is none
+    first_column: int  # column of the first row, whether it acts or not
+    first_radial: int  # column of the first radial element
+    flanks: int  # rows before the first arc
+    code: Codes
+    follows: NDArray[np.bool_]  # (j,): whether friction follows the torque in some sample
+    loaded: Rows  # coordinates with a load
+    load: Array
+    gap: Array
+    bending: Array
+    hertz: Array
+    tables: Array
+    nominal: Array
+    shift: Array
+    clearance: Array
+    relative: Array
+    radial: Array
+
+
+_TABLES = SetArrays._fields.index("springs")
+_LISTS = SetArrays._fields.index("powers") - _TABLES
+_NUMBERS = SetArrays._fields.index("code") - _TABLES - _LISTS
+_FRONT = 3 * (_TABLES + _LISTS)
+"""Where the numbers stand in `Packed.rows`; before them three numbers of every table and list."""
+
+
+def packed_set(elements: Elements, data: Data, basis: Basis, code: Codes) -> Packed:
+    """Pack a set and samples; what does not vary from sample to sample is kept for next time."""
+    key = ("lanes", code.tobytes(), data.laws)
+    known = elements.kept.get(key)
+    if known is None:
+        known = elements.keep(key, _pack(*_structure(elements, data, basis, code), code))
+    return Packed._make(
+        (
+            *known,
+            data.follows,
+            data.loaded,
+            data.load,
+            data.gap,
+            data.bending,
+            data.hertz,
+            data.tables,
+            data.nominal,
+            data.shift,
+            data.clearance,
+            data.relative,
+            data.radial,
+        )
+    )
+
+
+def _pack(
+    tables: list[Array], lists: list[Rows], numbers: list[int], code: Codes
+) -> tuple[Array, Rows, Codes]:
+    """The first fields of `Packed`."""
+    front, start = [], 0
+    for table in tables:
+        front += [start, *table.shape]
+        start += table.size
+    start = _FRONT + _NUMBERS
+    for one in lists:
+        front += [start, len(one), 1]
+        start += len(one)
+    rows = np.concatenate([np.array(front + numbers, dtype=np.intp), *lists])
+    return np.concatenate([np.ravel(table) for table in tables]), rows, np.array(code)
+
+
+@allocating
+def _table(floats, place):  # type: ignore[no-untyped-def]
+    """A table of a packed set: where it begins, its rows and its columns."""
+    return floats[place[0] : place[0] + place[1] * place[2]].reshape((place[1], place[2]))
+
+
+@allocating
+def _list(rows, place):  # type: ignore[no-untyped-def]
+    """A list of a packed set: where it begins and how long it is."""
+    return rows[place[0] : place[0] + place[1]]
+
+
+@allocating
+def unpacked(p):  # type: ignore[no-untyped-def]
+    """Arrays of a packed set, in the order of `SetArrays`."""
+    floats, rows = p.floats, p.rows
+    return SetArrays(
+        _table(floats, rows[0:]),
+        _table(floats, rows[3:]),
+        _table(floats, rows[6:]),
+        _table(floats, rows[9:]),
+        _table(floats, rows[12:]),
+        _table(floats, rows[15:]),
+        _table(floats, rows[18:]),
+        _table(floats, rows[21:]),
+        _table(floats, rows[24:]),
+        _table(floats, rows[27:]),
+        _table(floats, rows[30:]),
+        _table(floats, rows[33:]),
+        _table(floats, rows[36:]),
+        _table(floats, rows[39:]),
+        _table(floats, rows[42:]),
+        _table(floats, rows[45:]),
+        _table(floats, rows[48:]),
+        _table(floats, rows[51:])[0],
+        _table(floats, rows[54:]),
+        _table(floats, rows[57:])[0],
+        _table(floats, rows[60:]),
+        _table(floats, rows[63:]),
+        _list(rows, rows[66:]),
+        _list(rows, rows[69:]),
+        _list(rows, rows[72:]),
+        _list(rows, rows[75:]),
+        _list(rows, rows[78:]),
+        _list(rows, rows[81:]),
+        _list(rows, rows[84:]),
+        _list(rows, rows[87:]),
+        _list(rows, rows[90:]),
+        _list(rows, rows[93:]),
+        _list(rows, rows[96:]),
+        _list(rows, rows[99:]),
+        _list(rows, rows[102:]),
+        _list(rows, rows[105:]),
+        _list(rows, rows[108:]),
+        _list(rows, rows[111:]),
+        rows[114],
+        rows[115],
+        rows[116],
+        rows[117],
+        rows[118],
+        rows[119],
+        p.code,
+        p.follows,
+        p.loaded,
+        p.load,
+        p.gap,
+        p.bending,
+        p.hertz,
+        p.tables,
+        p.nominal,
+        p.shift,
+        p.clearance,
+        p.relative,
+        p.radial,
+    )
+
+
+def _structure(
+    elements: Elements, data: Data, basis: Basis, code: Codes
+) -> tuple[list[Array], list[Rows], list[int]]:
+    """The fields of `SetArrays` that are the same for all samples: tables, lists, numbers."""
+    first, flanks = elements.springs, elements.flat
+    first_arc, first_radial = first + flanks, first + elements.rows
+    order, (springs, turned, powers, tables, rows) = _order(elements, data, basis, code)
+    columns, particular, n = basis.columns[order], basis.particular[order], basis.redundant[order]
+    contacts = columns[springs:]
+    renewed = turned + powers + tables
+    row_end = renewed + rows
+    acting = np.flatnonzero((contacts >= first_arc) & (contacts < first_radial))
+    arcs = contacts[acting] - first_arc
+    idle = np.flatnonzero(code[: elements.rows] == OPEN)
+    open_rows, open_arcs = idle[idle < flanks], idle[idle >= flanks] - flanks
+    known = (data.relative != 0.0).any(axis=1)
+    known |= elements.vectors[first_arc : first_arc + len(known)] != 0.0
+    arc_starts, arc_coordinates, _ = _sparse(known.astype(float))
+    turning = np.flatnonzero(known[arcs].any(axis=0))
+    starts, coordinates, entries = _sparse(elements.vectors)
+    at = {column: k for k, column in enumerate(contacts.tolist())}
+    radial_at = [
+        at.get(elements.radial_column(j), -1) for j in range(elements.switches - elements.rows)
+    ]
+    turning_radials = (contacts[0:turned:2] - first_radial) // 2
+    slips = code[elements.rows + turning_radials] == SLIP
+    compliances = np.array(data.bending[0, columns[:springs]])
+    held, of_springs = particular[:springs], n[:springs]
+    yields = held[:, turning].T * compliances
+    touching = n[springs:]
+    products = (
+        (touching[:, :, None] * touching[:, None, :]).reshape(len(touching), n.shape[1] ** 2).T
+    )
+    arrays = [
+        particular[springs:].T,
+        held.T,
+        touching,
+        of_springs,
+        touching.T,
+        of_springs.T,
+        _inverse(elements, data, columns, n, code) if not renewed else np.zeros((0, 0)),
+        of_springs.T * compliances @ of_springs,
+        products[:, :renewed],
+        products[:, renewed:],
+        particular[springs:, turning],
+        held[:, turning],
+        (yields @ of_springs).T,
+        particular[springs:, turning].T,
+        held[:, turning].T,
+        yields @ of_springs,
+        yields @ held[:, turning],
+        compliances[None],
+        basis.loose,
+        entries[None],
+        basis.directions[order][springs + acting],
+        data.carried[:, contacts],
+    ]
+    lists = [
+        columns[:springs],
+        contacts,
+        contacts[turned:row_end] - first,
+        acting,
+        arcs,
+        turning,
+        open_arcs,
+        open_rows,
+        starts,
+        coordinates,
+        arc_starts,
+        arc_coordinates,
+        np.array(radial_at, dtype=np.intp),
+        turning_radials,
+        np.where(slips, np.cumsum(slips) - 1, -1),
+        data.tabulated[contacts[turned + powers : renewed]],
+    ]
+    return arrays, lists, [powers, turned, row_end, first, first_radial, flanks]
+
+
+def _order(
+    elements: Elements, data: Data, basis: Basis, code: Codes
+) -> tuple[Rows, tuple[int, ...]]:
+    """Order of the acting columns, and how many there are of each sort but the last."""
+    columns = basis.columns
+    is_spring = columns < elements.springs
+    is_radial = columns >= elements.springs + elements.rows
+    # Columns of radial elements come in pairs, all others before them one by one.
+    number = np.where(is_radial, (columns - elements.springs + elements.rows) // 2, 0)
+    place = np.where(is_radial, np.append(code, OPEN)[number], OPEN)
+    is_table = data.tabulated[columns] >= 0
+    sort = np.select(
+        [
+            is_spring & data.steady[columns],
+            is_radial & (place != STICK) & (place != PINNED),
+            is_radial | is_spring,
+            is_table,
+            data.curved[columns],
+        ],
+        [0, 1, 5, 3, 2],
+        4,
+    )
+    return np.argsort(sort, kind="stable"), tuple(int((sort == k).sum()) for k in range(5))
+
+
+def _inverse(elements: Elements, data: Data, columns: Rows, n: Array, code: Codes) -> Array:
+    """Inverse of the redundants' matrix of linear elements, if it is the same in all samples."""
+    compliance, steady = np.array(data.bending[0]), np.array(data.steady)
+    for j in np.flatnonzero(code[elements.rows :] == STICK).tolist():
+        pair = slice(elements.radial_column(j), elements.radial_column(j) + 2)
+        first = data.radial[:, j, 0]
+        compliance[pair], steady[pair] = 1.0 / first[0], (first == first[0]).all()
+    if not steady[columns].all() or not n.shape[1]:
+        return np.zeros((0, 0))
+    return np.asarray(np.linalg.pinv(n.T * compliance[columns] @ n))
+
+
+def _sparse(matrix: Array) -> tuple[Rows, Rows, Array]:
+    """Starts of the rows, columns and entries of a matrix."""
+    row, column = np.nonzero(matrix)
+    return np.searchsorted(row, np.arange(len(matrix) + 1)), column, matrix[row, column]

@@ -1,0 +1,243 @@
+"""What has the wrong sign, and the set that mends it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loadshare.settings import HOT
+from loadshare.solver.hot.lanes.arcs import arc
+from loadshare.solver.hot.lanes.options import bare
+from loadshare.solver.hot.lanes.radials import graph, torque_of
+from loadshare.solver.hot.lanes.sums import approach
+from loadshare.solver.hot.lanes.work import BAND, BEYONDS
+from loadshare.solver.hot.places import (
+    CLOSED,
+    CORNER,
+    FAILED,
+    OPEN,
+    OTHER,
+    PINNED,
+    SLIP,
+    STICK,
+    STOP,
+    WALL,
+)
+
+
+@bare
+def look_at_rows(s, work, lanes):  # type: ignore[no-untyped-def]
+    """Mark rows with the wrong sign, (rows, lanes), and count them.
+
+    `strongest` and `weakest` become the largest force and length of a lane, to which its signs are
+    compared.
+    """
+    samples, x, force, wrong, count = work.samples, work.x, work.force, work.wrong, work.mistakes
+    strongest, longest, nearer = work.strongest, work.weakest, work.waits
+    force_band, length_band = work.two, work.three
+    for m in range(lanes):
+        strongest[m] = work.push[m]
+        longest[m] = 0.0
+        count[m] = 0
+    for e in range(force.shape[0]):
+        for m in range(lanes):
+            f = abs(force[e, m])
+            strongest[m] = f if f > strongest[m] else strongest[m]
+    for d in range(x.shape[0]):
+        for m in range(lanes):
+            y = abs(x[d, m])
+            longest[m] = y if y > longest[m] else longest[m]
+    for m in range(lanes):
+        y = 1e-3 * longest[m]
+        longest[m] = y if y > work.largest[m] else work.largest[m]
+        force_band[m] = work.lane[BAND, m] * strongest[m]
+        length_band[m] = work.lane[BAND, m] * longest[m]
+    for e in range(s.first_row, s.end_row):
+        row = s.switches[e - s.first_row]
+        for m in range(lanes):
+            off = force[e, m] < -force_band[m]
+            wrong[row, m] = off
+            count[m] += off
+    for o in range(s.open_rows.shape[0]):
+        row = s.open_rows[o]
+        approach(s, samples, s.first_column + row, x, lanes, nearer)
+        for m in range(lanes):
+            off = nearer[m] > length_band[m]
+            wrong[row, m] = off
+            count[m] += off
+    for o in range(s.open_arcs.shape[0]):
+        a = s.open_arcs[o]
+        row = s.flanks + a
+        arc(s, samples, a, x, lanes, work.normal, nearer, work.one)
+        for m in range(lanes):
+            off = -nearer[m] > length_band[m]
+            wrong[row, m] = off
+            count[m] += off
+
+
+@bare
+def misplaced(place, law, u, v, p, q, force_band, length_band, faint):  # type: ignore[no-untyped-def]
+    """Where a radial element should stand; its own place if that is right. See `misplaced`."""
+    first, stick, bound, reach, last, _ = law
+    radius, size = np.sqrt(u * u + v * v), np.sqrt(p * p + q * q)
+    jump = bound > first * stick * (1.0 + 1e-9)
+    beyond = STOP
+    if np.isinf(last):
+        beyond = WALL if reach > 0.0 else PINNED
+    rubs = bound > faint
+    level = (SLIP if rubs else OPEN) if reach > stick else beyond
+    back = PINNED
+    if bound == 0.0 and reach > 0.0:
+        back = OPEN
+    elif stick > 0.0:
+        back = CORNER if jump else STICK
+    inward = u * p + v * q < 0.0
+    if place == OPEN:
+        if radius > reach + length_band:
+            return beyond
+        if rubs and radius > length_band:
+            return STICK if radius < stick else level
+        return OPEN
+    if place == STICK:
+        if size <= first * stick + force_band:
+            return STICK
+        gone = beyond if radius > reach + length_band else level
+        return CORNER if jump else gone
+    if place == CORNER:
+        if inward or size < first * stick - force_band:
+            return STICK
+        return level if size > bound + force_band else CORNER
+    if place == PINNED:
+        yields = bound > 0.0 or reach > 0.0 or np.isfinite(last)
+        return level if size > bound + force_band and yields else PINNED
+    if place == SLIP:
+        if not rubs:
+            return level
+        if radius < stick - length_band or inward:
+            return back
+        return beyond if radius > reach + length_band else SLIP
+    if place == STOP:
+        if (radius < reach - length_band or inward) and reach > 0.0:
+            # A stop that carries next to nothing sticks: it does not use up its friction.
+            slips = reach > stick and radius >= stick and size > HOT.hurry * bound
+            return level if slips else back
+        return STOP
+    return OPEN if inward or size <= force_band else WALL
+
+
+@bare
+def look_at_radials(s, work, lanes):  # type: ignore[no-untyped-def]
+    """Find out where radial elements should stand, and count those that stand elsewhere.
+
+    `strongest` and `weakest` hold the largest force and length, as `_signs` leaves them.
+    """
+    u, v, torque = work.two, work.three, work.one
+    for j in range(s.radial_at.shape[0]):
+        e, place = s.radial_at[j], s.code[s.first_radial - s.first_column + j]
+        column = s.first_radial + 2 * j
+        approach(s, work.samples, column, work.x, lanes, u)
+        approach(s, work.samples, column + 1, work.x, lanes, v)
+        torque_of(s.follows[j], s.carried[j], work.force, lanes, torque)
+        turns = 0 <= e < s.first_row
+        for m in range(lanes):
+            work.better[j, m] = place
+            sign = work.lane[BAND, m]
+            law = graph(s, work.samples[m], j, torque[m])
+            if e >= 0 and not law[5]:
+                work.lane[BAND, m] = 0.0
+            if sign == 0.0:
+                continue
+            if sign > 1.0:
+                # Not settled: only one that has left its level piece tells.
+                if not turns or work.radial[e // 2, BEYONDS, m] < HOT.outside:
+                    continue
+                sign = HOT.sign
+            force_band, length_band = sign * work.strongest[m], sign * work.weakest[m]
+            faint = HOT.sign * work.strongest[m]
+            p = work.force[e, m] if e >= 0 else 0.0
+            q = work.force[e + 1, m] if e >= 0 else 0.0
+            better = misplaced(place, law, u[m], v[m], p, q, force_band, length_band, faint)
+            work.better[j, m] = better
+            work.mistakes[m] += better != place
+
+
+@bare
+def propose(code, wrong, better, m, one_only, proposal):  # type: ignore[no-untyped-def]
+    """Write the set that mends what is wrong in a lane."""
+    rows = wrong.shape[0]
+    for row in range(code.shape[0]):
+        proposal[row] = code[row]
+    for row in range(code.shape[0]):
+        if row < rows:
+            if not wrong[row, m]:
+                continue
+            proposal[row] = OPEN if code[row] != OPEN else CLOSED
+        else:
+            if better[row - rows, m] == code[row]:
+                continue
+            proposal[row] = better[row - rows, m]
+        if one_only:
+            break
+
+
+@bare
+def stopped(s, work, m, lanes, proposal):  # type: ignore[no-untyped-def]
+    """Propose what is first in the way of the drift of a lane."""
+    i, n, drift, x = work.samples[m], work.x.shape[0], work.drift, work.x
+    load = s.load[i if s.load.shape[0] > 1 else 0]
+    gap = s.gap[i if s.gap.shape[0] > 1 else 0]
+    fast = 0.0
+    for d in range(n):
+        drift[d] = 0.0
+    for c in range(s.loose.shape[1]):
+        along = 0.0
+        for d in range(n):
+            along += s.loose[d, c] * load[d]
+        for d in range(n):
+            drift[d] += along * s.loose[d, c]
+    for d in range(n):
+        fast = max(fast, HOT.drift * abs(drift[d]))
+    nearest, first, place = np.inf, -1, CLOSED
+    rows, open_rows = work.wrong.shape[0], s.open_rows.shape[0]
+    for row in range(s.code.shape[0]):
+        proposal[row] = s.code[row]
+    for o in range(open_rows + s.open_arcs.shape[0]):
+        row = s.open_rows[o] if o < open_rows else s.flanks + s.open_arcs[o - open_rows]
+        column = s.first_column + row
+        speed, left = 0.0, gap[column]
+        for c in range(s.starts[column], s.starts[column + 1]):
+            speed += s.entries[c] * drift[s.coordinates[c]]
+            left -= s.entries[c] * x[s.coordinates[c], m]
+        if o >= open_rows:
+            a = s.open_arcs[o - open_rows]
+            arc(s, work.samples, a, x, lanes, work.normal, work.one, work.two)
+            left = work.one[m]
+        if speed > fast:
+            way = max(left, 0.0) / speed
+            if way < nearest:
+                nearest, first = way, row
+    for j in range(s.radial_at.shape[0]):
+        if s.code[rows + j] != OPEN:
+            continue
+        column = s.first_radial + 2 * j
+        approach(s, work.samples, column, x, lanes, work.one)
+        approach(s, work.samples, column + 1, x, lanes, work.two)
+        u, v, du, dv = work.one[m], work.two[m], 0.0, 0.0
+        for c in range(s.starts[column], s.starts[column + 1]):
+            du += s.entries[c] * drift[s.coordinates[c]]
+        for c in range(s.starts[column + 1], s.starts[column + 2]):
+            dv += s.entries[c] * drift[s.coordinates[c]]
+        square, along = du * du + dv * dv, u * du + v * dv
+        if square > fast * fast:
+            torque_of(s.follows[j], s.carried[j], work.force, lanes, work.one)
+            law = graph(s, i, j, work.one[m])
+            inside = max(law[3] * law[3] - u * u - v * v, 0.0)
+            way = max((np.sqrt(along * along + square * inside) - along) / square, 0.0)
+            if way < nearest:
+                nearest, first = way, rows + j
+                place = STOP
+                if np.isinf(law[4]):
+                    place = WALL if law[3] > 0.0 else PINNED
+    if first < 0:
+        return FAILED
+    proposal[first] = place if first >= rows else CLOSED
+    return OTHER
