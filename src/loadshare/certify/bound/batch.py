@@ -176,7 +176,7 @@ def relative_bounds(columns: Columns, situations: Situations, answers: Equilibri
     errors = np.empty_like(found.largest)
     groups = plan.groups(acts, sets.least[:count], sets.most[:count])
     compiled.bound_all(plan.layout, here, claim, found, groups, errors)
-    return np.asarray(errors / found.largest + EPS)
+    return np.asarray(errors / found.largest + 2.0 * EPS)
 
 
 class Operators(NamedTuple):
@@ -201,6 +201,7 @@ class Plan:
 
     def __init__(self, columns: Columns, spring: Numbers, spring_arm: Array) -> None:
         self.layout = of = _layout(columns, spring, spring_arm)
+        self.over_meshes = columns.over_meshes
         self.varying = len(columns.constants[0])
         matrix, first = columns.matrix.high, columns.arcs.start
         arcs = [
@@ -395,7 +396,7 @@ class Plan:
         by = found.by
         by[:, 0, :3], by[:, 2, :3] = (
             figures.max(axis=2),
-            (figures[:, :, :flanks] * arms).max(axis=2, initial=0.0),
+            self.over_meshes(figures[:, :, :flanks] * arms).max(axis=2, initial=0.0),
         )
         by[:, 3, :3] = pushing.max(axis=2, initial=0.0)
         by[:, 1] = by_way.max(axis=1, initial=0.0)

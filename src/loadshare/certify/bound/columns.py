@@ -238,6 +238,13 @@ class Columns:
         """Driver's base radius of every flank [m]."""
         return np.array([m.radii[0] for m, _ in self.all_flanks])
 
+    def over_meshes(self, torques: Array) -> Array:
+        """Sums of what belongs to the flanks, (…, flanks), of both flanks of every mesh."""
+        if not len(self.meshes):
+            return torques
+        first = np.flatnonzero(np.diff(self.meshes, prepend=-1))
+        return np.asarray(np.add.reduceat(torques, first, axis=-1))
+
     def statics(self, columns: NDArray[np.intp]) -> Statics:
         """Return the statics of columns that act, computed once."""
         key = columns.tobytes()

@@ -81,9 +81,12 @@ def bound_all(of, here, claim, found, group, errors):  # type: ignore[no-untyped
             taken += EPS * scale
             residual += taken
             rest += taken
+            arm = 0.0
             for c in range(len(of.arm)):
                 if found.acts[s, c] == LIGHT or found.acts[s, c] == ENDLESS:
-                    found.aside[s] = max(found.aside[s], taken * of.arm[c])
+                    arm = max(arm, of.arm[c])
+            # A mesh has two flanks.
+            found.aside[s] += 2.0 * taken * arm
         if not balanced or not found.aside[s] < np.inf or not taken <= found.reach[s]:
             continue
         by_norm = group.by[g, TORQUE, 0] * residual, group.into[g] * residual
@@ -99,7 +102,7 @@ def _proved(of, found, group, g, s, residual, carried):  # type: ignore[no-untyp
     largest, moved, torque = _answered(of, found, group, g, s, residual, carried)
     # Beyond their reach laws, above all of light Hertz contacts, are not what is said of them.
     if found.room[s] > moved + found.width[s] and largest <= found.reach[s] and torque < np.inf:
-        return max(torque, found.aside[s])
+        return torque + found.aside[s]
     return np.inf
 
 
@@ -285,7 +288,8 @@ def _acts(of, here, claim, s, sheet, found, top, deflection, widest):  # type: i
         if acts[s, c] == OPEN:
             room = min(room, gap[c])
             if c < flanks:
-                aside = max(aside, abs(claim.flank_force[s, c]) * of.arm[c])
+                # A mesh has two flanks.
+                aside = max(aside, 2.0 * abs(claim.flank_force[s, c]) * of.arm[c])
     found.room[s], found.aside[s] = room if known else -np.inf, aside
 
 
@@ -570,14 +574,17 @@ def _passed(of, here, claim, found, group, g, s, rest):  # type: ignore[no-untyp
     rest : float
         Load that may be anywhere [N].
     """
-    torque, energy = 0.0, 0.0
+    torque, both, energy = 0.0, 0.0, 0.0
     for k in range(group.particular.shape[1]):
         force, soft = 0.0, group.softest[g, k]
         for c in range(group.particular.shape[2]):
             force += group.particular[g, k, c] * found.left[s, c]
         force = abs(force) + group.passed[g, k] * rest
         if k < len(of.arm):
-            torque = max(torque, force * of.arm[k] * (1.0 + EPS))
+            if k == 0 or of.mesh[k] != of.mesh[k - 1]:
+                both = 0.0
+            both += force * of.arm[k] * (1.0 + EPS)
+            torque = max(torque, both)
             if found.acts[s, k] == CLOSED or found.acts[s, k] == LIGHT:
                 _, _, most, _ = _flank(of, here, s, k, claim.flank_force[s, k], found.scale[s])
                 soft = most / BOUND.secant

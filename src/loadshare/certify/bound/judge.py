@@ -37,7 +37,7 @@ class Bounds:
     ----------
     columns : Columns
     relative : ndarray, shape (S,)
-        Largest error of a torque, over the largest torque.
+        Largest error of a mesh's torque, drive less coast, over the largest torque of a flank.
     torque : ndarray, shape (S, flanks), or None
         Of the torques of all flanks on their drivers [N·m]; None if Numba was enough.
     force : ndarray, shape (S, m), or None
@@ -61,6 +61,12 @@ def _torques(columns: Columns, force: Array, claimed: Array) -> Array:
     """
     error = force[..., columns.flanks] * (1.0 + EPS) + EPS * np.abs(claimed)
     return np.asarray(error * columns.arms)
+
+
+def _largest(columns: Columns, force: Array, claimed: Array) -> Array:
+    """Largest error of a mesh's torque, drive less coast, (…) [N·m]; parameters of `_torques`."""
+    found = columns.over_meshes(_torques(columns, force, claimed))
+    return np.asarray(found.max(axis=-1, initial=0.0))
 
 
 def bounds(
@@ -146,13 +152,13 @@ def _proved(held: Held, scale: Array, largest: Array, rigorous: bool) -> tuple[B
     if not rigorous and finite.all():
         box = quick_boxes(claim, act, scale)
 
-    relative = _torques(columns, box.force, flanks).max(axis=1, initial=0.0) / largest
+    relative = _largest(columns, box.force, flanks) / largest
     left = np.flatnonzero(~(relative <= BOUND.enough) & finite)
     for at in range(0, len(left), BOUND.together):
         rows = left[at : at + BOUND.together]
         fine = replace(claim.take(rows), fine=True)
         force, coordinate = _fine(fine, act[rows], scale[rows])
-        found = _torques(columns, force, flanks[rows]).max(axis=1, initial=0.0) / largest[rows]
+        found = _largest(columns, force, flanks[rows]) / largest[rows]
         better = found < relative[rows]
         relative[rows[better]] = found[better]
         box.force[rows[better]] = force[better]
@@ -162,7 +168,7 @@ def _proved(held: Held, scale: Array, largest: Array, rigorous: bool) -> tuple[B
         for way in (_with_locked, _with_light_friction, _with_open_slips) if columns.pairs else ():
             if not relative[row] <= CERTIFY.largest:
                 box.force[row], box.coordinate[row] = way(one, scale[row : row + 1])
-                relative[row] = _torques(columns, box.force[row], flanks[row]).max() / largest[row]
+                relative[row] = _largest(columns, box.force[row], flanks[row]) / largest[row]
     # Where torques are not bounded closely enough for any certificate, what seems to be bounded is
     # so only if what acts was taken rightly, and secants leave tangents by more than was allowed.
     unproved = ~(relative <= CERTIFY.largest) | held.denied(box.force)

@@ -27,7 +27,7 @@ class Bound:
     Attributes
     ----------
     relative : float
-        Largest error of a torque, over the largest torque.
+        Largest error of a mesh's torque, drive less coast, over the largest torque of a flank.
     torque : mapping of mesh to float
         Of the torque on the driver [N·m].
     force : mapping of element to float
