@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from loadshare.certify import Certificate, certify
-from loadshare.certify.validity import TOLD
+from loadshare.certify.validity import TOLD, Validity, refusal_told
 from loadshare.contact.findings import Work
 from loadshare.errors import Refused
 from loadshare.job.answer import Answer
@@ -30,7 +30,7 @@ from loadshare.solver.runaway import runaway
 from loadshare.train.situations import situation_of
 from loadshare.train.train import Train
 
-LIGHTER = (0.5, 0.1)
+LIGHTER = (0.7, 0.5, 0.1)
 """Shares of the load that are looked at where arcs may have lost their hold under all of it."""
 AUTO = "auto"
 """Instead of a back-end's name: the hot path, and Clarabel for what it leaves."""
@@ -112,6 +112,8 @@ def climb(
     _refuse_if_contradicted(scene, JOB.plainly)
     if is_unbalanced(elements, scene.load):
         _refuse_if_driven(scene)
+    if math.isfinite(steps):
+        _refuse_if_too_large_before(train, index, tolerance)
     first: Refused | None = None
     known = Known(work=Work(steps))
     seen: list[tuple[Iteration, ...]] = []
@@ -135,7 +137,7 @@ def climb(
             break
     _refuse_if_contradicted(scene)
     _refuse_if_driven(scene)
-    raise _far_before(
+    raise _large_before(
         train, index, tolerance, first or Refused(f"position {index}: nothing was tried")
     )
 
@@ -162,27 +164,43 @@ def _refuse_if_driven(scene: Scene) -> None:
         )
 
 
-def _far_before(train: Train, index: int, tolerance: float, refusal: Refused) -> Refused:
-    """Add to a refusal what a part of the load displaces too far for the geometry already.
+def _under_less(train: Train, index: int, tolerance: float) -> tuple[float, Validity] | None:
+    """Part of the load that has an answer, and its displacements, where arcs may lose their hold.
 
-    Only arcs can lose their hold on a gear that rolls along them: without, the problem is convex.
+    A gear may roll along them until nothing holds it; without arcs the problem is convex.
     """
     for share in LIGHTER if train.drums and train.slip is None else ():
         torque = tuple(share * t for t in train.input_torque)
         external = {g: share * t for g, t in train.external.items()}
         lighter = Machine(replace(train, input_torque=torque, external=external))
         for answer in hot_answers(lighter, [index], tolerance).values():
-            told = "; ".join(
-                f"{TOLD[name]} {m.value:.3g} at {m.where} (told of above {m.warning:.3g})"
-                for name, m in answer.validity.warned.items()
-            )
-            if told:
-                return Refused(
-                    f"{refusal}; under {share:.0%} of the load displacements are large for the "
-                    f"geometry already: {told}; check the load and the stiffnesses",
-                    refusal.figures,
-                )
-    return refusal
+            return share, answer.validity
+    return None
+
+
+def _refuse_if_too_large_before(train: Train, index: int, tolerance: float) -> None:
+    """Refuse a position whose displacements have no meaning under a part of its load."""
+    found = _under_less(train, index, tolerance)
+    if found is not None and found[1].refused:
+        told = refusal_told(found[1].refused)
+        raise Refused(f"position {index}: under {found[0]:.0%} of the load, {told}")
+
+
+def _large_before(train: Train, index: int, tolerance: float, refusal: Refused) -> Refused:
+    """Add to a refusal what a part of the load displaces too far for the geometry already."""
+    found = _under_less(train, index, tolerance)
+    if found is None or not found[1].warned:
+        return refusal
+    share, displaced = found
+    told = "; ".join(
+        f"{TOLD[name]} {m.value:.3g} at {m.where} (told of above {m.warning:.3g})"
+        for name, m in displaced.warned.items()
+    )
+    return Refused(
+        f"{refusal}; under {share:.0%} of the load displacements are large for the "
+        f"geometry already: {told}; check the load and the stiffnesses",
+        refusal.figures,
+    )
 
 
 def uncertified(index: int, certificate: Certificate) -> Refused:
