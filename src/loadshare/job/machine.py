@@ -261,15 +261,15 @@ class Machine:
             self.elements, data, state, engine, code, only=~found.solved if found else None
         )
         found = found.completed(more) if found else more
-        begun = bool(starts) or beside is not None or engine is not vectorised.settle
+        begun = bool(starts) or beside is not None
         left = ~found.solved
         tries = np.full(data.count, 0 if begun else 1)
         searched = np.zeros(data.count, dtype=bool)
         while True:
             found = found.without(left)
             for number, singly in enumerate((False, True)):
-                # A beginning that leads nowhere, or steps that do: once more from rest, with NumPy,
-                # at last one element at a time.
+                # A beginning that leads nowhere: once more from rest, with NumPy; at last one element
+                # at a time.
                 fresh = ~found.solved & ~searched & (tries == number)
                 if fresh.any():
                     rest = at_rest(self.elements, data)
