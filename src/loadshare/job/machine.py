@@ -268,8 +268,8 @@ class Machine:
         while True:
             found = found.without(left)
             for number, singly in enumerate((False, True)):
-                # A beginning that leads nowhere: once more from rest, with NumPy; at last one element
-                # at a time.
+                # A beginning that leads nowhere: once more from rest, with NumPy, at last by one
+                # element after another.
                 fresh = ~found.solved & ~searched & (tries == number)
                 if fresh.any():
                     rest = at_rest(self.elements, data)
