@@ -308,15 +308,14 @@ def test_what_is_at_hand_is_all_that_cases_call():
     script = f"""
 import loadshare as ls
 from loadshare.job import machine
-from loadshare.solver.hot import compiled
-from numba.core.dispatcher import _FunctionCompiler
+from loadshare.solver.hot import compiled as engine
+from numba.core import event
 machine._one_by_one = {JOB.loading}
-assert machine.engine_at_hand("auto", 1) is compiled.settle
-asked, ask = [], _FunctionCompiler.compile
-_FunctionCompiler.compile = lambda self, *a: asked.append(str(self.py_func)) or ask(self, *a)
-for name in {KINDS!r}:
-    ls.solve({str(CASES)!r} + f"/fgfbstts/{{name}}.toml")
-print(asked)
+assert machine.engine_at_hand("auto", 1) is engine.settle
+with event.install_recorder("numba:compile") as compiled:
+    for name in {KINDS!r}:
+        ls.solve({str(CASES)!r} + f"/fgfbstts/{{name}}.toml")
+print([str(e.data["dispatcher"]) for _, e in compiled.buffer])
 """
     assert run(script)[0] == []
 

@@ -19,7 +19,8 @@ from benchmarks import families
 from loadshare.errors import CaseError
 from loadshare.job import many
 from loadshare.job.hot import HOT
-from loadshare.job.many import KEEP, solve_blocks
+from loadshare.job.many import solve_blocks
+from loadshare.job.table import KEPT
 from loadshare.settings import CERTIFY, JOB
 from loadshare.train.samples import samples_of
 
@@ -70,7 +71,7 @@ def test_shapes_labels_and_units():
         for g, pair in (("4", "76"), ("5", "98"))
         for c in ("upper stop", "lower stop", *(f"arc {n}" for n in pair))
     }
-    units = {name: found[name].attrs["units"] for name in KEEP}
+    units = {name: found[name].attrs["units"] for name in KEPT}
     assert units == {
         "torque": "N·m",
         "share": "1",
@@ -102,7 +103,7 @@ def test_some_positions():
     whole = ls.solve_many(shipped(LIMIT_RING), RINGS)
     some = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[4, 2])
     assert some.position.values.tolist() == [4, 2]
-    for name in KEEP:
+    for name in KEPT:
         chosen = whole.sel(position=[4, 2])
         assert apart(chosen, some, name) < 1e-12
 
@@ -185,7 +186,7 @@ def test_a_sample_whose_limits_contradict_is_refused_and_the_others_are_not():
         assert "contradict" in message
         assert "ring 4: arc" in message
     refused, others = found.isel(sample=number), found.isel(sample=~bad)
-    for name in (*KEEP, "residual"):
+    for name in (*KEPT, "residual"):
         assert np.isnan(refused[name]).all(), name
     assert (refused.rung == "").all()
     assert not refused.certified.any()

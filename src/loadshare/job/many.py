@@ -7,7 +7,6 @@ once; single samples that it leaves climb the ladder.
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -27,7 +26,8 @@ from loadshare.job.ladder import climb
 from loadshare.job.least import least_places
 from loadshare.job.machine import Machine, engine_named
 from loadshare.job.positions import Progress, wanted_positions
-from loadshare.job.table import Table
+from loadshare.job.recent import Recent
+from loadshare.job.table import KEPT, Table, kept
 from loadshare.settings import CERTIFY, JOB
 from loadshare.solver import Options
 from loadshare.solver.hot.exchange import Engine
@@ -40,8 +40,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 Array = NDArray[np.float64]
-
-KEEP = ("torque", "share", "pair_share", "displacement", "contact_force")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -137,21 +135,17 @@ def solve_blocks(
             yield block
 
 
-_recent: OrderedDict[tuple[object, ...], tuple[Case, Machine]] = OrderedDict()
+_recent: Recent[Machine] = Recent()
 
 
 def _machine(case: Case, samples: Samples) -> Machine:
     """Return the machine of samples that share one; what varies in them is no part of it."""
     fixed = [(c.path, c.text(0)) for c in samples.columns if c.path not in samples.values]
-    key = (id(case), frozenset(samples.values), *fixed)
-    machine = Machine(samples.train)
-    if key in _recent:
-        machine.share(_recent[key][1])
-    else:
-        # The case is kept with its machine, so that its id is not given to another.
-        _recent[key] = case, machine
-        if len(_recent) > JOB.recent:
-            _recent.popitem(last=False)
+    which = (frozenset(samples.values), *fixed)
+    machine, known = Machine(samples.train), _recent.of(case, which)
+    if known is None:
+        return _recent.keep(case, machine, which)
+    machine.share(known)
     return machine
 
 
@@ -160,7 +154,7 @@ def solve_many(
     samples: Mapping[str, ArrayLike],
     *,
     positions: Iterable[int] | None = None,
-    keep: Iterable[str] = KEEP,
+    keep: Iterable[str] = tuple(KEPT),
     tolerance: float = CERTIFY.tolerance,
     engine: str = "auto",
     workers: int = JOB.workers,
@@ -228,14 +222,7 @@ def solve_many(
     tolerance = checked_tolerance(tolerance)
     if not isinstance(case, Case):
         case = load_case(case)
-    keep = tuple(keep)
-    unknown = [name for name in keep if name not in KEEP]
-    if unknown:
-        raise ValueError(f"no variable {', '.join(unknown)}; allowed: {', '.join(KEEP)}")
-    table: Table | None = None
-    count = len(np.atleast_1d(np.asarray(next(iter(samples.values()), []))))
-    done = 0
-    for block in solve_blocks(
+    blocks = solve_blocks(
         case,
         samples,
         positions=positions,
@@ -243,14 +230,9 @@ def solve_many(
         engine=engine,
         workers=workers,
         least_norm=least_norm,
-    ):
-        table = table or Table(block, count, keep)
-        table.write(block)
-        done += len(block.rows)
-        if progress is not None:
-            progress(done, count)
-    assert table is not None
-    return table.dataset(case, tolerance)
+    )
+    count = len(np.atleast_1d(np.asarray(next(iter(samples.values()), []))))
+    return Table.of(blocks, count, kept(keep), progress).dataset(case, tolerance)
 
 
 def _block(

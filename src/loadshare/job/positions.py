@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter, OrderedDict
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import partial
@@ -18,10 +18,11 @@ from loadshare.job.answer import Answer
 from loadshare.job.hot import HOT, SEARCHED, left_out
 from loadshare.job.ladder import AUTO, climb_all
 from loadshare.job.machine import Machine
+from loadshare.job.recent import Recent
 from loadshare.later import known
 from loadshare.results.derive import position_of, result_from
 from loadshare.results.result import Result, Stamp
-from loadshare.settings import CERTIFY, JOB
+from loadshare.settings import CERTIFY
 from loadshare.solver import Options
 from loadshare.tooth import resolve
 from loadshare.train import Train, build_train
@@ -114,14 +115,18 @@ def solve(
     result = None
     if answers:
         result = result_of(case, machine.train, answers, asked, tolerance, wanted)
-    if refusals:
-        figures: dict[str, float] = {}
-        for refusal in refusals:
-            for name, value in refusal.figures.items():
-                figures[name] = max(value, figures.get(name, 0.0))
-        raise Refused("\n".join(map(str, refusals)), figures, partial=result)
-    assert result is not None
+    if refusals or result is None:
+        raise _together(refusals, result)
     return result
+
+
+def _together(refusals: Sequence[Refused], result: Result | None) -> Refused:
+    """One refusal for all positions that have no answer, with the worst figures."""
+    figures: dict[str, float] = {}
+    for refusal in refusals:
+        for name, value in refusal.figures.items():
+            figures[name] = max(value, figures.get(name, 0.0))
+    return Refused("\n".join(map(str, refusals)), figures, partial=result)
 
 
 def explain(
@@ -177,7 +182,7 @@ def _options(solver: str, method: str, reduce: bool) -> tuple[Options, bool]:
     return Options(method=method, reduce=reduce), method == "newton" and reduce
 
 
-_recent: OrderedDict[int, tuple[Case, Case, Machine]] = OrderedDict()
+_recent: Recent[tuple[Case, Machine]] = Recent()
 
 
 def prepared(case: Case | str | Path, near: Case | None = None) -> tuple[Case, Machine]:
@@ -187,16 +192,12 @@ def prepared(case: Case | str | Path, near: Case | None = None) -> tuple[Case, M
     """
     if not isinstance(case, Case):
         case = load_case(case)
-    known = _recent.get(id(case))
-    if known is None:
-        # The case is kept with its machine, so that its id is not given to another.
-        solved = resolve(case)
-        beside = _recent.get(id(near))
-        machine = Machine(build_train(solved), near=beside[2] if beside else None)
-        known = _recent[id(case)] = (case, solved, machine)
-        if len(_recent) > JOB.recent:
-            _recent.popitem(last=False)
-    return known[1:]
+    found = _recent.of(case)
+    if found is None:
+        solved, beside = resolve(case), _recent.of(near)
+        machine = Machine(build_train(solved), near=beside[1] if beside else None)
+        found = _recent.keep(case, (solved, machine))
+    return found
 
 
 def wanted_positions(train: Train, positions: Iterable[int] | None) -> list[int]:

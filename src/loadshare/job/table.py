@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from loadshare.job.many import Block
+    from loadshare.job.positions import Progress
 
 Array = NDArray[np.float64]
 
@@ -59,6 +61,21 @@ KEPT: dict[str, Variable] = {
     "contact_force": Variable(("contact",), "N", "force of a contact of a ring"),
 }
 """Of each sample at each position, if it is asked for."""
+
+
+def kept(names: Iterable[str]) -> tuple[str, ...]:
+    """Return variables to keep.
+
+    Raises
+    ------
+    ValueError
+        If one of them does not exist.
+    """
+    names = tuple(names)
+    unknown = [name for name in names if name not in KEPT]
+    if unknown:
+        raise ValueError(f"no variable {', '.join(unknown)}; allowed: {', '.join(KEPT)}")
+    return names
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +134,24 @@ class Table:
         self.kept = {name: self._empty(np.nan, KEPT[name].dims) for name in keep}
         self.each = {name: self._empty(e.none, (), e.type_) for name, e in EACH.items()}
         self.message: dict[str, str] = {}
+
+    @classmethod
+    def of(
+        cls,
+        blocks: Iterator[Block],
+        count: int,
+        keep: tuple[str, ...],
+        progress: Progress | None = None,
+    ) -> Table:
+        """Write all blocks, and tell after each how many of `count` samples are done."""
+        first = next(blocks)
+        table, done = cls(first, count, keep), 0
+        for block in chain((first,), blocks):
+            table.write(block)
+            done += len(block.rows)
+            if progress is not None:
+                progress(done, count)
+        return table
 
     def _empty(self, value: Any, dims: tuple[str, ...], type_: str | None = None) -> np.ndarray:
         return np.full([len(self.coords[d]) for d in (*EVERY, *dims)], value, dtype=type_)
