@@ -402,6 +402,8 @@ class Sensitivity(NamedTuple):
     """Rate at which a verge element is violated that counts as none, over the largest rate."""
     way: float = 1e-4
     """Move over which the gauges are differenced, in deflections and loads."""
+    apart: float = 1e-3
+    """Part of a step from the value on which a kink counts as standing somewhere else."""
     near: tuple[float, ...] = (1e-5, 1e-7, 1e-3)
     """Effects of the steps, in deflections and loads, after which the set of a side is looked
     for."""
@@ -570,8 +572,9 @@ class Job(NamedTuple):
     """How many times as many samples it takes for that to be worth while."""
     block: int = 4096
     """Samples that are solved together, if every one has a few positions."""
-    together: int = 40960
-    """Equilibria that are solved together."""
+    together: int = 20480
+    """Equilibria that are solved together: twice as many take a third more room, and a twentieth
+    less time."""
     workers: int = 2
     """Threads; the compiled passes hold no lock."""
     recent: int = 16

@@ -390,7 +390,8 @@ def test_memory_does_not_grow_with_the_blocks(monkeypatch):
         finally:
             tracemalloc.stop()
 
-    peak(100)
+    # What is known of the sets that act is kept, of up to `STATICS.sets` of them.
+    peak(2400)
     # A sample's answer is some 70 numbers; its columns, in and out of SI, are 4 and their copies.
     few, more = peak(400), peak(2400)
     assert more - few < 2000 * 16 * 8

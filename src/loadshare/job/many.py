@@ -41,6 +41,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+RUNGS = np.array([HOT, SEARCHED], dtype=object)
+"""Without and with the proximal search."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Block:
@@ -66,7 +69,7 @@ class Block:
         Whether nothing that is not convex carries, so that the answer is the only one.
     arc_curvature : ndarray, shape (S, positions)
         Stiffness that arcs take across them [N/m]; NaN where there is no answer.
-    rung : ndarray of str, shape (S, positions)
+    rung : ndarray of object, shape (S, positions)
         Rung of the ladder that answered; empty where none did.
     message : mapping of (row, position) to str
         Why there is no answer.
@@ -82,7 +85,7 @@ class Block:
     displaced: Array
     convex: NDArray[np.bool_]
     arc_curvature: Array
-    rung: NDArray[np.str_]
+    rung: NDArray[np.object_]
     message: Mapping[tuple[int, int], str]
 
 
@@ -178,9 +181,8 @@ def solve_many(
         Largest scaled residual of a certified answer, up to 1e-3.
     engine : {"auto", "compiled", "vectorised"}
         Numba or NumPy; both give the same answers. "auto" compiles from a few thousand equilibria
-        on. The first time it does, in an installation, takes one to three minutes of processor
-        time, of which the log ("loadshare") tells; what was compiled is kept on disk. Where nothing
-        can be compiled or kept, the log says so and NumPy answers.
+        on, which takes one to three minutes of processor time once in an installation. The log
+        ("loadshare") tells of it, and why NumPy answers where nothing can be compiled or kept.
     workers : int
         Threads.
     least_norm : bool
@@ -196,13 +198,10 @@ def solve_many(
         [-] over mesh; ``displacement`` [m] over gear and component, for gears that can be
         displaced; ``contact_force`` [N] of ring contacts; ``residual``, ``torque_bound`` (largest
         distance of a torque from the exact one, over the largest torque), ``certified``,
-        ``determined``, ``displaced``, ``convex``, ``arc_curvature`` and ``rung``. ``displaced``
-        tells how large displacements are for the geometry in which they were found, over the bound
-        of a warning; the attribute ``warned`` counts the equilibria above 1. ``convex`` tells where
-        nothing that is not convex carries, so that the answer is the only one; elsewhere
-        ``arc_curvature`` [N/m] is what ring arcs take from the stiffness across them, to be
-        compared as `solve` does. Samples without a certified answer, and those whose displacements
-        are refused, are NaN; their messages stand in the attribute ``refused``.
+        ``determined``, ``displaced`` (displacements over what their geometry allows without a
+        warning; ``warned`` counts those above 1), ``convex`` (nothing that is not convex carries),
+        ``arc_curvature`` [N/m] that arcs take elsewhere from the stiffness across them, ``rung``.
+        What is refused is NaN; the attribute ``refused`` says why.
 
     Raises
     ------
@@ -248,7 +247,8 @@ def _block(
     count, shape = len(rows), (len(rows), len(positions))
     certified, determined = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
     residual, bound = np.full(shape, np.nan), np.full(shape, np.nan)
-    rung = np.full(shape, "", dtype="<U24")
+    # Objects, so that a million answers share a few texts.
+    rung = np.full(shape, "", dtype=object)
     deflection, load = np.full((2, *shape), np.nan)
     message: dict[tuple[int, int], str] = {}
     every: list[Equilibria] = []
@@ -264,7 +264,7 @@ def _block(
         ]
         columns = slice(at, at + len(some))
         certified[:, columns] = found.passed.reshape(-1, count).T
-        rung[:, columns] = np.where(found.searched, SEARCHED, HOT).reshape(-1, count).T
+        rung[:, columns] = RUNGS[found.searched.astype(np.intp)].reshape(-1, count).T
         residual[:, columns] = found.verdicts.worst.reshape(-1, count).T
         deflection[:, columns] = found.verdicts.deflection.reshape(-1, count).T
         load[:, columns] = found.verdicts.load.reshape(-1, count).T

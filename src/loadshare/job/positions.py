@@ -64,13 +64,11 @@ def solve(
     positions : iterable of int, optional
         1-based positions to solve; all by default.
     engine : {"auto", "vectorised", "compiled"}
-        Of the hot path: NumPy, or Numba, which takes half a second to load and a minute to compile
-        the first time. "auto" is Numba where that costs nothing any more, because it was used in
-        this process, or little: it is kept on disk, and a hundred positions were solved before.
-        Answers are the same but for round-off.
+        Of the hot path: NumPy, or Numba, which takes a minute to compile the first time. "auto" is
+        Numba once it was used in this process, or a hundred positions were solved and it is kept on
+        disk. Answers are the same but for round-off.
     near : Case, optional
-        A case that differs little and was solved just before: the search begins at what was found
-        there. It takes less time and leads to the same answer, but for round-off.
+        A case that differs little, solved just before, at whose answer the search begins.
     progress : Progress, optional
         Called after every position.
 
@@ -98,8 +96,7 @@ def solve(
     """
     tolerance = checked_tolerance(tolerance)
     case, machine = prepared(case, near)
-    options, hot = _options(solver, method, reduce)
-    settle = engine if hot else None
+    options, settle = _options(solver, method, reduce, engine)
     wanted = wanted_positions(machine.train, positions)
     answers: list[Answer] = []
     refusals: list[Refused] = []
@@ -161,9 +158,9 @@ def explain(
     """
     tolerance = checked_tolerance(tolerance)
     case, machine = prepared(case)
-    options, hot = _options(solver, method, reduce)
+    options, settle = _options(solver, method, reduce)
     wanted = wanted_positions(machine.train, [position])
-    (found,) = climb_all(machine, wanted, options, tolerance, "auto" if hot else None)
+    (found,) = climb_all(machine, wanted, options, tolerance, settle)
     if isinstance(found, Refused):
         raise found
     if found.rung in (HOT, SEARCHED):
@@ -172,14 +169,17 @@ def explain(
     return found
 
 
-def _options(solver: str, method: str, reduce: bool) -> tuple[Options, bool]:
-    """Options of the rungs, and whether the hot path comes first.
+def _options(
+    solver: str, method: str, reduce: bool, engine: str = "auto"
+) -> tuple[Options, str | None]:
+    """Options of the rungs, and the engine of the hot path; None if that does not come first.
 
     What only a back-end can do, another form of the loop or the whole scene, is not asked of it.
     """
     if solver != AUTO:
-        return Options(solver=solver, method=method, reduce=reduce), False
-    return Options(method=method, reduce=reduce), method == "newton" and reduce
+        return Options(solver=solver, method=method, reduce=reduce), None
+    hot = method == "newton" and reduce
+    return Options(method=method, reduce=reduce), engine if hot else None
 
 
 _recent: Recent[tuple[Case, Machine]] = Recent()

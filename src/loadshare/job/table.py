@@ -110,7 +110,7 @@ EACH = {
     "displaced": Each("displaced", np.nan, "displacements over the bound of a warning"),
     "convex": Each("convex", False, "whether nothing that is not convex carries"),
     "arc_curvature": Each("arc_curvature", np.nan, "stiffness that arcs take across them", "N/m"),
-    "rung": Each("rung", "", "rung of the ladder that answered", type_="<U24"),
+    "rung": Each("rung", "", "rung of the ladder that answered", type_="object"),
 }
 
 

@@ -98,6 +98,8 @@ class _Moves(NamedTuple):
     radials: tuple[int, ...]
     # Whether level pieces, whatever their directions, leave some move.
     some_left: bool
+    # Whether all that is met may hold every move, whatever of it a sample touches.
+    may_be_held: bool
 
 
 def _moves(elements: Elements, data: Data, some: Codes) -> _Moves:
@@ -119,17 +121,18 @@ def _moves(elements: Elements, data: Data, some: Codes) -> _Moves:
     def radials(which: Flags) -> tuple[int, ...]:
         return tuple(j for j in np.flatnonzero(which).tolist() if meets(_radial(elements, j)))
 
+    def leave(parts: list[Array]) -> bool:
+        met = np.vstack([np.zeros((1, len(moves))), *parts]) @ moves
+        return bool(unresisted(met).shape[1] > 0)
+
     idle = elements.springs + np.flatnonzero(carry[:flat] == 0)
-    level = radials(kinds == LEVEL)
-    met = np.vstack([np.zeros((1, moves.shape[1])), *(_radial(elements, j) @ moves for j in level)])
-    found = _Moves(
-        moves,
-        level,
-        idle[np.abs(vectors[idle] @ moves).max(axis=1, initial=0.0) > PLACES.loose],
-        tuple(a for a in np.flatnonzero(carry[flat:] == 0).tolist() if meets(data.relative[a])),
-        radials(kinds != HELD),
-        unresisted(met).shape[1] > 0,
-    )
+    idle = idle[np.abs(vectors[idle] @ moves).max(axis=1, initial=0.0) > PLACES.loose]
+    level, free = radials(kinds == LEVEL), radials(kinds != HELD)
+    arcs = tuple(a for a in np.flatnonzero(carry[flat:] == 0).tolist() if meets(data.relative[a]))
+    pieces = [_radial(elements, j) for j in level]
+    limits = [vectors[idle], *(data.relative[a] for a in arcs)]
+    limits += [_radial(elements, j) for j in free]
+    found = _Moves(moves, level, idle, arcs, free, leave(pieces), not leave(limits))
     elements.keep(key, found)
     return found
 
@@ -142,8 +145,10 @@ def _fixed(
     moves, level = left_by.moves, left_by.level
     if not moves.shape[1]:
         return np.ones(len(rows), dtype=bool)
-    directions, touches = _touched(elements, data, state, some, left_by, rows)
     found = np.zeros(len(rows), dtype=bool)
+    if not left_by.may_be_held:
+        return found
+    directions, touches = _touched(elements, data, state, some, left_by, rows)
     # What no level piece could hold is pinched by contacts or moves.
     these = np.flatnonzero(touches.any(axis=1)) if left_by.some_left else np.arange(len(rows))
     if not len(these):
@@ -186,7 +191,8 @@ def _touched(
     shape = (len(rows), len(flat), moves.shape[1])
     vectors = elements.vectors[flat]
     directions = [np.broadcast_to(vectors @ moves, shape)]
-    room = pick(data.gap[:, flat], rows) - x @ vectors.T
+    gaps = data.gap[rows[:, None], flat] if len(data.gap) > 1 else data.gap[:, flat]
+    room = gaps - x @ vectors.T
     touches = [room <= PLACES.play]
 
     def add(direction: Array, room: Array) -> None:
