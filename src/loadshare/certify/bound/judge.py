@@ -232,17 +232,31 @@ def _with_light_friction(claim: Claim, scale: Array) -> tuple[Array, Array]:
 def _fine(claim: Claim, act: Codes, scale: Array) -> tuple[Array, Array]:
     """Errors from residuals in twice the precision."""
     box = boxes(claim, act, scale)
-    box.doubtful[:] |= _of_rounding(claim, scale) & (act != Act.OPEN)
-    for row in np.flatnonzero(box.doubtful.any(axis=1)).tolist():
-        one = np.array([row])
-        single = on_the_verge(claim.take(one), act[one], scale[one], box.part(row))
-        box.force[row], box.coordinate[row] = single.force[0], single.coordinate[0]
-    flanks = box.force[:, claim.columns.flanks]
-    for row in np.flatnonzero(np.isinf(flanks).any(axis=1)).tolist():
+    force, coordinate = box.force.copy(), box.coordinate.copy()
+
+    def try_ways(rows: Flags, doubtful: Flags) -> None:
+        for row in np.flatnonzero(rows & doubtful.any(axis=1)).tolist():
+            one = np.array([row])
+            part = replace(box.part(row), doubtful=doubtful[one])
+            single = on_the_verge(claim.take(one), act[one], scale[one], part)
+            force[row], coordinate[row] = single.force[0], single.coordinate[0]
+
+    # What carries rounding may as well be open, unless it holds a gear.
+    light = _of_rounding(claim, scale) & (act != Act.OPEN)
+    try_ways(np.ones(claim.count, dtype=bool), box.doubtful | light)
+    again = ~_bounded(claim, force) & light.any(axis=1)
+    force[again], coordinate[again] = box.force[again], box.coordinate[again]
+    try_ways(again, box.doubtful)
+    for row in np.flatnonzero(~_bounded(claim, force)).tolist():
         one = np.array([row])
         single = quick_boxes(claim.take(one), act[one], scale[one])
-        box.force[row], box.coordinate[row] = single.force[0], single.coordinate[0]
-    return box.force, box.coordinate
+        force[row], coordinate[row] = single.force[0], single.coordinate[0]
+    return force, coordinate
+
+
+def _bounded(claim: Claim, force: Array) -> Flags:
+    """Whether errors of all flanks' forces are known, (S,)."""
+    return np.asarray(np.isfinite(force[:, claim.columns.flanks]).all(axis=1))
 
 
 def _of_rounding(claim: Claim, scale: Array) -> Flags:
