@@ -337,6 +337,20 @@ def test_elements_that_change_together_make_a_kink():
     assert not disagreeing(verdicts(case, found))
 
 
+def test_an_error_covers_both_states_of_what_an_input_hardly_moves():
+    """The float is 1e-15 m off its critical value: its arc carries 3e-7 N, and may as well not.
+
+    Differences of the reference in 50 digits over 1e-8 rad: -1.11e-3 N·m/rad; over 1e-4 rad the
+    arc has let go, and nothing changes.
+    """
+    case = shipped("fgfbstts/limit_ring").replace({"rings.5.float": "2.9765740955634916 um"})
+    found = sensitivity(case, "gears.5.centre.angle", positions=[1])
+    for side in SIDES:
+        rates = found.rates[1, "gears.5.centre.angle", side]
+        for true in (-1.11e-3, 0.0):
+            assert abs(rates.torque["8-10"] - true) <= rates.error.torque["8-10"]
+
+
 def test_what_has_no_derivative_says_why():
     """Without backlash nothing catches the free pinion: no equilibrium, to either side."""
     case = shipped("fgfbstts/base").replace({"gears.1.support": "free"})

@@ -154,21 +154,23 @@ class Corner:
         """Torques and displacements of a motion, beside which some coordinates float."""
         branch, size = motion.branch, motion.branch.size
         gradients = branch.torque_gradients(motion.z)
-        direct, direct_error = motion.change.value[size:], motion.change.error[size:]
+        direct_error = motion.change.error[size:]
+        torque, length = motion.torque, self.elements.length
+        off = [other.torque - torque for other in motion.beside]
 
         def bound(weights: Array) -> Array:
-            return np.asarray(motion.bound(weights @ gradients) + np.abs(weights) @ direct_error)
+            found = motion.bound(weights @ gradients) + np.abs(weights) @ direct_error
+            return np.asarray(found + _largest([weights @ change for change in off]))
 
-        loose, length = self._loose(floating), self.elements.length
+        loose = self._loose(floating)
         moved = {g: np.zeros(2) for g in self.train.gears}
         error = {g: np.zeros(2) for g in self.train.gears}
         for gear, where in self.elements.coordinates.displacement.items():
             pick = np.eye(size)[where]
             moved[gear] = np.where(loose[gear], np.nan, pick @ motion.rate * length)
-            error[gear] = np.where(loose[gear], np.nan, motion.bound(pick) * length)
-        return Motions(
-            direct + gradients @ motion.rate, bound(np.eye(len(direct))), bound, moved, error
-        )
+            apart = _largest([other.rate[where] - motion.rate[where] for other in motion.beside])
+            error[gear] = np.where(loose[gear], np.nan, (motion.bound(pick) + apart) * length)
+        return Motions(torque, bound(np.eye(len(torque))), bound, moved, error)
 
     def _rates(self, motions: Motions) -> Rates:
         stages = self.train.stages
@@ -238,6 +240,11 @@ class Corner:
 
     def _remark(self, key: str, side: str, message: str) -> None:
         self.remarks.append(Remark(key, self.position, side, message))
+
+
+def _largest(changes: list[Array]) -> Array | float:
+    """Largest size of each of several changes; 0 of none."""
+    return np.abs(changes).max(axis=0) if changes else 0.0
 
 
 def _word(side: str) -> str:

@@ -24,7 +24,7 @@ from loadshare.errors import CaseError, Refused
 from loadshare.scene.scene import Array
 from loadshare.settings import SENSITIVITY
 from loadshare.solver.hot import places as at
-from loadshare.study.follow.active import switch_names
+from loadshare.study.follow.active import ActiveSet, read_pieces, switch_names
 from loadshare.study.sensitivity.branch import Branch, BranchLost, Gauge, Setting
 from loadshare.study.sensitivity.differences import Derivative, Slope
 from loadshare.train.equilibrium import Equilibrium
@@ -131,6 +131,9 @@ class Motion:
     one_sided : bool
         Whether anything stands on the verge, or is in another state: then it says nothing of the
         other side.
+    beside : tuple of Motion
+        On sets that differ in what stands on the verge, in either state for all that is known: any
+        of them may be that of this side.
     """
 
     branch: Branch
@@ -139,8 +142,15 @@ class Motion:
     rate: Array
     error: Array
     change: Slope
-    elements: tuple[str, ...]
-    one_sided: bool
+    elements: tuple[str, ...] = ()
+    one_sided: bool = True
+    beside: tuple[Motion, ...] = ()
+
+    @property
+    def torque(self) -> Array:
+        """Derivatives of the meshes' torques [N·m] per SI unit."""
+        direct = self.change.value[self.branch.size :]
+        return np.asarray(direct + self.branch.torque_gradients(self.z) @ self.rate)
 
     def bound(self, functionals: Array) -> Array:
         """Bound on the error of linear functionals (k, size) of the rate."""
@@ -251,13 +261,17 @@ class Neighbourhood:
         error = error + len(error) * _EPS * terms + tangent.turned(rate)
         error = error + float(left.max(initial=0.0))
         verge = self._verge(point)
-        if verge is None or not self._holds(point, sign, rate, change.step, varied, verge):
+        if verge is None:
+            return None
+        still = self._still(point, sign, rate, change.step, varied, verge)
+        if still is None:
             return None
         elements: tuple[str, ...] = ()
         if self.own is not None:
             elements = self.own.branch.active.changes(branch.active, self._setting.elements)
         one_sided = bool(verge or elements)
-        return Motion(branch, z, tangent, rate, error, slope, elements, one_sided)
+        beside = tuple(self._with(point, still, sign, varied))
+        return Motion(branch, z, tangent, rate, error, slope, elements, one_sided, beside)
 
     @staticmethod
     def _verge(point: Point) -> Gauges | None:
@@ -267,12 +281,49 @@ class Neighbourhood:
             return None
         return {key: g for key, g in gauges.items() if g.value <= 10.0 * SENSITIVITY.verge}
 
-    def _holds(
-        self, point: Point, sign: float, rate: Array, step: float, varied: Varied, verge: Gauges
-    ) -> bool:
-        """Whether nothing moves across the verge on which it stands."""
+    def _with(
+        self, point: Point, still: tuple[tuple[int, int], ...], sign: float, varied: Varied
+    ) -> Iterator[Motion]:
+        """Yield motions with elements in their other states, together and alone, if these hold."""
+        elements, numbers = self._setting.elements, self._setting.numbers
+        x = point.z[: point.branch.n]
+        for changes in (still, *((one,) for one in still if len(still) > 1)) if still else ():
+            code = list(point.branch.active.code)
+            for switch, to in changes:
+                code[switch] = to
+            pieces = read_pieces(elements, numbers, tuple(code), x)
+            try:
+                active = ActiveSet(tuple(code), pieces, point.branch.active.tied)
+                branch = Branch(self._setting, active)
+                other = Point(branch, branch.solve(x), point.idle)
+                change = varied.change(branch, other.z)
+            except _NOTHING:
+                continue
+            slope, verge = change.to(sign), self._verge(other)
+            if not isinstance(slope, Slope) or verge is None:
+                continue
+            rate = -other.tangent.solve(slope.value[: branch.size])
+            if self._still(other, sign, rate, change.step, varied, verge, later=True) is not None:
+                error = slope.error[: branch.size]
+                yield Motion(branch, other.z, other.tangent, rate, error, slope)
+
+    def _still(
+        self,
+        point: Point,
+        sign: float,
+        rate: Array,
+        step: float,
+        varied: Varied,
+        verge: Gauges,
+        later: bool = False,
+    ) -> tuple[tuple[int, int], ...] | None:
+        """What stands on the verge, in either state; None if anything moves across it.
+
+        It moves neither way but by round-off, or stands across by round-off and only comes back at
+        a distance from the value. With `later`, what moves across at a distance does not count.
+        """
         if not verge:
-            return True
+            return ()
         branch, z = point.branch, point.z
         fastest = float(np.abs(rate).max(initial=0.0))
         step = min(step, SENSITIVITY.way / fastest) if fastest else step
@@ -282,9 +333,10 @@ class Neighbourhood:
                 there = Branch(varied.setting(k * sign * step), branch.active)
                 along.append(there.gauges(z + k * sign * step * rate))
         except _NOTHING:
-            return False
+            return None
         slack = SENSITIVITY.slides * fastest + SENSITIVITY.round_off / step
         tied: list[tuple[Array, float]] = []
+        still = []
         for key, gauge in verge.items():
             if any(key not in there for there in along):
                 continue
@@ -293,9 +345,11 @@ class Neighbourhood:
             closing = gauge.closing(point.tangent.loose)
             if closing is not None:
                 tied.append((closing, grows + slack))
-            elif grows < -slack:
-                return False
-        return _has_room(tied)
+            elif grows < -slack and not (later and gauge.value > -grows * SENSITIVITY.apart * step):
+                return None
+            elif grows < max(slack, -gauge.value / (SENSITIVITY.apart * step)):
+                still.append(key)
+        return tuple(still) if _has_room(tied) else None
 
     def _near(self, sign: float, varied: Varied) -> Iterator[Point]:
         """Yield the sets that certified solves a little way to that side stand on."""
