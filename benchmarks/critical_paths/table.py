@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,7 +16,11 @@ FAULTS = ("missed", "invented", "moved")
 def text(rows: Sequence[Row]) -> str:
     """Return a table of all paths, and those with something to look into."""
     told = [line for row in rows for line in _told(row)]
-    return "\n".join([summary(rows), *(["", "To be looked into:", "", *told] if told else [])])
+    parts = [
+        summary(rows),
+        *(["", "Intervals that are not proved, and faults:", "", *told] if told else []),
+    ]
+    return "\n".join([*parts, "", "The machine:", "", _table(facts().items())])
 
 
 def _told(row: Row) -> Iterator[str]:
@@ -49,5 +53,8 @@ def summary(every: Sequence[Row]) -> str:
         ("mean [s]", f"{seconds.mean():.2f}"),
         ("mean processor time of a scan [s]", f"{np.mean(scans):.2f}"),
     ]
-    rows += list(facts().items())
+    return _table(rows)
+
+
+def _table(rows: Iterable[tuple[str, object]]) -> str:
     return "\n".join(["| | |", "|---|---|", *(f"| {name} | {value} |" for name, value in rows)])

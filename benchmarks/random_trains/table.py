@@ -34,9 +34,11 @@ def text(rows: list[dict[str, Any]]) -> str:
     lines = [f"{len(rows)} trains, {len(positions)} positions", ""]
     counts = [(o, str(outcomes[o]), m) for o, m in MEANING.items()]
     opened = sum(math.inf in p["misplaced"].values() for p in misplaced)
-    counts.append(("places", str(opened), "with a place that is open but given as determined"))
     counts.append(
-        ("places", str(len(misplaced) - opened), "with a determined place that is elsewhere")
+        ("place is open", str(opened), "with a place that is given as determined and is not")
+    )
+    counts.append(
+        ("place is elsewhere", str(len(misplaced) - opened), "with a determined place that is off")
     )
     lines += _table(("outcome", "positions", "meaning"), counts)
     part = refused / solvable if solvable else 0.0
