@@ -165,7 +165,8 @@ def _proved(held: Held, scale: Array, largest: Array, rigorous: bool) -> tuple[B
         box.coordinate[rows[better]] = coordinate[better]
     for row in np.flatnonzero(~(relative <= CERTIFY.largest) & finite).tolist():
         one = replace(claim.take(np.array([row])), fine=True)
-        for way in (_with_locked, _with_light_friction, _with_open_slips) if columns.pairs else ():
+        ways = (_with_locked, _with_light_friction, _with_open_slips) if columns.pairs else ()
+        for way in (*ways, _without_rounding):
             if not relative[row] <= CERTIFY.largest:
                 box.force[row], box.coordinate[row] = way(one, scale[row : row + 1])
                 relative[row] = _largest(columns, box.force[row], flanks[row]) / largest[row]
@@ -212,6 +213,20 @@ def _without(claim: Claim, gears: Mapping[str, float | Array], scale: Array) -> 
             at = whole.places[gear]
             found.coordinate[0, at : at + 2] = play
     return found
+
+
+def _without_rounding(claim: Claim, scale: Array) -> tuple[Array, Array]:
+    """Bound a single claim as if contacts carried nothing that carry rounding.
+
+    What is left over along moves that only they hold is then nothing, to the last digit.
+    """
+    answers, least = claim.answers, BOUND.noise * scale[:, None]
+    flanks, rings = (
+        np.where(np.abs(f) > least, f, 0.0) for f in (answers.flank_force, answers.ring_force)
+    )
+    none = replace(claim, answers=replace(answers, flank_force=flanks, ring_force=rings))
+    force, coordinate = _fine(none, first_acts(none), scale)
+    return force + np.abs(claim.forces - none.forces)[0], coordinate
 
 
 def _with_light_friction(claim: Claim, scale: Array) -> tuple[Array, Array]:

@@ -258,7 +258,7 @@ class _Group:
             if np.any(self.may_open & left):
                 # What may open bears what nothing else does, as balance alone tells.
                 self.held, is_told = held_moves(known.moves, self.directions[left])
-                self.is_covered &= is_told or not (self.load @ np.abs(self.held)).any()
+                self.is_covered &= is_told or self._is_none(self.held)
             if self.is_covered:
                 self.particular = np.zeros(self.particular.shape)
                 self.particular[~left] = known.particular
@@ -269,8 +269,11 @@ class _Group:
 
         Gears that carry nothing have none, to the last digit.
         """
-        more = moves - self.statics.moves @ (self.statics.moves.T @ moves)
-        along = (self.load @ np.abs(more)).max(initial=0.0)
+        return self._is_none(moves - self.statics.moves @ (self.statics.moves.T @ moves))
+
+    def _is_none(self, moves: Array) -> bool:
+        """Tell whether no load is left along moves, but for the rounding of the moves."""
+        along = (self.load @ np.abs(moves)).max(initial=0.0)
         return bool(along <= EPS * len(moves) * self.load.max(initial=0.0))
 
     def _set_stiffness(self) -> None:
