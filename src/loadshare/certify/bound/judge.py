@@ -225,8 +225,8 @@ def _without_rounding(claim: Claim, scale: Array) -> tuple[Array, Array]:
         np.where(np.abs(f) > least, f, 0.0) for f in (answers.flank_force, answers.ring_force)
     )
     none = replace(claim, answers=replace(answers, flank_force=flanks, ring_force=rings))
-    force, coordinate = _fine(none, first_acts(none), scale)
-    return force + np.abs(claim.forces - none.forces)[0], coordinate
+    box = quick_boxes(none, first_acts(none), scale, rounded=True)
+    return (box.force + np.abs(claim.forces - none.forces))[0], box.coordinate[0]
 
 
 def _with_light_friction(claim: Claim, scale: Array) -> tuple[Array, Array]:

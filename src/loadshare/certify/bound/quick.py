@@ -38,7 +38,7 @@ DIGITS = 20
 """Ways of acting that make one number below 2⁶³."""
 
 
-def quick_boxes(claim: Claim, act: Codes, scale: Array) -> Box:
+def quick_boxes(claim: Claim, act: Codes, scale: Array, rounded: bool = False) -> Box:
     """Bound the errors of S claims; infinite where nothing is shown.
 
     Parameters
@@ -47,6 +47,8 @@ def quick_boxes(claim: Claim, act: Codes, scale: Array) -> Box:
     act : ndarray of int8, shape (S, elements)
     scale : ndarray, shape (S,)
         Load of the claims [N].
+    rounded : bool
+        Take a load along moves for none that is no more than the rounding of the moves.
     """
     box = Box.unproved(claim, act)
     act, doubled = _with_near(claim, act)
@@ -59,7 +61,8 @@ def quick_boxes(claim: Claim, act: Codes, scale: Array) -> Box:
     rounding = rounding + put_aside(claim.columns, found.spare, BOUND.noise * scale[:, None] * arms)
     for rows in _groups(claim, act):
         for _ in range(BOUND.references):
-            group = _Group(claim, found, rows, doubled, scale[rows], np.abs(left) + rounding)
+            load = np.abs(left) + rounding
+            group = _Group(claim, found, rows, doubled, scale[rows], load, rounded)
             if not group.is_covered:
                 break
             pick = slice(None) if len(rows) == len(act) else rows
@@ -167,9 +170,10 @@ class _Group:
         doubled: Flags,
         scale: Array,
         load: Array,
+        rounded: bool,
     ) -> None:
         self.claim, self.found, self.rows, self.doubled = claim, found, rows, doubled
-        self.load = load[rows]
+        self.load, self.rounded = load[rows], rounded
         columns = claim.columns
         self.pick = slice(None) if len(rows) == len(found.act) else rows
         acts = found.act[rows[0], len(columns.contacts) :]
@@ -258,7 +262,7 @@ class _Group:
             if np.any(self.may_open & left):
                 # What may open bears what nothing else does, as balance alone tells.
                 self.held, is_told = held_moves(known.moves, self.directions[left])
-                self.is_covered &= is_told or self._is_none(self.held)
+                self.is_covered &= is_told or self._bears_none(self.held)
             if self.is_covered:
                 self.particular = np.zeros(self.particular.shape)
                 self.particular[~left] = known.particular
@@ -271,10 +275,14 @@ class _Group:
         """
         return self._is_none(moves - self.statics.moves @ (self.statics.moves.T @ moves))
 
+    def _bears_none(self, moves: Array) -> bool:
+        """Tell whether what holds moves bears nothing."""
+        return self._is_none(moves) if self.rounded else not (self.load @ np.abs(moves)).any()
+
     def _is_none(self, moves: Array) -> bool:
         """Tell whether no load is left along moves, but for the rounding of the moves."""
-        along = (self.load @ np.abs(moves)).max(initial=0.0)
-        return bool(along <= EPS * len(moves) * self.load.max(initial=0.0))
+        along = (self.load @ np.abs(moves)).max(axis=1, initial=0.0)
+        return bool((along <= EPS * len(moves) * self.load.max(axis=1, initial=0.0)).all())
 
     def _set_stiffness(self) -> None:
         """Find L from the smallest compliances."""
