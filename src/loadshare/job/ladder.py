@@ -1,8 +1,9 @@
 """The ladder: what is tried, in order, until an answer is certified.
 
-The hot path comes first. What it does not solve, or what its certificate refuses, goes to a
-back-end with an exact pass on the identified active set, then to the other forms of the loop, down
-to the exact power-cone programme; then it is refused with figures.
+The hot path comes first. What it does not solve, or what its certificate refuses, is refused where
+a part of the load displaces it too far for the geometry already; else it goes to a back-end with an
+exact pass on the identified active set, then to the other forms of the loop, down to the exact
+power-cone programme; then it is refused with figures.
 """
 
 from __future__ import annotations
@@ -10,6 +11,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import cache, partial
+from typing import NamedTuple
 
 from loadshare.certify import Certificate, certify
 from loadshare.certify.validity import TOLD, Validity, refusal_told
@@ -34,6 +37,13 @@ LIGHTER = (0.7, 0.5, 0.1)
 """Shares of the load that are looked at where arcs may have lost their hold under all of it."""
 AUTO = "auto"
 """Instead of a back-end's name: the hot path, and Clarabel for what it leaves."""
+
+
+class _Part(NamedTuple):
+    """A share of the load, and how far it displaces a train."""
+
+    share: float
+    displaced: Validity
 
 
 def rungs(options: Options) -> Iterator[tuple[str, Options]]:
@@ -112,8 +122,9 @@ def climb(
     _refuse_if_contradicted(scene, JOB.plainly)
     if is_unbalanced(elements, scene.load):
         _refuse_if_driven(scene)
+    lighter = cache(partial(_under_less, train, index, tolerance))
     if math.isfinite(steps):
-        _refuse_if_too_large_before(train, index, tolerance)
+        _refuse_if_too_large(index, lighter())
     first: Refused | None = None
     known = Known(work=Work(steps))
     seen: list[tuple[Iteration, ...]] = []
@@ -137,9 +148,7 @@ def climb(
             break
     _refuse_if_contradicted(scene)
     _refuse_if_driven(scene)
-    raise _large_before(
-        train, index, tolerance, first or Refused(f"position {index}: nothing was tried")
-    )
+    raise _with_large(first or Refused(f"position {index}: nothing was tried"), lighter())
 
 
 def _refuse_if_contradicted(scene: Scene, overlap: float = PLACES.overlap) -> None:
@@ -164,8 +173,8 @@ def _refuse_if_driven(scene: Scene) -> None:
         )
 
 
-def _under_less(train: Train, index: int, tolerance: float) -> tuple[float, Validity] | None:
-    """Part of the load that has an answer, and its displacements, where arcs may lose their hold.
+def _under_less(train: Train, index: int, tolerance: float) -> _Part | None:
+    """Part of the load that has an answer, where arcs may lose their hold under all of it.
 
     A gear may roll along them until nothing holds it; without arcs the problem is convex.
     """
@@ -174,30 +183,27 @@ def _under_less(train: Train, index: int, tolerance: float) -> tuple[float, Vali
         external = {g: share * t for g, t in train.external.items()}
         lighter = Machine(replace(train, input_torque=torque, external=external))
         for answer in hot_answers(lighter, [index], tolerance).values():
-            return share, answer.validity
+            return _Part(share, answer.validity)
     return None
 
 
-def _refuse_if_too_large_before(train: Train, index: int, tolerance: float) -> None:
+def _refuse_if_too_large(index: int, part: _Part | None) -> None:
     """Refuse a position whose displacements have no meaning under a part of its load."""
-    found = _under_less(train, index, tolerance)
-    if found is not None and found[1].refused:
-        told = refusal_told(found[1].refused)
-        raise Refused(f"position {index}: under {found[0]:.0%} of the load, {told}")
+    if part is not None and part.displaced.refused:
+        told = refusal_told(part.displaced.refused)
+        raise Refused(f"position {index}: under {part.share:.0%} of the load, {told}")
 
 
-def _large_before(train: Train, index: int, tolerance: float, refusal: Refused) -> Refused:
+def _with_large(refusal: Refused, part: _Part | None) -> Refused:
     """Add to a refusal what a part of the load displaces too far for the geometry already."""
-    found = _under_less(train, index, tolerance)
-    if found is None or not found[1].warned:
+    if part is None or not part.displaced.warned:
         return refusal
-    share, displaced = found
     told = "; ".join(
         f"{TOLD[name]} {m.value:.3g} at {m.where} (told of above {m.warning:.3g})"
-        for name, m in displaced.warned.items()
+        for name, m in part.displaced.warned.items()
     )
     return Refused(
-        f"{refusal}; under {share:.0%} of the load displacements are large for the "
+        f"{refusal}; under {part.share:.0%} of the load displacements are large for the "
         f"geometry already: {told}; check the load and the stiffnesses",
         refusal.figures,
     )
