@@ -5,12 +5,17 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+from tests.reproducible import SAME
 
 from loadshare.job import hot
 from loadshare.job.machine import engine_named
 
 # Mesh laws that tests compute stay out of the user's cache.
 os.environ["LOADSHARE_CACHE"] = str(Path(__file__).parent.parent / ".pytest_cache" / "laws")
+
+settings.register_profile("same", SAME)
+settings.load_profile("same")
 
 
 @pytest.fixture(autouse=True)

@@ -13,7 +13,8 @@ import pytest
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
 from tests.certify import oracle
-from tests.physics.test_random_trains import PROFILE, split_torques, stars
+from tests.physics.test_random_trains import split_torques, stars
+from tests.reproducible import TRAINS
 from tests.support import SHIPPED, answer, coasting, loaded, lost_contact, round_ring, shipped
 
 import loadshare as ls
@@ -191,7 +192,7 @@ def test_wrong_answers(name):
 
 @pytest.mark.parametrize("family", [stars, split_torques], ids=["star", "split torque"])
 def test_answers_of_random_trains(family):
-    @settings(PROFILE, max_examples=12)
+    @settings(TRAINS, max_examples=12)
     @given(family(), st.integers(0, 1000))
     def run(case: ls.Case, seed: int) -> None:
         note(case.to_toml())

@@ -32,7 +32,7 @@ def test_force_is_the_inverse_of_compression(law):
         assert law.force(law.compression(force)) == pytest.approx(force, rel=1e-14)
 
 
-@settings(derandomize=True, deadline=None, max_examples=300)
+@settings(max_examples=300)
 @given(
     b=st.floats(-15, -6), c=st.floats(-15, -5), force=st.floats(-12, 8),
 )  # fmt: skip

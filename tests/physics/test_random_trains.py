@@ -4,35 +4,27 @@ found.
 Source: formulation, sections 1 to 7. What is generated cannot be a mechanism: a gear that floats is
 held by a ring, by a spline whose clearance ends, or by flanks that close around it. So a refusal is
 a failure of the solver, an uncaught exception all the more. Back-ends and methods must agree on
-what was certified.
-
-The examples are the same in every run (derandomised), so that a failure can be repeated; but what
-else has been imported may bring others, as Hypothesis also draws numbers that it finds in the code.
+what was certified. What would move further than its geometry holds is drawn again.
 """
 
 import math
 from collections.abc import Mapping, Set
 
 import pytest
-from hypothesis import HealthCheck, given, note, settings
+from hypothesis import currently_in_test_context, given, note, reject, settings
 from hypothesis import strategies as st
+from tests.reproducible import TRAINS
 from tests.support import answer, forces, furthest
 
 import loadshare as ls
 from benchmarks import families
+from benchmarks.random_trains.judge import BEYOND
 from loadshare.certify import Certificate, certify
 from loadshare.train import build_train
 
 AGREE = 1e-9
 DEFLECTION = 20.0
 """Of the generated trains under their rated load [µm], roughly."""
-
-PROFILE = settings(
-    deadline=None,
-    derandomize=True,
-    database=None,
-    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
-)
 
 
 def scaled(value: float, unit: str) -> str:
@@ -193,9 +185,15 @@ def determined(found: Mapping[str, float], shared: Set[str]) -> dict[str, float]
 
 
 def is_solved_and_agreed(case: ls.Case) -> None:
-    note(case.to_toml())
+    if currently_in_test_context():
+        note(case.to_toml())
     train = build_train(case)
-    result = ls.solve(case)
+    try:
+        result = ls.solve(case)
+    except ls.Refused as refusal:
+        if BEYOND in str(refusal):
+            reject()
+        raise
     assert result.passed
     expected = ls.explain(case, 1).equilibrium
     known = certify(train, expected)
@@ -226,7 +224,7 @@ def is_solved_and_agreed(case: ls.Case) -> None:
 
 @pytest.mark.parametrize("family", [stars, split_torques], ids=["star", "split torque"])
 def test_a_random_train_is_solved(family):
-    @settings(PROFILE, max_examples=60)
+    @settings(TRAINS, max_examples=60)
     @given(family())
     def run(case: ls.Case) -> None:
         is_solved_and_agreed(case)
@@ -234,9 +232,77 @@ def test_a_random_train_is_solved(family):
     run()
 
 
+def split(branches: int, torque: str, **edits: dict[str, dict[str, object]]) -> ls.Case:
+    """A split-torque train with some of its elements changed or added."""
+    data = families.split_torque(branches).to_dict()
+    for section, elements in edits.items():
+        for name, numbers in elements.items():
+            part = data.setdefault(section, {}).setdefault(name, {})
+            part.update(numbers)
+    del data["operating"]["power"], data["operating"]["speed"], data["assumed"]
+    data["operating"]["torque"] = torque
+    return ls.Case(data)
+
+
+LIGHT = {
+    "branches idle on bearings and shafts": lambda: split(
+        8,
+        "0.4 N*m",
+        gears={
+            "pinion3": {"support": "1.3e7 N/m"},
+            "idler4a": {"support": "1.5e8 N/m"},
+            "idler4b": {"support": "2.5e8 N/m"},
+        },
+        meshes={"pinion1-idler1b": {"backlash": "2 um"}},
+        errors={"pinion2": {"eccentricity": {"amount": "2 um", "direction": "120 deg"}}},
+    ),
+    "branches idle beside one that is wedged": lambda: split(
+        6,
+        "0.3 N*m",
+        meshes={
+            "idler1a-out": {"backlash": "6 um"},
+            "pinion1-idler1b": {"backlash": "0 um"},
+            "pinion2-idler2a": {"backlash": "0.2 um"},
+        },
+        errors={
+            "pinion1": {"installation": {"amount": "6 um", "direction": "131 deg"}},
+            "idler1a": {"installation": {"amount": "20 um", "direction": "120 deg"}},
+        },
+    ),
+    "next to nothing leads a pinion to the end of its clearance": lambda: split(
+        4,
+        "0.2 N*m",
+        meshes={
+            "idler1b-out": {"backlash": "200 um"},
+            "in-face2": {"backlash": "0 um"},
+            "pinion2-idler2a": {"backlash": "2 um"},
+            "idler2b-out": {"backlash": "200 um"},
+        },
+        splines={
+            "pinion1": {
+                "bending_stiffness": "1.78e7 N/m",
+                "clearance": "20 um",
+                "friction_force": "0 N",
+            }
+        },
+        errors={"idler1b": {"installation": {"amount": "6 um", "direction": "143 deg"}}},
+    ),
+}
+
+
+@pytest.mark.parametrize("name", LIGHT)
+def test_what_carries_next_to_nothing(name):
+    """Refused once: idle branches carry the rounding of others, and a pinion that 3e-10 of the
+    load leads across its clearance was sought on the side where it began.
+    """
+    case = LIGHT[name]()
+    is_solved_and_agreed(case)
+    assert ls.solve(case).positions[0].effort.rung == "hot path"
+
+
 @pytest.mark.slow
 def test_many_random_trains_are_solved():
-    @settings(PROFILE, max_examples=300)
+    @settings(TRAINS, max_examples=300)
     @given(st.one_of(split_torques(), stars()))
     def run(case: ls.Case) -> None:
         is_solved_and_agreed(case)

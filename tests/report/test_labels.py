@@ -26,7 +26,7 @@ def apart(one, other):
     return one[2] <= other[0] or other[2] <= one[0] or one[3] <= other[1] or other[3] <= one[1]
 
 
-@settings(deadline=None, max_examples=30)
+@settings(max_examples=30)
 @given(st.lists(st.tuples(LETTERS, st.floats(60, 240), st.floats(60, 240)), min_size=2, max_size=5))
 def test_labels_do_not_overlap_and_stay_inside(wanted):
     labels = Labels((0.0, 0.0), (300.0, 300.0), 1.0)

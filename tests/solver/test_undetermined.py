@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 from tests.physics.test_metamorphic import FRAMES, placed
-from tests.physics.test_random_trains import PROFILE, scaled, split_torques, stars
+from tests.physics.test_random_trains import scaled, split_torques, stars
+from tests.reproducible import TRAINS
 from tests.support import answer, coordinates
 
 import loadshare as ls
@@ -149,7 +150,7 @@ def polygon(region: Region, sides: int = 720) -> tuple[np.ndarray, np.ndarray]:
     return np.vstack(rows), np.concatenate(bounds)
 
 
-@settings(PROFILE, max_examples=150)
+@settings(TRAINS, max_examples=150)
 @given(regions())
 def test_extremes_are_those_of_a_linear_programme_over_polygons(given_region):
     region, _ = given_region
@@ -168,7 +169,7 @@ def test_extremes_are_those_of_a_linear_programme_over_polygons(given_region):
         assert reached >= -outer.fun - 1e-2 * max(1.0, abs(outer.fun))
 
 
-@settings(PROFILE, max_examples=150)
+@settings(TRAINS, max_examples=150)
 @given(regions())
 def test_the_least_point_is_nearer_than_all_others(given_region):
     """Least in a convex region: (v − u)·u ≥ 0 for all of its v."""
@@ -214,7 +215,7 @@ def same_places(train: Train, one: Equilibrium, other: Equilibrium) -> None:
 def test_engines_agree_on_random_trains_with_lost_branches():
     seen = {"open": 0, "compared": 0}
 
-    @settings(PROFILE, max_examples=40)
+    @settings(TRAINS, max_examples=40)
     @given(with_lost_branches())
     def run(case: ls.Case) -> None:
         train = build_train(case)

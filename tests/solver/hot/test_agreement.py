@@ -8,7 +8,8 @@ of the case. 1e-9 of the largest figure is asked for, as between the back-ends.
 import pytest
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
-from tests.physics.test_random_trains import PROFILE, split_torques, stars
+from tests.physics.test_random_trains import split_torques, stars
+from tests.reproducible import TRAINS
 from tests.support import SHIPPED, answer, disagreement, forces, furthest, shipped
 
 import loadshare as ls
@@ -76,7 +77,7 @@ def test_a_random_train(family):
     """What it answers is right, and it answers nearly all: or the ladder would hide its loss."""
     answered = []
 
-    @settings(PROFILE, max_examples=30)
+    @settings(TRAINS, max_examples=30)
     @given(family())
     def run(case: ls.Case) -> None:
         answered.append(agrees(case))
@@ -89,7 +90,7 @@ def test_a_random_train(family):
 def test_many_random_trains():
     answered = []
 
-    @settings(PROFILE, max_examples=500)
+    @settings(TRAINS, max_examples=500)
     @given(st.one_of(split_torques(), stars()))
     def run(case: ls.Case) -> None:
         answered.append(agrees(case))

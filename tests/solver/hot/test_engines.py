@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from hypothesis import given, note, settings
 from hypothesis import strategies as st
-from tests.physics.test_random_trains import PROFILE, split_torques, stars
+from tests.physics.test_random_trains import split_torques, stars
+from tests.reproducible import TRAINS
 from tests.solver.hot.trains import VARIED, varied
 from tests.support import SHIPPED, shipped
 
@@ -131,7 +132,7 @@ def test_random_samples(name):
 
 @pytest.mark.parametrize("family", [stars, split_torques], ids=["star", "split torque"])
 def test_random_trains(family):
-    @settings(PROFILE, max_examples=30)
+    @settings(TRAINS, max_examples=30)
     @given(family())
     def run(case: ls.Case) -> None:
         note(case.to_toml())
@@ -141,7 +142,7 @@ def test_random_trains(family):
     run()
 
 
-@settings(PROFILE, max_examples=200)
+@settings(TRAINS, max_examples=200)
 @given(st.data())
 def test_radial_elements_move_alike_from_place_to_place(data):
     """Whatever the law, the offset and the force, on corners and off them."""

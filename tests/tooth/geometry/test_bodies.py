@@ -88,7 +88,7 @@ def test_the_rack_touches_all_of_the_root_and_cuts_none_of_it():
     np.testing.assert_allclose(least[1:], 0.0, atol=2e-10)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(st.sampled_from(BODIES), st.floats(0.41, 1.0), st.floats(0.0, 1.0), st.sampled_from([1, -1]))
 def test_locate_finds_where_outline_stands(body, u, w, side):
     found = body.locate(body.outline(u, w, side))

@@ -151,7 +151,7 @@ def test_both_sides_of_a_face_gear_are_mirror_images():
     np.testing.assert_allclose(left.normal, right.normal * mirror, atol=1e-13)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(st.floats(0.5, 0.55), st.floats(0.084, 0.093), st.floats(84.0, 92.0))
 def test_blank_coordinates_lead_back_to_the_point(length, depth, angle):
     flank = FaceFlank(face_gear(angle))

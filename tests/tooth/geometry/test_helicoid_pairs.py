@@ -127,7 +127,7 @@ def test_centre_distance_without_backlash():
     )
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(st.floats(2e-6, 40e-6), st.floats(0.0, 0.999), st.sampled_from([0.0, 0.3]))
 def test_gap_of_a_lead_crowned_pair(crowning, phase, helix):
     # Closed form: C_β (2ζ/b)², less its least value on the lines. The ray leaves along the crowned

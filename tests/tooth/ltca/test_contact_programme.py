@@ -98,7 +98,7 @@ def test_line_contact_against_its_closed_form():
 
 
 @given(st.integers(0, 10_000), st.floats(-3.0, 5.0))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_every_load_is_certified(seed, exponent):
     """From a thousandth of a newton up: the certificate passes by orders of magnitude."""
     problem, load = uneven(seed), 10.0**exponent
@@ -111,7 +111,7 @@ def test_every_load_is_certified(seed, exponent):
 
 
 @given(st.integers(0, 10_000))
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 def test_more_load_more_approach_and_the_tangent_is_the_slope(seed):
     problem = uneven(seed)
     low, high = (solve_contact(problem, 2000.0 * (1.0 + e)) for e in (-1e-5, 1e-5))

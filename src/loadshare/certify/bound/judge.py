@@ -216,15 +216,23 @@ def _without(claim: Claim, gears: Mapping[str, float | Array], scale: Array) -> 
 
 
 def _without_rounding(claim: Claim, scale: Array) -> tuple[Array, Array]:
-    """Bound a single claim as if contacts carried nothing that carry rounding.
+    """Bound a single claim as if nothing were carried by what carries rounding.
 
-    What is left over along moves that only they hold is then nothing, to the last digit.
+    What is left over along moves that only it holds is then nothing, to the last digit.
     """
-    answers, least = claim.answers, BOUND.noise * scale[:, None]
-    flanks, rings = (
-        np.where(np.abs(f) > least, f, 0.0) for f in (answers.flank_force, answers.ring_force)
-    )
-    none = replace(claim, answers=replace(answers, flank_force=flanks, ring_force=rings))
+    train, answers, least = claim.columns.train, claim.answers, BOUND.noise * scale[:, None]
+    arms = [train.gears[shaft.first].base_radius for shaft in train.shafts.values()]
+    carried = {
+        "flank_force": least,
+        "ring_force": least,
+        "shaft_torque": least * arms,
+        "support_force": least[:, :, None],
+    }
+    if train.slip is None:  # With memory, slips bend with what they carry.
+        carried["radial_reaction"] = least[:, :, None]
+    forces = {name: getattr(answers, name) for name in carried}
+    kept = {n: np.where(np.abs(f) > carried[n], f, 0.0) for n, f in forces.items()}
+    none = replace(claim, answers=replace(answers, **kept))
     box = quick_boxes(none, first_acts(none), scale, rounded=True)
     return (box.force + np.abs(claim.forces - none.forces))[0], box.coordinate[0]
 

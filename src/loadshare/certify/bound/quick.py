@@ -48,7 +48,8 @@ def quick_boxes(claim: Claim, act: Codes, scale: Array, rounded: bool = False) -
     scale : ndarray, shape (S,)
         Load of the claims [N].
     rounded : bool
-        Take a load along moves for none that is no more than the rounding of the moves.
+        Take what moves hardly for what stands still, where it is no more than the rounding of the
+        moves.
     """
     box = Box.unproved(claim, act)
     act, doubled = _with_near(claim, act)
@@ -273,16 +274,16 @@ class _Group:
 
         Gears that carry nothing have none, to the last digit.
         """
-        return self._is_none(moves - self.statics.moves @ (self.statics.moves.T @ moves))
+        moves = moves - self.statics.moves @ (self.statics.moves.T @ moves)
+        along = (self.load @ np.abs(moves)).max(axis=1, initial=0.0)
+        return bool((along <= EPS * len(moves) * self.load.max(axis=1, initial=0.0)).all())
 
     def _bears_none(self, moves: Array) -> bool:
         """Tell whether what holds moves bears nothing."""
-        return self._is_none(moves) if self.rounded else not (self.load @ np.abs(moves)).any()
-
-    def _is_none(self, moves: Array) -> bool:
-        """Tell whether no load is left along moves, but for the rounding of the moves."""
-        along = (self.load @ np.abs(moves)).max(axis=1, initial=0.0)
-        return bool((along <= EPS * len(moves) * self.load.max(axis=1, initial=0.0)).all())
+        ways = np.abs(moves)
+        if self.rounded:
+            ways[ways <= BOUND.rounded * ways.max(axis=0, initial=0.0)] = 0.0
+        return not (self.load @ ways).any()
 
     def _set_stiffness(self) -> None:
         """Find L from the smallest compliances."""

@@ -479,7 +479,7 @@ class _Passes:
         return np.asarray(np.where(drifting[:, None], along @ self.basis.loose.T, 0.0))
 
     def stopped_by(self, drift: Array) -> tuple[Flags, Codes]:
-        """What is first in the way of a drift (k, n), if anything, and where it stands then."""
+        """Go along a drift (k, n) to what is first in the way, if anything: it, and its place."""
         elements = self.elements
         stopping = np.zeros((len(self.rows), elements.switches), dtype=bool)
         rows = elements.columns.contacts
@@ -504,7 +504,10 @@ class _Passes:
             places[:, elements.rows + j] = beyond(law)
         ways = np.concatenate(ends, axis=1)
         everyone, nearest = np.arange(len(self.rows)), ways.argmin(axis=1)
-        stopping[everyone, nearest] = np.isfinite(ways[everyone, nearest])
+        way = ways[everyone, nearest]
+        stopping[everyone, nearest] = stopped = np.isfinite(way)
+        # From elsewhere the passes may end at the far side of a ring, held inward.
+        self.x += np.where(stopped, way, 0.0)[:, None] * drift
         return stopping, places
 
     def rests(self, k: int, wrong: Flags) -> bool:

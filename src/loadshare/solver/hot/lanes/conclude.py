@@ -49,7 +49,7 @@ def conclude(s, work, count, lanes, xs, forces, roots, one_only, verdict, propos
         propose(s.code, work.wrong, work.better, m, one_only[i], proposal[row])
         if work.lane[DRIFTS, m] > 0.0:
             # Only what stops the drift is of interest.
-            verdict[row] = stopped(s, work, m, lanes, proposal[row])
+            verdict[row] = stopped(s, work, m, lanes, proposal[row], xs[i])
 
 
 @bare

@@ -180,8 +180,11 @@ def propose(code, wrong, better, m, one_only, proposal):  # type: ignore[no-unty
 
 
 @bare
-def stopped(s, work, m, lanes, proposal):  # type: ignore[no-untyped-def]
-    """Propose what is first in the way of the drift of a lane."""
+def stopped(s, work, m, lanes, proposal, place_of):  # type: ignore[no-untyped-def]
+    """Propose what is first in the way of the drift of a lane, and go there.
+
+    From elsewhere the passes may end at the far side of a ring, held inward.
+    """
     i, n, drift, x = work.samples[m], work.x.shape[0], work.drift, work.x
     load = s.load[i if s.load.shape[0] > 1 else 0]
     gap = s.gap[i if s.gap.shape[0] > 1 else 0]
@@ -240,4 +243,6 @@ def stopped(s, work, m, lanes, proposal):  # type: ignore[no-untyped-def]
     if first < 0:
         return FAILED
     proposal[first] = place if first >= rows else CLOSED
+    for d in range(n):
+        place_of[d] += nearest * drift[d]
     return OTHER

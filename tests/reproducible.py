@@ -1,0 +1,22 @@
+"""Examples that are the same in every run.
+
+Hypothesis draws now and then a number that it finds in the code of what has been imported, so that
+a run of a single file draws other examples than a run of all, and a failure is not met again.
+"""
+
+from hypothesis import HealthCheck, settings
+from hypothesis.internal.conjecture.providers import AVAILABLE_PROVIDERS, HypothesisProvider
+
+
+class Drawn(HypothesisProvider):
+    """Hypothesis's own way to draw, without numbers from code."""
+
+    def _maybe_draw_constant(self, *_: object, **__: object) -> None:
+        return None
+
+
+AVAILABLE_PROVIDERS["reproducible"] = f"{Drawn.__module__}.{Drawn.__name__}"
+SAME = settings(backend="reproducible", deadline=None, derandomize=True, database=None)
+"""Every test of a property has this profile."""
+TRAINS = settings(SAME, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+"""For what draws whole trains."""
