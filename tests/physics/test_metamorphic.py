@@ -106,13 +106,11 @@ def placed(case: ls.Case, q: np.ndarray) -> ls.Case:
         data["gears"][name] |= {"centre": metres(q @ gear.centre), "axis": axis.tolist()}
         if name in train.offsets:
             error = train.offsets[name]
-            way = (
-                frame @ q @ (np.array([math.cos(error.angle), math.sin(error.angle)]) @ gear.frame)
-            )
+            way = frame @ q @ (error.eccentricity @ gear.frame)
             data["errors"][name] = {
                 "installation": metres(q @ error.installation),
                 "eccentricity": {
-                    "amount": f"{error.eccentricity!r} m",
+                    "amount": f"{math.hypot(*way)!r} m",
                     "direction": f"{math.atan2(way[1], way[0])!r} rad",
                 },
             }

@@ -122,7 +122,9 @@ class Table:
         gears = self.names.train.gears
         self.moving = [k for k, gear in enumerate(gears.values()) if gear.moves]
         # From displacements of the gears that can move to their transverse frames.
-        self.frames = np.array([g.frame for g in gears.values() if g.moves]).reshape(-1, 2, 3)
+        self.frames = np.zeros((3 * len(self.moving), 2 * len(self.moving)))
+        for k, frame in enumerate(g.frame for g in gears.values() if g.moves):
+            self.frames[3 * k : 3 * k + 3, 2 * k : 2 * k + 2] = frame.T
         self.coords: dict[str, list[Any]] = {
             "sample": list(range(count)),
             "position": list(first.positions),
@@ -173,7 +175,8 @@ class Table:
         """Return a variable of a block at one position."""
         if name == "displacement":
             moved = answers.displacement[:, self.moving]
-            return np.asarray(np.einsum("sgi,gci->sgc", moved, self.frames))
+            count, gears = moved.shape[:2]
+            return (moved.reshape(count, -1) @ self.frames).reshape(count, gears, 2)
         if name in ("share", "pair_share"):
             train = self.names.train
             return shares(torque, tuple(train.meshes), train.stages, pairs=name == "pair_share")

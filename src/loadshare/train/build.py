@@ -296,5 +296,5 @@ def _offset(errors: spec.Errors, gear: Gear) -> Offset:
         installation = _vector(errors.installation)
     given = errors.eccentricity
     if given is None:
-        return Offset(installation, 0.0, 0.0)
-    return Offset(installation, given.amount.si, given.direction.si + given.phase.si)
+        return Offset(installation, np.zeros(2))
+    return Offset(installation, polar(given.amount.si, given.direction.si + given.phase.si))

@@ -21,20 +21,18 @@ class Offset:
     ----------
     installation : ndarray, shape (3,)
         Fixed offset [m].
-    eccentricity : float
-        Amplitude [m].
-    angle : float
-        Direction η plus initial phase [rad], in the gear's transverse frame.
+    eccentricity : ndarray, shape (2,)
+        Offset that turns with the gear [m], before it turns, in the gear's transverse frame.
     """
 
     installation: Vector
-    eccentricity: float
-    angle: float
+    eccentricity: Vector
 
     def at(self, gear: Gear, rotation: float) -> Vector:
         """Offset (3,) [m] of `gear` turned by `rotation` [rad] in its running sense."""
-        turned = gear.sense * rotation + self.angle
-        return np.asarray(self.installation + polar(self.eccentricity, turned) @ gear.frame)
+        turn = gear.sense * rotation
+        turned = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+        return np.asarray(self.installation + self.eccentricity @ (turned @ gear.frame))
 
 
 def polar(amount: float, direction: float) -> Vector:

@@ -107,7 +107,8 @@ def samples_of(
     groups = []
     for rows in _groups(others, len(columns[0].values)):
         mine = tuple(replace(c, values=c.values[rows]) for c in columns)
-        base = with_laws(first.replace({dotted(c.path): c.text(0) for c in mine}))
+        own = first if rows[0] == 0 else first.replace({dotted(c.path): c.text(0) for c in mine})
+        base = with_laws(own)
         geometry = geometry_of(base)
         values = {path: si[rows] for path, si in arrays.items()}
         group = Samples(base, geometry, train_of(base, geometry), mine, values)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -230,8 +231,10 @@ def _without_rounding(claim: Claim, scale: Array) -> tuple[Array, Array]:
     }
     if train.slip is None:  # With memory, slips bend with what they carry.
         carried["radial_reaction"] = least[:, :, None]
-    forces = {name: getattr(answers, name) for name in carried}
-    kept = {n: np.where(np.abs(f) > carried[n], f, 0.0) for n, f in forces.items()}
+    kept: dict[str, Any] = {}
+    for name, rounding in carried.items():
+        force = getattr(answers, name)
+        kept[name] = np.where(np.abs(force) > rounding, force, 0.0)
     none = replace(claim, answers=replace(answers, **kept))
     box = quick_boxes(none, first_acts(none), scale, rounded=True)
     return (box.force + np.abs(claim.forces - none.forces))[0], box.coordinate[0]

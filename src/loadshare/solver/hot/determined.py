@@ -62,8 +62,11 @@ def determined(
     rest = np.flatnonzero(~found)
     if len(rest):
         carry = state.force[rest, first:last] > carries[rest, None]
+        columns = elements.columns.flat
+        room = pick(data.gap, rest)[:, columns] - state.x[rest] @ elements.vectors[columns].T
+        near = room <= PLACES.play
         for alike, some in _alike(np.hstack([carry.astype(np.int8), kinds[rest]])):
-            found[rest[alike]] = _fixed(elements, data, state, some, rest[alike])
+            found[rest[alike]] = _fixed(elements, data, state, some, rest[alike], near[alike])
     return np.asarray(found)
 
 
@@ -138,9 +141,17 @@ def _moves(elements: Elements, data: Data, some: Codes) -> _Moves:
 
 
 def _fixed(
-    elements: Elements, data: Data, state: State, some: Codes, rows: NDArray[np.intp]
+    elements: Elements,
+    data: Data,
+    state: State,
+    some: Codes,
+    rows: NDArray[np.intp],
+    near: Flags,
 ) -> Flags:
-    """Whether samples of one set of carrying elements are determined, shape (len(rows),)."""
+    """Whether samples of one set of carrying elements are determined, shape (len(rows),).
+
+    `near`, shape (len(rows), flat), tells which flanks and stops they touch.
+    """
     left_by = _moves(elements, data, some)
     moves, level = left_by.moves, left_by.level
     if not moves.shape[1]:
@@ -148,9 +159,10 @@ def _fixed(
     found = np.zeros(len(rows), dtype=bool)
     if not left_by.may_be_held:
         return found
-    directions, touches = _touched(elements, data, state, some, left_by, rows)
+    touched = _touched(elements, data, state, some, left_by, rows, near)
     # What no level piece could hold is pinched by contacts or moves.
-    these = np.flatnonzero(touches.any(axis=1)) if left_by.some_left else np.arange(len(rows))
+    some_touch = touched.flags.any(axis=1)
+    these = np.flatnonzero(some_touch) if left_by.some_left else np.arange(len(rows))
     if not len(these):
         return found
     across = np.zeros((len(these), len(level), moves.shape[1]))
@@ -158,9 +170,9 @@ def _fixed(
         across[:, k] = _across(elements, state, j, rows[these]) @ moves
     left = moves.shape[1] - (np.linalg.svd(across, compute_uv=False) > STATICS.rank).sum(axis=1)
     found[these] = left == 0
-    doubtful = (left > 0) & (touches[these].sum(axis=1) > left)
+    doubtful = (left > 0) & (touched.flags[these].sum(axis=1) > left)
     for k in np.flatnonzero(doubtful).tolist():
-        one_sided = directions[these[k], touches[these[k]]]
+        one_sided = touched.directions(int(these[k]))
         found[these[k]] = _pinched(np.vstack([across[k], -across[k], one_sided]))
     return found
 
@@ -170,6 +182,19 @@ def _radial(elements: Elements, j: int) -> Array:
     return elements.vectors[column : column + 2]
 
 
+class _Touched(NamedTuple):
+    """What carries nothing and must not close further, seen by the moves of k samples."""
+
+    flags: Flags  # (k, m): whether a sample touches it
+    flat: Array  # (f, d): directions of flanks and stops
+    others: list[Array]  # of (k, d): directions of the m − f others
+
+    def directions(self, sample: int) -> Array:
+        """Directions of what a sample touches."""
+        every = np.vstack([self.flat, *(other[sample] for other in self.others)])
+        return np.asarray(every[self.flags[sample]])
+
+
 def _touched(
     elements: Elements,
     data: Data,
@@ -177,28 +202,16 @@ def _touched(
     some: Codes,
     left_by: _Moves,
     rows: NDArray[np.intp],
-) -> tuple[Array, Flags]:
-    """What carries nothing and must not close further, seen by the moves.
-
-    Returns
-    -------
-    ndarray, shape (k, m, d)
-        Directions.
-    ndarray of bool, shape (k, m)
-        Whether a sample touches it.
-    """
+    near: Flags,
+) -> _Touched:
+    """Find what samples touch, from where they stand."""
     moves, flat, x = left_by.moves, left_by.flat, state.x[rows]
-    shape = (len(rows), len(flat), moves.shape[1])
-    vectors = elements.vectors[flat]
-    directions = [np.broadcast_to(vectors @ moves, shape)]
-    gaps = data.gap[rows[:, None], flat] if len(data.gap) > 1 else data.gap[:, flat]
-    room = gaps - x @ vectors.T
-    touches = [room <= PLACES.play]
+    touches, directions = [near[:, flat - elements.springs]], []
 
     def add(direction: Array, room: Array) -> None:
-        directions.append(direction[:, None])
-        near = (room <= PLACES.play) & (np.abs(direction).max(axis=1) > PLACES.loose)
-        touches.append(near[:, None])
+        directions.append(direction)
+        met = (room <= PLACES.play) & (np.abs(direction).max(axis=1) > PLACES.loose)
+        touches.append(met[:, None])
 
     for a in left_by.arcs:
         normal, margin = arc_at(data, a, rows, x)
@@ -212,7 +225,7 @@ def _touched(
         add(outward, law.reach - radius)
         if some[elements.rows + j] == LEVEL:
             add(-outward, radius - law.stick)
-    return np.concatenate(directions, axis=1), np.concatenate(touches, axis=1)
+    return _Touched(np.concatenate(touches, axis=1), elements.vectors[flat] @ moves, directions)
 
 
 def _across(elements: Elements, state: State, j: int, rows: NDArray[np.intp]) -> Array:
