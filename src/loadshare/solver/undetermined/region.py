@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.contact.programme import Array
+from loadshare.scene.statics import unresisted
 from loadshare.settings import PLACES
 
 
@@ -111,7 +112,15 @@ class Region:
             low, high = self._interval()
             end = high if direction[0] > 0.0 else low
             return np.array([end]) if np.isfinite(end) else None
+        along = self._ways_out.T @ direction
+        if _pushed(self.limits @ self._ways_out, along) > PLACES.balanced:
+            return None
         return self._optimum(0.0, -direction)
+
+    @cached_property
+    def _ways_out(self) -> Array:
+        """Moves (d, m) that no disc ends; what half-planes leave of them goes on for ever."""
+        return unresisted(stacked((row for disc in self.discs for row in disc.matrix), self.size))
 
     def _interval(self) -> tuple[float, float]:
         """Ends of a region of one unknown."""
@@ -188,8 +197,8 @@ def _pushed(reached: Array, pulled: Array) -> float:
     """How far a pull (d,) is from what bounds with outward normals (k, d) can hold."""
     from scipy.optimize import nnls
 
-    if not len(reached):
-        return float(np.abs(pulled).max())
+    if not reached.size:
+        return float(np.abs(pulled).max(initial=0.0))
     return float(nnls(reached.T, pulled)[1])
 
 
