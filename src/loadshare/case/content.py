@@ -20,6 +20,8 @@ from loadshare.errors import Problem
 
 ABOUT = ("title", "source", "notes", "assumed", "measured", "study")
 """The keys that say something about a case and nothing about the machine."""
+FLOATS = ("splines", "rings")
+"""The sections of what lets a gear float, by gear."""
 
 
 class Sections(Element):
@@ -72,6 +74,10 @@ class Sections(Element):
 
     study: dict[str, Study] = Field(default_factory=dict)
     """Studies of the case, by name."""
+
+    def floats(self, gear: str) -> bool:
+        """Tell whether something lets a gear float that says nothing of its support."""
+        return any(gear in getattr(self, section) for section in FLOATS)
 
     def problem(self, key: str | Path, message: str, allowed: str = "", hint: str = "") -> Problem:
         """Return a problem with a key, with its file and what was given.

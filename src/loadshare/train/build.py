@@ -137,7 +137,7 @@ def _vector(lengths: tuple[spec.Quantity, ...]) -> Vector:
 def _support(case: spec.Case, name: str) -> Vector | None:
     support = case.gears[name].support
     if support is None:
-        return np.zeros(2) if name in case.splines or name in case.rings else None
+        return np.zeros(2) if case.floats(name) else None
     if isinstance(support, str):
         return np.zeros(2) if support == "free" else None
     both = support if isinstance(support, tuple) else (support, support)

@@ -166,8 +166,13 @@ class Train:
     def floating(self) -> tuple[str, ...]:
         """Gears whose rest position is reported: free ones, those on a spline, those in a ring."""
         return tuple(
-            n for n, g in self.gears.items() if g.floats or n in self.splines or n in self.rings
+            n for n, g in self.gears.items() if g.floats or n in self.splines or n in self.limits
         )
+
+    @cached_property
+    def limits(self) -> dict[str, tuple[Ring, ...]]:
+        """What limits how far gears float, by gear."""
+        return {gear: (ring,) for gear, ring in self.rings.items()}
 
     @cached_property
     def drums(self) -> tuple[DrumRing, ...]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from loadshare.case.checks.meshing import SQUARE
+from loadshare.case.content import FLOATS
 from loadshare.case.draft import Draft
 from loadshare.case.links import Backlashes
 from loadshare.case.place import axis_of, dot
@@ -12,8 +13,8 @@ from loadshare.errors import Problem
 
 
 def check_support(draft: Draft) -> Iterator[Problem]:
-    """Yield splines and rings on gears that cannot move."""
-    for section in ("splines", "rings"):
+    """Yield what lets gears float that cannot move."""
+    for section in FLOATS:
         for name in draft.names(section):
             gear = draft.gears.get(name)
             if gear is not None and gear.support == "rigid":

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 
-from loadshare.case.content import ABOUT
+from loadshare.case.content import ABOUT, FLOATS
 from loadshare.case.draft import Draft
 from loadshare.case.gears import Polar
 from loadshare.case.keys import Path, covers, dotted, look_up, parse, walk
@@ -84,7 +84,7 @@ def _gears_named(draft: Draft) -> Iterator[tuple[Path, str]]:
                         yield path if given else path[:-1], gear
                 else:
                     yield from _texts_at(draft, path)
-    for section in ("splines", "rings", "errors"):
+    for section in (*FLOATS, "errors"):
         yield from (((section, name), name) for name in draft.names(section))
     yield from _texts(draft, "rings", "neighbours")
     yield from _texts_at(draft, ("operating", "input"))

@@ -19,7 +19,7 @@ from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
 from loadshare.settings import BOUND
 from loadshare.train.equilibria import Equilibria
-from loadshare.train.ring import DrumRing
+from loadshare.train.ring import DrumRing, Ring, RoundRing
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
@@ -41,19 +41,20 @@ def locked(claim: Claim) -> dict[str, float]:
         return found
     deflection = float(claim.lengths[0].value[0, columns.flanks].max(initial=0.0))
     neighbours = {n for r in train.drums for n in r.neighbours}
-    for name, ring in train.rings.items():
-        if math.isfinite(ring.stiffness) or name in neighbours:
+    limits: tuple[Ring, ...] = (*train.drums, *train.rounds)
+    for limit in limits:
+        if math.isfinite(limit.stiffness) or limit.gear in neighbours:
             continue
-        play = _drum(claim, ring) if isinstance(ring, DrumRing) else _round(claim, name)
+        play = _drum(claim, limit) if isinstance(limit, DrumRing) else _round(claim, limit)
         if play <= BOUND.slight * deflection:
-            found[name] = play
+            found[limit.gear] = play
     return found
 
 
-def _round(claim: Claim, gear: str) -> float:
+def _round(claim: Claim, ring: RoundRing) -> float:
     """How far a gear in a rigid round ring may stand from its claimed place."""
-    train, columns = claim.columns.train, claim.columns
-    q = [r.gear for r in train.rounds].index(gear)
+    columns = claim.columns
+    q = columns.train.rounds.index(ring)
     at = columns.radials.start + 2 * q
     radius = float(claim.graphs[0, q, 3])
     off = math.hypot(*claim.lengths[0].value[0, at : at + 2].tolist())

@@ -82,7 +82,7 @@ def open_slips(claim: Claim) -> list[OpenSlip]:
     columns, train = claim.columns, claim.columns.train
     if train.slip is not None:
         return []
-    limited = {*train.rings, *(n for r in train.drums for n in r.neighbours)}
+    limited = {*train.limits, *(n for r in train.drums for n in r.neighbours)}
     found = []
     for number, gear in enumerate(train.splines):
         support = claim.situations.support[0, columns.order[gear]]

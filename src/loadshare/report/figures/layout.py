@@ -143,7 +143,7 @@ def _body(case: Sections, name: str, gear: Gear, centre: Vector, train: Train | 
     )
     rims = tuple(q.si for q in (gear.inner_radius, gear.outer_radius) if q is not None)
     support = gear.support
-    if support == "free" or (support is None and (name in case.splines or name in case.rings)):
+    if support == "free" or (support is None and case.floats(name)):
         held = FLOATS
     else:
         held = FIXED if support in (None, "rigid") else ELASTIC

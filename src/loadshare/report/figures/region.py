@@ -19,7 +19,7 @@ from loadshare.contact.radial import spline_law
 from loadshare.report.figures.marks import Point, circle
 from loadshare.report.numbers import significant
 from loadshare.report.units import MICROMETRE
-from loadshare.report.words import rest_told, spline_told
+from loadshare.report.words import boundary_name, rest_told, spline_told
 from loadshare.results import Position, Result
 from loadshare.train import Train
 from loadshare.train.ring import DrumRing, RoundRing
@@ -66,14 +66,15 @@ class Region:
 
 
 def features(train: Train, gear: str) -> dict[str, float]:
-    """Distance [m] from the gear's centre to each boundary of its ring, by name."""
-    ring = train.rings.get(gear)
-    if ring is None:
-        return {}
-    if isinstance(ring, RoundRing):
-        return {"ring": ring.radius + float(np.linalg.norm(ring.offset))}
-    arcs = {f"arc {n}": c for n, c in zip(ring.neighbours, ring.clearances, strict=True)}
-    return {"upper stop": ring.up, "lower stop": ring.down, **arcs}
+    """Distance [m] from the gear's centre to each boundary of what limits it, by name."""
+    found: dict[str, float] = {}
+    for limit in train.limits.get(gear, ()):
+        if isinstance(limit, RoundRing):
+            found[boundary_name(limit.name)] = limit.radius + float(np.linalg.norm(limit.offset))
+            continue
+        found |= {"upper stop": limit.up, "lower stop": limit.down}
+        found |= {f"arc {n}": c for n, c in zip(limit.neighbours, limit.clearances, strict=True)}
+    return found
 
 
 def region(
@@ -83,7 +84,7 @@ def region(
     displacement: Mapping[str, tuple[float, float]],
     window: float,
 ) -> Region | None:
-    """Region of a float at a position; None for a gear without a ring.
+    """Region of a float at a position; None for a gear that nothing limits.
 
     Parameters
     ----------
@@ -96,12 +97,16 @@ def region(
     window : float
         Half the side of the square in which the region is drawn [m].
     """
-    ring = train.rings.get(gear)
-    if ring is None:
+    found = [
+        _disc(train, limit)
+        if isinstance(limit, RoundRing)
+        else _drum(train, limit, position, displacement, window)
+        for limit in train.limits.get(gear, ())
+    ]
+    if not found:
         return None
-    if isinstance(ring, RoundRing):
-        return _disc(train, ring)
-    return _drum(train, ring, position, displacement, window)
+    tightest = min(found, key=lambda each: np.ptp([x for p in each.pieces for x, _ in p] or [0.0]))
+    return Region(tightest.pieces, [edge for each in found for edge in each.boundaries])
 
 
 def _disc(train: Train, ring: RoundRing) -> Region:
@@ -109,7 +114,7 @@ def _disc(train: Train, ring: RoundRing) -> Region:
     outline = circle((x, y), ring.radius)
     # Named at the upper right, where neither axis stands.
     outward = (math.sqrt(0.5), math.sqrt(0.5))
-    return Region([outline], [Boundary("ring", outline, outward)])
+    return Region([outline], [Boundary(boundary_name(ring.name), outline, outward)])
 
 
 def _drum(

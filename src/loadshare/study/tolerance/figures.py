@@ -51,7 +51,7 @@ def column_names(train: Train) -> list[str]:
         *(f"{kind}.{stage}" for kind in KINDS for stage in stages),
         *(f"torque.{mesh} [N*m]" for mesh in train.meshes),
         *(f"float.{gear} [m]" for gear in train.floating),
-        *(f"boundary_force.{gear} [N]" for gear in train.rings),
+        *(f"boundary_force.{gear} [N]" for gear in train.limits),
     ]
 
 
@@ -155,7 +155,7 @@ def _at_position(answers: Equilibria) -> dict[str, Array]:
     for gear in train.floating:
         way = np.linalg.norm(answers.displacement[:, gears[gear]], axis=1)
         found[f"float.{gear} [m]"] = way
-    for gear in train.rings:
+    for gear in train.limits:
         found[f"boundary_force.{gear} [N]"] = _boundary_force(answers, gear)
     return found
 
@@ -165,12 +165,15 @@ def _largest(values: NDArray[np.float64], columns: Sequence[int]) -> Array:
 
 
 def _boundary_force(answers: Equilibria, gear: str) -> Array:
-    """Force of the hardest pressed contact of a gear's ring [N]."""
-    names = answers.names
-    ring = names.train.rings[gear]
-    if isinstance(ring, DrumRing):
-        mine = {*ring.stop_names, *(ring.arc_name(n) for n in ring.neighbours)}
-        columns = [c for c, name in enumerate(names.contacts) if name in mine]
-        return np.asarray(answers.ring_force[:, columns].max(axis=1))
-    number = [name for name, _ in names.radials].index(ring.name)
-    return np.asarray(np.linalg.norm(answers.radial_reaction[:, number], axis=1))
+    """Force of the hardest pressed contact of what limits a gear [N]."""
+    names, found = answers.names, [np.zeros(len(answers.rotation))]
+    radials = [name for name, _ in names.radials]
+    for limit in names.train.limits[gear]:
+        if isinstance(limit, DrumRing):
+            mine = {*limit.stop_names, *(limit.arc_name(n) for n in limit.neighbours)}
+            columns = [c for c, name in enumerate(names.contacts) if name in mine]
+            found.append(answers.ring_force[:, columns].max(axis=1))
+        else:
+            reaction = answers.radial_reaction[:, radials.index(limit.name)]
+            found.append(np.linalg.norm(reaction, axis=1))
+    return np.asarray(np.max(found, axis=0))

@@ -309,7 +309,7 @@ class _Reader:
             way, force, pressed = self._summary(f"float.{gear} [m]"), None, None
             if way is None:
                 continue
-            if gear in self.train.rings:
+            if gear in self.train.limits:
                 column = f"boundary_force.{gear} [N]"
                 force, values = self._summary(column), self.folder.column(column)
                 known = values[~np.isnan(values)]
