@@ -39,6 +39,7 @@ TABLES = (
     ("Limit rings", "Ring", "[rings.GEAR]"),
     ("Float range, up and down", "Range", "float = { up = …, down = … }"),
     ("Float range from backlashes", "Backlashes", "float = { upward = …, downward = … }"),
+    ("Bearings with clearance", "Bearing", "[bearings.GEAR]"),
     ("Errors", "Errors", "[errors.GEAR]"),
     ("Installation error by size and direction", "Offset", "installation = { … }"),
     ("Eccentricity", "Eccentricity", "eccentricity = { … }"),

@@ -10,7 +10,7 @@ import numpy as np
 
 from benchmarks.reference.elements import Contact, ExactArc, Graph, Row, Yield
 from loadshare.contact.law import Law, PowerLaw, TableLaw
-from loadshare.train.ring import DrumRing, RoundRing
+from loadshare.train.ring import DrumRing
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
@@ -208,9 +208,7 @@ class _Writer:
 
     def _ring_contacts(self) -> list[Contact]:
         found: list[Contact] = []
-        for ring in self.train.rings.values():
-            if not isinstance(ring, DrumRing):
-                continue
+        for ring in self.train.drums:
             wall = self._wall(ring.stiffness)
             for side, neighbour in enumerate(ring.neighbours):
                 found.append(self._arc(ring, side, neighbour, wall))
@@ -270,25 +268,24 @@ class _Writer:
                     torque_of={} if fixed else self._transmitted(gear),
                 )
             )
-        for gear, ring in self.train.rings.items():
-            if isinstance(ring, RoundRing):
-                frame = self.train.gears[gear].frame
-                middle = [self._dot(frame[k], ring.offset) / self.of(self.length) for k in (0, 1)]
-                rigid = math.isinf(ring.stiffness)
-                found.append(
-                    Graph(
-                        name=ring.name,
-                        gear=gear,
-                        indices=(self.moves[gear], self.moves[gear] + 1),
-                        centre=(middle[0], middle[1]),
-                        stiffness=None if rigid else self._stiffness(ring.stiffness),
-                        stick=None if rigid else self.of(0),
-                        reach=self._lengths(ring.radius),
-                        bound=self.of(0),
-                        per_torque=self.of(0),
-                        torque_of={},
-                    )
+        for ring in self.train.rounds:
+            frame, at = self.train.gears[ring.gear].frame, self.moves[ring.gear]
+            middle = [self._dot(frame[k], ring.offset) / self.of(self.length) for k in (0, 1)]
+            rigid = math.isinf(ring.stiffness)
+            found.append(
+                Graph(
+                    name=ring.name,
+                    gear=ring.gear,
+                    indices=(at, at + 1),
+                    centre=(middle[0], middle[1]),
+                    stiffness=None if rigid else self._stiffness(ring.stiffness),
+                    stick=None if rigid else self.of(0),
+                    reach=self._lengths(ring.radius),
+                    bound=self.of(0),
+                    per_torque=self.of(0),
+                    torque_of={},
                 )
+            )
         return found
 
     def _transmitted(self, gear: str) -> dict[str, Any]:

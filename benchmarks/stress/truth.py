@@ -109,15 +109,15 @@ def _imbalance(train: Train, situation: Situations) -> tuple[float, tuple[str, .
         size = min(train.gears[g].base_radius for g, _ in ends)
         column(-math.inf, *((g, 2, s * size / train.gears[g].base_radius) for g, s in ends))
     for name, gear in train.gears.items():
-        ring = train.rings.get(name)
-        if isinstance(ring, RoundRing) or name in train.splines:
+        limits = train.limits.get(name, ())
+        if any(isinstance(r, RoundRing) for r in limits) or name in train.splines:
             held = (True, True)
         else:
             held = tuple(gear.support > 0.0) if gear.support is not None else (False, False)
         for axis in (0, 1):
             if held[axis]:
                 column(-math.inf, (name, axis, 1.0))
-        if isinstance(ring, DrumRing):
+        for ring in (r for r in limits if isinstance(r, DrumRing)):
             for side, neighbour in enumerate(ring.neighbours):
                 normal = situation.arc(ring, side).normal(np.zeros(3))
                 column(0.0, *push(name, normal), *push(neighbour, -normal))
@@ -173,7 +173,7 @@ def _overlap(train: Train, situation: Situations) -> tuple[float, tuple[str, ...
         bounds.append(bound)
         owner.append(ring)
 
-    for name, ring in train.rings.items():
+    for name, ring in ((n, r) for n, found in train.limits.items() for r in found):
         if not math.isinf(ring.stiffness):
             continue
         if isinstance(ring, RoundRing):
@@ -206,4 +206,4 @@ def _overlap(train: Train, situation: Situations) -> tuple[float, tuple[str, ...
     if answer.x is None:
         raise RuntimeError(f"HiGHS gave no answer: {answer.message}")
     held = {owner[k] for k in np.flatnonzero(np.abs(answer.ineqlin.marginals) > 1e-9)}
-    return float(answer.x[-1]), tuple(r for r in train.rings if r in held)
+    return float(answer.x[-1]), tuple(r for r in train.limits if r in held)

@@ -2,7 +2,7 @@
 
 from loadshare.case.content import Content
 from loadshare.case.gears import Eccentricity, Errors, Gear, Offset, Polar
-from loadshare.case.links import Backlashes, Range, Ring, Shaft, Spline
+from loadshare.case.links import Backlashes, Bearing, Range, Ring, Shaft, Spline
 from loadshare.case.measured import Measurement
 from loadshare.case.meshes import Law, Mesh, Table
 from loadshare.case.model import Case
@@ -15,6 +15,7 @@ from loadshare.case.study import Study
 
 __all__ = [
     "Backlashes",
+    "Bearing",
     "Case",
     "Content",
     "Eccentricity",

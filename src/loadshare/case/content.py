@@ -10,7 +10,7 @@ from pydantic import Field, PrivateAttr
 from loadshare.case.element import Element
 from loadshare.case.gears import Errors, Gear
 from loadshare.case.keys import Path, parse
-from loadshare.case.links import Ring, Shaft, Spline
+from loadshare.case.links import Bearing, Ring, Shaft, Spline
 from loadshare.case.measured import Measurement
 from loadshare.case.meshes import Mesh
 from loadshare.case.operation import March, Operating, Stage
@@ -20,7 +20,7 @@ from loadshare.errors import Problem
 
 ABOUT = ("title", "source", "notes", "assumed", "measured", "study")
 """The keys that say something about a case and nothing about the machine."""
-FLOATS = ("splines", "rings")
+FLOATS = ("splines", "rings", "bearings")
 """The sections of what lets a gear float, by gear."""
 
 
@@ -62,6 +62,9 @@ class Sections(Element):
 
     rings: dict[str, Ring] = Field(default_factory=dict)
     """The limit rings, by the gear that each surrounds."""
+
+    bearings: dict[str, Bearing] = Field(default_factory=dict)
+    """The bearings with radial clearance, by the gear that each holds."""
 
     errors: dict[str, Errors] = Field(default_factory=dict)
     """The installation and manufacturing errors, by gear."""

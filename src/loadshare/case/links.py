@@ -1,4 +1,4 @@
-"""What joins gears or holds them: shafts, clearance splines, limit rings."""
+"""What joins gears or holds them: shafts, clearance splines, limit rings, bearings."""
 
 from __future__ import annotations
 
@@ -181,3 +181,16 @@ class Ring(Element):
             yield Rule("is missing", ("float",), LENGTH.allowed)
         elif circle and self.radius is None:
             yield Rule("is missing", ("radius",), LENGTH.allowed)
+
+
+class Bearing(Element):
+    """A bearing with radial clearance: it holds its gear where the clearance ends."""
+
+    clearance: Distance
+    """Radial clearance [length]: how far the centre moves before the bearing holds it."""
+
+    stiffness: Annotated[Quantity | Literal["rigid"], STIFFNESS.bounded(above=0).or_words("rigid")]
+    """Stiffness from there on [force/length], or rigid."""
+
+    offset: tuple[Length, Length] = (Quantity("0 mm", 0.0), Quantity("0 mm", 0.0))
+    """Middle of the bearing, from the gear's centre [length]."""

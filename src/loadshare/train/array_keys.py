@@ -60,6 +60,11 @@ def array_unit(case: spec.Case, column: Column) -> str | None:
             return None if derived else _LENGTH
         case ("rings", _, "clearance") | ("rings", _, "clearance", int()) | ("rings", _, "radius"):
             return _LENGTH
+        case ("bearings", _, "clearance"):
+            return _LENGTH
+        case ("bearings", bearing, "stiffness"):
+            words = isinstance(case.bearings[str(bearing)].stiffness, str)
+            return "N/m" if column.is_positive and not words else None
         case ("splines", _, key):
             return _SPLINE.get(str(key))
         case ("meshes", mesh, *tail):

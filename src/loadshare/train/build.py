@@ -20,7 +20,7 @@ from loadshare.train.gear import Gear, Vector, cross
 from loadshare.train.geometry import Geometry, Pair, geometry_of
 from loadshare.train.mesh import Mesh
 from loadshare.train.offset import Offset, polar
-from loadshare.train.ring import DrumRing, Ring, RoundRing, transverse
+from loadshare.train.ring import Bearing, DrumRing, Ring, RoundRing, transverse
 from loadshare.train.train import Shaft, Spline, Stage, Train
 
 Element = TypeVar("Element")
@@ -113,6 +113,7 @@ def train_of(
         shafts=elements("shafts", _shaft),
         splines=elements("splines", _spline),
         rings={name: ring for name, ring in rings.items() if ring is not None},
+        bearings=elements("bearings", lambda name, b: _bearing(b, gears[name])),
         offsets=elements("errors", lambda name, e: _offset(e, gears[name]), "offsets"),
         stages=tuple(
             Stage(n, tuple(s.meshes), tuple(s.groups or (s.meshes,)))
@@ -248,6 +249,11 @@ def _ring(name: str, ring: spec.Ring, gears: Mapping[str, Gear], meshes: dict[st
         stiffness,
         ring.measured == "nominal",
     )
+
+
+def _bearing(bearing: spec.Bearing, gear: Gear) -> Bearing:
+    offset = np.array([q.si for q in bearing.offset]) @ gear.frame
+    return Bearing(gear.name, bearing.clearance.si, offset, _stiffness(bearing.stiffness))
 
 
 def _float_range(

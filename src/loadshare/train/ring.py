@@ -1,4 +1,4 @@
-"""Limit rings (formulation, section 6)."""
+"""What limits a float: rings, and bearings with clearance (formulation, sections 6 and 14)."""
 
 from __future__ import annotations
 
@@ -74,6 +74,16 @@ class RoundRing:
     def name(self) -> str:
         """Name of the contact."""
         return f"ring {self.gear}"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bearing(RoundRing):
+    """A bearing whose clearance is the radius within which its gear moves freely."""
+
+    @property
+    def name(self) -> str:
+        """Name of the contact."""
+        return f"bearing {self.gear}: outer race"
 
 
 Ring = DrumRing | RoundRing

@@ -11,7 +11,7 @@ from loadshare.contact.radial import RadialLaw, spline_law
 from loadshare.train.gear import Gear, Vector
 from loadshare.train.mesh import Mesh
 from loadshare.train.offset import Offset
-from loadshare.train.ring import DrumRing, Ring, RoundRing
+from loadshare.train.ring import Bearing, DrumRing, Ring, RoundRing
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +113,7 @@ class Train:
     gears : mapping of str to Gear
     meshes : mapping of str to Mesh
     shafts : mapping of str to Shaft
-    splines, rings, offsets : mapping of gear name to Spline, Ring, Offset
+    splines, rings, bearings, offsets : mapping of gear name to Spline, Ring, Bearing, Offset
     stages : tuple of Stage
     input, output : str
     input_torque : tuple of float
@@ -137,6 +137,7 @@ class Train:
     shafts: Mapping[str, Shaft]
     splines: Mapping[str, Spline]
     rings: Mapping[str, Ring]
+    bearings: Mapping[str, Bearing]
     offsets: Mapping[str, Offset]
     stages: tuple[Stage, ...]
     input: str
@@ -172,7 +173,10 @@ class Train:
     @cached_property
     def limits(self) -> dict[str, tuple[Ring, ...]]:
         """What limits how far gears float, by gear."""
-        return {gear: (ring,) for gear, ring in self.rings.items()}
+        found: dict[str, tuple[Ring, ...]] = {}
+        for limit in (*self.rings.values(), *self.bearings.values()):
+            found[limit.gear] = (*found.get(limit.gear, ()), limit)
+        return found
 
     @cached_property
     def drums(self) -> tuple[DrumRing, ...]:
@@ -181,8 +185,9 @@ class Train:
 
     @cached_property
     def rounds(self) -> tuple[RoundRing, ...]:
-        """Round rings."""
-        return tuple(r for r in self.rings.values() if isinstance(r, RoundRing))
+        """Round rings, then bearings."""
+        rings = (r for r in self.rings.values() if isinstance(r, RoundRing))
+        return (*rings, *self.bearings.values())
 
     @cached_property
     def cycle(self) -> str | None:

@@ -124,6 +124,7 @@ def without(claim: Claim, gears: Mapping[str, float | Array]) -> tuple[Claim, ND
         gears={n: replace(g, support=None) if n in gears else g for n, g in train.gears.items()},
         splines={n: s for n, s in train.splines.items() if n not in gears},
         rings={n: r for n, r in train.rings.items() if n not in gears},
+        bearings={n: b for n, b in train.bearings.items() if n not in gears},
     )
     columns = Columns(held)
     here = _held(claim.situations, held, gears)
