@@ -113,10 +113,11 @@ def test_later_rooms_can_name_a_key_with_its_file(tmp_path, drive_text):
         (
             'extends = "base.toml"\nname = "x"\norigin = "y"\n',
             'bad.toml: name = "x": unknown key. Allowed: title, source, notes, assumed, operating, '
-            "march, gears, meshes, shafts, splines, rings, errors, stages, measured, study.\n"
+            "march, gears, meshes, shafts, splines, rings, bearings, errors, stages, measured, "
+            "study.\n"
             'bad.toml: origin = "y": unknown key. Allowed: title, source, notes, assumed, '
-            "operating, march, gears, meshes, shafts, splines, rings, errors, stages, measured, "
-            "study.",
+            "operating, march, gears, meshes, shafts, splines, rings, bearings, errors, stages, "
+            "measured, study.",
         ),
     ],
 )
