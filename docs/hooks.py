@@ -51,12 +51,33 @@ TABLES = (
 )
 
 
+LIMITS = "<!-- limits -->"
+ALLOWED = (
+    ("size of a file", "{bytes} bytes; a regular file, no pipe and no device"),
+    ("files that extend one another", "{files}"),
+    ("tables and lists within one another", "{depth}"),
+    ("elements of a section, entries of a list", "{entries}"),
+    ("a name", "1 to {name} printable letters"),
+    ("a number with its unit", "0, or {smallest:g} to {largest:g} in SI units"),
+    ("a unit", "{unit} letters, exponents of up to {power:g}"),
+    ("positions of a mesh cycle", "{positions}"),
+    ("steps of a march or a sweep", "{steps}"),
+    ("revolutions of a march", "{revolutions:g}"),
+)
+"""What a case file may hold, in words; the numbers are those of the settings."""
+
+
 def on_page_markdown(markdown: str, **_: Any) -> str:
     """Fill in what a page takes from the code."""
     if CASE_REFERENCE in markdown:
         from loadshare.case.schema import case_schema
 
         markdown = markdown.replace(CASE_REFERENCE, case_reference(case_schema()))
+    if LIMITS in markdown:
+        from loadshare.settings import ALLOWED as NUMBERS
+
+        rows = [f"| {what} | {most.format_map(NUMBERS._asdict())} |" for what, most in ALLOWED]
+        markdown = markdown.replace(LIMITS, "\n".join(["| what | at most |", "|---|---|", *rows]))
     if COMMANDS in markdown:
         markdown = markdown.replace(COMMANDS, command_reference())
     return markdown

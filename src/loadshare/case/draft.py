@@ -16,7 +16,8 @@ from loadshare.case.origin import Origin
 from loadshare.case.quantity import as_text
 from loadshare.case.translate import translate
 from loadshare.case.words import choices, did_you_mean
-from loadshare.errors import Problem
+from loadshare.errors import CaseError, Problem
+from loadshare.settings import ALLOWED
 
 
 class Draft(Sections):
@@ -92,19 +93,34 @@ def plain(given: Any) -> Any:
     -------
     object
         Tables by text, lists, texts and numbers.
+
+    Raises
+    ------
+    CaseError
+        If it is nested too deeply.
     """
+    return _plain(given, 0)
+
+
+def _plain(given: Any, depth: int) -> Any:
+    if depth > ALLOWED.depth:
+        allowed = f"at most {ALLOWED.depth} tables and lists within one another"
+        raise CaseError([Problem("case", "", "", "is nested too deeply", allowed)])
     if isinstance(given, Element):
         return written(given)
     if isinstance(given, Mapping):
-        return {str(key): plain(item) for key, item in given.items() if item is not None}
+        return {str(k): _plain(item, depth + 1) for k, item in given.items() if item is not None}
     if isinstance(given, list | tuple):
-        return [plain(item) for item in given]
+        return [_plain(item, depth + 1) for item in given]
     return as_text(given)
 
 
 def _read_section(draft: Draft, name: str, about: FieldInfo) -> None:
     model = next(elements_in(about.annotation), None)
     value = draft.data[name]
+    if isinstance(value, Mapping | list) and len(value) > ALLOWED.entries:
+        draft.tell((name,), f"has {len(value)} entries", f"at most {ALLOWED.entries}")
+        return
     if model is not None and not isinstance(value, Mapping):
         draft.tell((name,), "cannot stand here", "a table")
     elif model is None or get_origin(about.annotation) is not dict:
@@ -114,6 +130,8 @@ def _read_section(draft: Draft, name: str, about: FieldInfo) -> None:
     else:
         for key, item in value.items():
             path = (name, key)
+            if not key.strip() or not key.isprintable() or len(key) > ALLOWED.name:
+                draft.tell(path, "cannot be a name", f"1 to {ALLOWED.name} printable letters")
             element = _read(draft, path, _with_ends(draft, path, item), model)
             if element is not None:
                 getattr(draft, name)[key] = element

@@ -20,6 +20,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from loadshare.case.keys import Path, look_up
 from loadshare.case.quantity import Quantity
+from loadshare.settings import ALLOWED
 
 # Marks a step of pydantic's error locations as the choice of a shape, which is no key of the case.
 MARK = "shape:"
@@ -156,9 +157,14 @@ def shaped(allowed: str, *, limits: tuple[str, ...] = ()) -> Discriminator:
 
 
 T = TypeVar("T")
-Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
-Positive = Annotated[float, Strict(), Field(gt=0, allow_inf_nan=False)]
-Count = Annotated[int, Strict(), Field(ge=1)]
+_HIGH = ALLOWED.largest
+Number = Annotated[float, Strict(), Field(ge=-_HIGH, le=_HIGH, allow_inf_nan=False)]
+Positive = Annotated[float, Strict(), Field(gt=0, le=_HIGH, allow_inf_nan=False)]
+Turns = Annotated[float, Strict(), Field(gt=0, le=ALLOWED.revolutions, allow_inf_nan=False)]
+
+Count = Annotated[int, Strict(), Field(ge=1, le=ALLOWED.samples)]
+Positions = Annotated[int, Strict(), Field(ge=1, le=ALLOWED.positions)]
+Steps = Annotated[int, Strict(), Field(ge=1, le=ALLOWED.steps)]
 
 PerPosition = Annotated[
     Annotated[T, Tag(VALUE)] | Annotated[tuple[T, ...], Field(min_length=1), Tag(LIST)],

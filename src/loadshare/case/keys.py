@@ -153,7 +153,7 @@ def ends_of(name: str, gears: Iterable[str]) -> tuple[str, str] | None:
         None where the name does not tell two gears.
     """
     at = [index for index, letter in enumerate(name) if letter == "-"]
-    splits = [(name[:index], name[index + 1 :]) for index in at]
+    splits = [(name[:index], name[index + 1 :]) for index in at if 0 < index < len(name) - 1]
     known = [split for split in splits if set(split) <= set(gears)]
     candidates = known or splits
     return candidates[0] if len(candidates) == 1 else None

@@ -7,7 +7,15 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from loadshare.case.element import Count, Element, PerPosition, Positive, Rule, values
+from loadshare.case.element import (
+    Element,
+    PerPosition,
+    Positions,
+    Rule,
+    Steps,
+    Turns,
+    values,
+)
 from loadshare.case.quantity import ANGULAR_SPEED, Power, Quantity, Torque
 
 
@@ -32,7 +40,7 @@ class Operating(Element):
     speed: Annotated[Quantity, ANGULAR_SPEED.bounded(above=0)] | None = None
     """Speed of the input gear [angle/time]."""
 
-    positions: Count = 1
+    positions: Positions = 1
     """Number of meshing positions in a mesh cycle [-]."""
 
     rotation: Literal["teeth", "neglected"] = "teeth"
@@ -75,10 +83,10 @@ class March(Element):
     gear: str
     """Gear whose revolutions are counted."""
 
-    revolutions: Positive
+    revolutions: Turns
     """How far to march [revolutions]."""
 
-    steps: Count
+    steps: Steps
     """Number of steps [-]."""
 
 

@@ -12,6 +12,7 @@ from pydantic_core import PydanticCustomError, core_schema
 
 from loadshare.case.units import COMMON, kind_of, si_factor
 from loadshare.case.words import did_you_mean
+from loadshare.settings import ALLOWED
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -125,8 +126,12 @@ class Dimension:
             kind = kind_of(unit) or f"in {unit}"
             raise self._problem(f"is {kind}, {self.kind} is needed")
         # Decimal keeps "45.9 mm" and "0.0459 m" the same number.
-        value = Quantity(str(text), float(Decimal(number) * Decimal(repr(factor))))
+        exact = Decimal(number) * Decimal(repr(factor))
+        value = Quantity(str(text), float(exact))
         self._check(value.si)
+        if not (exact.is_zero() or ALLOWED.smallest <= abs(value.si) <= ALLOWED.largest):
+            limits = f"{ALLOWED.smallest:g} to {ALLOWED.largest:g} {self.unit}"
+            raise self._problem(f"is of a size that no machine has (outside of {limits})")
         return value
 
     @property

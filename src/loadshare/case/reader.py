@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 import re
+import stat
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path as FilePath
@@ -16,8 +18,10 @@ from loadshare.case.origin import Origin
 from loadshare.case.revise import change, revise
 from loadshare.case.words import as_given
 from loadshare.errors import CaseError, Problem
+from loadshare.settings import ALLOWED
 
 _PLACE = re.compile(r"(.*) \(at (.*)\)", re.DOTALL)
+_DEEP = f"is nested deeper than {ALLOWED.depth} tables and lists"
 
 
 def load_case(path: str | FilePath) -> Case:
@@ -140,6 +144,9 @@ def _base_of(path: FilePath, base: object, chain: tuple[FilePath, ...]) -> FileP
     if not isinstance(base, str):
         allowed = 'a file such as "base.toml"'
         raise CaseError([Problem(str(path), "extends", given, "is not a file", allowed)])
+    if len(chain) >= ALLOWED.files:
+        why = f"is the last of a chain of {len(chain)} files: more are not read"
+        raise CaseError([Problem(str(path), "extends", given, why)])
     target = path.parent / base
     if target.resolve() in [file.resolve() for file in chain]:
         circle = " → ".join(str(file) for file in (*chain, target))
@@ -163,7 +170,7 @@ def read_toml(path: FilePath) -> dict[str, Any]:
         If it cannot be read or is not TOML.
     """
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        data = tomllib.loads(_text(path))
     except tomllib.TOMLDecodeError as error:
         match = _PLACE.fullmatch(str(error))
         what, where = match.groups() if match else (str(error), "an unknown place")
@@ -172,4 +179,45 @@ def read_toml(path: FilePath) -> dict[str, Any]:
         why = f"is not UTF-8 text at byte {error.start}"
     except OSError as error:
         why = (error.strerror or "cannot be read").lower()
+    except _CannotBe as error:
+        why = str(error)
+    except RecursionError:
+        why = _DEEP
+    except ValueError:
+        # Of TOML that is none, and of numbers with thousands of digits.
+        why = "holds a number that cannot be read"
+    else:
+        if _depth(data) <= ALLOWED.depth:
+            return data
+        why = _DEEP
     raise CaseError([Problem(str(path), "", "", why)])
+
+
+def _depth(data: object) -> int:
+    """Tables and lists within one another; dotted headers may be longer than any call stack."""
+    depth, layer = 0, [data]
+    while layer and depth <= ALLOWED.depth:
+        inner = [v for v in layer if isinstance(v, dict | list)]
+        layer = [v for part in inner for v in (part.values() if isinstance(part, dict) else part)]
+        depth += bool(inner)
+    return depth
+
+
+class _CannotBe(Exception):  # noqa: N818 -- told as a problem, never raised to a user
+    """Why a file cannot be a case file."""
+
+
+def _text(path: FilePath) -> str:
+    """Text of a regular file that is not too long."""
+    with open(path, "rb", opener=_without_waiting) as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise _CannotBe("is not a regular file")
+        content = file.read(ALLOWED.bytes + 1)
+    if len(content) > ALLOWED.bytes:
+        raise _CannotBe(f"is larger than {ALLOWED.bytes // 2**20} MiB")
+    return content.decode("utf-8").replace("\r\n", "\n")
+
+
+def _without_waiting(path: str, flags: int) -> int:
+    """Open a file at once, though it be a pipe that nobody writes."""
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import Field, Strict
 
 from loadshare.case.distributions import Given, Group, Spread
-from loadshare.case.element import Count, Element, Positive, Rule
+from loadshare.case.element import Count, Element, Positive, Rule, Steps, Turns
 
 # What each kind of study needs, and what it may have besides.
 KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
@@ -49,10 +49,10 @@ class Study(Element):
     gear: str | None = None
     """March: gear whose revolutions are counted; that of `march` when left out."""
 
-    revolutions: Positive | None = None
+    revolutions: Turns | None = None
     """March: how far [revolutions]."""
 
-    steps: Count | None = None
+    steps: Steps | None = None
     """March: number of steps [-]."""
 
     unknowns: dict[str, tuple[Given, Given]] | None = None

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import math
+import re
 from functools import cache, lru_cache
 from typing import TYPE_CHECKING
+
+from loadshare.settings import ALLOWED
 
 if TYPE_CHECKING:
     import pint
@@ -66,6 +70,13 @@ KINDS = {
 }
 
 
+_POWER = re.compile(
+    r"(?<=[^\W\d]|[)°])\s*\*\*\s*\(?\s*([-+]?\d{1,9}(?:\.\d{1,9})?)"
+    r"(?![\w.])\s*(?:/\s*([1-9]\d{0,2})\s*\))?"
+)
+"""A unit, or several in brackets, to a power: a number, or a fraction in brackets."""
+
+
 @cache
 def registry() -> pint.UnitRegistry[float]:
     """Return the registry of the units that a case may use.
@@ -104,9 +115,15 @@ def si_factor(unit: str, target: str) -> float | None:
         For a text that is no unit; the argument is the part that is not known.
     """
     given, wanted = _parse(unit), _parse(target)
-    if given.dimensionality != wanted.dimensionality:
-        return None
-    return float((given / wanted).to_base_units().magnitude)
+    try:
+        if given.dimensionality != wanted.dimensionality:
+            return None
+        factor = float((given / wanted).to_base_units().magnitude)
+    except (ArithmeticError, ValueError):
+        factor = math.inf
+    if not ALLOWED.smallest <= factor <= ALLOWED.largest:
+        raise ValueError(unit)
+    return factor
 
 
 def kind_of(unit: str) -> str | None:
@@ -130,6 +147,14 @@ def _parse(unit: str) -> pint.Quantity[float]:
     import pint
 
     text = unit.replace("·", "*").replace("⋅", "*").replace("^", "**")
+    # A power of a power, or of a large number, would take for ever.
+    powers = [abs(float(up) / float(down or 1.0)) for up, down in _POWER.findall(text)]
+    if (
+        len(unit) > ALLOWED.unit
+        or "**" in _POWER.sub("", text)
+        or max(powers, default=0.0) > ALLOWED.power
+    ):
+        raise ValueError(unit)
     try:
         parsed = registry().parse_expression(text)
     except pint.UndefinedUnitError as error:
@@ -138,6 +163,12 @@ def _parse(unit: str) -> pint.Quantity[float]:
     except Exception as error:  # the parser raises whatever its tokenizer meets
         raise ValueError(unit) from error
     # A number is no unit, and "5 mm" after another number is a slip of the pen.
-    if not isinstance(parsed, registry().Quantity) or parsed.magnitude != 1 or parsed.unitless:
+    try:
+        wrong = (
+            not isinstance(parsed, registry().Quantity) or parsed.magnitude != 1 or parsed.unitless
+        )
+    except ArithmeticError:
+        wrong = True  # Powers of powers may lead beyond all numbers.
+    if wrong:
         raise ValueError(unit)
     return parsed

@@ -65,5 +65,6 @@ def _value(text: str) -> Any:
         return None
     try:
         return tomllib.loads(f"value = {text}")["value"]
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):
+        # Of TOML that is none, numbers with thousands of digits, and what is nested too deeply.
         return text

@@ -21,7 +21,7 @@ def check_gear_names(draft: Draft) -> Iterator[Problem]:
     """Yield every mention of a gear that does not exist."""
     gears = draft.names("gears")
     for path, name in _gears_named(draft):
-        if gears and name and name not in gears:
+        if gears and name not in gears:
             hint = did_you_mean(name, gears)
             yield draft.problem(path, f'"{name}" is not a gear', choices(gears), hint)
 
@@ -81,7 +81,9 @@ def _gears_named(draft: Draft) -> Iterator[tuple[Path, str]]:
                     told = getattr(valid[name], key)
                     given = look_up(draft.data, path) is not None
                     for gear in (told,) if isinstance(told, str) else told:
-                        yield path if given else path[:-1], gear
+                        # A name that tells no gears was told of already.
+                        if gear or given:
+                            yield path if given else path[:-1], gear
                 else:
                     yield from _texts_at(draft, path)
     for section in (*FLOATS, "errors"):

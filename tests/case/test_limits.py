@@ -1,0 +1,178 @@
+"""What no case file may hold: names that are none, numbers that no machine has, endless files.
+
+Every one is a problem with its key, found in a moment; none is a traceback.
+"""
+
+import os
+import sys
+import tomllib
+
+import pytest
+
+import loadshare as ls
+from loadshare.case import load_case
+from loadshare.case.units import si_factor
+from loadshare.cli.changes import read_changes
+from loadshare.settings import ALLOWED
+
+PAIR = """
+[operating]
+input = "a"
+output = "b"
+torque = "100 N*m"
+
+[gears.a]
+centre = ["0 mm", "0 mm"]
+base_radius = "50 mm"
+
+[gears.b]
+centre = ["160 mm", "0 mm"]
+base_radius = "100 mm"
+
+[meshes."a-b"]
+pressure_angle = "20.364134805 deg"
+stiffness = "1e6 N*m/rad"
+"""
+
+
+def told(tmp_path, text: str) -> str:
+    """Problems of a case file."""
+    path = tmp_path / "case.toml"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ls.CaseError) as failure:
+        load_case(path)
+    return str(failure.value)
+
+
+def test_the_pair_itself_is_a_case(tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_text(PAIR, encoding="utf-8")
+    assert ls.solve(load_case(path)).passed
+
+
+@pytest.mark.parametrize(
+    ("change", "key"),
+    [
+        (('output = "b"', 'output = ""'), "operating.output"),
+        (('input = "a"', 'input = ""'), "operating.input"),
+        (("", '[shafts."-"]\nstiffness = "rigid"\n'), 'shafts."-"'),
+        (("", '[meshes."-"]\npressure_angle = "20 deg"\nstiffness = "1 N*m/rad"\n'), 'meshes."-"'),
+        (("", '[errors.""]\ninstallation = ["1 um", "0 um"]\n'), 'errors.""'),
+        (("", '[gears.""]\ncentre = ["0 mm", "0 mm"]\nbase_radius = "1 mm"\n'), 'gears.""'),
+        (("", '[stages.""]\nmeshes = ["a-b"]\n'), 'stages.""'),
+        (("", '[splines.""]\nbending_stiffness = "1 N/m"\nclearance = "1 um"\n'), 'splines.""'),
+        (("", '[march]\ngear = ""\nrevolutions = 1\nsteps = 3\n'), "march.gear"),
+        (("", '[stages."a\\u0000"]\nmeshes = ["a-b"]\n'), "stages"),
+        (("", f'[stages.{"s" * 5000}]\nmeshes = ["a-b"]\n'), "stages"),
+        (("", '[march]\ngear = "a"\nrevolutions = 1e308\nsteps = 3\n'), "march.revolutions"),
+        (("", '[march]\ngear = "a"\nrevolutions = 1\nsteps = 1000000000\n'), "march.steps"),
+        (("torque =", "positions = 1000000000\ntorque ="), "operating.positions"),
+    ],
+)
+def test_names_and_counts(tmp_path, change, key):
+    old, new = change
+    assert key in told(tmp_path, PAIR.replace(old, new, 1) if old else PAIR + new)
+
+
+@pytest.mark.parametrize("number", ["1e-308", "5e-324", "1e-300", "1e300", "-1e308", "1e400"])
+@pytest.mark.parametrize(
+    ("value", "key"),
+    [
+        ('"100 N*m"', "operating.torque"),
+        ('"50 mm"', "gears.a.base_radius"),
+        ('"160 mm"', "gears.b.centre"),
+        ('"1e6 N*m/rad"', "stiffness"),
+        ('"20.364134805 deg"', "pressure_angle"),
+    ],
+)
+def test_numbers_that_no_machine_has(tmp_path, number, value, key):
+    unit = value.strip('"').split(" ")[1]
+    assert key in told(tmp_path, PAIR.replace(value, f'"{number} {unit}"', 1))
+
+
+@pytest.mark.parametrize("size", [ALLOWED.smallest, ALLOWED.largest])
+def test_numbers_at_the_limits_are_solved_or_refused(size):
+    """They overflow nowhere."""
+    case = ls.Case(tomllib.loads(PAIR))
+    for key, unit in (
+        ("operating.torque", "N*m"),
+        ('meshes."a-b".stiffness', "N*m/rad"),
+    ):
+        try:
+            result = ls.solve(case.replace({key: f"{size!r} {unit}"}))
+        except ls.Refused:
+            continue
+        assert result.passed
+
+
+@pytest.mark.parametrize(
+    "unit",
+    ["9^9^9^9", "N^1e9", "N*m^99999", "mm**-1e308", "N*m*(2^(2^(2^9)))", "m^2^3", "(kN^12)^12"],
+)
+def test_units_that_would_take_for_ever(tmp_path, unit):
+    assert f'operating.torque = "100 {unit}"' in told(tmp_path, PAIR.replace("N*m", unit, 1))
+
+
+@pytest.mark.parametrize(
+    "unit", ["rad/(N*m)^(2/3)", "m^2", "N/mm^1.5", "m^-1", "mm**2", "m^(1/3)", "1/s", "m^ 2"]
+)
+def test_units_that_engineers_write(unit):
+    assert si_factor(unit, unit) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "notes = " + "[" * 100_000 + "]" * 100_000,
+        "notes = " + "[" * 50 + "]" * 50,
+        "x = " + "{a = " * 3000 + "1" + "}" * 3000,
+        "[" + "a." * 5000 + "a]\n",
+    ],
+)
+def test_nesting(tmp_path, text):
+    assert "is nested deeper than 20 tables and lists" in told(tmp_path, text + "\n" + PAIR)
+
+
+def test_nesting_in_python_and_on_the_command_line():
+    deep: list[object] = []
+    for _ in range(5000):
+        deep = [deep]
+    with pytest.raises(ls.CaseError, match="nested too deeply"):
+        ls.Case({"notes": deep})
+    circle: dict[str, object] = {}
+    circle["notes"] = circle
+    with pytest.raises(ls.CaseError, match="nested too deeply"):
+        ls.Case(circle)
+    assert read_changes(["notes=" + "[" * 50_000])  # a text, which no note is too long for
+
+
+def test_a_number_of_thousands_of_digits(tmp_path):
+    assert "cannot be read" in told(tmp_path, "x = " + "9" * 5000 + "\n" + PAIR)
+
+
+def test_entries(tmp_path):
+    many = ", ".join(['"gears.*"'] * (ALLOWED.entries + 1))
+    assert "10001 entries" in told(tmp_path, f"assumed = [{many}]\n{PAIR}")
+
+
+def test_a_file_that_is_too_large(tmp_path):
+    text = PAIR + "#" * ALLOWED.bytes
+    assert "larger than 16 MiB" in told(tmp_path, text)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="has neither pipes nor devices in folders")
+def test_what_is_no_file(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    for path in (tmp_path / "pipe", "/dev/zero", "/dev/null"):
+        with pytest.raises(ls.CaseError, match="is not a regular file"):
+            load_case(path)
+    with pytest.raises(ls.CaseError, match="directory"):
+        load_case(tmp_path)
+
+
+def test_a_long_chain(tmp_path):
+    for number in range(1000):
+        (tmp_path / f"{number}.toml").write_text(f'extends = "{number + 1}.toml"\n')
+    (tmp_path / "1000.toml").write_text(PAIR)
+    with pytest.raises(ls.CaseError, match="chain of 20 files"):
+        load_case(tmp_path / "0.toml")
