@@ -605,9 +605,9 @@ class Allowed(NamedTuple):
     entries: int = 10_000
     """Elements of a section, and entries of a list."""
     name: int = 200
-    """Letters of a name."""
+    """Characters of a name."""
     unit: int = 60
-    """Letters of a unit."""
+    """Characters of a unit."""
     power: float = 12.0
     """Exponent in a unit."""
     smallest: float = 1e-40

@@ -71,7 +71,10 @@ def test_the_pair_itself_is_a_case(tmp_path):
 )
 def test_names_and_counts(tmp_path, change, key):
     old, new = change
-    assert key in told(tmp_path, PAIR.replace(old, new, 1) if old else PAIR + new)
+    said = told(tmp_path, PAIR.replace(old, new, 1) if old else PAIR + new)
+    assert key in said
+    # What is no name is not told of a second time, as no gear.
+    assert not (key.endswith('""') and '"" is not a gear' in said)
 
 
 @pytest.mark.parametrize("number", ["1e-308", "5e-324", "1e-300", "1e300", "-1e308", "1e400"])

@@ -11,7 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.support import round_ring, shipped
 
-from loadshare.report.figures.region import region
+import loadshare as ls
+from loadshare.report.figures.region import Journey, region
 from loadshare.train import build_train
 from loadshare.train.situations import situation_of
 
@@ -153,3 +154,18 @@ def test_a_round_ring_is_its_circle():
 
 def test_a_gear_without_a_ring_has_no_region():
     assert region(ring_of(), "1", 1, STILL, 1e-5) is None
+
+
+def test_a_bearing_inside_a_ring_is_drawn_beside_it():
+    """Both outlines, and no area: where both let the centre be is less than either tells."""
+    bearing = {"clearance": "3 um", "stiffness": "2e8 N/m"}
+    case = shipped("fgfbstts/limit_ring").replace({"bearings": {"4": bearing}})
+    found = ls.solve(case, positions=[1])
+    journey = Journey(found, build_train(case), "4")
+    assert journey.region is not None
+    assert journey.region.pieces == []
+    names = [edge.name for edge in journey.region.boundaries]
+    assert {"outer race", "upper stop", "lower stop", "arc 6", "arc 7"} == {*names}
+    (x, y), half = journey.view
+    for edge in journey.region.boundaries:
+        assert all(max(abs(a - x), abs(b - y)) <= half for a, b in edge.path)

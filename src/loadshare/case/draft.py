@@ -131,7 +131,7 @@ def _read_section(draft: Draft, name: str, about: FieldInfo) -> None:
         for key, item in value.items():
             path = (name, key)
             if not key.strip() or not key.isprintable() or len(key) > ALLOWED.name:
-                draft.tell(path, "cannot be a name", f"1 to {ALLOWED.name} printable letters")
+                draft.tell(path, "cannot be a name", f"1 to {ALLOWED.name} printable characters")
             element = _read(draft, path, _with_ends(draft, path, item), model)
             if element is not None:
                 getattr(draft, name)[key] = element

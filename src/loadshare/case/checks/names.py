@@ -87,7 +87,8 @@ def _gears_named(draft: Draft) -> Iterator[tuple[Path, str]]:
                 else:
                     yield from _texts_at(draft, path)
     for section in (*FLOATS, "errors"):
-        yield from (((section, name), name) for name in draft.names(section))
+        # A name that is none was told of already.
+        yield from (((section, name), name) for name in draft.names(section) if name.strip())
     yield from _texts(draft, "rings", "neighbours")
     yield from _texts_at(draft, ("operating", "input"))
     yield from _texts_at(draft, ("operating", "output"))

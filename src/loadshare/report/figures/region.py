@@ -57,7 +57,8 @@ class Region:
     Attributes
     ----------
     pieces : list of list of (float, float)
-        Closed outlines [m]; one, unless errors pinch a drum.
+        Closed outlines [m]; one, unless errors pinch a drum. None where several limits hold a gear:
+        what they leave together is not drawn.
     boundaries : list of Boundary
     """
 
@@ -105,8 +106,8 @@ def region(
     ]
     if not found:
         return None
-    tightest = min(found, key=lambda each: np.ptp([x for p in each.pieces for x, _ in p] or [0.0]))
-    return Region(tightest.pieces, [edge for each in found for edge in each.boundaries])
+    pieces = found[0].pieces if len(found) == 1 else []
+    return Region(pieces, [edge for each in found for edge in each.boundaries])
 
 
 def _disc(train: Train, ring: RoundRing) -> Region:
@@ -250,8 +251,9 @@ class Journey:
     def view(self) -> tuple[Point, float]:
         """Middle and half the side of the square that shows it all."""
         points = [*self.path, (0.0, 0.0)]
-        for piece in self.region.pieces if self.region else ():
-            points += piece
+        if self.region:
+            for piece in self.region.pieces or [edge.path for edge in self.region.boundaries]:
+                points += piece
         for radius in self.circles.values():
             points += [(-radius, -radius), (radius, radius)]
         lows = [min(p[k] for p in points) for k in (0, 1)]
