@@ -145,6 +145,8 @@ class Certify(NamedTuple):
     """Rounding of energies, relative to the sum of their sizes."""
     together: int = 2048
     """Answers judged together: as many as a processor's own memory holds."""
+    least_deflection: float = 1e-6
+    """Deflection of a case [m] in which nothing yields and no load closes a gap."""
     trains: int = 64
     """Trains of which the mechanics are kept: more than the positions of a march judged in turn."""
     carries: float = 1e-9
@@ -570,9 +572,9 @@ class Job(NamedTuple):
     """Samples that show the others where to begin."""
     worth: int = 32
     """How many times as many samples it takes for that to be worth while."""
-    block: int = 4096
+    block: int = 8192
     """Samples that are solved together, if every one has a few positions."""
-    together: int = 20480
+    together: int = 40960
     """Equilibria that are solved together: twice as many take a third more room, and a twentieth
     less time."""
     workers: int = 2

@@ -22,7 +22,7 @@ from loadshare import compilation
 from loadshare.certify import Judge
 from loadshare.certify.bound import Columns, bounds
 from loadshare.certify.bound import compiled as kernel
-from loadshare.certify.bound.batch import is_covered, relative_bounds
+from loadshare.certify.bound.batch import is_covered, judged
 from loadshare.job.machine import Machine, engine_named
 from loadshare.train import Train, build_train
 from loadshare.train.equilibria import Equilibria
@@ -45,6 +45,11 @@ NAMES = (
 COUNT = 400
 SAME = 1e-6
 """Two sums of the same misfits, where these are rounding themselves: relative to the bound."""
+
+
+def relative_bounds(columns: Columns, here: Situations, claim: Equilibria) -> np.ndarray:
+    """Bounds as compiled code has them."""
+    return judged(columns, here, claim).relative
 
 
 def spoilt(found: Equilibria, scales: dict[str, float], seed: int) -> Equilibria:
@@ -91,10 +96,9 @@ def test_bounds_hold_and_are_those_of_the_source(name, plain, monkeypatch):
     columns = Columns(train)
     assert is_covered(columns)
     situations, found = claims(train, positions(train)[:4])
-    judged = Judge(train).judge(situations, found)
-    wrong = spoilt(
-        found, scales_of(train, float(judged.load[0]), float(judged.deflection[0])), len(name)
-    )
+    verdicts = Judge(train).judge(situations, found)
+    scales = scales_of(train, float(verdicts.load[0]), float(verdicts.deflection[0]))
+    wrong = spoilt(found, scales, len(name))
     rows = np.arange(COUNT) % len(found.rotation)
     here = situations.take(rows) if situations.count > 1 else situations
     right = taken(found, rows)
@@ -166,7 +170,7 @@ def test_large_batches_are_bounded_as_small_ones():
     situations, found = claims(train, [1])
     many = taken(found, np.zeros(1200, dtype=int))
     many.flank_force[::100] *= 1.0 + 1e-3
-    told = bounds(columns, situations, many, compiled=True, wanted=np.zeros(1200, dtype=bool))
+    told = Judge(train).judge(situations, many, compiled=True).bounds
     single = bounds(columns, situations, taken(many, np.arange(2)))
     assert told.force is None
     assert (told.relative[::100] > 1e-9).all()

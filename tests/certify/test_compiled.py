@@ -1,7 +1,7 @@
-"""The compiled certificate gives the figures of NumPy's, whatever claim is wrong and by how much.
+"""The compiled certificate gives the verdicts of NumPy's, whatever claim is wrong and by how much.
 
-Source: formulation, section 8. Both sum up the same products in another order; tolerances are those
-of `test_many`, whose tests put the compiled certificate beside the single one as well.
+Source: formulation, sections 8 and 16. It adds up forces along coordinates, NumPy's body by body;
+both take the same scales. The tests of `test_many` put it beside the single one as well.
 """
 
 from dataclasses import fields, replace
@@ -12,18 +12,18 @@ from tests.certify.test_independence import modules_after
 from tests.certify.test_many import (
     ABSOLUTE,
     CLAIMS,
-    RELATIVE,
     WAYS,
     alike,
     claims,
     positions,
+    residuals,
     scales_of,
     taken,
 )
 from tests.support import shipped
 
 from loadshare.certify import RESIDUALS, Judge
-from loadshare.certify.compiled import judge_all
+from loadshare.certify.bound.compiled import find_all
 from loadshare.settings import CERTIFY
 from loadshare.train import build_train
 from loadshare.train.situations import Situations
@@ -67,7 +67,7 @@ def test_one_row_holds_for_all_answers(name):
     }
     once = alike(train, situations, answers)
     each = alike(train, replace(situations, count=5, **written), answers)
-    np.testing.assert_array_equal(once.residuals, each.residuals)
+    np.testing.assert_array_equal(once.worst, each.worst)
 
 
 def test_a_set_of_several_parts():
@@ -105,7 +105,7 @@ def test_no_answer_passes_where_a_situation_is_not_a_number(field, place):
     values = getattr(situations, field).copy()
     values[(0, *place)] = np.nan
     compiled = Judge(train).judge(replace(situations, **{field: values}), found, compiled=True)
-    assert np.isinf(compiled.residuals).all()
+    assert not compiled.passed.any()
 
 
 def test_arrays_of_any_kind_are_judged_by_the_same_code():
@@ -125,10 +125,10 @@ def test_arrays_of_any_kind_are_judged_by_the_same_code():
 
     for lay in (strided, np.asfortranarray, read_only):
         other = Judge(train).judge(situations, answers.mapped(lay), compiled=True)
-        np.testing.assert_array_equal(other.residuals, expected.residuals)
+        np.testing.assert_array_equal(other.worst, expected.worst)
     single = answers.mapped(lambda array: array.astype(np.float32))
     assert not Judge(train).judge(situations, single, compiled=True).passed.any()
-    assert len(judge_all.signatures) == 1
+    assert len(find_all.signatures) == 1
 
 
 def test_no_answer_at_all():
@@ -136,7 +136,7 @@ def test_no_answer_at_all():
     situations, found = claims(train, [1])
     none = taken(found, np.zeros(0, dtype=int))
     verdicts = Judge(train).judge(situations, none, tolerance=CERTIFY.tolerance, compiled=True)
-    assert verdicts.residuals.shape == (0, len(RESIDUALS))
+    assert verdicts.worst.shape == verdicts.bounds.relative.shape == (0,)
 
 
 def test_numba_is_imported_only_when_asked_for():
@@ -154,11 +154,9 @@ def test_a_contact_that_pulls():
         -0.5 * CERTIFY.tolerance * load,
         -2.0 * CERTIFY.tolerance * load,
     )
-    verdicts = alike(train, situations, spoilt)
-    cone = RESIDUALS.index("cone_membership")
-    np.testing.assert_allclose(
-        verdicts.residuals[:, cone],
-        (0.5 * CERTIFY.tolerance, 2.0 * CERTIFY.tolerance),
-        rtol=RELATIVE,
-        atol=ABSOLUTE,
-    )
+    alike(train, situations, spoilt)
+    expected = (0.5 * CERTIFY.tolerance, 2.0 * CERTIFY.tolerance)
+    figures = residuals(train, situations, spoilt)[:, RESIDUALS.index("cone_membership")]
+    compiled = Judge(train).judge(situations, spoilt, compiled=True).worst
+    for found in (figures, compiled):
+        np.testing.assert_allclose(found, expected, rtol=1e-6, atol=ABSOLUTE)

@@ -7,19 +7,20 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.certify.arguments import Arguments, arguments_of, judged
-from loadshare.certify.bound import Bounds, Columns, bounds
+from loadshare.certify.bound import Bounds, Columns, bounds, completed
+from loadshare.certify.bound.batch import is_covered, judged
 from loadshare.certify.bound.one import columns_of
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.residuals import scaled_residuals
 from loadshare.certify.state import State
+from loadshare.certify.validity import measuring
 from loadshare.certify.verdicts import Verdicts
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
-Flags = NDArray[np.bool_]
+Array = NDArray[np.float64]
 
 
 class Judge:
@@ -43,11 +44,6 @@ class Judge:
         """The mechanics as columns, for bounds."""
         return columns_of(self.train)
 
-    @cached_property
-    def arguments(self) -> Arguments:
-        """The mechanics as the compiled certificate reads them."""
-        return arguments_of(self.mechanics)
-
     def judge(
         self,
         situations: Situations,
@@ -65,50 +61,54 @@ class Judge:
         tolerance : float
             Largest scaled residual of a certified answer.
         compiled : bool
-            With Numba, one answer after another, instead of NumPy: the same figures up to
-            round-off, several times as fast once it is compiled. Splines with memory are judged
-            with NumPy all the same.
+            With Numba, one answer after another, instead of NumPy: the same verdicts, several
+            times as fast once it is compiled. The residuals are then those behind the bound, and
+            the energy gap, which follows from them, is left to single answers. Splines with memory
+            are judged with NumPy all the same.
         bounded : bool
             Whether errors are bounded; without a bound nothing passes.
         """
-        if compiled and self.train.slip is None:
-            residuals, load, deflection = judged(self.arguments, situations, answers)
-            # What is out of balance is refused in any case.
-            wanted = residuals.max(axis=1) <= tolerance
-            limits = self.bounds(situations, answers, wanted)
-            return Verdicts(residuals, tolerance, load, deflection, limits)
-        count = len(answers.rotation)
-        if bounded:
-            limits = self.bounds(situations, answers)
-        else:
-            limits = Bounds(self.columns, np.full(count, np.inf), None, None, None)
-        if count <= CERTIFY.together:
-            return self._together(situations, answers, tolerance, limits)
-        parts = [slice(at, at + CERTIFY.together) for at in range(0, count, CERTIFY.together)]
-        return Verdicts.joined(
-            [self._together(situations.take(p), answers.part(p), tolerance, limits) for p in parts],
-            limits,
-        )
+        if compiled and is_covered(self.columns):
+            return self._compiled(situations, answers, tolerance)
+        limits = bounds(self.columns, situations, answers) if bounded else None
+        return self._by_numpy(situations, answers, tolerance, limits)
 
-    def bounds(
-        self, situations: Situations, answers: Equilibria, wanted: Flags | None = None
-    ) -> Bounds:
-        """Bound the errors of S claimed equilibria.
+    def _compiled(self, situations: Situations, answers: Equilibria, tolerance: float) -> Verdicts:
+        found = judged(self.columns, situations, answers)
+        for figure, name in ((found.worst, "worst"), (found.displaced, "displaced")):
+            left = np.flatnonzero(np.isnan(figure))
+            if len(left):
+                some = situations.take(left), answers.take(left)
+                figure[left] = getattr(self._by_numpy(*some, tolerance), name)
+        # What is out of balance is refused in any case.
+        wanted = found.worst <= tolerance
+        limits = completed(self.columns, situations, answers, found.relative, wanted)
+        load, deflection = found.load, found.deflection
+        return Verdicts(found.worst, tolerance, load, deflection, found.displaced, limits)
 
-        Parameters
-        ----------
-        situations : Situations
-        answers : Equilibria
-        wanted : ndarray of bool, shape (S,), optional
-            Claims that are worth every effort; with it, bounds are found by Numba.
-        """
-        compiled = wanted is not None
-        return bounds(self.columns, situations, answers, compiled=compiled, wanted=wanted)
-
-    def _together(
-        self, situations: Situations, answers: Equilibria, tolerance: float, limits: Bounds
+    def _by_numpy(
+        self,
+        situations: Situations,
+        answers: Equilibria,
+        tolerance: float,
+        limits: Bounds | None = None,
     ) -> Verdicts:
+        count = len(answers.rotation)
+        if limits is None:
+            limits = Bounds(self.columns, np.full(count, np.inf), None, None, None)
+        figures = [
+            self._together(situations.take(part), answers.take(part))
+            for part in np.split(np.arange(count), range(CERTIFY.together, count, CERTIFY.together))
+        ]
+        worst, load, deflection = (np.concatenate(each) for each in zip(*figures, strict=True))
+        with np.errstate(all="ignore"):
+            displaced = measuring(self.train).worst(situations, answers, deflection)
+        return Verdicts(worst, tolerance, load, deflection, displaced, limits)
+
+    def _together(self, situations: Situations, answers: Equilibria) -> tuple[Array, Array, Array]:
+        """Largest scaled residuals and both scales."""
         with np.errstate(all="ignore"):
             state = State(self.mechanics, situations, answers)
-            residuals = scaled_residuals(state)
-            return Verdicts(residuals, tolerance, state.load, state.deflection, limits)
+            # Column by column: rows are too short to be worth a loop each.
+            worst = np.maximum.reduce(list(scaled_residuals(state).T))
+            return worst, state.load, state.deflection

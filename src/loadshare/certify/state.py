@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from loadshare.certify.graphs import Graph
 from loadshare.certify.laws import area, interpolated, strain_energy
 from loadshare.certify.mechanics import Mechanics
-from loadshare.settings import LAWS
+from loadshare.settings import CERTIFY, LAWS
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 
@@ -133,7 +133,7 @@ class State:
         closed = np.where(self.force > 0.0, lengths, 0.0).max(axis=0, initial=0.0)
         shifts = size(self.here.offset).max(axis=0, initial=0.0)
         deflection = np.maximum(closed, shifts)
-        self.deflection = np.where(deflection == 0.0, 1e-6, deflection)
+        self.deflection = np.where(deflection == 0.0, CERTIFY.least_deflection, deflection)
 
     @cached_property
     def moment(self) -> Array:

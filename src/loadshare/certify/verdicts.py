@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -20,37 +19,23 @@ class Verdicts:
 
     Attributes
     ----------
-    residuals : ndarray, shape (S, 7)
-        Scaled, in the order of `residuals.RESIDUALS`; infinite where an answer cannot be judged.
+    worst : ndarray, shape (S,)
+        Largest scaled residual; infinite where an answer cannot be judged.
     tolerance : float
     load, deflection : ndarray, shape (S,)
         Scales [N], [m].
+    displaced : ndarray, shape (S,)
+        How far displacements go to a warning (see `Measuring.worst`).
     bounds : Bounds
         How far the answers are from the exact ones, at most.
     """
 
-    residuals: Array
+    worst: Array
     tolerance: float
     load: Array
     deflection: Array
+    displaced: Array
     bounds: Bounds
-
-    @classmethod
-    def joined(cls, parts: Sequence[Verdicts], bounds: Bounds) -> Verdicts:
-        """Return the verdicts of parts, one after another, with the bounds of all of them."""
-        return cls(
-            np.concatenate([v.residuals for v in parts]),
-            parts[0].tolerance,
-            np.concatenate([v.load for v in parts]),
-            np.concatenate([v.deflection for v in parts]),
-            bounds,
-        )
-
-    @cached_property
-    def worst(self) -> Array:
-        """Largest scaled residual of every answer."""
-        # Column by column: rows are too short to be worth a loop each.
-        return np.asarray(np.maximum.reduce(list(self.residuals.T)))
 
     @cached_property
     def passed(self) -> NDArray[np.bool_]:

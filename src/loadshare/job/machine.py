@@ -32,13 +32,12 @@ ENGINES = ("auto", "compiled", "vectorised")
 COMPILED = (
     "loadshare.solver.hot.compiled",
     "loadshare.solver.hot.products",
-    "loadshare.certify.compiled",
+    "loadshare.solver.hot.touching",
     "loadshare.certify.bound.compiled",
 )
 """What a quick answer calls, all of which must be there."""
 KERNELS = (
     ("loadshare.solver.hot.compiled", "_settle_all"),
-    ("loadshare.certify.compiled", "judge_all"),
     ("loadshare.certify.bound.compiled", "find_all"),
     ("loadshare.certify.bound.compiled", "bound_all"),
 )

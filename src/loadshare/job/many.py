@@ -249,7 +249,7 @@ def _block(
     residual, bound = np.full(shape, np.nan), np.full(shape, np.nan)
     # Objects, so that a million answers share a few texts.
     rung = np.full(shape, "", dtype=object)
-    deflection, load = np.full((2, *shape), np.nan)
+    deflection, load, displaced = np.full((3, *shape), np.nan)
     message: dict[tuple[int, int], str] = {}
     every: list[Equilibria] = []
     stands: list[Situations] = []
@@ -268,11 +268,13 @@ def _block(
         residual[:, columns] = found.verdicts.worst.reshape(-1, count).T
         deflection[:, columns] = found.verdicts.deflection.reshape(-1, count).T
         load[:, columns] = found.verdicts.load.reshape(-1, count).T
+        displaced[:, columns] = found.verdicts.displaced.reshape(-1, count).T
         bound[:, columns] = found.verdicts.bounds.relative.reshape(-1, count).T
         determined[:, columns] = found.determined.reshape(-1, count).T
         if least_norm:
-            loose = np.flatnonzero(found.passed & ~found.determined).tolist()
-            least_places(machine, situations, found, loose, tolerance)
+            loose = found.passed & ~found.determined
+            least_places(machine, situations, found, np.flatnonzero(loose).tolist(), tolerance)
+            displaced[:, columns][loose.reshape(-1, count).T] = np.nan
     for row, p in np.argwhere(~certified).tolist():
         index = positions[p]
         try:
@@ -284,13 +286,14 @@ def _block(
             every[p].forget(row)
             continue
         every[p].put(row, answer.equilibrium)
+        displaced[row, p] = np.nan
         certified[row, p], rung[row, p] = True, answer.rung
         residual[row, p] = answer.certificate.worst
         bound[row, p] = answer.certificate.proved
         deflection[row, p] = answer.certificate.deflection
         load[row, p] = answer.certificate.load
         determined[row, p] = not answer.equilibrium.undetermined
-    displaced, refused = _displacements(machine, stands, every, deflection)
+    refused = _put_displaced(machine, stands, every, deflection, displaced)
     for (row, p), why in refused.items():
         message[int(rows[row]), positions[p]] = f"position {positions[p]}: {why}"
         certified[row, p], rung[row, p] = False, ""
@@ -316,20 +319,23 @@ def _block(
     )
 
 
-def _displacements(
+def _put_displaced(
     machine: Machine,
     situations: Sequence[Situations],
     answers: Sequence[Equilibria],
     deflection: Array,
-) -> tuple[Array, dict[tuple[int, int], str]]:
-    """How far displacements go to a warning, (S, positions), and why some are refused."""
-    displaced = np.full(deflection.shape, np.nan)
+    displaced: Array,
+) -> dict[tuple[int, int], str]:
+    """Write how far displacements go to a warning where that is not known; why some are refused."""
     refused: dict[tuple[int, int], str] = {}
     for p, (here, found) in enumerate(zip(situations, answers, strict=True)):
-        displaced[:, p] = machine.measuring.worst(here, found, deflection[:, p])
+        left = np.flatnonzero(np.isnan(displaced[:, p]))
+        if len(left):
+            some = here.take(left), found.take(left), deflection[left, p]
+            displaced[left, p] = machine.measuring.worst(*some)
         large = np.flatnonzero(displaced[:, p] >= 1.0)
-        if not len(large):
-            continue
-        why = machine.measuring.refusals(here.take(large), found.take(large), deflection[large, p])
-        refused |= {(int(large[k]), p): told for k, told in why.items()}
-    return displaced, refused
+        if len(large):
+            some = here.take(large), found.take(large), deflection[large, p]
+            why = machine.measuring.refusals(*some)
+            refused |= {(int(large[k]), p): told for k, told in why.items()}
+    return refused

@@ -161,11 +161,12 @@ class Table:
     def write(self, block: Block) -> None:
         """Write a block in its place."""
         rows = block.rows
+        # Many samples of one shape of train follow one another; a slice is written at once.
+        place = slice(rows[0], rows[-1] + 1) if rows[-1] - rows[0] == len(rows) - 1 else rows
         for name, each in EACH.items():
-            self.each[name][rows] = getattr(block, each.field)
+            self.each[name][place] = getattr(block, each.field)
         for (row, index), why in block.message.items():
             self.message[f"sample {row}, position {index}"] = why
-        place = slice(rows[0], rows[-1] + 1) if rows[-1] - rows[0] == len(rows) - 1 else rows
         for p, answers in enumerate(block.equilibria):
             torque, _ = mesh_torques(answers)
             for name, values in self.kept.items():

@@ -89,12 +89,12 @@ class Situations:
     spline: Array
 
     def take(self, rows: NDArray[np.intp] | slice) -> Situations:
-        """Return some of the samples."""
+        """Return some of the samples; what holds for all is a row that is not repeated."""
         chosen = {
             name: value[rows] if len(value) > 1 else value for name, value in self._arrays().items()
         }
-        count = len(np.arange(self.count)[rows])
-        return replace(self, count=count, **chosen)
+        several = range(*rows.indices(self.count)) if isinstance(rows, slice) else rows
+        return replace(self, count=len(several), **chosen)
 
     def mapped(self, function: Callable[[Array], Array]) -> Situations:
         """Return the situations with a function applied to each array but that of positions."""

@@ -1,4 +1,4 @@
-r"""The bound of one claim or many: residuals, and one small matrix for all that act alike.
+r"""The certificate of many claims: residuals, and one small matrix for all that act alike.
 
 It is the bound of `quick`, with all that is the same for claims of which the same elements act put
 into a few numbers. With r the largest residual of balance, q the norm of :math:`L^T \epsilon` and w
@@ -14,6 +14,7 @@ section 16.
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
@@ -24,8 +25,10 @@ from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.laws import CLOSED, OPEN
 from loadshare.certify.bound.statics import Statics, held_moves
+from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.plain import plain
-from loadshare.settings import BOUND
+from loadshare.certify.validity import measuring
+from loadshare.settings import BOUND, CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.ring import transverse
 from loadshare.train.situations import Situations
@@ -75,6 +78,19 @@ class Layout(NamedTuple):
     rest_start: Places  # (m + 1,): what lengths take from clockings and offsets
     rest_at: Places
     rest_value: Array
+    rest_shift: Places  # (e,): first that is no clocking
+    still: Numbers  # gears that cannot be displaced
+    axis: Array  # (gears, 3)
+    shaft: Numbers  # (shafts, 2): first and second gear
+    rigid_shaft: Numbers
+    output: int
+    squeezed: Numbers  # drums between whose arcs nothing gives way
+    neighbour: Numbers  # (2 d,)
+    ends: Numbers  # (e, 2): driver and driven gear
+    across: Array  # (e, 3): turn of the line of action per displacement of the driver [1/m]
+    line: Array  # (e,): its length [m]
+    yields: Array  # (e,): one over the compression to warn of [1/m]
+    turnable: float  # turn to warn of
 
 
 class Groups(NamedTuple):
@@ -130,6 +146,9 @@ class Found(NamedTuple):
     aside: Array  # largest torque of what is put aside [N·m]
     turned: Array  # largest turn of an arc's line
     bow: Array  # largest force of an arc over its distance [N/m]
+    worst: Array  # largest scaled residual; not a number where two opposed contacts carry
+    deflection: Array  # of the case [m]
+    displaced: Array  # displacements over what is warned of; not a number where that is for NumPy
 
 
 class Sets(NamedTuple):
@@ -146,6 +165,7 @@ class Sheet(NamedTuple):
 
     x: Array
     length: Array
+    at_rest: Array
     varying: Array
     force: Array
     left: Array
@@ -154,6 +174,10 @@ class Sheet(NamedTuple):
     line: Array
     turn: Array
     stiffest: Array
+    beside: Array  # part of the claimed reactions that is not of their graph [N]
+    pull: Array
+    distance: Array
+    shift: Array
 
 
 def is_covered(columns: Columns) -> bool:
@@ -161,8 +185,30 @@ def is_covered(columns: Columns) -> bool:
     return columns.train.slip is None
 
 
-def relative_bounds(columns: Columns, situations: Situations, answers: Equilibria) -> Array:
-    """Largest error of a torque over the largest torque, shape (S,); infinite if not shown."""
+class Judged(NamedTuple):
+    """What is told of S claims; not a number where it is for NumPy to tell.
+
+    Attributes
+    ----------
+    relative : ndarray, shape (S,)
+        Largest error of a torque over the largest torque; infinite if none is shown.
+    worst : ndarray, shape (S,)
+        Largest scaled residual.
+    load, deflection : ndarray, shape (S,)
+        Scales [N], [m].
+    displaced : ndarray, shape (S,)
+        How far displacements go to a warning (see `Measuring.worst`).
+    """
+
+    relative: Array
+    worst: Array
+    load: Array
+    deflection: Array
+    displaced: Array
+
+
+def judged(columns: Columns, situations: Situations, answers: Equilibria) -> Judged:
+    """Judge S claims with compiled code."""
     from loadshare.certify.bound import compiled
 
     held = _springs(columns, situations)
@@ -176,7 +222,9 @@ def relative_bounds(columns: Columns, situations: Situations, answers: Equilibri
     errors = np.empty_like(found.largest)
     groups = plan.groups(acts, sets.least[:count], sets.most[:count])
     compiled.bound_all(plan.layout, here, claim, found, groups, errors)
-    return np.asarray(errors / found.largest + 2.0 * EPS)
+    with np.errstate(invalid="ignore"):
+        relative = np.where(errors < np.inf, errors / found.largest + 2.0 * EPS, np.inf)
+    return Judged(relative, found.worst, found.scale, found.deflection, found.displaced)
 
 
 class Operators(NamedTuple):
@@ -223,9 +271,10 @@ class Plan:
 
     def sheet(self) -> Sheet:
         """Return an empty sheet."""
-        m, n, contacts = len(self.layout.start) - 1, self.contacts.shape[1], len(self.contacts)
-        arcs = len(self.layout.apart)
-        sizes = (n, m, self.varying, m, n, n, contacts, (arcs, 2), arcs, len(self.pulls))
+        of, m, n = self.layout, len(self.layout.start) - 1, self.contacts.shape[1]
+        arcs, pulls = len(of.apart), len(self.pulls)
+        first = n, m, len(of.arm), self.varying, m, n, n, len(self.contacts), (arcs, 2), arcs
+        sizes = *first, *[pulls] * 4, (len(of.radius), 3)
         return Sheet(*(np.zeros(size) for size in sizes))
 
     def found(self, count: int) -> Found:
@@ -237,7 +286,7 @@ class Plan:
             *((count, k) for k in rows),
             (count, pulls, 2),
             *[(count, pulls)] * 2,
-            *[(count,)] * 11,
+            *[(count,)] * 14,
         ]
         return Found._make([number, acts, *map(np.empty, sizes)])
 
@@ -440,6 +489,12 @@ def _entries(matrix: Array) -> tuple[Places, Places, Array]:
     return start.astype(np.uintp), at.astype(np.uintp), matrix[rows, at]
 
 
+def _first_from(column: int, start: Places, at: Places) -> Places:
+    """First entry of every row from a column on."""
+    found = [np.searchsorted(at[a:b], column) + a for a, b in pairwise(start.tolist())]
+    return np.array(found, dtype=np.uintp)
+
+
 def _springs(columns: Columns, situations: Situations) -> tuple[Numbers, Array]:
     """Elastic shafts and bearings, and the arms of shafts."""
     train = columns.train
@@ -490,6 +545,9 @@ def _layout(columns: Columns, spring: Numbers, spring_arm: Array) -> Layout:
     turns = [(t.coordinate or 0, order[g], t.radius) for g, t in held.items() if not t.shafts]
     loads = [(t.coordinate or 0, order[g], t.radius) for g, t in held.items()]
     pulled = [order[r.gear] for r in train.rounds] + [order[g] for g in train.splines]
+    gear_pairs = _pairs([(order[m.driver], order[m.driven]) for m, _ in columns.all_flanks])
+    size, rest = measuring(train), _entries(columns.constants[0].T)
+    across = size.across.reshape(len(gear_pairs), -1, 3)
     return Layout(
         columns.meshes,
         np.array([d for _, d in columns.all_flanks], dtype=np.bool_),
@@ -517,5 +575,18 @@ def _layout(columns: Columns, spring: Numbers, spring_arm: Array) -> Layout:
         columns.arcs.start,
         columns.radials.start,
         *_entries(columns.matrix.high),
-        *_entries(columns.constants[0].T),
+        *rest,
+        _first_from(len(train.shafts), *rest[:2])[: columns.flanks.stop],
+        np.setdiff1d(np.arange(len(order)), columns.moving),
+        np.array([g.axis for g in train.gears.values()]).reshape(-1, 3),
+        _pairs([(order[s.first], order[s.second]) for s in train.shafts.values()]),
+        np.setdiff1d(np.arange(len(train.shafts)), columns.elastic_shafts),
+        order[train.output],
+        mechanics_of(train).squeezed,
+        np.array([order[n] for r in train.drums for n in r.neighbours], dtype=np.intp),
+        gear_pairs,
+        across[np.arange(len(gear_pairs)), gear_pairs[:, 0]] / size.line,
+        size.line[:, 0],
+        1.0 / (size.height[:, 0] * CERTIFY.compressed),
+        min(CERTIFY.turned, size.vanishing),
     )

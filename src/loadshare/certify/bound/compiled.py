@@ -1,9 +1,9 @@
-"""The bound of one claim after another, compiled with Numba: what `batch` asks for.
+"""The certificate of one claim after another, compiled with Numba: what `batch` asks for.
 
 `of` is the train as columns, `here` the situations, `claim` the claims. First every claim is put
 into figures, `found`, and numbered by what acts in it; then, with what `batch` makes of each such
 `group`, they become bounds. The compiled code is kept on disk. Nothing of it is shared with the
-certificate, nor with a solver.
+certificate of single answers, nor with a solver: what they get wrong must not be wrong here too.
 """
 
 from __future__ import annotations
@@ -15,9 +15,11 @@ import numpy as np
 from loadshare import compilation
 from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.laws import CLOSED, ENDLESS, LIGHT, OPEN
-from loadshare.settings import BOUND, LAWS
+from loadshare.settings import BOUND, CERTIFY, LAWS
 
-# As in the compiled certificate: nothing is allocated, and what takes tuples is inlined.
+# Nothing is allocated in here, so Numba need not count who holds an array: counting would take
+# twice as long as judging. A call would hand over every array of the tuples below, and cost more
+# than what it does, so functions that take them are inlined.
 _how: dict[str, Any] = {
     "nogil": True,
     "error_model": "numpy",
@@ -36,20 +38,26 @@ def find_all(of, here, claim, sheet, found, sets):  # type: ignore[no-untyped-de
     count, last = 0, 0
     for s in range(len(claim.rotation)):
         top = _loads(of, here, claim, s, found)
-        terms, deflection = _lengths(of, here, claim, s, sheet)
-        widest = _gaps(of, here, s, sheet)
+        terms, deflection, largest = _lengths(of, here, claim, s, sheet)
+        widest, behind = _gaps(of, here, s, sheet)
         _acts(of, here, claim, s, sheet, found, top, deflection, widest)
-        longest, fine = _pulls(of, here, claim, s, sheet, found, top, widest)
+        longest, lawful, covered = _pulls(of, here, claim, s, sheet, found, top, widest)
         count, last = _numbered(s, found.acts, sets, count, last)
         found.number[s] = last
-        yielded = _contacts(of, here, claim, s, sheet, found, sets)
+        yielded, bent, seen = _contacts(of, here, claim, s, sheet, found, sets)
         further = _springs(of, here, claim, s, sheet, found, sets)
         for q in range(len(of.pull_gear)):
             at, soft = len(of.twin) + len(of.spring) + q, sheet.stiffest[q]
             _spread(sets, found.number[s], at, soft, soft)
-        residual = _balance(of, here, s, sheet, found)
-        found.residual[s] = residual if fine else np.inf
+        residual, unbalanced = _balance(of, here, s, sheet, found)
+        found.residual[s] = residual if lawful and covered else np.inf
         found.width[s] = EPS * (terms + longest + max(yielded, further))
+        deflection = max(bent, largest)
+        deflection = deflection if deflection > 0.0 else CERTIFY.least_deflection
+        worst = _worst(of, here, claim, s, sheet, found, unbalanced, deflection, seen)
+        found.worst[s] = worst if lawful and not behind else np.inf
+        found.deflection[s] = deflection
+        found.displaced[s] = _displaced(of, here, claim, s, sheet, deflection)
     return count
 
 
@@ -187,10 +195,11 @@ def _stiffest(law):  # type: ignore[no-untyped-def]
 def _lengths(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
     """Coordinates and lengths A X − g [m].
 
-    Returns the sum of the largest sizes of their terms, and the largest approach of flanks.
+    Returns the sum of the largest sizes of their terms, the largest approach of flanks, and the
+    largest offset of a centre.
     """
     x, length, varying = sheet.x, sheet.length, sheet.varying
-    widest, offsets, limits, deflection = 0.0, 0.0, 0.0, 0.0
+    widest, offsets, limits, deflection, furthest = 0.0, 0.0, 0.0, 0.0, 0.0
     for k in range(len(of.turn)):
         x[of.turn[k, 0]] = of.turn_radius[k] * claim.rotation[s, of.turn[k, 1]]
     for k in range(len(of.place)):
@@ -206,9 +215,12 @@ def _lengths(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
     for k in range(shafts):
         varying[k] = here.clocking[_row(here.clocking, s), k]
     for g in range(here.offset.shape[1]):
+        square = 0.0
         for i in range(3):
-            varying[shafts + 3 * g + i] = here.offset[r, g, i]
-            offsets = max(offsets, abs(here.offset[r, g, i]))
+            offset = here.offset[r, g, i]
+            varying[shafts + 3 * g + i] = offset
+            offsets, square = max(offsets, abs(offset)), square + offset * offset
+        furthest = max(furthest, square)
     for j in range(len(length)):
         total = 0.0
         for i in range(of.start[j], of.start[j + 1]):
@@ -216,24 +228,34 @@ def _lengths(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
         for i in range(of.rest_start[j], of.rest_start[j + 1]):
             total += of.rest_value[i] * varying[of.rest_at[i]]
         length[j] = total
+    for e in range(len(of.arm)):
+        shifted = 0.0
+        for i in range(of.rest_shift[e], of.rest_start[e + 1]):
+            shifted += of.rest_value[i] * varying[of.rest_at[i]]
+        sheet.at_rest[e] = shifted
     rg, rj, rs = _row(here.gap, s), _row(here.backlash, s), _row(here.stop, s)
     for e in range(len(of.arm)):
         m = of.mesh[e]
         gap = here.gap[rg, m] if of.is_drive[e] else here.backlash[rj, m]
         length[e] -= gap
+        sheet.at_rest[e] -= gap
         limits, deflection = max(limits, abs(gap)), max(deflection, length[e])
     for d in range(len(of.drum_gear)):
         for side in range(2):
             limit = here.stop[rs, d, side]
             length[of.first_stop + 2 * d + side] -= limit
             limits = max(limits, abs(limit))
-    return widest + offsets + limits, deflection
+    return widest + offsets + limits, deflection, np.sqrt(furthest)
 
 
 @inlined
 def _gaps(of, here, s, sheet):  # type: ignore[no-untyped-def]
-    """Gaps of flanks, stops and arcs, and unit vectors of the latter; returns the widest gap."""
-    flanks, drums = len(of.arm), len(of.drum_gear)
+    """Gaps of flanks, stops and arcs, and unit vectors of the latter.
+
+    Returns the widest gap, and whether a gear stands beyond a neighbour on whose ring its own
+    rolls.
+    """
+    flanks, drums, behind = len(of.arm), len(of.drum_gear), False
     for e in range(flanks):
         sheet.gap[e] = -sheet.length[e]
     for k in range(2 * drums):
@@ -249,6 +271,7 @@ def _gaps(of, here, s, sheet):  # type: ignore[no-untyped-def]
             sheet.line[k, a] = moved
             along += of.nominal[k, a] * moved
             square += moved * moved
+        behind |= not apart * apart + along > 0.0
         length = np.sqrt(apart * apart + 2.0 * along + square)
         longer = (2.0 * along + square) / (length + apart)
         sheet.turn[k] = 0.0
@@ -260,7 +283,7 @@ def _gaps(of, here, s, sheet):  # type: ignore[no-untyped-def]
     widest = 0.0
     for c in range(len(sheet.gap)):
         widest = max(widest, abs(sheet.gap[c]))
-    return widest
+    return widest, behind
 
 
 @inlined
@@ -339,7 +362,7 @@ def _flank(of, here, s, e, force, scale):  # type: ignore[no-untyped-def]
         r = _row(here.table, s)
         return _by_table(here.table[r, m, 0], here.table[r, m, 1], force, light)
     bending, hertz = here.bending[_row(here.bending, s), m], here.hertz[_row(here.hertz, s), m]
-    if not hertz > 0.0:
+    if hertz == 0.0:
         return bending * force, bending, bending, np.inf
     root = np.cbrt(max(force, 0.0))
     compression = bending * force + hertz * root * root
@@ -382,16 +405,24 @@ def _by_table(forces, compressions, force, near):  # type: ignore[no-untyped-def
 
 @inlined
 def _contacts(of, here, claim, s, sheet, found, sets):  # type: ignore[no-untyped-def]
-    """Forces and misfits of contacts; returns their largest compression [m]."""
+    """Forces and misfits of contacts.
+
+    Returns their largest compression [m], that of loaded flanks or what remains of their approach
+    at rest [m], and what is seen of residuals: length [m], work [J], pull [N] and sum of forces.
+    """
     flanks, contacts, number = len(of.arm), len(of.twin), found.number[s]
-    arcs, rw = contacts - len(of.apart), _row(here.wall, s)
-    yielded, weakest, reach, turned, bow = 0.0, np.inf, np.inf, 0.0, 0.0
+    arcs, rw, band = contacts - len(of.apart), _row(here.wall, s), CERTIFY.band * found.scale[s]
+    yielded, bent, weakest, reach, turned, bow = 0.0, 0.0, np.inf, np.inf, 0.0, 0.0
+    length, work, pull, total = 0.0, 0.0, 0.0, 0.0
     for c in range(contacts):
         acts = found.acts[s, c] != OPEN
-        force = _contact_force(of, claim, s, c) if acts else 0.0
-        misfit = 0.0
+        claimed = _contact_force(of, claim, s, c)
+        force = claimed if acts else 0.0
+        pull, total, misfit = max(pull, -claimed), total + claimed, 0.0
         if c < flanks:
             sheet.force[c] = force
+            if claimed > 0.0:
+                bent = max(bent, abs(sheet.at_rest[c]))
         elif c < arcs:
             sheet.force[of.first_stop + c - flanks] = force
         else:
@@ -402,7 +433,7 @@ def _contacts(of, here, claim, s, sheet, found, sets):  # type: ignore[no-untype
             if c < flanks:
                 law = _flank(of, here, s, c, force, found.scale[s])
                 compression, least, most, holds = law
-                reach = min(reach, holds)
+                reach, bent = min(reach, holds), max(bent, compression)
             else:
                 least = most = here.wall[rw, of.drum[c - flanks]]
                 compression = least * force
@@ -416,12 +447,20 @@ def _contacts(of, here, claim, s, sheet, found, sets):  # type: ignore[no-untype
             _spread(sets, number, c, least, least if found.acts[s, c] == ENDLESS else most)
             weakest, yielded = min(weakest, force), max(yielded, abs(compression))
             misfit = -sheet.gap[c] - compression
+            # With less force than the band it counts as open, as in `residuals`.
+            length = max(length, abs(misfit) if force > band else misfit)
+            work, total = max(work, -force * misfit), total + misfit
             if force == 0.0:
                 misfit = max(misfit, 0.0)
+        elif sheet.gap[c] < np.inf:
+            length, work = max(length, -sheet.gap[c]), max(work, claimed * sheet.gap[c])
+        elif claimed != 0.0:
+            # Two opposed contacts carry.
+            total = np.nan
         found.misfit[s, c] = misfit
     found.turned[s], found.bow[s], found.reach[s] = turned, bow, reach
     # A contact that pulls is none.
-    return yielded if weakest >= 0.0 else np.inf
+    return yielded if weakest >= 0.0 else np.inf, bent, (length, work, pull, total)
 
 
 @inlined
@@ -447,22 +486,25 @@ def _springs(of, here, claim, s, sheet, found, sets):  # type: ignore[no-untyped
 def _pulls(of, here, claim, s, sheet, found, top, widest):  # type: ignore[no-untyped-def]
     """Forces and misfits of radial elements: the point of their graph next to what is claimed.
 
-    Returns the largest of their lengths [m], and whether their laws have a meaning.
+    Returns the largest of their lengths [m], whether their laws have a meaning, and whether they
+    are covered by the bound.
     """
     contacts, at = len(of.twin), len(of.twin) + len(of.spring)
-    longest, fine = 0.0, True
+    longest, lawful, covered = 0.0, True, True
     for q in range(len(of.pull_gear)):
         g, j, rate = of.pull_gear[q], of.first_pull + 2 * q, 0.0
         law = _law(of, here, claim, s, q)
         stick, level, reach = law[1], law[2], law[3]
         x, y = sheet.length[j] - of.centre[q, 0], sheet.length[j + 1] - of.centre[q, 1]
-        fx, fy = 0.0, 0.0
+        fx, fy, lifting = 0.0, 0.0, 0.0
         for i in range(3):
             fx -= of.frame[g, 0, i] * claim.radial_reaction[s, q, i]
             fy -= of.frame[g, 1, i] * claim.radial_reaction[s, q, i]
+            lifting += of.axis[g, i] * claim.radial_reaction[s, q, i]
+        claimed_x, claimed_y = fx, fy
         distance, force = np.sqrt(x * x + y * y), np.sqrt(fx * fx + fy * fy)
-        fine &= force < np.inf and distance < np.inf
-        fine &= stick >= 0.0 and level >= 0.0 and reach >= 0.0
+        lawful &= force < np.inf and distance < np.inf
+        lawful &= stick >= 0.0 and level >= 0.0 and reach >= 0.0
         noise = BOUND.noise * top
         acts = level > 0.0 or force > noise or reach - distance <= BOUND.near * widest
         found.acts[s, contacts + q] = CLOSED if acts else OPEN
@@ -480,12 +522,15 @@ def _pulls(of, here, claim, s, sheet, found, top, widest):  # type: ignore[no-un
                 slips = 1.0 / distance if along == level else 0.0
             if q >= of.rounds:
                 rate = _rate(of, here, s, q)
-                fine &= rate == 0.0 or found.aside[s] == 0.0
+                covered &= rate == 0.0 or found.aside[s] == 0.0
         else:
             fx, fy = 0.0, 0.0
             found.room[s] = min(found.room[s], reach - distance)
         longest = max(longest, abs(of.centre[q, 0]) + abs(of.centre[q, 1]) + distance)
         sheet.force[j], sheet.force[j + 1] = fx, fy
+        other_x, other_y = claimed_x - fx, claimed_y - fy
+        sheet.beside[q] = np.sqrt(other_x * other_x + other_y * other_y + lifting * lifting)
+        sheet.pull[q], sheet.distance[q] = force, distance
         sheet.stiffest[q] = _stiffest(law)
         found.misfit[s, at + 2 * q], found.misfit[s, at + 2 * q + 1] = misfit_x, misfit_y
         found.held[s, q] = np.inf
@@ -494,7 +539,7 @@ def _pulls(of, here, claim, s, sheet, found, top, widest):  # type: ignore[no-un
             found.held[s, q], rate = 0.5 * level / rate, 0.0
         found.soft[s, q], found.spare[s, q], found.rate[s, q] = soft, spare, rate
         found.slip[s, q, 0], found.slip[s, q, 1] = slips * x, slips * y
-    return longest, fine
+    return longest, lawful, covered
 
 
 @inlined
@@ -537,7 +582,7 @@ def _nearest(law, force, distance, corner):  # type: ignore[no-untyped-def]
 
 @inlined
 def _balance(of, here, s, sheet, found):  # type: ignore[no-untyped-def]
-    """Load that is left over [N]; returns the largest, with its rounding."""
+    """Load that is left over [N]; returns the largest, with its rounding and without."""
     left, sizes, force = sheet.left, sheet.sizes, sheet.force
     left[:], sizes[:], largest = 0.0, 0.0, 0.0
     r = _row(here.torque, s)
@@ -552,15 +597,135 @@ def _balance(of, here, s, sheet, found):  # type: ignore[no-untyped-def]
                 term, c = of.value[i] * force[j], of.at[i]
                 left[c] -= term
                 sizes[c] += abs(term)
-    found.push[s], residual, rounding, total = largest, 0.0, 0.0, 0.0
+    found.push[s], residual, rounding, total, unbalanced = largest, 0.0, 0.0, 0.0, 0.0
     for c in range(len(left)):
         found.left[s, c] = left[c]
+        unbalanced = max(unbalanced, abs(left[c]))
         most = abs(left[c]) + EPS * sizes[c]
         residual, total = max(residual, most), total + most
         rounding = max(rounding, EPS * sizes[c])
     found.rounding[s] = rounding + EPS * residual
     # The largest may have passed over what is not a number.
-    return residual if total < np.inf else np.inf
+    return (residual, unbalanced) if total < np.inf else (np.inf, np.inf)
+
+
+@inlined
+def _worst(of, here, claim, s, sheet, found, unbalanced, deflection, seen):  # type: ignore[no-untyped-def]
+    """Largest scaled residual of a claim: of balance, laws, signs, and what is no column.
+
+    Not a number where something claimed is none, and where two opposed contacts carry: these are
+    for `residuals`.
+    """
+    load, (length, work, pull, total) = found.scale[s], seen
+    for k in range(len(of.twin), found.misfit.shape[1]):
+        length, total = max(length, abs(found.misfit[s, k])), total + found.misfit[s, k]
+    strayed, free = _strayed(of, here, claim, s), _free(of, here, claim, s)
+    length, force = max(length, strayed), max(max(unbalanced, pull), free)
+    band = CERTIFY.band * deflection
+    for q in range(len(sheet.beside)):
+        # Within the band about its centre an element has no direction.
+        if sheet.distance[q] > band:
+            turned = sheet.pull[q] * band / sheet.distance[q]
+            force, total = max(force, sheet.beside[q] - turned), total + sheet.beside[q]
+    for d in of.squeezed:
+        force = max(force, _squeeze(of, here, claim, s, sheet, d, band))
+    worst = max(max(force / load, length / deflection), work / (load * deflection))
+    for c in range(len(sheet.x)):
+        total += sheet.x[c]
+    return worst + 0.0 * (total + strayed + free)
+
+
+@inlined
+def _strayed(of, here, claim, s):  # type: ignore[no-untyped-def]
+    """Largest length [m] by which gears are where no coordinate leads them."""
+    moved, square = claim.displacement, 0.0
+    for g in of.still:
+        x, y, z = moved[s, g, 0], moved[s, g, 1], moved[s, g, 2]
+        square = max(square, x * x + y * y + z * z)
+    length, r, total = np.sqrt(square), _row(here.clocking, s), square
+    for k in range(len(of.place)):
+        g, lifted = of.place[k, 1], 0.0
+        for i in range(3):
+            lifted += of.axis[g, i] * moved[s, g, i]
+        length, total = max(length, abs(lifted)), total + lifted
+    for w in of.rigid_shaft:
+        g = of.shaft[w, 0]
+        wound = claim.rotation[s, g] - claim.rotation[s, of.shaft[w, 1]] - here.clocking[r, w]
+        length, total = max(length, abs(wound) * of.radius[g]), total + wound
+    turned = claim.rotation[s, of.output]
+    # The largest may have passed over what is not a number.
+    return max(length, abs(turned) * of.radius[of.output]) + 0.0 * (total + turned)
+
+
+@inlined
+def _free(of, here, claim, s):  # type: ignore[no-untyped-def]
+    """Largest force [N] claimed of bearings that bear nothing."""
+    r, square, total = _row(here.support, s), 0.0, 0.0
+    for k in range(len(of.place)):
+        g, free = of.place[k, 1], 0.0
+        for a in range(2):
+            if not here.support[r, g, a] > 0.0:
+                free += claim.support_force[s, g, a] ** 2
+        square, total = max(square, free), total + free
+    return np.sqrt(square) + 0.0 * total
+
+
+@inlined
+def _squeeze(of, here, claim, s, sheet, d, band):  # type: ignore[no-untyped-def]
+    """What the squeeze of a drum's opposed arcs leaves open [N] (see `residuals`)."""
+    first = 2 * len(of.drum_gear) + 2 * d
+    squeeze = min(claim.ring_force[s, first], claim.ring_force[s, first + 1])
+    if squeeze <= 0.0:
+        return 0.0
+    r, g = _row(here.arc_shift, s), of.drum_gear[d]
+    units, moved = (np.float64(0.0), np.float64(0.0)), 0.0
+    for k in range(2 * d, 2 * d + 2):
+        x, y = of.nominal[k, 0], of.nominal[k, 1]
+        for i in range(3):
+            x += of.frame[g, 0, i] * here.arc_shift[r, d, k % 2, i]
+            y += of.frame[g, 1, i] * here.arc_shift[r, d, k % 2, i]
+        size = np.sqrt(x * x + y * y)
+        units = units[0] + x / size, units[1] + y / size
+    for i in range(3):
+        moved += claim.displacement[s, g, i] ** 2
+    wedge, distance = units[0] ** 2 + units[1] ** 2, min(of.apart[2 * d], of.apart[2 * d + 1])
+    known = band
+    if wedge * distance > 8.0 * band:
+        gap = len(of.arm) + first
+        known = max(abs(sheet.gap[gap]), abs(sheet.gap[gap + 1]))
+        known += np.finfo(np.float64).eps * np.sqrt(moved)
+    across = 2.0 * known / distance
+    return squeeze * across / (np.sqrt(wedge) + np.sqrt(wedge + across))
+
+
+@inlined
+def _displaced(of, here, claim, s, sheet, deflection):  # type: ignore[no-untyped-def]
+    """How far displacements go to a warning (see `Measuring.worst`).
+
+    Not a number where an approach is neglected that only gears without force may take up.
+    """
+    worst, most, furthest, r = 0.0, 0.0, 0.0, _row(here.offset, s)
+    shift = sheet.shift
+    for g in range(len(shift)):
+        for k in range(3):
+            shift[g, k] = claim.displacement[s, g, k] + here.offset[r, g, k]
+    for e in range(len(of.arm)):
+        approach, across = sheet.length[e], 0.0
+        i, j = of.ends[e, 0], of.ends[e, 1]
+        for k in range(3):
+            across += of.across[e, k] * (shift[i, k] - shift[j, k])
+        most = max(most, 0.5 * of.line[e] * across * across - max(-approach, 0.0))
+        worst, furthest = max(worst, approach * of.yields[e]), max(furthest, abs(across))
+    worst = max(max(worst, furthest / of.turnable), most / (deflection * CERTIFY.neglected))
+    if most > deflection * CERTIFY.neglected:
+        worst = np.nan
+    for k in range(len(of.apart)):
+        square, g = 0.0, of.drum_gear[k // 2]
+        for i in range(3):
+            way = claim.displacement[s, g, i] - claim.displacement[s, of.neighbour[k], i]
+            square += way * way
+        worst = max(worst, np.sqrt(square) / (of.apart[k] * CERTIFY.turned))
+    return worst
 
 
 @inlined

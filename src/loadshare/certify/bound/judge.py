@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.certify.bound.batch import is_covered, relative_bounds
 from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
@@ -75,8 +74,6 @@ def bounds(
     situations: Situations,
     answers: Equilibria,
     rigorous: bool = False,
-    compiled: bool = False,
-    wanted: Flags | None = None,
 ) -> Bounds:
     """Bound the errors of S claimed equilibria, from the claims and the train alone.
 
@@ -87,30 +84,36 @@ def bounds(
     answers : Equilibria
     rigorous : bool
         Find all residuals in twice the working precision; otherwise only where that is needed.
-    compiled : bool
-        Use Numba, where it covers a train, and find no more than the largest error of a torque
-        where that is enough.
-    wanted : ndarray of bool, shape (S,), optional
-        Of those that Numba bounds, which are worth every effort; all by default.
     """
     if not len(answers.rotation):
         return Bounds(columns, np.zeros(0), None, None, None)
     with np.errstate(all="ignore"):
-        return _bounds(Claim(columns, situations, answers, fine=False), rigorous, compiled, wanted)
+        return _boxes(Claim(columns, situations, answers, fine=False), rigorous)
 
 
-def _bounds(claim: Claim, rigorous: bool, compiled: bool, wanted: Flags | None) -> Bounds:
-    columns, answers = claim.columns, claim.answers
-    relative: Array | None = None
-    if compiled and not rigorous and is_covered(columns):
-        relative = relative_bounds(columns, claim.situations, answers)
-        poor = ~(relative <= BOUND.enough_for_many)
-        left = np.flatnonzero(poor if wanted is None else poor & wanted)
-        if len(left):
-            more = _boxes(claim.take(left), rigorous).relative
-            relative[left] = np.fmin(relative[left], more)
-        return Bounds(columns, relative, None, None, None)
-    return _boxes(claim, rigorous)
+def completed(
+    columns: Columns,
+    situations: Situations,
+    answers: Equilibria,
+    relative: Array,
+    wanted: Flags,
+) -> Bounds:
+    """Bound with every effort what Numba has not bounded closely enough, of what is wanted.
+
+    Parameters
+    ----------
+    columns : Columns
+    situations : Situations
+    answers : Equilibria
+    relative : ndarray, shape (S,)
+        Largest error of a torque over the largest torque, as Numba has it; changed in place.
+    wanted : ndarray of bool, shape (S,)
+    """
+    left = np.flatnonzero(~(relative <= BOUND.enough_for_many) & wanted)
+    if len(left):
+        more = bounds(columns, situations.take(left), answers.take(left)).relative
+        relative[left] = np.fmin(relative[left], more)
+    return Bounds(columns, relative, None, None, None)
 
 
 def _boxes(claim: Claim, rigorous: bool) -> Bounds:

@@ -8,7 +8,7 @@ together as a set once, and serves all samples that have it. Source: formulation
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import NamedTuple, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,12 +20,11 @@ from loadshare.scene.statics import unresisted
 from loadshare.settings import PLACES, STATICS
 from loadshare.solver.hot import places as at
 from loadshare.solver.hot.exchange import Codes
+from loadshare.solver.hot.places import FREE, HELD, LEVEL
 from loadshare.solver.hot.state import State, pushes
 from loadshare.solver.hot.vectorised import arc_at, pick
 
 Flags = NDArray[np.bool_]
-FREE, LEVEL, HELD = 0, 1, 2
-"""A radial element that carries nothing; on a level piece; at one radius, in one direction."""
 
 
 def determined(
@@ -43,19 +42,15 @@ def determined(
     held : ndarray of bool, shape (S,)
         Whether these leave no coordinate loose.
     compiled : bool
-        With Numba where that is faster: the same answer.
+        With Numba: the same answer.
     """
-    first, last = elements.springs, elements.columns.contacts.stop
-    carries = PLACES.carries * pushes(data)
+    least = PLACES.carries * pushes(data)
     if compiled:
-        from loadshare.solver.hot import products
-
-        acts = code[:, : elements.rows]
-        idle, carries = products.idle(state.force, first, acts, PLACES.carries, carries)
-    else:
-        force = state.force[:, first:last]
-        carries = np.maximum(carries, PLACES.carries * np.abs(force).max(axis=1, initial=0.0))
-        idle = ((code[:, : elements.rows] != at.OPEN) & (force <= carries[:, None])).any(axis=1)
+        return _compiled(elements, data, state, code, held, least)
+    first, last = elements.springs, elements.columns.contacts.stop
+    force = state.force[:, first:last]
+    carries = np.maximum(least, PLACES.carries * np.abs(force).max(axis=1, initial=0.0))
+    idle = ((code[:, : elements.rows] != at.OPEN) & (force <= carries[:, None])).any(axis=1)
     kinds = _kinds(elements, data, state, carries)
     unlike = (kinds != HELD) & (code[:, elements.rows :] != at.OPEN)
     found = held & ~idle & ~unlike.any(axis=1)
@@ -67,6 +62,31 @@ def determined(
         near = room <= PLACES.play
         for alike, some in _alike(np.hstack([carry.astype(np.int8), kinds[rest]])):
             found[rest[alike]] = _fixed(elements, data, state, some, rest[alike], near[alike])
+    return np.asarray(found)
+
+
+def _compiled(
+    elements: Elements, data: Data, state: State, code: Codes, held: Flags, least: Array
+) -> Flags:
+    """The same with Numba; NumPy is asked of samples that touch something that may hold them."""
+    from loadshare.solver.hot.touching import Touching
+
+    touching = Touching(elements, data, state, code, held, least)
+    number = touching.number
+    left_by = [_moves(elements, data, some) for some in touching.sets]
+    # Of every set, and of none: whether no move is left, and how few limits hold none that is.
+    fixed = np.array([*(not of.moves.shape[1] for of in left_by), True])
+    few = np.array([*(of.fewest for of in left_by), 0])
+    found, rest = (
+        fixed[number],
+        np.flatnonzero(touching.met([of.met for of in left_by]) > few[number]),
+    )
+    for alike, (at_set,) in _alike(number[rest, None]) if len(rest) else ():
+        rows = rest[alike]
+        columns = elements.columns.flat
+        room = pick(data.gap, rows)[:, columns] - state.x[rows] @ elements.vectors[columns].T
+        near = room <= PLACES.play
+        found[rows] = _fixed(elements, data, state, touching.sets[at_set], rows, near)
     return np.asarray(found)
 
 
@@ -83,7 +103,7 @@ def _kinds(elements: Elements, data: Data, state: State, carries: Array) -> Code
     return kinds
 
 
-def _alike(codes: Codes) -> Iterator[tuple[NDArray[np.intp], Codes]]:
+def _alike(codes: NDArray[Any]) -> Iterator[tuple[NDArray[np.intp], NDArray[Any]]]:
     """Yield samples that have one code, and it."""
     order = np.lexsort(codes.T) if codes.shape[1] else np.arange(len(codes))
     changes = np.flatnonzero((codes[order][1:] != codes[order][:-1]).any(axis=1)) + 1
@@ -103,6 +123,10 @@ class _Moves(NamedTuple):
     some_left: bool
     # Whether all that is met may hold every move, whatever of it a sample touches.
     may_be_held: bool
+    # What is met, if it may: numbers of flanks and stops, then arcs, radial elements; and up to how
+    # many of these that a sample touches hold none of its moves.
+    met: tuple[int, ...]
+    fewest: int
 
 
 def _moves(elements: Elements, data: Data, some: Codes) -> _Moves:
@@ -135,7 +159,14 @@ def _moves(elements: Elements, data: Data, some: Codes) -> _Moves:
     pieces = [_radial(elements, j) for j in level]
     limits = [vectors[idle], *(data.relative[a] for a in arcs)]
     limits += [_radial(elements, j) for j in free]
-    found = _Moves(moves, level, idle, arcs, free, leave(pieces), not leave(limits))
+    some_left, may_be_held = leave(pieces), not leave(limits)
+    met: list[int] = []
+    if may_be_held and moves.shape[1]:
+        met += (idle - elements.springs).tolist()
+        met += [flat + a for a in arcs]
+        met += [elements.rows + j for j in free]
+    fewest = moves.shape[1] - len(level) if some_left else -1 if may_be_held else 0
+    found = _Moves(moves, level, idle, arcs, free, some_left, may_be_held, tuple(met), fewest)
     elements.keep(key, found)
     return found
 

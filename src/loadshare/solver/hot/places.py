@@ -22,6 +22,10 @@ STICK, CORNER, PINNED, SLIP, STOP, WALL = 1, 2, 3, 4, 5, 6
 """Radial: on the first rise; on the jump at S1; on a jump at the centre; level; on the last rise;
 against a rigid stop."""
 
+FREE, LEVEL, HELD = 0, 1, 2
+"""How the force of a radial element leaves it: anywhere; on a level piece, in one direction; at one
+radius, in one direction."""
+
 DONE, OTHER, FAILED = 0, 1, 2
 """Verdicts on a set: consistent; another set is proposed; no answer on this set."""
 

@@ -62,27 +62,3 @@ def _push(force, first, unit, found):  # type: ignore[no-untyped-def]
     for s in range(found.shape[0]):
         for k in range(found.shape[1]):
             found[s, k] = max(force[s, first + k], 0.0) * unit
-
-
-def idle(
-    force: Array, first: int, code: NDArray[np.int8], share: float, least: Array
-) -> tuple[NDArray[np.bool_], Array]:
-    """Whether some closed contact carries nothing, and what a force is at least, both (S,).
-
-    See `determined`: a force is more than `share` of the largest of its sample, and than `least`.
-    """
-    found, carries = np.zeros(len(force), dtype=bool), np.empty(len(force))
-    _idle(force, first, code, share, least, found, carries)
-    return found, carries
-
-
-@jit(nogil=True)
-def _idle(force, first, code, share, least, found, carries):  # type: ignore[no-untyped-def]
-    for s in range(code.shape[0]):
-        carry = least[s]
-        for k in range(code.shape[1]):
-            carry = max(carry, share * abs(force[s, first + k]))
-        carries[s] = carry
-        for k in range(code.shape[1]):
-            if code[s, k] != 0 and force[s, first + k] <= carry:
-                found[s] = True

@@ -1,0 +1,255 @@
+"""What carries in many samples, and what they touch, compiled with Numba; see `determined`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare import compilation
+from loadshare.scene.data import Data
+from loadshare.scene.elements import Elements
+from loadshare.scene.scene import Array
+from loadshare.settings import PLACES
+from loadshare.solver.hot.places import FREE, HELD, LEVEL
+from loadshare.solver.hot.state import State
+
+Codes = NDArray[np.int8]
+_how = {"nogil": True, "error_model": "numpy", "_nrt": False}
+compiled = compilation.jit(**_how)
+inlined = compilation.within(forceinline=True, **_how)
+
+
+class Rows(NamedTuple):
+    """Entries of a matrix that are not zero, row by row."""
+
+    start: NDArray[np.intp]
+    at: NDArray[np.intp]
+    value: Array
+
+
+class Figures(NamedTuple):
+    """What varies, as in `Data`; further x (S, n), force (S, m) and what carries at least (S,)."""
+
+    x: Array
+    force: Array
+    least: Array
+    gap: Array
+    shift: Array
+    clearance: Array
+    radial: Array
+
+
+class Layout(NamedTuple):
+    """What all samples share: A, the lines between centres of arcs, levers of splines."""
+
+    vectors: Rows
+    relative: Rows  # three rows an arc
+    levers: Rows
+    nominal: Array
+    springs: int
+    flat: int
+    radials: int  # first column of radial elements
+
+
+class Touching:
+    """What carries in S samples, and what they touch.
+
+    Parameters
+    ----------
+    elements, data, state, code, held
+        As for `determined`.
+    least : ndarray, shape (S,)
+        What carries is more than this force, and than a share of the largest.
+
+    Attributes
+    ----------
+    number : ndarray of int, shape (S,)
+        Of the set that carries; −1 where all that acts carries, and no radial element is on a level
+        piece.
+    sets : ndarray of int8, shape (sets, rows + radials)
+        Which contacts carry, and how radial elements hold.
+    """
+
+    def __init__(
+        self,
+        elements: Elements,
+        data: Data,
+        state: State,
+        code: Codes,
+        held: NDArray[np.bool_],
+        least: Array,
+    ) -> None:
+        self._of = elements.kept.get(("touching",)) or elements.keep(
+            ("touching",),
+            Layout(
+                _rows(elements.vectors),
+                _rows(data.relative.reshape(-1, elements.size)),
+                _rows(data.carried),
+                data.nominal,
+                elements.springs,
+                elements.flat,
+                elements.columns.radials.start,
+            ),
+        )
+        figures = state.x, state.force, least, data.gap, data.shift, data.clearance, data.radial
+        self._here = Figures(*(np.require(array, np.float64, ["C"]) for array in figures))
+        count = len(code)
+        self.number, first = np.empty((2, count), dtype=np.intp)
+        self._carries = np.empty((count, elements.rows + len(elements.radials)), dtype=np.int8)
+        keys = np.empty(count, dtype=np.uint64)
+        sets = _number_all(
+            self._of, self._here, code, held, self.number, self._carries, first, keys
+        )
+        self.sets = self._carries[first[:sets]]
+
+    def met(self, sets: Sequence[Sequence[int]]) -> NDArray[np.intp]:
+        """How many elements every sample touches, (S,), of those asked for of its set.
+
+        Elements are flanks and stops, then arcs, then radial elements.
+        """
+        start = np.cumsum([0, *map(len, sets)])
+        elements = np.array([e for asked in sets for e in asked], dtype=np.intp)
+        found = np.zeros(len(self.number), dtype=np.intp)
+        _touch_all(self._of, self._here, self.number, self._carries, start, elements, found)
+        return found
+
+
+def _rows(matrix: Array) -> Rows:
+    rows, at = np.nonzero(matrix)
+    return Rows(np.searchsorted(rows, np.arange(len(matrix) + 1)), at, matrix[rows, at])
+
+
+@compiled
+def _number_all(of, here, code, held, number, carries, first, key):  # type: ignore[no-untyped-def]
+    """Tell and number what carries; returns how many sets there are."""
+    count, contacts, last = 0, carries.shape[1] - here.radial.shape[1], 0
+    for s in range(len(code)):
+        least, plain = here.least[s], held[s]
+        for k in range(contacts):
+            least = max(least, PLACES.carries * abs(here.force[s, of.springs + k]))
+        for k in range(contacts):
+            carries[s, k] = here.force[s, of.springs + k] > least
+            plain &= code[s, k] == 0 or carries[s, k] != 0
+        for j in range(here.radial.shape[1]):
+            carries[s, contacts + j] = _holds(of, here, s, j, least)
+            plain &= code[s, contacts + j] == 0 or carries[s, contacts + j] == HELD
+        number[s] = -1
+        if not plain:
+            number[s], count = _numbered(s, carries, first, key, count, last)
+            last = number[s]
+    return count
+
+
+@compiled
+def _touch_all(of, here, number, carries, start, elements, found):  # type: ignore[no-untyped-def]
+    """See `Touching.met`."""
+    for s in range(len(found)):
+        if number[s] >= 0:
+            for i in range(start[number[s]], start[number[s] + 1]):
+                found[s] += _touches(of, here, s, elements[i], carries)
+
+
+@inlined
+def _row(array, s):  # type: ignore[no-untyped-def]
+    """Row of a sample, or the only one."""
+    return s if len(array) > 1 else 0
+
+
+@inlined
+def _graph(of, here, s, j):  # type: ignore[no-untyped-def]
+    """S1, level and S2 of a radial element (see `places.graph`)."""
+    law = here.radial[_row(here.radial, s), j]
+    stiffness, given, reach, level = law[0], law[1], law[2], law[3]
+    if np.isnan(level):
+        torque = 0.0
+        for i in range(of.levers.start[j], of.levers.start[j + 1]):
+            torque += of.levers.value[i] * here.force[s, of.levers.at[i]]
+        level = law[4] * abs(torque)
+    stick = level / stiffness if stiffness > 0.0 else 0.0
+    if not np.isnan(given):
+        return min(given, stick), level, reach
+    return np.inf if reach < stick else stick, level, reach
+
+
+@inlined
+def _holds(of, here, s, j, least):  # type: ignore[no-untyped-def]
+    """How a radial element holds."""
+    stick, level, reach = _graph(of, here, s, j)
+    x, y = here.force[s, of.radials + 2 * j], here.force[s, of.radials + 2 * j + 1]
+    size = np.hypot(x, y)
+    if abs(size - level) <= least and reach > stick:
+        return FREE if size <= least else LEVEL
+    return HELD
+
+
+@inlined
+def _along(rows, k, here, s):  # type: ignore[no-untyped-def]
+    """Row k of a matrix times the coordinates."""
+    total = 0.0
+    for i in range(rows.start[k], rows.start[k + 1]):
+        total += rows.value[i] * here.x[s, rows.at[i]]
+    return total
+
+
+@inlined
+def _touches(of, here, s, element, carries):  # type: ignore[no-untyped-def]
+    """Whether a sample touches a flank or stop, an arc, a radial element."""
+    flat, arcs, r = of.flat, len(of.nominal), _row(here.gap, s)
+    if element < flat:
+        c = of.springs + element
+        return here.gap[r, c] - _along(of.vectors, c, here, s) <= PLACES.play
+    if element < flat + arcs:
+        return _margin(of, here, s, element - flat) <= PLACES.play
+    j = element - flat - arcs
+    stick, _, reach = _graph(of, here, s, j)
+    c = of.radials + 2 * j
+    x = _along(of.vectors, c, here, s) - here.gap[r, c]
+    y = _along(of.vectors, c + 1, here, s) - here.gap[r, c + 1]
+    radius = np.sqrt(x * x + y * y)
+    is_level = carries[s, carries.shape[1] - here.radial.shape[1] + j] == LEVEL
+    # It may be told twice, at either end of a level piece.
+    return (reach - radius <= PLACES.play) + (is_level and radius - stick <= PLACES.play)
+
+
+@inlined
+def _margin(of, here, s, a):  # type: ignore[no-untyped-def]
+    """Margin of an arc (see `vectorised.arc_at`)."""
+    r, along, square, nominal = _row(here.shift, s), 0.0, 0.0, 0.0
+    for i in range(3):
+        moved = here.shift[r, a, i] + _along(of.relative, 3 * a + i, here, s)
+        nominal += of.nominal[a, i] * of.nominal[a, i]
+        along += of.nominal[a, i] * moved
+        square += moved * moved
+    margin, distance = along, np.sqrt(nominal)
+    if nominal + along > 0.0:
+        grown = 2.0 * along + square
+        margin = grown / (np.sqrt(nominal + grown) + distance)
+    else:
+        margin = along / distance
+    return margin + here.clearance[_row(here.clearance, s), a]
+
+
+@inlined
+def _numbered(s, carries, first, key, count, last):  # type: ignore[no-untyped-def]
+    """Number of the set that carries, and how many sets there are."""
+    own = np.uint64(0)
+    for k in range(carries.shape[1]):
+        own = own * np.uint64(6364136223846793005) + np.uint64(1 + carries[s, k])
+    if last < count and key[last] == own and _same(carries, s, first[last]):
+        return last, count
+    for k in range(count):
+        if key[k] == own and _same(carries, s, first[k]):
+            return k, count
+    first[count], key[count] = s, own
+    return count, count + 1
+
+
+@inlined
+def _same(carries, one, other):  # type: ignore[no-untyped-def]
+    same = True
+    for k in range(carries.shape[1]):
+        same &= carries[one, k] == carries[other, k]
+    return same
