@@ -448,7 +448,9 @@ def cone_membership(state: State, band: float) -> dict[str, float]:
         size = float(np.linalg.norm(pull.reaction))
         low, high = pull.law.interval(radius, band)
         along = size
-        sideways = 0.0
+        # Within the band it has no direction, but none along its gear's axis either.
+        frame = state.train.gears[pull.gear].frame
+        sideways = float(np.linalg.norm(pull.reaction - frame.T @ (frame @ pull.reaction)))
         if radius > band:
             outward = pull.offset / radius
             along = -float(pull.reaction @ outward)

@@ -93,6 +93,7 @@ def cone_membership(state: State) -> Blocks:
     """Excess [N] of a force over what its contact or graph admits.
 
     Within a band about its radius, a graph's corner admits its whole step.
+    Within the band about its centre an element has no direction, but none along its axis either.
     """
     of, band = state.of, CERTIFY.band * state.deflection
     blocks = [(-state.force, of.contacts)]
@@ -117,7 +118,8 @@ def _beside_graphs(state: State, band: Array) -> Array:
     along = np.where(out, leaning, force)
     sideways = size(reaction + leaning[:, None] * outward) - force * band / radius
     excess = np.maximum(low - along, along - high)
-    return np.asarray(np.maximum(excess, np.where(out, sideways, 0.0)))
+    lifting = size(state.of.lift[state.of.pulled] @ reaction)
+    return np.asarray(np.maximum(excess, np.where(out, sideways, lifting)))
 
 
 def _squeezes(state: State, band: Array) -> Array:

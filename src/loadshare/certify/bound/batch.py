@@ -174,9 +174,9 @@ class Sheet(NamedTuple):
     line: Array
     turn: Array
     stiffest: Array
-    beside: Array  # part of the claimed reactions that is not of their graph [N]
-    pull: Array
-    distance: Array
+    law: Array  # of radial elements
+    offset: Array
+    pull: Array  # in the gear's frame and along its axis
     shift: Array
 
 
@@ -274,7 +274,7 @@ class Plan:
         of, m, n = self.layout, len(self.layout.start) - 1, self.contacts.shape[1]
         arcs, pulls = len(of.apart), len(self.pulls)
         first = n, m, len(of.arm), self.varying, m, n, n, len(self.contacts), (arcs, 2), arcs
-        sizes = *first, *[pulls] * 4, (len(of.radius), 3)
+        sizes = *first, pulls, (pulls, 6), (pulls, 2), (pulls, 3), (len(of.radius), 3)
         return Sheet(*(np.zeros(size) for size in sizes))
 
     def found(self, count: int) -> Found:

@@ -49,12 +49,12 @@ def find_all(of, here, claim, sheet, found, sets):  # type: ignore[no-untyped-de
         for q in range(len(of.pull_gear)):
             at, soft = len(of.twin) + len(of.spring) + q, sheet.stiffest[q]
             _spread(sets, found.number[s], at, soft, soft)
-        residual, unbalanced = _balance(of, here, s, sheet, found)
+        residual = _balance(of, here, s, sheet, found)
         found.residual[s] = residual if lawful and covered else np.inf
         found.width[s] = EPS * (terms + longest + max(yielded, further))
         deflection = max(bent, largest)
         deflection = deflection if deflection > 0.0 else CERTIFY.least_deflection
-        worst = _worst(of, here, claim, s, sheet, found, unbalanced, deflection, seen)
+        worst = _worst(of, here, claim, s, sheet, found, deflection, seen)
         found.worst[s] = worst if lawful and not behind else np.inf
         found.deflection[s] = deflection
         found.displaced[s] = _displaced(of, here, claim, s, sheet, deflection)
@@ -501,7 +501,7 @@ def _pulls(of, here, claim, s, sheet, found, top, widest):  # type: ignore[no-un
             fx -= of.frame[g, 0, i] * claim.radial_reaction[s, q, i]
             fy -= of.frame[g, 1, i] * claim.radial_reaction[s, q, i]
             lifting += of.axis[g, i] * claim.radial_reaction[s, q, i]
-        claimed_x, claimed_y = fx, fy
+        claimed_x, claimed_y, away_x, away_y = fx, fy, x, y
         distance, force = np.sqrt(x * x + y * y), np.sqrt(fx * fx + fy * fy)
         lawful &= force < np.inf and distance < np.inf
         lawful &= stick >= 0.0 and level >= 0.0 and reach >= 0.0
@@ -528,9 +528,10 @@ def _pulls(of, here, claim, s, sheet, found, top, widest):  # type: ignore[no-un
             found.room[s] = min(found.room[s], reach - distance)
         longest = max(longest, abs(of.centre[q, 0]) + abs(of.centre[q, 1]) + distance)
         sheet.force[j], sheet.force[j + 1] = fx, fy
-        other_x, other_y = claimed_x - fx, claimed_y - fy
-        sheet.beside[q] = np.sqrt(other_x * other_x + other_y * other_y + lifting * lifting)
-        sheet.pull[q], sheet.distance[q] = force, distance
+        for k in range(len(law)):
+            sheet.law[q, k] = law[k]
+        sheet.offset[q, 0], sheet.offset[q, 1] = away_x, away_y
+        sheet.pull[q, 0], sheet.pull[q, 1], sheet.pull[q, 2] = claimed_x, claimed_y, lifting
         sheet.stiffest[q] = _stiffest(law)
         found.misfit[s, at + 2 * q], found.misfit[s, at + 2 * q + 1] = misfit_x, misfit_y
         found.held[s, q] = np.inf
@@ -582,7 +583,7 @@ def _nearest(law, force, distance, corner):  # type: ignore[no-untyped-def]
 
 @inlined
 def _balance(of, here, s, sheet, found):  # type: ignore[no-untyped-def]
-    """Load that is left over [N]; returns the largest, with its rounding and without."""
+    """Load that is left over [N]; returns the largest, with its rounding."""
     left, sizes, force = sheet.left, sheet.sizes, sheet.force
     left[:], sizes[:], largest = 0.0, 0.0, 0.0
     r = _row(here.torque, s)
@@ -597,42 +598,83 @@ def _balance(of, here, s, sheet, found):  # type: ignore[no-untyped-def]
                 term, c = of.value[i] * force[j], of.at[i]
                 left[c] -= term
                 sizes[c] += abs(term)
-    found.push[s], residual, rounding, total, unbalanced = largest, 0.0, 0.0, 0.0, 0.0
+    found.push[s], residual, rounding, total = largest, 0.0, 0.0, 0.0
     for c in range(len(left)):
         found.left[s, c] = left[c]
-        unbalanced = max(unbalanced, abs(left[c]))
         most = abs(left[c]) + EPS * sizes[c]
         residual, total = max(residual, most), total + most
         rounding = max(rounding, EPS * sizes[c])
     found.rounding[s] = rounding + EPS * residual
     # The largest may have passed over what is not a number.
-    return (residual, unbalanced) if total < np.inf else (np.inf, np.inf)
+    return residual if total < np.inf else np.inf
 
 
 @inlined
-def _worst(of, here, claim, s, sheet, found, unbalanced, deflection, seen):  # type: ignore[no-untyped-def]
+def _worst(of, here, claim, s, sheet, found, deflection, seen):  # type: ignore[no-untyped-def]
     """Largest scaled residual of a claim: of balance, laws, signs, and what is no column.
 
     Not a number where something claimed is none, and where two opposed contacts carry: these are
     for `residuals`.
     """
     load, (length, work, pull, total) = found.scale[s], seen
-    for k in range(len(of.twin), found.misfit.shape[1]):
-        length, total = max(length, abs(found.misfit[s, k])), total + found.misfit[s, k]
+    for k in range(found.misfit.shape[1]):
+        total += found.misfit[s, k]
+    for k in range(len(of.twin), len(of.twin) + len(of.spring)):
+        length = max(length, abs(found.misfit[s, k]))
     strayed, free = _strayed(of, here, claim, s), _free(of, here, claim, s)
-    length, force = max(length, strayed), max(max(unbalanced, pull), free)
-    band = CERTIFY.band * deflection
-    for q in range(len(sheet.beside)):
-        # Within the band about its centre an element has no direction.
-        if sheet.distance[q] > band:
-            turned = sheet.pull[q] * band / sheet.distance[q]
-            force, total = max(force, sheet.beside[q] - turned), total + sheet.beside[q]
+    length, force, band = max(length, strayed), max(pull, free), CERTIFY.band * deflection
+    left = sheet.left
+    for q in range(len(of.pull_gear)):
+        # The load is left over by what is claimed, not by the point of the graph next to it.
+        for j in range(of.first_pull + 2 * q, of.first_pull + 2 * q + 2):
+            left[of.at[of.start[j]]] += sheet.force[j] - sheet.pull[q, j - of.first_pull - 2 * q]
+        force = max(force, _excess(sheet.law[q], sheet.offset[q], sheet.pull[q], band))
+        if np.isinf(sheet.law[q, 4]):
+            x, y = sheet.offset[q, 0], sheet.offset[q, 1]
+            length = max(length, np.sqrt(x * x + y * y) - sheet.law[q, 3])
+    for c in range(len(left)):
+        force, total = max(force, abs(left[c])), total + left[c]
     for d in of.squeezed:
         force = max(force, _squeeze(of, here, claim, s, sheet, d, band))
     worst = max(max(force / load, length / deflection), work / (load * deflection))
     for c in range(len(sheet.x)):
         total += sheet.x[c]
     return worst + 0.0 * (total + strayed + free)
+
+
+@inlined
+def _excess(law, offset, pull, band):  # type: ignore[no-untyped-def]
+    """Excess [N] of a radial element's pull over what its graph admits (see `residuals`)."""
+    x, y, lifting = offset[0], offset[1], abs(pull[2])
+    radius, force = np.sqrt(x * x + y * y), np.sqrt(pull[0] * pull[0] + pull[1] * pull[1])
+    low, high = _interval(law, radius, band)
+    along, sideways = force, 0.0
+    if radius > band:
+        along = (pull[0] * x + pull[1] * y) / radius
+        sideways = abs(pull[0] * y - pull[1] * x) / radius - force * band / radius
+    return max(max(low - along, along - high), max(sideways, lifting))
+
+
+@inlined
+def _interval(law, radius, band):  # type: ignore[no-untyped-def]
+    """Forces that a graph admits within the band about a radius."""
+    first, stick, level, reach, last = law[0], law[1], law[2], law[3], law[4]
+    low, high = np.inf, 0.0
+    inner, outer = radius - band, radius + band
+    throughout = np.isinf(stick)
+    level_end = max(reach, 0.0 if throughout else stick)
+    if stick > 0.0 and inner <= stick:
+        low, high = first * max(inner, 0.0), first * min(outer, stick)
+    if level_end > stick and stick <= outer and inner <= level_end:
+        low, high = min(low, level), max(high, level)
+    if np.isfinite(last) and not throughout and outer >= level_end:
+        low = min(low, level + last * max(inner - level_end, 0.0))
+        high = max(high, level + last * max(outer - level_end, 0.0))
+    if radius <= band:
+        low = 0.0
+    if np.isinf(last) and radius >= reach - band:
+        low, high = min(low, level), np.inf
+    return low, high
 
 
 @inlined
