@@ -162,8 +162,7 @@ def _side_by_side(elements: Elements, blocks: list[Block], factor: float) -> Arr
     """Put values in their columns, times a factor; zero elsewhere."""
     table = np.zeros((max(len(values) for _, values in blocks), len(elements.names)))
     for columns, values in blocks:
-        table[:, columns] = values
-    table *= factor
+        np.multiply(values, factor, out=table[:, columns])
     return table
 
 

@@ -161,23 +161,25 @@ class Sets(NamedTuple):
 
 
 class Sheet(NamedTuple):
-    """What is found of the claim at hand, overwritten by the next."""
+    """What is found of the claims at hand, overwritten by the next; w of them stand abreast."""
 
-    x: Array
-    length: Array
-    at_rest: Array
-    varying: Array
-    force: Array
-    left: Array
-    sizes: Array
-    gap: Array
-    line: Array
-    turn: Array
-    stiffest: Array
-    law: Array  # of radial elements
-    offset: Array
-    pull: Array  # in the gear's frame and along its axis
-    shift: Array
+    x: Array  # (n, w): coordinates [m]
+    varying: Array  # (…, w): clockings and offsets
+    shift: Array  # (3 gears, w): where gears are off their nominal centres [m]
+    length: Array  # (m, w) [m]
+    at_rest: Array  # (e, w): approach that remains when nothing turns or moves [m]
+    across: Array  # (e, w): turns of lines of action
+    force: Array  # (m, w) [N]
+    excess: Array  # (2 q, w): force of radial elements beyond their graph [N]
+    left: Array  # (n, w): load that is left over [N]
+    sizes: Array  # (n, w): sum of the sizes of its terms
+    gap: Array  # (c,) [m]
+    line: Array  # (2 d, 2): unit vectors of arcs
+    turn: Array  # (2 d,)
+    stiffest: Array  # (q,) [m/N]
+    law: Array  # (q, 6): of radial elements
+    offset: Array  # (q, 2): from their centres [m]
+    pull: Array  # (q, 3): claimed, in the gear's frame and along its axis [N]
 
 
 def is_covered(columns: Columns) -> bool:
@@ -272,9 +274,10 @@ class Plan:
     def sheet(self) -> Sheet:
         """Return an empty sheet."""
         of, m, n = self.layout, len(self.layout.start) - 1, self.contacts.shape[1]
-        arcs, pulls = len(of.apart), len(self.pulls)
-        first = n, m, len(of.arm), self.varying, m, n, n, len(self.contacts), (arcs, 2), arcs
-        sizes = *first, pulls, (pulls, 6), (pulls, 2), (pulls, 3), (len(of.radius), 3)
+        arcs, pulls, flanks, gears = len(of.apart), len(self.pulls), len(of.arm), len(of.radius)
+        abreast = n, self.varying, 3 * gears, m, flanks, flanks, m, 2 * pulls, n, n
+        single = len(self.contacts), (arcs, 2), arcs, pulls, (pulls, 6), (pulls, 2), (pulls, 3)
+        sizes = *((size, BOUND.abreast) for size in abreast), *single
         return Sheet(*(np.zeros(size) for size in sizes))
 
     def found(self, count: int) -> Found:

@@ -34,30 +34,42 @@ inlined = compilation.within(forceinline=True, **_how)
 
 @compiled
 def find_all(of, here, claim, sheet, found, sets):  # type: ignore[no-untyped-def]
-    """Put all claims into figures; returns how many sets of elements act in them."""
-    count, last = 0, 0
-    for s in range(len(claim.rotation)):
-        top = _loads(of, here, claim, s, found)
-        terms, deflection, largest = _lengths(of, here, claim, s, sheet)
-        widest, behind = _gaps(of, here, s, sheet)
-        _acts(of, here, claim, s, sheet, found, top, deflection, widest)
-        longest, lawful, covered = _pulls(of, here, claim, s, sheet, found, top, widest)
-        count, last = _numbered(s, found.acts, sets, count, last)
-        found.number[s] = last
-        yielded, bent, seen = _contacts(of, here, claim, s, sheet, found, sets)
-        further = _springs(of, here, claim, s, sheet, found, sets)
-        for q in range(len(of.pull_gear)):
-            at, soft = len(of.twin) + len(of.spring) + q, sheet.stiffest[q]
-            _spread(sets, found.number[s], at, soft, soft)
-        residual = _balance(of, here, s, sheet, found)
-        found.residual[s] = residual if lawful and covered else np.inf
-        found.width[s] = EPS * (terms + longest + max(yielded, further))
-        deflection = max(bent, largest)
-        deflection = deflection if deflection > 0.0 else CERTIFY.least_deflection
-        worst = _worst(of, here, claim, s, sheet, found, deflection, seen)
-        found.worst[s] = worst if lawful and not behind else np.inf
-        found.deflection[s] = deflection
-        found.displaced[s] = _displaced(of, here, claim, s, sheet, deflection)
+    """Put all claims into figures; returns how many sets of elements act in them.
+
+    Products with A and its transpose are those of some claims side by side; the rest goes claim by
+    claim.
+    """
+    count, last, claims = 0, 0, len(claim.rotation)
+    for first in range(0, claims, BOUND.abreast):
+        width = min(BOUND.abreast, claims - first)
+        for v in range(width):
+            _places(of, here, claim, first + v, sheet, v, found)
+        _lengths(of, sheet, width)
+        for v in range(width):
+            s = first + v
+            top = _loads(of, here, claim, s, found)
+            limits, approach = _limits(of, here, s, sheet, v)
+            widest, behind = _gaps(of, here, s, sheet, v)
+            _acts(of, here, claim, s, sheet, found, top, approach, widest)
+            longest, lawful, covered = _pulls(of, here, claim, s, sheet, v, found, top, widest)
+            count, last = _numbered(s, found.acts, sets, count, last)
+            found.number[s] = last
+            yielded, bent, seen = _contacts(of, here, claim, s, sheet, v, found, sets)
+            further = _springs(of, here, claim, s, sheet, v, found, sets)
+            for q in range(len(of.pull_gear)):
+                at, soft = len(of.twin) + len(of.spring) + q, sheet.stiffest[q]
+                _spread(sets, found.number[s], at, soft, soft)
+            found.residual[s] = 0.0 if lawful and covered else np.inf
+            found.width[s] = EPS * (found.width[s] + limits + longest + max(yielded, further))
+            deflection = max(bent, found.deflection[s])
+            deflection = deflection if deflection > 0.0 else CERTIFY.least_deflection
+            worst = _worst(of, here, claim, s, sheet, v, found, deflection, seen)
+            found.worst[s] = worst if lawful and not behind else np.inf
+            found.deflection[s] = deflection
+            found.displaced[s] = _displaced(of, claim, s, sheet, v, deflection)
+        _pushes(of, sheet, width)
+        for v in range(width):
+            _balance(of, here, first + v, sheet, v, found)
     return count
 
 
@@ -192,64 +204,94 @@ def _stiffest(law):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _lengths(of, here, claim, s, sheet):  # type: ignore[no-untyped-def]
-    """Coordinates and lengths A X − g [m].
+def _places(of, here, claim, s, sheet, v, found):  # type: ignore[no-untyped-def]
+    """Coordinates, clockings and offsets of a claim [m], and where its gears are.
 
-    Returns the sum of the largest sizes of their terms, the largest approach of flanks, and the
-    largest offset of a centre.
+    Writes the sum of the largest sizes of both as its width, and the largest offset of a centre as
+    its deflection.
     """
-    x, length, varying = sheet.x, sheet.length, sheet.varying
-    widest, offsets, limits, deflection, furthest = 0.0, 0.0, 0.0, 0.0, 0.0
+    x, varying, shift = sheet.x, sheet.varying, sheet.shift
+    widest, offsets, furthest, moving = 0.0, 0.0, 0.0, claim.displacement
     for k in range(len(of.turn)):
-        x[of.turn[k, 0]] = of.turn_radius[k] * claim.rotation[s, of.turn[k, 1]]
+        x[of.turn[k, 0], v] = of.turn_radius[k] * claim.rotation[s, of.turn[k, 1]]
     for k in range(len(of.place)):
         at, g = of.place[k, 0], of.place[k, 1]
         for a in range(2):
             moved = 0.0
             for i in range(3):
-                moved += of.frame[g, a, i] * claim.displacement[s, g, i]
-            x[at + a] = moved
+                moved += of.frame[g, a, i] * moving[s, g, i]
+            x[at + a, v] = moved
     for c in range(len(x)):
-        widest = max(widest, abs(x[c]))
+        widest = max(widest, abs(x[c, v]))
     r, shafts = _row(here.offset, s), here.clocking.shape[1]
     for k in range(shafts):
-        varying[k] = here.clocking[_row(here.clocking, s), k]
+        varying[k, v] = here.clocking[_row(here.clocking, s), k]
     for g in range(here.offset.shape[1]):
         square = 0.0
         for i in range(3):
             offset = here.offset[r, g, i]
-            varying[shafts + 3 * g + i] = offset
+            varying[shafts + 3 * g + i, v] = offset
+            shift[3 * g + i, v] = moving[s, g, i] + offset
             offsets, square = max(offsets, abs(offset)), square + offset * offset
         furthest = max(furthest, square)
+    found.width[s], found.deflection[s] = widest + offsets, np.sqrt(furthest)
+
+
+@inlined
+def _lengths(of, sheet, width):  # type: ignore[no-untyped-def]
+    """Lengths A X [m] with clockings and offsets, what of them remains at rest, turns of lines."""
+    x, varying, length, at_rest, across = (
+        sheet.x,
+        sheet.varying,
+        sheet.length,
+        sheet.at_rest,
+        sheet.across,
+    )
     for j in range(len(length)):
-        total = 0.0
+        for v in range(width):
+            length[j, v] = 0.0
         for i in range(of.start[j], of.start[j + 1]):
-            total += of.value[i] * x[of.at[i]]
+            value, c = of.value[i], of.at[i]
+            for v in range(width):
+                length[j, v] += value * x[c, v]
         for i in range(of.rest_start[j], of.rest_start[j + 1]):
-            total += of.rest_value[i] * varying[of.rest_at[i]]
-        length[j] = total
-    for e in range(len(of.arm)):
-        shifted = 0.0
+            value, c = of.rest_value[i], of.rest_at[i]
+            for v in range(width):
+                length[j, v] += value * varying[c, v]
+    for e in range(len(at_rest)):
+        for v in range(width):
+            at_rest[e, v] = across[e, v] = 0.0
         for i in range(of.rest_shift[e], of.rest_start[e + 1]):
-            shifted += of.rest_value[i] * varying[of.rest_at[i]]
-        sheet.at_rest[e] = shifted
+            value, c = of.rest_value[i], of.rest_at[i]
+            for v in range(width):
+                at_rest[e, v] += value * varying[c, v]
+        for k in range(3):
+            value, i, j = of.across[e, k], 3 * of.ends[e, 0] + k, 3 * of.ends[e, 1] + k
+            for v in range(width):
+                across[e, v] += value * (sheet.shift[i, v] - sheet.shift[j, v])
+
+
+@inlined
+def _limits(of, here, s, sheet, v):  # type: ignore[no-untyped-def]
+    """Take gaps and floats from the lengths [m]; returns the largest, and the largest approach."""
+    limits, approach, length = 0.0, 0.0, sheet.length
     rg, rj, rs = _row(here.gap, s), _row(here.backlash, s), _row(here.stop, s)
     for e in range(len(of.arm)):
         m = of.mesh[e]
         gap = here.gap[rg, m] if of.is_drive[e] else here.backlash[rj, m]
-        length[e] -= gap
-        sheet.at_rest[e] -= gap
-        limits, deflection = max(limits, abs(gap)), max(deflection, length[e])
+        length[e, v] -= gap
+        sheet.at_rest[e, v] -= gap
+        limits, approach = max(limits, abs(gap)), max(approach, length[e, v])
     for d in range(len(of.drum_gear)):
         for side in range(2):
             limit = here.stop[rs, d, side]
-            length[of.first_stop + 2 * d + side] -= limit
+            length[of.first_stop + 2 * d + side, v] -= limit
             limits = max(limits, abs(limit))
-    return widest + offsets + limits, deflection, np.sqrt(furthest)
+    return limits, approach
 
 
 @inlined
-def _gaps(of, here, s, sheet):  # type: ignore[no-untyped-def]
+def _gaps(of, here, s, sheet, v):  # type: ignore[no-untyped-def]
     """Gaps of flanks, stops and arcs, and unit vectors of the latter.
 
     Returns the widest gap, and whether a gear stands beyond a neighbour on whose ring its own
@@ -257,15 +299,15 @@ def _gaps(of, here, s, sheet):  # type: ignore[no-untyped-def]
     """
     flanks, drums, behind = len(of.arm), len(of.drum_gear), False
     for e in range(flanks):
-        sheet.gap[e] = -sheet.length[e]
+        sheet.gap[e] = -sheet.length[e, v]
     for k in range(2 * drums):
-        sheet.gap[flanks + k] = -sheet.length[of.first_stop + k]
+        sheet.gap[flanks + k] = -sheet.length[of.first_stop + k, v]
     ra, rc = _row(here.arc_shift, s), _row(here.arc_clearance, s)
     for k in range(2 * drums):
         d, side = k // 2, k % 2
         apart, along, square = of.apart[k], 0.0, 0.0
         for a in range(2):
-            moved = sheet.length[of.first_arc + 2 * k + a]
+            moved = sheet.length[of.first_arc + 2 * k + a, v]
             for i in range(3):
                 moved += of.frame[of.drum_gear[d], a, i] * here.arc_shift[ra, d, side, i]
             sheet.line[k, a] = moved
@@ -404,7 +446,7 @@ def _by_table(forces, compressions, force, near):  # type: ignore[no-untyped-def
 
 
 @inlined
-def _contacts(of, here, claim, s, sheet, found, sets):  # type: ignore[no-untyped-def]
+def _contacts(of, here, claim, s, sheet, v, found, sets):  # type: ignore[no-untyped-def]
     """Forces and misfits of contacts.
 
     Returns their largest compression [m], that of loaded flanks or what remains of their approach
@@ -420,15 +462,15 @@ def _contacts(of, here, claim, s, sheet, found, sets):  # type: ignore[no-untype
         force = claimed if acts else 0.0
         pull, total, misfit = max(pull, -claimed), total + claimed, 0.0
         if c < flanks:
-            sheet.force[c] = force
+            sheet.force[c, v] = force
             if claimed > 0.0:
-                bent = max(bent, abs(sheet.at_rest[c]))
+                bent = max(bent, abs(sheet.at_rest[c, v]))
         elif c < arcs:
-            sheet.force[of.first_stop + c - flanks] = force
+            sheet.force[of.first_stop + c - flanks, v] = force
         else:
             k = c - arcs
             for a in range(2):
-                sheet.force[of.first_arc + 2 * k + a] = -force * sheet.line[k, a]
+                sheet.force[of.first_arc + 2 * k + a, v] = -force * sheet.line[k, a]
         if acts:
             if c < flanks:
                 law = _flank(of, here, s, c, force, found.scale[s])
@@ -464,7 +506,7 @@ def _contacts(of, here, claim, s, sheet, found, sets):  # type: ignore[no-untype
 
 
 @inlined
-def _springs(of, here, claim, s, sheet, found, sets):  # type: ignore[no-untyped-def]
+def _springs(of, here, claim, s, sheet, v, found, sets):  # type: ignore[no-untyped-def]
     """Forces and misfits of elastic shafts and bearings; returns their largest deflection [m]."""
     yielded, first = 0.0, len(of.twin)
     for k in range(len(of.spring)):
@@ -476,14 +518,14 @@ def _springs(of, here, claim, s, sheet, found, sets):  # type: ignore[no-untyped
             soft = 1.0 / here.support[_row(here.support, s), number, axis]
             force = claim.support_force[s, number, axis]
         _spread(sets, found.number[s], first + k, soft, soft)
-        sheet.force[j] = force
-        found.misfit[s, first + k] = sheet.length[j] - soft * force
+        sheet.force[j, v] = force
+        found.misfit[s, first + k] = sheet.length[j, v] - soft * force
         yielded = max(yielded, abs(soft * force))
     return yielded
 
 
 @inlined
-def _pulls(of, here, claim, s, sheet, found, top, widest):  # type: ignore[no-untyped-def]
+def _pulls(of, here, claim, s, sheet, v, found, top, widest):  # type: ignore[no-untyped-def]
     """Forces and misfits of radial elements: the point of their graph next to what is claimed.
 
     Returns the largest of their lengths [m], whether their laws have a meaning, and whether they
@@ -495,7 +537,7 @@ def _pulls(of, here, claim, s, sheet, found, top, widest):  # type: ignore[no-un
         g, j, rate = of.pull_gear[q], of.first_pull + 2 * q, 0.0
         law = _law(of, here, claim, s, q)
         stick, level, reach = law[1], law[2], law[3]
-        x, y = sheet.length[j] - of.centre[q, 0], sheet.length[j + 1] - of.centre[q, 1]
+        x, y = sheet.length[j, v] - of.centre[q, 0], sheet.length[j + 1, v] - of.centre[q, 1]
         fx, fy, lifting = 0.0, 0.0, 0.0
         for i in range(3):
             fx -= of.frame[g, 0, i] * claim.radial_reaction[s, q, i]
@@ -527,7 +569,8 @@ def _pulls(of, here, claim, s, sheet, found, top, widest):  # type: ignore[no-un
             fx, fy = 0.0, 0.0
             found.room[s] = min(found.room[s], reach - distance)
         longest = max(longest, abs(of.centre[q, 0]) + abs(of.centre[q, 1]) + distance)
-        sheet.force[j], sheet.force[j + 1] = fx, fy
+        sheet.force[j, v], sheet.force[j + 1, v] = fx, fy
+        sheet.excess[2 * q, v], sheet.excess[2 * q + 1, v] = claimed_x - fx, claimed_y - fy
         for k in range(len(law)):
             sheet.law[q, k] = law[k]
         sheet.offset[q, 0], sheet.offset[q, 1] = away_x, away_y
@@ -582,36 +625,56 @@ def _nearest(law, force, distance, corner):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _balance(of, here, s, sheet, found):  # type: ignore[no-untyped-def]
-    """Load that is left over [N]; returns the largest, with its rounding."""
+def _pushes(of, sheet, width):  # type: ignore[no-untyped-def]
+    """What forces carry of the load at every coordinate [N], and the sizes of its terms."""
     left, sizes, force = sheet.left, sheet.sizes, sheet.force
-    left[:], sizes[:], largest = 0.0, 0.0, 0.0
-    r = _row(here.torque, s)
-    for k in range(len(of.load)):
-        due, c = here.torque[r, of.load[k, 1]] / of.load_radius[k], of.load[k, 0]
-        left[c] += due
-        sizes[c] += abs(due)
-    for j in range(len(force)):
-        if force[j] != 0.0:
-            largest = max(largest, abs(force[j]))
-            for i in range(of.start[j], of.start[j + 1]):
-                term, c = of.value[i] * force[j], of.at[i]
-                left[c] -= term
-                sizes[c] += abs(term)
-    found.push[s], residual, rounding, total = largest, 0.0, 0.0, 0.0
     for c in range(len(left)):
-        found.left[s, c] = left[c]
-        most = abs(left[c]) + EPS * sizes[c]
-        residual, total = max(residual, most), total + most
-        rounding = max(rounding, EPS * sizes[c])
-    found.rounding[s] = rounding + EPS * residual
-    # The largest may have passed over what is not a number.
-    return residual if total < np.inf else np.inf
+        for v in range(width):
+            left[c, v] = sizes[c, v] = 0.0
+    for j in range(len(force)):
+        for i in range(of.start[j], of.start[j + 1]):
+            value, c = of.value[i], of.at[i]
+            for v in range(width):
+                term = value * force[j, v]
+                left[c, v] -= term
+                sizes[c, v] += abs(term)
 
 
 @inlined
-def _worst(of, here, claim, s, sheet, found, deflection, seen):  # type: ignore[no-untyped-def]
-    """Largest scaled residual of a claim: of balance, laws, signs, and what is no column.
+def _balance(of, here, s, sheet, v, found):  # type: ignore[no-untyped-def]
+    """Load that is left over [N]: the largest, with its rounding; and over the load of the case."""
+    left, sizes, largest, r = sheet.left, sheet.sizes, 0.0, _row(here.torque, s)
+    for k in range(len(of.load)):
+        due, c = here.torque[r, of.load[k, 1]] / of.load_radius[k], of.load[k, 0]
+        left[c, v] += due
+        sizes[c, v] += abs(due)
+    for j in range(len(sheet.force)):
+        largest = max(largest, abs(sheet.force[j, v]))
+    residual, rounding, total = 0.0, 0.0, 0.0
+    for c in range(len(left)):
+        found.left[s, c] = left[c, v]
+        most = abs(left[c, v]) + EPS * sizes[c, v]
+        residual, total = max(residual, most), total + most
+        rounding = max(rounding, EPS * sizes[c, v])
+    found.push[s], found.rounding[s] = largest, rounding + EPS * residual
+    for j in range(2 * len(of.pull_gear)):
+        # What is claimed leaves it over, not the point of the graph next to it.
+        left[of.at[of.start[of.first_pull + j]], v] -= sheet.excess[j, v]
+    unbalanced = 0.0
+    for c in range(len(left)):
+        unbalanced, total = max(unbalanced, abs(left[c, v])), total + abs(left[c, v])
+    # The largest may have passed over what is not a number.
+    known = total < np.inf
+    found.residual[s] = max(found.residual[s], residual if known else np.inf)
+    if not known:
+        found.worst[s] = np.nan if found.worst[s] < np.inf else found.worst[s]
+    elif found.worst[s] < unbalanced / found.scale[s]:
+        found.worst[s] = unbalanced / found.scale[s]
+
+
+@inlined
+def _worst(of, here, claim, s, sheet, v, found, deflection, seen):  # type: ignore[no-untyped-def]
+    """Largest scaled residual of a claim but of balance: of laws, signs, and what is no column.
 
     Not a number where something claimed is none, and where two opposed contacts carry: these are
     for `residuals`.
@@ -623,22 +686,16 @@ def _worst(of, here, claim, s, sheet, found, deflection, seen):  # type: ignore[
         length = max(length, abs(found.misfit[s, k]))
     strayed, free = _strayed(of, here, claim, s), _free(of, here, claim, s)
     length, force, band = max(length, strayed), max(pull, free), CERTIFY.band * deflection
-    left = sheet.left
     for q in range(len(of.pull_gear)):
-        # The load is left over by what is claimed, not by the point of the graph next to it.
-        for j in range(of.first_pull + 2 * q, of.first_pull + 2 * q + 2):
-            left[of.at[of.start[j]]] += sheet.force[j] - sheet.pull[q, j - of.first_pull - 2 * q]
         force = max(force, _excess(sheet.law[q], sheet.offset[q], sheet.pull[q], band))
         if np.isinf(sheet.law[q, 4]):
             x, y = sheet.offset[q, 0], sheet.offset[q, 1]
             length = max(length, np.sqrt(x * x + y * y) - sheet.law[q, 3])
-    for c in range(len(left)):
-        force, total = max(force, abs(left[c])), total + left[c]
     for d in of.squeezed:
         force = max(force, _squeeze(of, here, claim, s, sheet, d, band))
     worst = max(max(force / load, length / deflection), work / (load * deflection))
     for c in range(len(sheet.x)):
-        total += sheet.x[c]
+        total += sheet.x[c, v]
     return worst + 0.0 * (total + strayed + free)
 
 
@@ -741,21 +798,14 @@ def _squeeze(of, here, claim, s, sheet, d, band):  # type: ignore[no-untyped-def
 
 
 @inlined
-def _displaced(of, here, claim, s, sheet, deflection):  # type: ignore[no-untyped-def]
+def _displaced(of, claim, s, sheet, v, deflection):  # type: ignore[no-untyped-def]
     """How far displacements go to a warning (see `Measuring.worst`).
 
     Not a number where an approach is neglected that only gears without force may take up.
     """
-    worst, most, furthest, r = 0.0, 0.0, 0.0, _row(here.offset, s)
-    shift = sheet.shift
-    for g in range(len(shift)):
-        for k in range(3):
-            shift[g, k] = claim.displacement[s, g, k] + here.offset[r, g, k]
+    worst, most, furthest = 0.0, 0.0, 0.0
     for e in range(len(of.arm)):
-        approach, across = sheet.length[e], 0.0
-        i, j = of.ends[e, 0], of.ends[e, 1]
-        for k in range(3):
-            across += of.across[e, k] * (shift[i, k] - shift[j, k])
+        approach, across = sheet.length[e, v], sheet.across[e, v]
         most = max(most, 0.5 * of.line[e] * across * across - max(-approach, 0.0))
         worst, furthest = max(worst, approach * of.yields[e]), max(furthest, abs(across))
     worst = max(max(worst, furthest / of.turnable), most / (deflection * CERTIFY.neglected))
