@@ -448,15 +448,16 @@ def cone_membership(state: State, band: float) -> dict[str, float]:
         size = float(np.linalg.norm(pull.reaction))
         low, high = pull.law.interval(radius, band)
         along = size
-        # Within the band it has no direction, but none along its gear's axis either.
+        # Within the band it has no direction; along its axis it never pulls.
         frame = state.train.gears[pull.gear].frame
-        sideways = float(np.linalg.norm(pull.reaction - frame.T @ (frame @ pull.reaction)))
+        lifting = float(np.linalg.norm(pull.reaction - frame.T @ (frame @ pull.reaction)))
+        sideways = 0.0
         if radius > band:
             outward = pull.offset / radius
             along = -float(pull.reaction @ outward)
             sideways = float(np.linalg.norm(pull.reaction + along * outward))
             sideways -= size * band / radius
-        excess[pull.name] = max(low - along, along - high, sideways)
+        excess[pull.name] = max(low - along, along - high, sideways, lifting)
     return excess
 
 

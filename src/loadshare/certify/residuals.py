@@ -93,7 +93,6 @@ def cone_membership(state: State) -> Blocks:
     """Excess [N] of a force over what its contact or graph admits.
 
     Within a band about its radius, a graph's corner admits its whole step.
-    Within the band about its centre an element has no direction, but none along its axis either.
     """
     of, band = state.of, CERTIFY.band * state.deflection
     blocks = [(-state.force, of.contacts)]
@@ -108,7 +107,10 @@ def cone_membership(state: State) -> Blocks:
 
 
 def _beside_graphs(state: State, band: Array) -> Array:
-    """Excess [N] of the reactions of radial elements over what their graphs admit."""
+    """Excess [N] of the reactions of radial elements over what their graphs admit.
+
+    About its centre, within the band, an element has no direction; along its axis it never pulls.
+    """
     radius, reaction = state.radius, state.reaction
     force = size(reaction)
     low, high = interval(state.graph, radius, band)
@@ -119,7 +121,7 @@ def _beside_graphs(state: State, band: Array) -> Array:
     sideways = size(reaction + leaning[:, None] * outward) - force * band / radius
     excess = np.maximum(low - along, along - high)
     lifting = size(state.of.lift[state.of.pulled] @ reaction)
-    return np.asarray(np.maximum(excess, np.where(out, sideways, lifting)))
+    return np.asarray(np.maximum(np.maximum(excess, lifting), np.where(out, sideways, 0.0)))
 
 
 def _squeezes(state: State, band: Array) -> Array:
