@@ -18,7 +18,7 @@ from benchmarks.reproduction import (
 from benchmarks.reproduction.chapter import Chapter
 from benchmarks.reproduction.page import PICTURES, page
 from benchmarks.reproduction.seed import Seed
-from loadshare.results.writing import write_atomically
+from loadshare.output import write_whole
 
 PAGE = "reproduction.md"
 
@@ -52,7 +52,7 @@ class Reproduction:
         texts = {folder / PAGE: self.text}
         texts |= {folder / PICTURES / f"{n}.svg": svg for n, svg in self.pictures.items()}
         for path, text in texts.items():
-            write_atomically(path, partial(_write, text))
+            write_whole(path, partial(_write, text))
         return list(texts)
 
 

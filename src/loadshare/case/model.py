@@ -18,6 +18,7 @@ from loadshare.case.keys import covers, parse
 from loadshare.case.origin import Origin
 from loadshare.case.revise import revise
 from loadshare.errors import CaseError
+from loadshare.output import write_whole
 
 
 class Case(Content):
@@ -78,6 +79,19 @@ class Case(Content):
             self._hash = hashlib.sha256(text.encode()).hexdigest()
         return self._hash
 
+    @property
+    def files(self) -> tuple[FilePath, ...]:
+        """Files that the case is read from: its own, those it extends, and those of mesh laws."""
+        origin, found = self._origin, [self._origin.file, *self._origin.files.values()]
+        files = [FilePath(name) for name in dict.fromkeys(found)]
+        named = [(n, key) for n in self.meshes for key in ("law_file", "geometry")]
+        laws = [
+            FilePath(origin.of(("meshes", name, key))).parent / file
+            for name, key in named
+            if (file := getattr(self.meshes[name], key)) is not None
+        ]
+        return (*files, *laws)
+
     def to_dict(self) -> dict[str, Any]:
         """Return the case as plain data, with every value as it was written.
 
@@ -105,7 +119,7 @@ class Case(Content):
 
         text = toml_text(self._data)
         if path is not None:
-            FilePath(path).write_text(text, encoding="utf-8")
+            write_whole(FilePath(path), text)
         return text
 
     def replace(self, changes: Mapping[str, Any]) -> Case:

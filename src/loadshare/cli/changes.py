@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from loadshare.cli.files import keep_inputs
+
 if TYPE_CHECKING:
     from loadshare.case import Case
 
@@ -26,11 +28,15 @@ def open_case(file: Path, settings: Iterable[str] | None) -> Case:
     ------
     CaseError
         With all problems of the case.
+    typer.BadParameter
+        If the command is asked to write over a file of the case.
     """
     from loadshare.case import load_case
 
     changes = read_changes(settings or ())
+    keep_inputs([file])
     case = load_case(file)
+    keep_inputs(case.files)
     return case.replace(changes) if changes else case
 
 

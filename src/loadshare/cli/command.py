@@ -7,6 +7,9 @@ from typing import Any
 import typer
 from typer.core import TyperCommand
 
+from loadshare.cli.files import ask_for
+from loadshare.cli.options import OUTPUT
+
 PREFIX = "Value error, "
 """What pydantic, which reads options for typer, puts before a message."""
 
@@ -23,7 +26,10 @@ class Command(TyperCommand):
             If one of them cannot be used.
         """
         try:
-            return super().parse_args(ctx, args)
+            left = super().parse_args(ctx, args)
         except typer.BadParameter as error:
             error.message = error.message.removeprefix(PREFIX)
             raise
+        named = [(p.opts[-1], ctx.params.get(p.name)) for p in self.params if p.metavar == OUTPUT]
+        ask_for((option, file) for option, file in named if file is not None)
+        return left

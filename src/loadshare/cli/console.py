@@ -1,10 +1,12 @@
-"""Where text goes: stdout for answers, stderr for progress."""
+"""Where text goes: stdout for answers, stderr for progress and beside a file on stdout."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Protocol
+
+from loadshare.cli.files import is_stdout_taken
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -18,10 +20,13 @@ class Tick(Protocol):
 
 
 def console(*, stderr: bool = False) -> Console:
-    """Return a console that prints titles and units as they are: brackets are no markup here."""
+    """Return a console that prints titles and units as they are: brackets are no markup here.
+
+    Where a file goes to stdout, all that is said goes to stderr.
+    """
     from rich.console import Console
 
-    return Console(stderr=stderr, markup=False, emoji=False, highlight=False)
+    return Console(stderr=stderr or is_stdout_taken(), markup=False, emoji=False, highlight=False)
 
 
 def say(*told: object, style: str | None = None, whole: bool = False) -> None:

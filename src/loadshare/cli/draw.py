@@ -10,8 +10,10 @@ import typer
 
 from loadshare.cli.changes import open_case, read_changes
 from loadshare.cli.exits import UNUSABLE, counted, fail, problems_told, writing
+from loadshare.cli.files import tell_written, write_text
 from loadshare.cli.options import CaseFile, changes, output
 from loadshare.errors import CaseError, LoadshareError, Problem
+from loadshare.output import STANDARD
 
 if TYPE_CHECKING:
     from loadshare.report.figure import Figure
@@ -21,7 +23,11 @@ def draw(
     case: CaseFile,
     file: Annotated[
         Path,
-        output("-o", "--output", what="Drawing to write: .svg, .png, .pdf, .html or .json."),
+        output(
+            "-o",
+            "--output",
+            what="Drawing to write: .svg, .png, .pdf, .html or .json; - for SVG on stdout.",
+        ),
     ] = Path("drawing.svg"),
     change: Annotated[
         list[str] | None,
@@ -40,10 +46,13 @@ def draw(
         figure, problems = _drawn(case, change or ())
     with writing(file):
         try:
-            figure.save(file)
+            if file == STANDARD:
+                write_text(file, figure.to_svg())
+            else:
+                figure.save(file)
         except LoadshareError as error:
             raise typer.BadParameter(str(error), param_hint="--output") from None
-    typer.echo(f"Wrote {file}.")
+    tell_written(file, ".")
     if problems:
         told = f"{counted(len(problems), 'problem')}; the drawing shows what could be read."
         fail([*map(str, problems), told], UNUSABLE)

@@ -1,12 +1,17 @@
-"""Texts on disk."""
+"""Files that commands write, and what of them they must not touch."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Any
 
+import typer
+
 from loadshare.cli.exits import writing
+from loadshare.output import STANDARD, write_whole
 
 
 def write_text(path: Path, text: str) -> None:
@@ -18,10 +23,7 @@ def write_text(path: Path, text: str) -> None:
         Its folder is made.
     text : str
     """
-    # Imported late: results bring numpy with them, which --help does not need.
-    from loadshare.results.writing import write_atomically
-
-    write_atomically(path, text)
+    write_whole(path, text)
 
 
 def save_text(path: Path, text: str) -> None:
@@ -30,7 +32,43 @@ def save_text(path: Path, text: str) -> None:
         write_text(path, text)
 
 
+def tell_written(file: Path, more: str = "", *, err: bool = False) -> None:
+    """Tell which file was written, and more; nothing where that was stdout."""
+    if file != STANDARD:
+        typer.echo(f"Wrote {file}{more}", err=err)
+
+
 def write_document(path: Path, document: dict[str, Any]) -> None:
     """Write plain data as a JSON file, whole or not at all."""
     text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
     write_text(path, text + "\n")
+
+
+_asked: ContextVar[tuple[tuple[str, Path], ...]] = ContextVar("outputs", default=())
+
+
+def ask_for(outputs: Iterable[tuple[str, Path]]) -> None:
+    """Note which files the command at hand is to write, by the names of their options."""
+    _asked.set(tuple(outputs))
+
+
+def is_stdout_taken() -> bool:
+    """Tell whether a file goes to stdout."""
+    return any(file == STANDARD for _, file in _asked.get())
+
+
+def keep_inputs(read: Iterable[Path]) -> None:
+    """Refuse to write over a file that is read, before any work.
+
+    Raises
+    ------
+    typer.BadParameter
+        Naming the option and the file.
+    """
+    asked = [(option, file) for option, file in _asked.get() if file.exists()]
+    for path in read if asked else ():
+        for option, file in asked:
+            if path.exists() and file.samefile(path):
+                raise typer.BadParameter(
+                    f"{file}: is read by this command; write to another file", param_hint=option
+                )

@@ -9,6 +9,7 @@ from pathlib import Path
 import typer
 
 from loadshare.cli.exits import UNUSABLE, fail
+from loadshare.cli.files import keep_inputs
 
 _KIND = re.compile(r"""^kind\s*=\s*["'](helicoid|face-gear|law)["']""", re.MULTILINE)
 
@@ -31,6 +32,8 @@ def find_cases(given: Iterable[Path]) -> list[Path]:
     ------
     typer.Exit
         If there is no case at all.
+    typer.BadParameter
+        If the command is asked to write over one of them.
     """
     found: dict[Path, Path] = {}
     for path in given:
@@ -41,6 +44,7 @@ def find_cases(given: Iterable[Path]) -> list[Path]:
             found.setdefault(file.resolve(), file)
     if not found:
         fail(["No case found. A case is a .toml file."], UNUSABLE)
+    keep_inputs(found.values())
     return list(found.values())
 
 

@@ -14,6 +14,7 @@ from loadshare.cli.files import save_text
 from loadshare.cli.refusal import told
 from loadshare.cli.tables.table import show, table
 from loadshare.errors import Refused
+from loadshare.output import csv_of
 
 if TYPE_CHECKING:
     from loadshare.report.figure import Figure
@@ -201,4 +202,4 @@ def _figures(pair: PairFile, found: Ltca) -> Iterator[Figure]:
 def _csv(rows: Iterable[dict[str, Any]]) -> str:
     import pandas as pd
 
-    return pd.DataFrame(rows).to_csv(index=False, lineterminator="\n")
+    return csv_of(pd.DataFrame(rows))

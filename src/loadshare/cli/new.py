@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from loadshare.cli.exits import UNUSABLE, fail
-from loadshare.cli.files import save_text
+from loadshare.cli.files import save_text, tell_written
 from loadshare.cli.options import output
 
 
@@ -32,4 +32,4 @@ def new(
     if target.exists() and not force:
         fail([f"{target}: exists already; --force overwrites it"], UNUSABLE)
     save_text(target, starter_case(title))
-    typer.echo(f"Wrote {target}. Solve it with: loadshare run {quote(str(target))}")
+    tell_written(target, f". Solve it with: loadshare run {quote(str(target))}")

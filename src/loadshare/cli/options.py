@@ -8,6 +8,8 @@ from typing import Annotated, Any, Literal, TypeAlias
 
 import typer
 
+from loadshare.output import STANDARD
+
 # The words are repeated here because asking the solver room for them would import it for every
 # --help; a test compares them.
 SolverName: TypeAlias = Literal["auto", "clarabel", "osqp", "cvxpy"]
@@ -54,18 +56,25 @@ def changes(name: str, help_: str) -> object:
     return typer.Option(name, metavar="KEY=VALUE", help=help_)
 
 
+OUTPUT = "FILE"
+"""How an option for a file to write is told from others."""
+
+
 def output(*names: str, what: str, callback: Callable[..., Any] | None = None) -> object:
     """Return the option for a file to write, which a callback may refuse."""
     return typer.Option(
-        *names, metavar="FILE", dir_okay=False, writable=True, help=what, callback=callback
+        *names, metavar=OUTPUT, dir_okay=False, writable=True, help=what, callback=callback
     )
 
 
 def ending(*endings: str) -> Callable[[Path | None], Path | None]:
-    """Return a callback that refuses a file of another kind, before anything is solved."""
+    """Return a callback that refuses a file of another kind, before anything is solved.
+
+    What goes to stdout is of the first kind.
+    """
 
     def checked(file: Path | None) -> Path | None:
-        if file is not None and file.suffix not in endings:
+        if file is not None and file != STANDARD and file.suffix not in endings:
             raise typer.BadParameter(f"{file}: must end in {' or '.join(endings)}")
         return file
 

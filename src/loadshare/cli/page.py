@@ -5,10 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from loadshare.cli.console import progress
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail, writing
+from loadshare.cli.files import tell_written
 from loadshare.cli.find import find_cases
 from loadshare.cli.options import CasePaths, ending, output
 
@@ -38,7 +37,7 @@ def report(
                 tick(done, len(found))
     with writing(file):
         save_report(chapters, file)
-    typer.echo(f"Wrote {file}.")
+    tell_written(file, ".")
     bad = [one for one in chapters if one.outcome != CERTIFIED]
     if bad:
         code = UNUSABLE if any(one.outcome == NOT_USABLE for one in bad) else REFUSED

@@ -15,6 +15,7 @@ from loadshare.cli.files import write_document, write_text
 from loadshare.cli.options import CaseFile, Method, Solver, Tolerance, changes, output
 from loadshare.cli.refusal import refused_document, told
 from loadshare.errors import Refused
+from loadshare.output import csv_of
 
 if TYPE_CHECKING:
     from loadshare.case import Case
@@ -82,7 +83,7 @@ def run(
     assert result is not None
     _write(json, result.to_json)
     _write(netcdf, result.to_netcdf)
-    _write(csv, lambda file: write_text(file, result.to_frame().to_csv(index=False)))
+    _write(csv, lambda file: write_text(file, csv_of(result.to_frame())))
 
 
 def _solved(

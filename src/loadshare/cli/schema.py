@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from loadshare.cli.files import save_text
+from loadshare.cli.files import save_text, tell_written
 from loadshare.cli.options import output
 
 
@@ -25,4 +25,4 @@ def schema(
         typer.echo(text)
         return
     save_text(file, text + "\n")
-    typer.echo(f"Wrote {file}", err=True)
+    tell_written(file, err=True)

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from loadshare.errors import LoadshareError
+from loadshare.output import write_whole
 from loadshare.report.palette import FAINT, INK, SOFT
 from loadshare.report.vega import vega_lite_version
-from loadshare.results.writing import write_atomically
 
 if TYPE_CHECKING:
     import altair as alt
@@ -137,7 +137,7 @@ class Figure:
         else:
             settings = {"scale": scale} if ending == ".png" else {}
             content = bytes(self._converted(ending[1:], **settings))
-        write_atomically(path, content)
+        write_whole(path, content)
         return path
 
     def to_svg(self, prefix: str = "") -> str:

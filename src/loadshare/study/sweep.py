@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from loadshare.case import Case
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.job import Progress, solve
+from loadshare.output import csv_of, write_whole
 from loadshare.pictures import picture
 from loadshare.study.parameter import STUDY, Parameter, applied, grid, named, read_parameter
 from loadshare.study.positions import loaded
@@ -126,17 +127,12 @@ class Sweep:
 
     def to_netcdf(self, path: str | FilePath) -> None:
         """Write the labelled arrays to a netCDF file."""
-        from loadshare.results.writing import write_atomically
-
         arrays = self.dataset
-        write_atomically(FilePath(path), lambda file: arrays.to_netcdf(file, engine="h5netcdf"))
+        write_whole(FilePath(path), lambda file: arrays.to_netcdf(file, engine="h5netcdf"))
 
     def to_csv(self, path: str | FilePath) -> None:
         """Write the table to a CSV file."""
-        from loadshare.results.writing import write_atomically
-
-        table = self.to_frame()
-        write_atomically(FilePath(path), lambda file: table.to_csv(file, index=False))
+        write_whole(FilePath(path), csv_of(self.to_frame()))
 
 
 def sweep(

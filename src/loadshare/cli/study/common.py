@@ -12,9 +12,11 @@ import typer
 from loadshare.cli.changes import open_case
 from loadshare.cli.console import Tick, progress
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail, problems_told, writing
+from loadshare.cli.files import tell_written
 from loadshare.cli.options import changes, ending, output
 from loadshare.cli.refusal import told
 from loadshare.errors import Refused
+from loadshare.output import csv_of, write_whole
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -95,14 +97,13 @@ def write_table(
     """Write what was found, if asked for, as a table or labelled arrays by the file's ending."""
     if file is None:
         return
-    from loadshare.results.writing import write_atomically
 
     def write(path: Path) -> None:
         if file.suffix == ".nc" and dataset is not None:
             dataset().to_netcdf(path, engine="h5netcdf")
         else:
-            frame().to_csv(path, index=False)
+            path.write_text(csv_of(frame()), encoding="utf-8", newline="")
 
     with writing(file):
-        write_atomically(file, write)
-    typer.echo(f"Wrote {file}", err=True)
+        write_whole(file, write)
+    tell_written(file, err=True)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from loadshare.cli.console import say, say_all
-from loadshare.cli.files import save_text
+from loadshare.cli.files import save_text, tell_written
 from loadshare.cli.options import CaseFile, keys_and_value
 from loadshare.cli.study.common import Changes, FittedFile, asked
 from loadshare.cli.study.compare import show_comparison
@@ -54,7 +54,7 @@ def fit(
     show_fit(found)
     if file is not None:
         save_text(file, found.case.to_toml())
-        typer.echo(f"Wrote {file}", err=True)
+        tell_written(file, err=True)
 
 
 def show_fit(found: Fit) -> None:

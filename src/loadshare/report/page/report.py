@@ -10,10 +10,10 @@ from pathlib import Path
 
 from loadshare._version import __version__
 from loadshare.case import Case
+from loadshare.output import write_whole
 from loadshare.report.page.answers import effort_told
 from loadshare.report.page.chapter import Chapter, chapter, chapter_of_file, overview
 from loadshare.report.page.offline import render
-from loadshare.results.writing import write_atomically
 
 PACKAGES = ("numpy", "scipy", "clarabel", "altair", "vl-convert-python")
 """Packages on which figures and pictures depend."""
@@ -74,7 +74,7 @@ def write_report(cases: Iterable[Case | str | Path], path: str | Path) -> list[C
 
 def save_report(chapters: Iterable[Chapter], path: str | Path) -> None:
     """Write the page of some chapters, whole or not at all."""
-    write_atomically(Path(path), report_page(chapters))
+    write_whole(Path(path), report_page(chapters))
 
 
 def versions() -> dict[str, str]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from loadshare.errors import LoadshareError
-from loadshare.results.writing import write_atomically
+from loadshare.output import write_whole
 from loadshare.study.tolerance.job import SAMPLES, STAMP, Job, Part
 
 if TYPE_CHECKING:
@@ -89,7 +89,7 @@ class Folder:
         from pyarrow import parquet
 
         file = self.file(part)
-        write_atomically(file, lambda to: parquet.write_table(table, to, compression="zstd"))
+        write_whole(file, lambda to: parquet.write_table(table, to, compression="zstd"))
         # What a killed process left of the same part.
         for left in file.parent.glob(f".{file.name}.*"):
             with suppress(FileNotFoundError):
@@ -174,9 +174,4 @@ def _short(value: Any) -> str:
 
 
 def _write_json(file: Path, content: dict[str, Any]) -> None:
-    text = json.dumps(content, indent=1, ensure_ascii=False) + "\n"
-
-    def write(to: Path) -> None:
-        to.write_text(text, encoding="utf-8")
-
-    write_atomically(file, write)
+    write_whole(file, json.dumps(content, indent=1, ensure_ascii=False) + "\n")

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import tempfile
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
@@ -19,6 +18,7 @@ from typing import TYPE_CHECKING
 from platformdirs import user_cache_path
 
 from loadshare._version import __version__
+from loadshare.output import write_whole
 from loadshare.tooth.law.file import MeshLaw, law_of, law_text, parsed_law
 
 if TYPE_CHECKING:
@@ -89,15 +89,7 @@ def write_entry(key: str, text: str) -> None:
     """Keep a text, whole or not at all; a cache that cannot be written is done without."""
     file = _file(key)
     with suppress(OSError):
-        file.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=file.parent, prefix=".")
-        temporary = Path(name)
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8", newline="\n") as stream:
-                stream.write(f"{_digest(text)}\n{text}")
-            temporary.replace(file)
-        finally:
-            temporary.unlink(missing_ok=True)
+        write_whole(file, f"{_digest(text)}\n{text}")
 
 
 @cache

@@ -1,0 +1,153 @@
+"""Where commands write: never in place of a device, a pipe, a link or what they read."""
+
+import json
+import os
+import stat
+import threading
+from pathlib import Path
+
+import pytest
+from tests.support import CASES
+from typer.testing import CliRunner, Result
+
+from loadshare.cli.main import app
+from loadshare.output import STANDARD, csv_of, write_whole
+
+CASE = CASES / "star" / "floating_sun_3.toml"
+
+
+def call(*words: object) -> Result:
+    return CliRunner().invoke(app, [str(word) for word in words])
+
+
+def test_a_file_stands_whole_or_not_at_all(tmp_path):
+    file = tmp_path / "new" / "file.txt"
+    write_whole(file, "one")
+
+    def breaks(to: Path) -> None:
+        to.write_text("half")
+        raise OSError("the disk is full")
+
+    with pytest.raises(OSError, match="full"):
+        write_whole(file, breaks)
+    assert file.read_text() == "one"
+    assert [f.name for f in file.parent.iterdir()] == ["file.txt"]
+
+
+def test_a_link_is_followed(tmp_path):
+    file, link, dangling = tmp_path / "file", tmp_path / "link", tmp_path / "dangling"
+    file.write_text("old")
+    link.symlink_to(file)
+    dangling.symlink_to(tmp_path / "nowhere")
+    write_whole(link, "new")
+    write_whole(dangling, b"made")
+    assert link.is_symlink()
+    assert dangling.is_symlink()
+    assert file.read_text() == "new"
+    assert (tmp_path / "nowhere").read_text() == "made"
+
+
+@pytest.mark.parametrize("mode", [0o600, 0o640, 0o664])
+def test_the_mode_of_a_file_is_kept(tmp_path, mode):
+    file = tmp_path / "file"
+    file.write_text("old")
+    file.chmod(mode)
+    write_whole(file, "new")
+    assert stat.S_IMODE(file.stat().st_mode) == mode
+
+
+def test_a_new_file_has_the_mode_of_any_other(tmp_path):
+    write_whole(tmp_path / "ours", "x")
+    (tmp_path / "theirs").write_text("x")
+    modes = {stat.S_IMODE((tmp_path / name).stat().st_mode) for name in ("ours", "theirs")}
+    assert len(modes) == 1
+
+
+def test_a_pipe_is_written_to(tmp_path):
+    pipe, found = tmp_path / "pipe", []
+    os.mkfifo(pipe)
+    reader = threading.Thread(target=lambda: found.append(pipe.read_text()))
+    reader.start()
+    told = call("run", CASE, "--json", pipe)
+    reader.join(30)
+    assert told.exit_code == 0
+    assert stat.S_ISFIFO(pipe.stat().st_mode)
+    assert json.loads(found[0])["case"] == "floating_sun_3"
+
+
+def test_a_device_is_written_to():
+    assert call("run", CASE, "--json", os.devnull).exit_code == 0
+    assert stat.S_ISCHR(Path(os.devnull).stat().st_mode)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device")
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("run", CASE, "--json", "/dev/full"),
+        ("run", CASE, "--csv", "/dev/full"),
+        ("run", CASE, "--netcdf", "/dev/full"),
+        ("schema", "-o", "/dev/full"),
+    ],
+)
+def test_a_full_disk_is_told_by_name(words):
+    told = call(*words)
+    assert told.exit_code == 2
+    assert "/dev/full: cannot be written" in told.output
+    assert "Traceback" not in told.output
+
+
+def test_a_dash_is_stdout_and_the_rest_is_told_beside_it():
+    told = call("run", CASE, "--json", STANDARD)
+    assert told.exit_code == 0
+    assert json.loads(told.stdout)["case"] == "floating_sun_3"
+    assert "PASSED" in told.stderr
+    table = call("run", CASE, "--csv", STANDARD)
+    assert table.stdout.startswith("position,")
+    drawing = call("draw", CASE, "-o", STANDARD)
+    assert drawing.stdout.startswith("<svg")
+    assert not Path(STANDARD).exists()
+
+
+EVERY = ("base.toml", "case.toml", "link.html")
+
+
+@pytest.fixture
+def copied(tmp_path):
+    """A case that extends another one, and the other one."""
+    base, case = tmp_path / "base.toml", tmp_path / "case.toml"
+    base.write_text(CASE.read_text())
+    case.write_text('extends = "base.toml"\n')
+    return base, case
+
+
+WRITING = [
+    *(("run", "CASE", option, which) for option in ("--json", "--netcdf") for which in EVERY),
+    *(("draw", "CASE", "-o", which) for which in EVERY),
+    ("report", "CASE", "-o", "link.html"),
+]
+
+
+@pytest.mark.parametrize("words", WRITING, ids=" ".join)
+def test_what_is_read_is_not_written_over(copied, words):
+    base, case = copied
+    base.with_name("link.html").symlink_to(case)
+    before = base.read_text(), case.read_text()
+    command, _, option, out = words
+    told = call(command, case, option, base.with_name(out))
+    assert told.exit_code == 2
+    assert "is read by this command" in " ".join(told.output.split())
+    assert (base.read_text(), case.read_text()) == before
+
+
+def test_no_cell_of_a_table_is_a_formula():
+    """Names are their user's to choose; quantities stay what they are."""
+    import pandas as pd
+
+    names = ["=1+1", "+a", "-a", "@a", "\t=1", "a", "-0.5 um", "+.5", None]
+    frame = pd.DataFrame({"mesh": names, "=value": [-1.5] * len(names)})
+    rows = csv_of(frame).split("\n")
+    assert rows[0] == "mesh,'=value"
+    cells = [row.split(",")[0].strip('"') for row in rows[1:-1]]
+    assert cells == ["'=1+1", "'+a", "'-a", "'@a", "'\t=1", "a", "-0.5 um", "+.5", ""]
+    assert all(row.endswith(",-1.5") for row in rows[1:-1])
