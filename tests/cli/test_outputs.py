@@ -140,6 +140,16 @@ def test_what_is_read_is_not_written_over(copied, words):
     assert (base.read_text(), case.read_text()) == before
 
 
+def test_a_law_is_not_written_over_its_pair(tmp_path):
+    pair = CASES / "pairs" / "p12.toml"
+    own = tmp_path / "law.toml"
+    own.write_text(pair.read_text())
+    told = call("ltca", own, "-o", tmp_path)
+    assert told.exit_code == 2
+    assert "is read by this command" in " ".join(told.output.split())
+    assert own.read_text() == pair.read_text()
+
+
 def test_no_cell_of_a_table_is_a_formula():
     """Names are their user's to choose; quantities stay what they are."""
     import pandas as pd

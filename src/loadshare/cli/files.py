@@ -57,15 +57,21 @@ def is_stdout_taken() -> bool:
     return any(file == STANDARD for _, file in _asked.get())
 
 
-def keep_inputs(read: Iterable[Path]) -> None:
+def keep_inputs(read: Iterable[Path], written: Iterable[tuple[str, Path]] = ()) -> None:
     """Refuse to write over a file that is read, before any work.
+
+    Parameters
+    ----------
+    read : iterable of Path
+    written : iterable of (str, Path)
+        Files that are written beside those that were asked for by name, with their options.
 
     Raises
     ------
     typer.BadParameter
         Naming the option and the file.
     """
-    asked = [(option, file) for option, file in _asked.get() if file.exists()]
+    asked = [(option, file) for option, file in (*_asked.get(), *written) if file.exists()]
     for path in read if asked else ():
         for option, file in asked:
             if path.exists() and file.samefile(path):

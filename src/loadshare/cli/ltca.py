@@ -10,7 +10,7 @@ import typer
 
 from loadshare.cli.console import progress, say
 from loadshare.cli.exits import REFUSED, fail, problems_told, writing
-from loadshare.cli.files import save_text
+from loadshare.cli.files import keep_inputs, save_text
 from loadshare.cli.refusal import told
 from loadshare.cli.tables.table import show, table
 from loadshare.errors import Refused
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from loadshare.tooth.pair.file import PairFile
 
 PICTURES = (".svg", ".png", ".html")
+LAW = "law.toml"
 
 
 def ltca(
@@ -64,6 +65,8 @@ def ltca(
     load = _torque(torque)
     with problems_told():
         asked = load_pair(pair).revised(torque=load, positions=positions, compliance=compliance)
+    folder = folder or Path(asked.name)
+    keep_inputs([pair], [("--output", folder / LAW)])
     _print_heading(asked, pair)
     try:
         with progress("positions", asked.analysis.positions) as tick:
@@ -73,7 +76,7 @@ def ltca(
     law = kept_law(asked, found)
     _print_positions(found, law)
     _print_summary(asked, found)
-    wrote = list(_written(folder or Path(asked.name), asked, found, law))
+    wrote = list(_written(folder, asked, found, law))
     typer.echo(f"Wrote {', '.join(file.name for file in wrote)} to {wrote[0].parent}")
 
 
@@ -171,7 +174,7 @@ def _written(folder: Path, pair: PairFile, found: Ltca, law: MeshLaw) -> Iterato
     from loadshare.tooth.law.file import law_text
 
     texts = {
-        "law.toml": law_text(law),
+        LAW: law_text(law),
         "table.csv": _csv(position_rows(found, law)),
         "lines.csv": _csv(line_rows(found)),
     }

@@ -172,12 +172,14 @@ def exchange(
         turns[rows] = visited
         basis = elements.basis(here[:switches])
         verdict, proposal = engine(elements, data, basis, here[:switches], rows, state, one_only)
-        onward = (verdict == at.OTHER) & (visited < limit)
-        judged = onward if singly else onward & (visited > EXCHANGE.together)
-        for k in judged.nonzero()[0].tolist():
-            force = state.force[rows[k]]
-            verdict[k] = rounds.judged(int(rows[k]), here[:switches], proposal[k], force)
-            onward[k] = verdict[k] == at.OTHER
+        onward = verdict == at.OTHER
+        if singly or visited.max() >= min(limit, EXCHANGE.together + 1):
+            onward &= visited < limit
+            judged = onward if singly else onward & (visited > EXCHANGE.together)
+            for k in judged.nonzero()[0].tolist():
+                force = state.force[rows[k]]
+                verdict[k] = rounds.judged(int(rows[k]), here[:switches], proposal[k], force)
+                onward[k] = verdict[k] == at.OTHER
         goes = onward.nonzero()[0]
         if len(goes) < len(rows):
             stay = rows[~onward]
@@ -278,6 +280,8 @@ class _Waiting:
 def _without_wedges(elements: Elements, data: Data, here: Codes, proposal: Codes) -> Codes:
     """Let only one of two opposed rigid arcs act, the one that is new, unless both act here."""
     for one, other in elements.opposed:
+        if not (proposal[:, one] & proposal[:, other]).any():
+            continue
         if here[one] != at.OPEN and here[other] != at.OPEN:
             continue
         columns = elements.springs + np.array([one, other])
