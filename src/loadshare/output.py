@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 STANDARD = Path("-")
 """Stands for standard output."""
 
+LONG = 100
+"""Letters of a name that the file beside it has as well; file systems allow some 250 bytes."""
+
 Content = str | bytes | Callable[[Path], object]
 """What is written, or what writes to the path that it is given."""
 
@@ -57,7 +60,7 @@ def write_whole(path: Path, content: Content) -> None:
     # Where a link leads; the link itself stays.
     place = Path(os.path.realpath(path))
     place.parent.mkdir(parents=True, exist_ok=True)
-    temporary = place.with_name(f".{secrets.token_hex(8)}.part")
+    temporary = place.with_name(f".{place.name[:LONG]}.{secrets.token_hex(8)}")
     try:
         _fill(temporary, content)
         if known is not None:

@@ -574,7 +574,7 @@ class Job(NamedTuple):
     """Samples that show the others where to begin."""
     worth: int = 32
     """How many times as many samples it takes for that to be worth while."""
-    block: int = 8192
+    block: int = 4096
     """Samples that are solved together, if every one has a few positions."""
     together: int = 40960
     """Equilibria that are solved together: twice as many take a third more room, and a twentieth

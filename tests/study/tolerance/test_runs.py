@@ -19,6 +19,8 @@ from tests.support import CASES, shipped
 
 import loadshare as ls
 from loadshare.study.tolerance import local, study
+from loadshare.study.tolerance.folder import DIGEST, Folder, digest
+from loadshare.study.tolerance.job import Job
 
 PATHS = "two_path/clocking_error"
 INPUTS = {
@@ -194,7 +196,8 @@ def test_a_damaged_part_is_solved_again(reference, tmp_path):
         (None, lambda v: np.nextafter(v, 9.0)),
     ],
 )
-def test_a_doctored_part_is_refused_by_name(reference, tmp_path, column, change):
+def test_a_doctored_part_is_refused_by_name(reference, tmp_path, column, change, caplog):
+    """Whoever makes its digest anew has its samples solved again; without, all of it is."""
     out = tmp_path / "study"
     shutil.copytree(reference, out)
     file = sorted(out.glob("part-*.parquet"))[1]
@@ -202,14 +205,43 @@ def test_a_doctored_part_is_refused_by_name(reference, tmp_path, column, change)
     if column is None:
         column = table.column_names[1]
     made = pa.array(change(table.column(column).to_numpy()))
-    at = table.column_names.index(column)
-    parquet.write_table(table.set_column(at, column, made), file)
+    doctored = table.set_column(table.column_names.index(column), column, made)
+    parquet.write_table(doctored, file)
+    run(out, chunk=1)
+    assert "part-000001.parquet: is not what was written there" in caplog.text
+    assert bits(out) == bits(reference)
+    about = {**table.schema.metadata, DIGEST: digest(doctored)}
+    parquet.write_table(doctored.replace_schema_metadata(about), file)
     with pytest.raises(ls.ResultError, match=r"part-000001\.parquet: .*Remove this file") as caught:
         run(out, chunk=1)
     assert caught.value.problems[0].key == column
     file.unlink()
     run(out, chunk=1)
     assert bits(out) == bits(reference)
+
+
+def test_every_flipped_bit_that_changes_data_is_found(reference, tmp_path):
+    """A part with any bit flipped holds what it held, or is not whole; none is read wrongly."""
+    about = json.loads((reference / "study.json").read_text())
+    job = Job(about["case"], about["text"], about["settings"])
+    folder = Folder(reference, job)
+    part = folder.all[0]
+    content = folder.file(part).read_bytes()
+    right = parquet.read_table(folder.file(part))
+    out = tmp_path / "study"
+    shutil.copytree(reference, out)
+    other = Folder(out, job)
+    rng = np.random.default_rng(5)
+    found = 0
+    for place in rng.integers(0, 8 * len(content), 400).tolist():
+        spoilt = bytearray(content)
+        spoilt[place // 8] ^= 1 << (place % 8)
+        other.file(part).write_bytes(bytes(spoilt))
+        if part in other.missing():
+            found += 1
+        else:
+            assert parquet.read_table(other.file(part)).equals(right), place
+    assert found > 300
 
 
 def test_a_worst_case_that_is_none_is_refused_by_name(tmp_path):

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
+import logging
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from loadshare.errors import LoadshareError
+from loadshare.errors import LoadshareError, Problem, ResultError
 from loadshare.output import write_whole
 from loadshare.study.tolerance.job import SAMPLES, STAMP, Job, Part
 
@@ -17,8 +19,12 @@ if TYPE_CHECKING:
     import pandas as pd
     import pyarrow as pa
 
+log = logging.getLogger("loadshare")
+
 STUDY = "study.json"
 WORST = "worst.json"
+DIGEST = b"loadshare.sha256"
+"""Key of a part's metadata under which the digest of its content stands."""
 
 
 class Folder:
@@ -69,27 +75,35 @@ class Folder:
         return folder / f"part-{part.number:06d}.parquet"
 
     def missing(self) -> list[Part]:
-        """Return the parts that are not there, or not whole."""
-        return [part for part in self.all if not self._whole(part)]
+        """Return the parts that are not there, or not whole; the log names the latter."""
+        found = [part for part in self.all if not self._whole(part)]
+        for file in filter(Path.exists, map(self.file, found)):
+            log.warning("%s: is not what was written there; it is solved again.", file)
+        return found
 
     def _whole(self, part: Part) -> bool:
         import pyarrow as pa
         from pyarrow import parquet
 
+        file = self.file(part)
         try:
-            about = parquet.read_metadata(self.file(part))
-        except (OSError, pa.ArrowException):
+            # A part of the same name can stem from elsewhere: the stamp names study, number, rows.
+            told = parquet.read_metadata(file).metadata or {}
+            if told.get(STAMP) != self.job.stamp(part):
+                return False
+            table = parquet.read_table(file, page_checksum_verification=True)
+        except (OSError, ValueError, pa.ArrowException):
             return False
-        # A part of the same name can stem from elsewhere: the stamp names study, number and rows.
-        stamp = (about.metadata or {}).get(STAMP)
-        return bool(about.num_rows == part.rows and stamp == self.job.stamp(part))
+        return len(table) == part.rows and told.get(DIGEST) == digest(table)
 
     def write(self, part: Part, table: pa.Table) -> None:
         """Put a part in its place, whole or not at all."""
         from pyarrow import parquet
 
         file = self.file(part)
-        write_whole(file, lambda to: parquet.write_table(table, to, compression="zstd"))
+        sealed = table.replace_schema_metadata({**table.schema.metadata, DIGEST: digest(table)})
+        how: dict[str, Any] = {"compression": "zstd", "write_page_checksum": True}
+        write_whole(file, lambda to: parquet.write_table(sealed, to, **how))
         # What a killed process left of the same part.
         for left in file.parent.glob(f".{file.name}.*"):
             with suppress(FileNotFoundError):
@@ -114,26 +128,49 @@ class Folder:
     def column(self, name: str, design: str = SAMPLES) -> np.ndarray[Any, Any]:
         """Return one column of all parts, shape (samples,)."""
         import numpy as np
-        from pyarrow import parquet
 
-        pieces = [
-            parquet.read_table(file, columns=[name]).column(0).to_numpy()
-            for file in self.files(design)
-        ]
+        pieces = [_read(file, [name]).column(0).to_numpy() for file in self.files(design)]
         return np.concatenate(pieces)
 
     def frame(self, columns: Sequence[str] | None = None) -> pd.DataFrame:
         """Return columns of the study's own samples as a table."""
         import pyarrow as pa
-        from pyarrow import parquet
 
         chosen = None if columns is None else list(columns)
-        tables = [
-            parquet.read_table(file, columns=chosen).replace_schema_metadata()
-            for file in self.files()
-        ]
+        tables = [_read(file, chosen).replace_schema_metadata() for file in self.files()]
         whole: pd.DataFrame = pa.concat_tables(tables, promote_options="none").to_pandas()
         return whole
+
+
+def digest(table: pa.Table) -> bytes:
+    """Return the SHA-256 of what a table holds, whatever bytes it is written in."""
+    found = hashlib.sha256()
+    for name, column in zip(table.column_names, table.columns, strict=True):
+        values = column.to_numpy()
+        text = values.dtype.kind == "O"
+        content = json.dumps(values.tolist()).encode() if text else values.tobytes()
+        found.update(f"{name} {values.dtype} {len(values)} {len(content)}\n".encode())
+        found.update(content)
+    return found.hexdigest().encode()
+
+
+def _read(file: Path, columns: list[str] | None) -> pa.Table:
+    """Read columns of a part, each page against its checksum.
+
+    Raises
+    ------
+    ResultError
+        If the part was altered since it was written.
+    """
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    try:
+        return parquet.read_table(file, columns=columns, page_checksum_verification=True)
+    except (OSError, ValueError, pa.ArrowException) as error:
+        hint = "ask for the same study again: what is not whole is solved anew"
+        why = f"was altered since it was written ({str(error).splitlines()[0]})"
+        raise ResultError([Problem(str(file), "", "", why, hint=hint)]) from None
 
 
 def differing(known: dict[str, Any], asked: dict[str, Any]) -> list[str]:
