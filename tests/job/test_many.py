@@ -354,8 +354,8 @@ def test_blocks_come_one_by_one(monkeypatch):
     """In order and only as they are asked for."""
     small_blocks(monkeypatch, 4)
     solved = []
-    real = many._block
-    monkeypatch.setattr(many, "_block", lambda *args: solved.append(1) or real(*args))
+    real = many.solve_block
+    monkeypatch.setattr(many, "solve_block", lambda *args: solved.append(1) or real(*args))
     blocks = solve_blocks(shipped(LIMIT_RING), floats(40), positions=[1], workers=1)
     assert inspect.isgenerator(blocks)
     first = list(islice(blocks, 2))
@@ -367,8 +367,8 @@ def test_blocks_come_one_by_one(monkeypatch):
 def test_workers_run_ahead_by_a_block_each_and_no_more(monkeypatch):
     small_blocks(monkeypatch, 2)
     solved = []
-    real = many._block
-    monkeypatch.setattr(many, "_block", lambda *args: solved.append(1) or real(*args))
+    real = many.solve_block
+    monkeypatch.setattr(many, "solve_block", lambda *args: solved.append(1) or real(*args))
     blocks = solve_blocks(shipped(LIMIT_RING), floats(40), positions=[1], workers=2)
     next(blocks)
     assert len(solved) <= 4

@@ -7,9 +7,8 @@ once; single samples that it leaves climb the ladder.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -18,75 +17,19 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from loadshare.case import Case, load_case
-from loadshare.certify.nonconvex import arc_curvature, is_convex
 from loadshare.certify.tolerance import checked_tolerance
-from loadshare.errors import CaseError, Refused
-from loadshare.job.hot import HOT, SEARCHED
-from loadshare.job.ladder import climb
-from loadshare.job.least import least_places
+from loadshare.job.block import Block, solve_block
 from loadshare.job.machine import Machine, engine_named
 from loadshare.job.positions import Progress, wanted_positions
 from loadshare.job.recent import Recent
 from loadshare.job.table import KEPT, Table, kept
 from loadshare.settings import CERTIFY, JOB
-from loadshare.solver import Options
-from loadshare.solver.hot.exchange import Engine
-from loadshare.train import build_train
-from loadshare.train.equilibria import Equilibria
 from loadshare.train.samples import Samples, samples_of
-from loadshare.train.situations import Situations, stack
 
 if TYPE_CHECKING:
     import xarray as xr
 
 Array = NDArray[np.float64]
-
-RUNGS = np.array([HOT, SEARCHED], dtype=object)
-"""Without and with the proximal search."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Block:
-    """Answers of up to `BLOCK` samples at all positions asked for.
-
-    Attributes
-    ----------
-    rows : ndarray of int, shape (S,)
-        Numbers of the samples.
-    positions : tuple of int
-    equilibria : tuple of Equilibria
-        One per position.
-    certified : ndarray of bool, shape (S, positions)
-    residual : ndarray, shape (S, positions)
-        Largest scaled residual; NaN where there is no answer.
-    bound : ndarray, shape (S, positions)
-        Largest distance of a torque from the exact one, over the largest torque; likewise.
-    determined : ndarray of bool, shape (S, positions)
-        Whether the equilibrium determines every displacement.
-    displaced : ndarray, shape (S, positions)
-        How far displacements go to a warning (see `Measuring.worst`); NaN where there is no answer.
-    convex : ndarray of bool, shape (S, positions)
-        Whether nothing that is not convex carries, so that the answer is the only one.
-    arc_curvature : ndarray, shape (S, positions)
-        Stiffness that arcs take across them [N/m]; NaN where there is no answer.
-    rung : ndarray of object, shape (S, positions)
-        Rung of the ladder that answered; empty where none did.
-    message : mapping of (row, position) to str
-        Why there is no answer.
-    """
-
-    rows: NDArray[np.intp]
-    positions: tuple[int, ...]
-    equilibria: tuple[Equilibria, ...]
-    certified: NDArray[np.bool_]
-    residual: Array
-    bound: Array
-    determined: NDArray[np.bool_]
-    displaced: Array
-    convex: NDArray[np.bool_]
-    arc_curvature: Array
-    rung: NDArray[np.object_]
-    message: Mapping[tuple[int, int], str]
 
 
 def solve_blocks(
@@ -124,7 +67,8 @@ def solve_blocks(
 
     def work(task: tuple[Machine, NDArray[np.intp], Samples, slice]) -> Block:
         machine, rows, group, part = task
-        return _block(machine, rows[part], group.take(part), wanted, tolerance, solver, least_norm)
+        samples = group.take(part)
+        return solve_block(machine, rows[part], samples, wanted, tolerance, solver, least_norm)
 
     if workers <= 1 or len(tasks) == 1:
         yield from map(work, tasks)
@@ -232,110 +176,3 @@ def solve_many(
     )
     count = len(np.atleast_1d(np.asarray(next(iter(samples.values()), []))))
     return Table.of(blocks, count, kept(keep), progress).dataset(case, tolerance)
-
-
-def _block(
-    machine: Machine,
-    rows: NDArray[np.intp],
-    samples: Samples,
-    positions: tuple[int, ...],
-    tolerance: float,
-    engine: Engine,
-    least_norm: bool,
-) -> Block:
-    """Solve one block; what the hot path leaves climbs the ladder."""
-    count, shape = len(rows), (len(rows), len(positions))
-    certified, determined = np.zeros(shape, dtype=bool), np.zeros(shape, dtype=bool)
-    residual, bound = np.full(shape, np.nan), np.full(shape, np.nan)
-    # Objects, so that a million answers share a few texts.
-    rung = np.full(shape, "", dtype=object)
-    deflection, load, displaced = np.full((3, *shape), np.nan)
-    message: dict[tuple[int, int], str] = {}
-    every: list[Equilibria] = []
-    stands: list[Situations] = []
-    abreast = max(1, JOB.together // count)
-    for at in range(0, len(positions), abreast):
-        some = positions[at : at + abreast]
-        stands += [samples.situations(index) for index in some]
-        situations = stack(stands[at:])
-        found = machine.answer(situations, tolerance, engine, starts=some)
-        every += [
-            found.equilibria.part(slice(p * count, p * count + count)) for p in range(len(some))
-        ]
-        columns = slice(at, at + len(some))
-        certified[:, columns] = found.passed.reshape(-1, count).T
-        rung[:, columns] = RUNGS[found.searched.astype(np.intp)].reshape(-1, count).T
-        residual[:, columns] = found.verdicts.worst.reshape(-1, count).T
-        deflection[:, columns] = found.verdicts.deflection.reshape(-1, count).T
-        load[:, columns] = found.verdicts.load.reshape(-1, count).T
-        displaced[:, columns] = found.verdicts.displaced.reshape(-1, count).T
-        bound[:, columns] = found.verdicts.bounds.relative.reshape(-1, count).T
-        determined[:, columns] = found.determined.reshape(-1, count).T
-        if least_norm:
-            loose = found.passed & ~found.determined
-            least_places(machine, situations, found, np.flatnonzero(loose).tolist(), tolerance)
-            displaced[:, columns][loose.reshape(-1, count).T] = np.nan
-    for row, p in np.argwhere(~certified).tolist():
-        index = positions[p]
-        try:
-            train = build_train(samples.one(row))
-            answer = climb(train, index, Options(), tolerance, JOB.steps)
-        except (CaseError, Refused) as refusal:
-            message[int(rows[row]), index] = str(refusal)
-            residual[row, p], bound[row, p], rung[row, p] = np.nan, np.nan, ""
-            every[p].forget(row)
-            continue
-        every[p].put(row, answer.equilibrium)
-        displaced[row, p] = np.nan
-        certified[row, p], rung[row, p] = True, answer.rung
-        residual[row, p] = answer.certificate.worst
-        bound[row, p] = answer.certificate.proved
-        deflection[row, p] = answer.certificate.deflection
-        load[row, p] = answer.certificate.load
-        determined[row, p] = not answer.equilibrium.undetermined
-    refused = _put_displaced(machine, stands, every, deflection, displaced)
-    for (row, p), why in refused.items():
-        message[int(rows[row]), positions[p]] = f"position {positions[p]}: {why}"
-        certified[row, p], rung[row, p] = False, ""
-        residual[row, p] = bound[row, p] = displaced[row, p] = np.nan
-        every[p].forget(row)
-    curvature, convex = np.full(shape, np.nan), np.zeros(shape, dtype=bool)
-    for p, (here, answers) in enumerate(zip(stands, every, strict=True)):
-        curvature[:, p] = arc_curvature(machine.train, answers)
-        convex[:, p] = is_convex(machine.train, here, answers, load[:, p]) & certified[:, p]
-    return Block(
-        rows,
-        positions,
-        tuple(every),
-        certified,
-        residual,
-        bound,
-        determined,
-        displaced,
-        convex,
-        curvature,
-        rung,
-        message,
-    )
-
-
-def _put_displaced(
-    machine: Machine,
-    situations: Sequence[Situations],
-    answers: Sequence[Equilibria],
-    deflection: Array,
-    displaced: Array,
-) -> dict[tuple[int, int], str]:
-    """Write how far displacements go to a warning where that is not known; why some are refused."""
-    refused: dict[tuple[int, int], str] = {}
-    for p, (here, found) in enumerate(zip(situations, answers, strict=True)):
-        left = np.flatnonzero(np.isnan(displaced[:, p]))
-        if len(left):
-            some = here.take(left), found.take(left), deflection[left, p]
-            displaced[left, p] = machine.measuring.worst(*some)
-        large = np.flatnonzero(displaced[:, p] >= 1.0)
-        if len(large):
-            some = here.take(large), found.take(large), deflection[large, p]
-            why = machine.measuring.refusals(*some)
-            refused |= {(int(large[k]), p): told for k, told in why.items()}
-    return refused

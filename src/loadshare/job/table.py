@@ -19,7 +19,7 @@ from loadshare.train.train import Stage
 if TYPE_CHECKING:
     import xarray as xr
 
-    from loadshare.job.many import Block
+    from loadshare.job.block import Block
     from loadshare.job.positions import Progress
 
 Array = NDArray[np.float64]

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from loadshare.case import Case
 from loadshare.errors import CaseError
-from loadshare.job.many import Block, solve_blocks
+from loadshare.job.block import Block
+from loadshare.job.many import solve_blocks
 from loadshare.job.table import mesh_torques, shares
 from loadshare.scene.scene import Array
 from loadshare.study.tolerance.inputs import Inputs

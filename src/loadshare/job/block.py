@@ -1,0 +1,202 @@
+"""Solve one block of samples: the hot path at once, and the ladder for what it leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.certify.nonconvex import arc_curvature, is_convex
+from loadshare.errors import CaseError, Refused
+from loadshare.job.answer import Answer
+from loadshare.job.hot import HOT, SEARCHED
+from loadshare.job.ladder import climb
+from loadshare.job.least import least_places
+from loadshare.job.machine import Answers, Machine
+from loadshare.settings import JOB
+from loadshare.solver import Options
+from loadshare.solver.hot.exchange import Engine
+from loadshare.train import build_train
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.samples import Samples
+from loadshare.train.situations import Situations, stack
+
+Array = NDArray[np.float64]
+
+RUNGS = np.array([HOT, SEARCHED], dtype=object)
+"""Without and with the proximal search."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Block:
+    """Answers of up to `BLOCK` samples at all positions asked for.
+
+    Attributes
+    ----------
+    rows : ndarray of int, shape (S,)
+        Numbers of the samples.
+    positions : tuple of int
+    equilibria : tuple of Equilibria
+        One per position.
+    certified : ndarray of bool, shape (S, positions)
+    residual : ndarray, shape (S, positions)
+        Largest scaled residual; NaN where there is no answer.
+    bound : ndarray, shape (S, positions)
+        Largest distance of a torque from the exact one, over the largest torque; likewise.
+    determined : ndarray of bool, shape (S, positions)
+        Whether the equilibrium determines every displacement.
+    displaced : ndarray, shape (S, positions)
+        How far displacements go to a warning (see `Measuring.worst`); NaN where there is no answer.
+    convex : ndarray of bool, shape (S, positions)
+        Whether nothing that is not convex carries, so that the answer is the only one.
+    arc_curvature : ndarray, shape (S, positions)
+        Stiffness that arcs take across them [N/m]; NaN where there is no answer.
+    rung : ndarray of object, shape (S, positions)
+        Rung of the ladder that answered; empty where none did.
+    message : mapping of (row, position) to str
+        Why there is no answer.
+    """
+
+    rows: NDArray[np.intp]
+    positions: tuple[int, ...]
+    equilibria: tuple[Equilibria, ...]
+    certified: NDArray[np.bool_]
+    residual: Array
+    bound: Array
+    determined: NDArray[np.bool_]
+    displaced: Array
+    convex: NDArray[np.bool_]
+    arc_curvature: Array
+    rung: NDArray[np.object_]
+    message: Mapping[tuple[int, int], str]
+
+
+class _Open:
+    """A block that is being solved; its arrays are those of `Block`, over (sample, position)."""
+
+    def __init__(self, count: int, positions: Sequence[int]) -> None:
+        shape = count, len(positions)
+        self.count = count
+        self.certified, self.determined = np.zeros((2, *shape), dtype=bool)
+        self.residual, self.bound, self.displaced = np.full((3, *shape), np.nan)
+        self.deflection, self.load = np.full((2, *shape), np.nan)
+        # Objects, so that a million answers share a few texts.
+        self.rung = np.full(shape, "", dtype=object)
+        self.equilibria: list[Equilibria] = []
+        self.situations: list[Situations] = []
+
+    def put(self, columns: slice, found: Answers) -> None:
+        """Write what the hot path found at some positions, one after another."""
+        verdicts, count = found.verdicts, self.count
+        for there, values in (
+            (self.certified, found.passed),
+            (self.determined, found.determined),
+            (self.rung, RUNGS[found.searched.astype(np.intp)]),
+            (self.residual, verdicts.worst),
+            (self.bound, verdicts.bounds.relative),
+            (self.displaced, verdicts.displaced),
+            (self.deflection, verdicts.deflection),
+            (self.load, verdicts.load),
+        ):
+            there[:, columns] = values.reshape(-1, count).T
+        for start in range(0, len(found.passed), count):
+            self.equilibria.append(found.equilibria.part(slice(start, start + count)))
+
+    def answer(self, row: int, p: int, found: Answer) -> None:
+        """Write what the ladder found for a sample at a position."""
+        certificate = found.certificate
+        self.equilibria[p].put(row, found.equilibrium)
+        self.certified[row, p], self.rung[row, p] = True, found.rung
+        self.determined[row, p] = not found.equilibrium.undetermined
+        self.residual[row, p], self.bound[row, p] = certificate.worst, certificate.proved
+        self.deflection[row, p], self.load[row, p] = certificate.deflection, certificate.load
+        self.displaced[row, p] = np.nan
+
+    def refuse(self, row: int, p: int) -> None:
+        """Leave a sample without an answer at a position."""
+        self.certified[row, p], self.rung[row, p] = False, ""
+        self.residual[row, p] = self.bound[row, p] = self.displaced[row, p] = np.nan
+        self.equilibria[p].forget(row)
+
+
+def solve_block(
+    machine: Machine,
+    rows: NDArray[np.intp],
+    samples: Samples,
+    positions: tuple[int, ...],
+    tolerance: float,
+    engine: Engine,
+    least_norm: bool,
+) -> Block:
+    """Solve one block; what the hot path leaves climbs the ladder.
+
+    Parameters
+    ----------
+    machine : Machine
+    rows : ndarray of int, shape (S,)
+        Numbers of the samples.
+    samples : Samples
+        S of them.
+    positions : tuple of int
+    tolerance, engine, least_norm
+        As for `solve_blocks`.
+    """
+    block, message = _Open(len(rows), positions), dict[tuple[int, int], str]()
+    abreast = max(1, JOB.together // len(rows))
+    for at in range(0, len(positions), abreast):
+        some = positions[at : at + abreast]
+        columns = slice(at, at + len(some))
+        block.situations += [samples.situations(index) for index in some]
+        situations = stack(block.situations[at:])
+        found = machine.answer(situations, tolerance, engine, starts=some)
+        block.put(columns, found)
+        if least_norm:
+            loose = found.passed & ~found.determined
+            least_places(machine, situations, found, np.flatnonzero(loose).tolist(), tolerance)
+            block.displaced[:, columns][loose.reshape(-1, len(rows)).T] = np.nan
+    for row, p in np.argwhere(~block.certified).tolist():
+        try:
+            train = build_train(samples.one(row))
+            block.answer(row, p, climb(train, positions[p], Options(), tolerance, JOB.steps))
+        except (CaseError, Refused) as refusal:
+            message[int(rows[row]), positions[p]] = str(refusal)
+            block.refuse(row, p)
+    for (row, p), why in _too_far(machine, block).items():
+        message[int(rows[row]), positions[p]] = f"position {positions[p]}: {why}"
+        block.refuse(row, p)
+    curvature, convex = np.full(block.load.shape, np.nan), np.zeros_like(block.certified)
+    for p, (here, answers) in enumerate(zip(block.situations, block.equilibria, strict=True)):
+        curvature[:, p] = arc_curvature(machine.train, answers)
+        convex[:, p] = is_convex(machine.train, here, answers, block.load[:, p])
+    return Block(
+        rows,
+        positions,
+        tuple(block.equilibria),
+        block.certified,
+        block.residual,
+        block.bound,
+        block.determined,
+        block.displaced,
+        convex & block.certified,
+        curvature,
+        block.rung,
+        message,
+    )
+
+
+def _too_far(machine: Machine, block: _Open) -> dict[tuple[int, int], str]:
+    """Write how far displacements go where that is not known; return why some are refused."""
+    measuring, refused = machine.measuring, dict[tuple[int, int], str]()
+    for p, (here, found) in enumerate(zip(block.situations, block.equilibria, strict=True)):
+        displaced, deflection = block.displaced[:, p], block.deflection[:, p]
+        left = np.flatnonzero(np.isnan(displaced))
+        if len(left):
+            some = here.take(left), found.take(left), deflection[left]
+            displaced[left] = measuring.worst(*some)
+        large = np.flatnonzero(displaced >= 1.0)
+        if len(large):
+            some = here.take(large), found.take(large), deflection[large]
+            refused |= {(int(large[k]), p): why for k, why in measuring.refusals(*some).items()}
+    return refused
