@@ -79,6 +79,19 @@ def test_a_set_of_several_parts():
     assert 0 < alike(train, situations, answers).passed.sum() < 5000
 
 
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("name", ["fgfbstts/all_elements", "clocked rigid shaft", "round ring"])
+def test_no_claim_with_any_figure_that_is_none_passes(name, bad):
+    train = build_train(WAYS[name]())
+    situations, found = claims(train, [1])
+    places = [(claim, k) for claim in CLAIMS for k in range(getattr(found, claim)[0].size)]
+    spoilt = taken(found, np.zeros(len(places), dtype=int))
+    for row, (claim, k) in enumerate(places):
+        getattr(spoilt, claim)[row].reshape(-1)[k] = bad
+    assert np.isinf(alike(train, situations, spoilt).worst).all()
+    assert np.isinf(Judge(train).judge(situations, spoilt, compiled=True).worst).all()
+
+
 @pytest.mark.parametrize(
     ("field", "place"),
     [

@@ -688,6 +688,7 @@ def _worst(of, here, claim, s, sheet, v, found, deflection, seen):  # type: igno
     length, force, band = max(length, strayed), max(pull, free), CERTIFY.band * deflection
     for q in range(len(of.pull_gear)):
         force = max(force, _excess(sheet.law[q], sheet.offset[q], sheet.pull[q], band))
+        total += sheet.pull[q, 2]
         if np.isinf(sheet.law[q, 4]):
             x, y = sheet.offset[q, 0], sheet.offset[q, 1]
             length = max(length, np.sqrt(x * x + y * y) - sheet.law[q, 3])
@@ -737,11 +738,12 @@ def _interval(law, radius, band):  # type: ignore[no-untyped-def]
 @inlined
 def _strayed(of, here, claim, s):  # type: ignore[no-untyped-def]
     """Largest length [m] by which gears are where no coordinate leads them."""
-    moved, square = claim.displacement, 0.0
+    moved, square, total = claim.displacement, 0.0, 0.0
     for g in of.still:
         x, y, z = moved[s, g, 0], moved[s, g, 1], moved[s, g, 2]
-        square = max(square, x * x + y * y + z * z)
-    length, r, total = np.sqrt(square), _row(here.clocking, s), square
+        square, total = max(square, x * x + y * y + z * z), total + x + y + z
+        total += claim.support_force[s, g, 0] + claim.support_force[s, g, 1]
+    length, r = np.sqrt(square), _row(here.clocking, s)
     for k in range(len(of.place)):
         g, lifted = of.place[k, 1], 0.0
         for i in range(3):
@@ -750,7 +752,8 @@ def _strayed(of, here, claim, s):  # type: ignore[no-untyped-def]
     for w in of.rigid_shaft:
         g = of.shaft[w, 0]
         wound = claim.rotation[s, g] - claim.rotation[s, of.shaft[w, 1]] - here.clocking[r, w]
-        length, total = max(length, abs(wound) * of.radius[g]), total + wound
+        length = max(length, abs(wound) * of.radius[g])
+        total += wound + claim.shaft_torque[s, w]
     turned = claim.rotation[s, of.output]
     # The largest may have passed over what is not a number.
     return max(length, abs(turned) * of.radius[of.output]) + 0.0 * (total + turned)
