@@ -140,7 +140,8 @@ def solve_many(
     xarray.Dataset
         Over (sample, position): ``torque`` [N·m] (drive less coast), ``share`` and ``pair_share``
         [-] over mesh; ``displacement`` [m] over gear and component, for gears that can be
-        displaced; ``contact_force`` [N] of ring contacts; ``residual``, ``torque_bound`` (largest
+        displaced; ``contact_force`` [N] of ring contacts; ``residual`` (largest scaled one;
+        with Numba without the energy gap, which follows from the others), ``torque_bound`` (largest
         distance of a torque from the exact one, over the largest torque), ``certified``,
         ``determined``, ``displaced`` (displacements over what their geometry allows without a
         warning; ``warned`` counts those above 1), ``convex`` (nothing that is not convex carries),
