@@ -5,7 +5,8 @@ order. That it holds is seen from claims that are wrong by a known amount: the r
 far from the exact equilibrium as its own bound says, at most.
 """
 
-import importlib.util
+import importlib
+import sys
 from dataclasses import replace
 from itertools import islice
 from pathlib import Path
@@ -20,8 +21,7 @@ from benchmarks.reference import reference
 from benchmarks.workloads import workloads
 from loadshare import compilation
 from loadshare.certify import Judge
-from loadshare.certify.bound import Columns, bounds
-from loadshare.certify.bound import compiled as kernel
+from loadshare.certify.bound import Columns, bounds, kernel
 from loadshare.certify.bound.batch import is_covered, judged
 from loadshare.job.machine import Machine, engine_named
 from loadshare.train import Train, build_train
@@ -81,13 +81,13 @@ def errors(columns: Columns, here: Situations, one: Equilibria, other: Equilibri
 @pytest.fixture(scope="module")
 def plain():
     """The kernel as it is written."""
-    spec = importlib.util.spec_from_file_location("plain_bound", kernel.__file__)
-    module = importlib.util.module_from_spec(spec)
     with pytest.MonkeyPatch.context() as patch:
+        for name in [m for m in sys.modules if m.startswith(kernel.__name__)]:
+            patch.delitem(sys.modules, name)
+        patch.setattr(sys.modules[kernel.__package__.rpartition(".")[0]], "kernel", kernel)
         for way in ("jit", "within"):
             patch.setattr(compilation, way, lambda **_: lambda function: function)
-        spec.loader.exec_module(module)
-    return module
+        return importlib.import_module(kernel.__name__)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -23,7 +23,7 @@ from tests.certify.test_many import (
 from tests.support import shipped
 
 from loadshare.certify import RESIDUALS, Judge
-from loadshare.certify.bound.compiled import find_all
+from loadshare.certify.bound.kernel import find_all
 from loadshare.settings import CERTIFY
 from loadshare.train import build_train
 from loadshare.train.situations import Situations

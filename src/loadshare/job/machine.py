@@ -33,13 +33,13 @@ COMPILED = (
     "loadshare.solver.hot.compiled",
     "loadshare.solver.hot.products",
     "loadshare.solver.hot.touching",
-    "loadshare.certify.bound.compiled",
+    "loadshare.certify.bound.kernel",
 )
 """What a quick answer calls, all of which must be there."""
 KERNELS = (
     ("loadshare.solver.hot.compiled", "_settle_all"),
-    ("loadshare.certify.bound.compiled", "find_all"),
-    ("loadshare.certify.bound.compiled", "bound_all"),
+    ("loadshare.certify.bound.kernel", "find_all"),
+    ("loadshare.certify.bound.kernel", "bound_all"),
 )
 """What takes long to compile of all that answers a case; the rest takes a moment."""
 

@@ -211,7 +211,7 @@ class Judged(NamedTuple):
 
 def judged(columns: Columns, situations: Situations, answers: Equilibria) -> Judged:
     """Judge S claims with compiled code."""
-    from loadshare.certify.bound import compiled
+    from loadshare.certify.bound import kernel
 
     held = _springs(columns, situations)
     plan = _plans.get(columns)
@@ -219,11 +219,11 @@ def judged(columns: Columns, situations: Situations, answers: Equilibria) -> Jud
         plan = _plans[columns] = Plan(columns, *held)
     here, claim = plain(situations, answers)
     found, sets = plan.found(len(answers.rotation)), plan.sets()
-    count = compiled.find_all(plan.layout, here, claim, plan.sheet(), found, sets)
+    count = kernel.find_all(plan.layout, here, claim, plan.sheet(), found, sets)
     acts = found.acts[sets.first[:count]]
     errors = np.empty_like(found.largest)
     groups = plan.groups(acts, sets.least[:count], sets.most[:count])
-    compiled.bound_all(plan.layout, here, claim, found, groups, errors)
+    kernel.bound_all(plan.layout, here, claim, found, groups, errors)
     with np.errstate(invalid="ignore"):
         relative = np.where(errors < np.inf, errors / found.largest + 2.0 * EPS, np.inf)
     return Judged(relative, found.worst, found.scale, found.deflection, found.displaced)

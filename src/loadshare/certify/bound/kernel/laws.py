@@ -1,0 +1,161 @@
+"""Laws of flanks and graphs of radial elements, at a claim."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loadshare.certify.bound.kernel.options import compiled, inlined
+from loadshare.settings import BOUND, LAWS
+
+
+@inlined
+def row_of(array, s):  # type: ignore[no-untyped-def]
+    """Row of a claim, or the only one."""
+    return s if len(array) > 1 else 0
+
+
+@inlined
+def contact_force(of, claim, s, c):  # type: ignore[no-untyped-def]
+    """Claimed force of a flank, stop or arc [N]."""
+    flanks = len(of.arm)
+    return claim.flank_force[s, c] if c < flanks else claim.ring_force[s, c - flanks]
+
+
+@inlined
+def _level(of, here, claim, s, q):  # type: ignore[no-untyped-def]
+    """Force at which a spline slips [N]."""
+    k = q - of.rounds
+    r = row_of(here.spline, s)
+    bound = here.spline[r, k, 3]
+    if not np.isnan(bound):
+        return bound
+    torque = 0.0
+    for e in range(len(of.arm)):
+        torque += of.moment[k, e] * claim.flank_force[s, e]
+    return here.spline[r, k, 4] * abs(torque)
+
+
+@inlined
+def law_of(of, here, claim, s, q):  # type: ignore[no-untyped-def]
+    """Graph of a radial element; not a number where it has no meaning.
+
+    First stiffness, S1, level, S2, last stiffness, and the force at the end of the first piece.
+    """
+    if q < of.rounds:
+        reach = here.round_radius[row_of(here.round_radius, s), q]
+        return 0.0, 0.0, 0.0, reach, here.round_stiffness[row_of(here.round_stiffness, s), q], 0.0
+    r, k = row_of(here.spline, s), q - of.rounds
+    level = _level(of, here, claim, s, q)
+    stiffness, given, reach = here.spline[r, k, 0], here.spline[r, k, 1], here.spline[r, k, 2]
+    stick, end = level / stiffness, level
+    if np.isnan(given):
+        if reach < stick:
+            stick = end = np.inf
+    elif stiffness * given > level * (1.0 + LAWS.written) or reach < min(given, stick):
+        stick = np.nan
+    elif given < stick:
+        stick, end = given, stiffness * given
+    return stiffness, stick, level, reach, stiffness, end
+
+
+@inlined
+def stiffest(law):  # type: ignore[no-untyped-def]
+    """Compliance of a graph that no two of its points undercut [m/N].
+
+    A graph whose last piece is as stiff as its first, without a step of the force, is nowhere
+    stiffer than that; a ring is as stiff as its wall.
+    """
+    _, _, level, _, last, end = law
+    return 1.0 / last if end >= level else 0.0
+
+
+@inlined
+def flank_law(of, here, s, e, force, scale):  # type: ignore[no-untyped-def]
+    """Law of a flank at a force.
+
+    Compression [m], smallest and largest compliance [m/N] next to it, and the error of the force
+    up to which they hold [N]. A Hertz contact that is light may lose its force: its largest is the
+    secant to none, which has no end where there is none.
+    """
+    m, light = of.mesh[e], BOUND.light * scale
+    if of.is_tabled[e]:
+        r = row_of(here.table, s)
+        return _by_table(here.table[r, m, 0], here.table[r, m, 1], force, light)
+    bending, hertz = here.bending[row_of(here.bending, s), m], here.hertz[row_of(here.hertz, s), m]
+    if hertz == 0.0:
+        return bending * force, bending, bending, np.inf
+    root = np.cbrt(max(force, 0.0))
+    compression = bending * force + hertz * root * root
+    if force >= light:
+        soft = bending + 2.0 / 3.0 * hertz / root
+        return compression, soft, soft, 0.1 * force
+    least = bending + 2.0 / 3.0 * hertz / np.cbrt(light)
+    most = bending + hertz / root if root > 0.0 else np.inf
+    return compression, least, most, 0.1 * light
+
+
+@compiled
+def _by_table(forces, compressions, force, near):  # type: ignore[no-untyped-def]
+    """Law of a table at a force, as `_flank`; it is straight beyond the last point.
+
+    Corners that are near do not end it: laws on both sides of them are among those it tells of.
+    """
+    last = len(forces) - 2
+    while last > 0 and np.isnan(forces[last + 1]):
+        last -= 1
+    k = 0
+    while k < last and forces[k + 1] <= force:
+        k += 1
+    slope = (compressions[k + 1] - compressions[k]) / (forces[k + 1] - forces[k])
+    first, final = k, k
+    while first > 0 and force - forces[first] <= near:
+        first -= 1
+    while final < last and forces[final + 1] - force <= near:
+        final += 1
+    least, most, reach = slope, slope, np.inf
+    for i in range(first, final + 1):
+        other = (compressions[i + 1] - compressions[i]) / (forces[i + 1] - forces[i])
+        least, most = min(least, other), max(most, other)
+    if first > 0:
+        reach = min(reach, force - forces[first])
+    if final < last:
+        reach = min(reach, forces[final + 1] - force)
+    return compressions[k] + slope * (force - forces[k]), least, most, reach
+
+
+@inlined
+def nearest(law, force, distance, corner):  # type: ignore[no-untyped-def]
+    """Point of a graph at a force that is nearest to a distance: distance [m], force [N].
+
+    A distance below 0 stands for the first piece. Further the compliance [m/N] there (of a slip
+    across it, wherever it ends), and by how much the force may change.
+    """
+    first, stick, level, reach, last, end = law
+    if np.isinf(stick):
+        return -1.0, force, 1.0 / first, np.inf
+    slips = stick * (1.0 + BOUND.slack) < distance < reach * (1.0 - BOUND.slack)
+    if abs(force - level) <= (BOUND.slack if slips else corner) * level:
+        return min(max(distance, stick), reach), level, reach / level, BOUND.slip_turns * level
+    if force > level:
+        far = reach + (force - level) / last
+        return far, force, max(1.0 / last, far / force), min(force - level, 0.05 * force)
+    if force <= end and stick > 0.0:
+        return -1.0, force, 1.0 / first, end - force
+    spare = min(level - force, force - end if stick > 0.0 else np.inf)
+    return stick, force, stick / force if stick > 0.0 else 0.0, spare
+
+
+@inlined
+def sticks(law, force):  # type: ignore[no-untyped-def]
+    """Whether a spline would stick at half the level as well."""
+    first, stick, level, reach, _, end = law
+    if np.isinf(stick):
+        return 0.5 * level >= first * reach
+    return end >= level and force <= 0.5 * level
+
+
+@inlined
+def rate_of(of, here, s, q):  # type: ignore[no-untyped-def]
+    """Change of a spline's level with the torque over it [1/m]."""
+    r, k = row_of(here.spline, s), q - of.rounds
+    return abs(here.spline[r, k, 4]) if np.isnan(here.spline[r, k, 3]) else 0.0

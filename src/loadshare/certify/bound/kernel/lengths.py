@@ -1,0 +1,133 @@
+"""Coordinates, lengths and gaps of claims."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from loadshare.certify.bound.kernel.laws import row_of
+from loadshare.certify.bound.kernel.options import inlined
+
+
+@inlined
+def put_places(of, here, claim, s, sheet, v, found):  # type: ignore[no-untyped-def]
+    """Coordinates, clockings and offsets of a claim [m], and where its gears are.
+
+    Writes the sum of the largest sizes of both as its width, and the largest offset of a centre as
+    its deflection.
+    """
+    x, varying, shift = sheet.x, sheet.varying, sheet.shift
+    widest, offsets, furthest, moving = 0.0, 0.0, 0.0, claim.displacement
+    for k in range(len(of.turn)):
+        x[of.turn[k, 0], v] = of.turn_radius[k] * claim.rotation[s, of.turn[k, 1]]
+    for k in range(len(of.place)):
+        at, g = of.place[k, 0], of.place[k, 1]
+        for a in range(2):
+            moved = 0.0
+            for i in range(3):
+                moved += of.frame[g, a, i] * moving[s, g, i]
+            x[at + a, v] = moved
+    for c in range(len(x)):
+        widest = max(widest, abs(x[c, v]))
+    r, shafts = row_of(here.offset, s), here.clocking.shape[1]
+    for k in range(shafts):
+        varying[k, v] = here.clocking[row_of(here.clocking, s), k]
+    for g in range(here.offset.shape[1]):
+        square = 0.0
+        for i in range(3):
+            offset = here.offset[r, g, i]
+            varying[shafts + 3 * g + i, v] = offset
+            shift[3 * g + i, v] = moving[s, g, i] + offset
+            offsets, square = max(offsets, abs(offset)), square + offset * offset
+        furthest = max(furthest, square)
+    found.width[s], found.deflection[s] = widest + offsets, np.sqrt(furthest)
+
+
+@inlined
+def put_lengths(of, sheet, width):  # type: ignore[no-untyped-def]
+    """Lengths A X [m] with clockings and offsets, what of them remains at rest, turns of lines."""
+    x, varying, length, at_rest, across = (
+        sheet.x,
+        sheet.varying,
+        sheet.length,
+        sheet.at_rest,
+        sheet.across,
+    )
+    for j in range(len(length)):
+        for v in range(width):
+            length[j, v] = 0.0
+        for i in range(of.start[j], of.start[j + 1]):
+            value, c = of.value[i], of.at[i]
+            for v in range(width):
+                length[j, v] += value * x[c, v]
+        for i in range(of.rest_start[j], of.rest_start[j + 1]):
+            value, c = of.rest_value[i], of.rest_at[i]
+            for v in range(width):
+                length[j, v] += value * varying[c, v]
+    for e in range(len(at_rest)):
+        for v in range(width):
+            at_rest[e, v] = across[e, v] = 0.0
+        for i in range(of.rest_shift[e], of.rest_start[e + 1]):
+            value, c = of.rest_value[i], of.rest_at[i]
+            for v in range(width):
+                at_rest[e, v] += value * varying[c, v]
+        for k in range(3):
+            value, i, j = of.across[e, k], 3 * of.ends[e, 0] + k, 3 * of.ends[e, 1] + k
+            for v in range(width):
+                across[e, v] += value * (sheet.shift[i, v] - sheet.shift[j, v])
+
+
+@inlined
+def put_limits(of, here, s, sheet, v):  # type: ignore[no-untyped-def]
+    """Take gaps and floats from the lengths [m]; returns the largest, and the largest approach."""
+    limits, approach, length = 0.0, 0.0, sheet.length
+    rg, rj, rs = row_of(here.gap, s), row_of(here.backlash, s), row_of(here.stop, s)
+    for e in range(len(of.arm)):
+        m = of.mesh[e]
+        gap = here.gap[rg, m] if of.is_drive[e] else here.backlash[rj, m]
+        length[e, v] -= gap
+        sheet.at_rest[e, v] -= gap
+        limits, approach = max(limits, abs(gap)), max(approach, length[e, v])
+    for d in range(len(of.drum_gear)):
+        for side in range(2):
+            limit = here.stop[rs, d, side]
+            length[of.first_stop + 2 * d + side, v] -= limit
+            limits = max(limits, abs(limit))
+    return limits, approach
+
+
+@inlined
+def put_gaps(of, here, s, sheet, v):  # type: ignore[no-untyped-def]
+    """Gaps of flanks, stops and arcs, and unit vectors of the latter.
+
+    Returns the widest gap, and whether a gear stands beyond a neighbour on whose ring its own
+    rolls.
+    """
+    flanks, drums, behind = len(of.arm), len(of.drum_gear), False
+    for e in range(flanks):
+        sheet.gap[e] = -sheet.length[e, v]
+    for k in range(2 * drums):
+        sheet.gap[flanks + k] = -sheet.length[of.first_stop + k, v]
+    ra, rc = row_of(here.arc_shift, s), row_of(here.arc_clearance, s)
+    for k in range(2 * drums):
+        d, side = k // 2, k % 2
+        apart, along, square = of.apart[k], 0.0, 0.0
+        for a in range(2):
+            moved = sheet.length[of.first_arc + 2 * k + a, v]
+            for i in range(3):
+                moved += of.frame[of.drum_gear[d], a, i] * here.arc_shift[ra, d, side, i]
+            sheet.line[k, a] = moved
+            along += of.nominal[k, a] * moved
+            square += moved * moved
+        behind |= not apart * apart + along > 0.0
+        length = np.sqrt(apart * apart + 2.0 * along + square)
+        longer = (2.0 * along + square) / (length + apart)
+        sheet.turn[k] = 0.0
+        for a in range(2):
+            turned = (sheet.line[k, a] - longer * of.nominal[k, a] / apart) / length
+            sheet.turn[k] = max(sheet.turn[k], abs(turned))
+            sheet.line[k, a] = of.nominal[k, a] / apart + turned
+        sheet.gap[flanks + 2 * drums + k] = longer + here.arc_clearance[rc, d, side]
+    widest = 0.0
+    for c in range(len(sheet.gap)):
+        widest = max(widest, abs(sheet.gap[c]))
+    return widest, behind
