@@ -193,9 +193,6 @@ class Bound(NamedTuple):
     """Friction, in loads of the claim, that may be put aside where nothing else bounds a torque."""
     enough: float = 1e-11
     """Relative bound with which double precision is content."""
-    enough_for_many: float = 1e-10
-    """The same for what Numba finds: a tenth of what is certified. A closer look costs as much as
-    many answers."""
     together: int = 512
     """Claims that are looked at in twice the precision at a time."""
     abreast: int = 16
@@ -576,9 +573,8 @@ class Job(NamedTuple):
     """How many times as many samples it takes for that to be worth while."""
     block: int = 4096
     """Samples that are solved together, if every one has a few positions."""
-    together: int = 40960
-    """Equilibria that are solved together: twice as many take a third more room, and a twentieth
-    less time."""
+    together: int = 65536
+    """Equilibria that are solved together: half as many take a twentieth more time."""
     workers: int = 2
     """Threads; the compiled passes hold no lock."""
     recent: int = 16

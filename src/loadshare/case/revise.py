@@ -41,7 +41,7 @@ def revise(
         If a path leads nowhere.
     """
     changed = copy.deepcopy(dict(data))
-    files = dict(origin.files)
+    moved = set()
     problems = []
     for key, value in changes.items():
         try:
@@ -51,13 +51,17 @@ def revise(
             continue
         lost = change(changed, path, plain(value))
         if lost is None:
-            files = {known: file for known, file in files.items() if known[: len(path)] != path}
-            files[path] = FILE
+            moved.add(path)
         else:
             problems.append(Problem(FILE, key, as_given(plain(value)), "leads nowhere", "", lost))
     if problems:
         raise CaseError(problems)
-    return changed, Origin(origin.file, files)
+    files = {
+        known: file
+        for known, file in origin.files.items()
+        if not any(known[:length] in moved for length in range(1, len(known) + 1))
+    }
+    return changed, Origin(origin.file, files | dict.fromkeys(moved, FILE))
 
 
 def change(data: dict[str, Any], path: Path, value: Any) -> str | None:

@@ -81,8 +81,8 @@ class Judge:
                 some = situations.take(left), answers.take(left)
                 figure[left] = getattr(self._by_numpy(*some, tolerance), name)
         # What is out of balance is refused in any case.
-        wanted = found.worst <= tolerance
-        limits = completed(self.columns, situations, answers, found.relative, wanted)
+        wanted, relative = found.worst <= tolerance, found.relative
+        limits = completed(self.columns, situations, answers, relative, tolerance, wanted)
         load, deflection = found.load, found.deflection
         return Verdicts(found.worst, tolerance, load, deflection, found.displaced, limits)
 

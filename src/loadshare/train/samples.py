@@ -105,12 +105,14 @@ def samples_of(
     _check(case, columns, arrays)
     others = [c for c in columns if c.path not in arrays]
     groups = []
-    for rows in _groups(others, len(columns[0].values)):
-        mine = tuple(replace(c, values=c.values[rows]) for c in columns)
+    parts = _groups(others, len(columns[0].values))
+    for rows in parts:
+        some = rows if len(parts) > 1 else slice(None)
+        mine = tuple(replace(c, values=c.values[some]) for c in columns)
         own = first if rows[0] == 0 else first.replace({dotted(c.path): c.text(0) for c in mine})
         base = with_laws(own)
         geometry = geometry_of(base)
-        values = {path: si[rows] for path, si in arrays.items()}
+        values = {path: si[some] for path, si in arrays.items()}
         group = Samples(base, geometry, train_of(base, geometry), mine, values)
         groups.append((rows, group))
     return groups

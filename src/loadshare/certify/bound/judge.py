@@ -96,9 +96,12 @@ def completed(
     situations: Situations,
     answers: Equilibria,
     relative: Array,
+    tolerance: float,
     wanted: Flags,
 ) -> Bounds:
     """Bound with every effort what Numba has not bounded closely enough, of what is wanted.
+
+    What is certified is close enough: a closer look costs as much as a thousand answers.
 
     Parameters
     ----------
@@ -107,9 +110,11 @@ def completed(
     answers : Equilibria
     relative : ndarray, shape (S,)
         Largest error of a torque over the largest torque, as Numba has it; changed in place.
+    tolerance : float
+        Its largest value that is certified.
     wanted : ndarray of bool, shape (S,)
     """
-    left = np.flatnonzero(~(relative <= BOUND.enough_for_many) & wanted)
+    left = np.flatnonzero(~(relative <= tolerance) & wanted)
     if len(left):
         more = bounds(columns, situations.take(left), answers.take(left)).relative
         relative[left] = np.fmin(relative[left], more)
