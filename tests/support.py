@@ -7,7 +7,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from tests.certify.oracle import State
+from tests.certify.oracle import ClaimedState
 
 import loadshare as ls
 from benchmarks import families
@@ -141,7 +141,7 @@ def disagreement(train: Train, one: Equilibrium, other: Equilibrium) -> tuple[fl
 
 def potential(train: Train, found: Equilibrium) -> float:
     """Potential energy of an answer [J], from its displacements alone."""
-    state = State(train, found)
+    state = ClaimedState(train, found)
     energy = [-t * found.rotation[g] for g, t in state.situation.torques.items()]
     energy += [push.law.energy(push.approach) for push in state.pushes]
     energy += [pull.law.energy(float(np.linalg.norm(pull.offset))) for pull in state.pulls]

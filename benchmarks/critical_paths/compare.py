@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from benchmarks.critical_paths.scan import States
+from benchmarks.critical_paths.scan import StatesByName
 from loadshare.study.critical import Critical
 from loadshare.study.event import Event
 
@@ -19,7 +19,7 @@ SAME = 1e-11
 """Distance, over the largest value, at which two paths have the same event."""
 
 
-def compared(found: Critical, values: Array, seen: States) -> tuple[list[str], list[str]]:
+def compared(found: Critical, values: Array, seen: StatesByName) -> tuple[list[str], list[str]]:
     """Return what events miss of a scan, and what they tell that it does not show.
 
     Samples in intervals that are named as not proved are left out; beyond each of them states are

@@ -20,7 +20,7 @@ from loadshare.study.critical import Critical
 from loadshare.study.follow.line import Line
 
 Array = NDArray[np.float64]
-States = NDArray[np.str_]
+StatesByName = NDArray[np.str_]
 EVERY = 3
 """Each how many-th path is followed to another end as well."""
 
@@ -100,18 +100,20 @@ def followed(path: Path, stop: float) -> Critical:
     return ls.critical(path.case, path.keys, *ends, positions=[1])
 
 
-def shown(path: Path, found: Critical, points: int, engine: str) -> tuple[Array, dict[str, States]]:
+def shown(
+    path: Path, found: Critical, points: int, engine: str
+) -> tuple[Array, dict[str, StatesByName]]:
     """Scan a path at so many values, and between its events: the values, and states there."""
     line = Line(path.case, found.parameter, path.start, path.stop)
     values = np.union1d(np.linspace(path.start, path.stop, points), between(found))
     return values, scanned(path, line, values, engine)
 
 
-def _answered(seen: Mapping[str, States], count: int) -> int:
+def _answered(seen: Mapping[str, StatesByName], count: int) -> int:
     """Samples of which any state is told."""
     told = np.zeros(count, dtype=bool)
-    for states in seen.values():
-        told |= states != ""
+    for states_by_name in seen.values():
+        told |= states_by_name != ""
     return int(told.sum())
 
 

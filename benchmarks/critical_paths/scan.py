@@ -13,11 +13,11 @@ from loadshare.certify import Judge
 from loadshare.certify.bound import Bounds
 from loadshare.job.machine import Machine, engine_named
 from loadshare.job.many import solve_blocks
-from loadshare.scene.data import Data
+from loadshare.scene.loading import Loading
 from loadshare.settings import CERTIFY
-from loadshare.solver.hot import places as at
-from loadshare.solver.hot.exchange import Codes, Engine, Found, exchange
-from loadshare.solver.hot.state import State
+from loadshare.solver.hot import contact_states as at
+from loadshare.solver.hot.exchange import Engine, Found, States, exchange
+from loadshare.solver.hot.iterate import Iterate
 from loadshare.study.follow.line import Line
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.samples import samples_of
@@ -26,7 +26,7 @@ from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-States = dict[str, NDArray[np.str_]]
+StatesByName = dict[str, NDArray[np.str_]]
 """States of elements at the values of a scan, by name."""
 BAND = 1e-8
 """Force over load, or radius over deflection, within which a state is not told by a scan."""
@@ -40,7 +40,9 @@ FEW, ROUNDS = 8, 6
 """Samples searched at a time for others to begin at, and how many times."""
 
 
-def states(line: Line, values: Array, answers: Equilibria, certified: NDArray[np.bool_]) -> States:
+def states_by_name(
+    line: Line, values: Array, answers: Equilibria, certified: NDArray[np.bool_]
+) -> StatesByName:
     """Tell the state of every element at every value, from forces and displacements alone.
 
     Returns
@@ -48,8 +50,8 @@ def states(line: Line, values: Array, answers: Equilibria, certified: NDArray[np
     dict of str to ndarray of str, shape (S,)
         Empty where a state is within round-off of another, or there is no certified answer.
     """
-    names, push, length = answers.names, line.elements.force, line.elements.length
-    found: States = {}
+    names, push, length = answers.names, line.structure.force, line.structure.length
+    found: StatesByName = {}
     forces = {
         **dict(zip(names.flanks, answers.flank_force.T, strict=True)),
         **dict(zip(names.contacts, answers.ring_force.T, strict=True)),
@@ -63,7 +65,7 @@ def states(line: Line, values: Array, answers: Equilibria, certified: NDArray[np
     for k, (_, gear) in enumerate(names.radials):
         for flank, force in zip(names.flanks, answers.flank_force.T, strict=True):
             torque[:, k] += train.transmitted(gear, {flank: 1.0}) * force
-    radials = line.elements.radials
+    radials = line.structure.radials
     for k, (name, gear) in enumerate(names.radials):
         j = next(i for i, r in enumerate(radials) if r.name == name)
         given = np.broadcast_to(numbers.radial[:, j], (len(values), 6))
@@ -114,42 +116,49 @@ class Scan(Machine):
         """Its certificate."""
         return Balance(self.train)
 
-    def _pilots(
-        self, parts: Sequence[slice], data: Data, state: State, code: Codes, engine: Engine
+    def _trial_samples(
+        self,
+        parts: Sequence[slice],
+        loading: Loading,
+        iterate: Iterate,
+        states: States,
+        engine: Engine,
     ) -> Found:
         """Solve every how many-th sample; those in between begin where it stands."""
-        pilots = _only(np.arange(0, data.count, SPACING), np.zeros(data.count, dtype=bool))
-        found = exchange(self.elements, data, state, engine, code, only=pilots)
-        found = self._search(data, state, found, pilots & ~found.solved)
-        self._begin_beside(found, state, code, np.flatnonzero(~found.solved))
+        trial_samples = _only(
+            np.arange(0, loading.count, SPACING), np.zeros(loading.count, dtype=bool)
+        )
+        found = exchange(self.structure, loading, iterate, engine, states, only=trial_samples)
+        found = self._search(loading, iterate, found, trial_samples & ~found.solved)
+        self._begin_beside(found, iterate, states, np.flatnonzero(~found.solved))
         return found
 
-    def _search(self, data: Data, state: State, found: Found, rows: Flags) -> Found:
+    def _search(self, loading: Loading, iterate: Iterate, found: Found, rows: Flags) -> Found:
         """Search a few at a time, and begin with the others where their neighbours stand."""
         left = np.flatnonzero(rows)
         for _ in range(ROUNDS):
-            found = super()._search(data, state, found, _only(_thinned(left, FEW), rows))
+            found = super()._search(loading, iterate, found, _only(_thinned(left, FEW), rows))
             left = left[~found.solved[left]]
             if not len(left) or not found.solved.any():
                 break
-            code = found.code.copy()
-            self._begin_beside(found, state, code, left)
-            engine, only = engine_named(self.engine, data.count), _only(left, rows)
-            more = exchange(self.elements, data, state, engine, code, only=only)
+            states = found.states.copy()
+            self._begin_beside(found, iterate, states, left)
+            engine, only = engine_named(self.engine, loading.count), _only(left, rows)
+            more = exchange(self.structure, loading, iterate, engine, states, only=only)
             found = found.completed(more)
             left = left[~found.solved[left]]
         return found
 
     def _begin_beside(
-        self, found: Found, state: State, code: Codes, left: NDArray[np.intp]
+        self, found: Found, iterate: Iterate, states: States, left: NDArray[np.intp]
     ) -> None:
         """Let samples begin where the next ones stand that are solved."""
         known = np.flatnonzero(found.solved)
         if len(known):
             near = known[np.clip(np.searchsorted(known, left), 0, len(known) - 1)]
-            for array in (state.x, state.force, state.root, state.floor, state.stays):
+            for array in (iterate.x, iterate.force, iterate.root, iterate.floor, iterate.stays):
                 array[left] = array[near]
-            code[left] = found.code[near]
+            states[left] = found.states[near]
 
 
 def _only(rows: NDArray[np.intp], of: Flags) -> Flags:
@@ -163,21 +172,21 @@ def _thinned(rows: NDArray[np.intp], most: int) -> NDArray[np.intp]:
     return rows[:: max(1, -(-len(rows) // most))]
 
 
-def scanned(path: Path, line: Line, values: Array, engine: str) -> States:
+def scanned(path: Path, line: Line, values: Array, engine: str) -> StatesByName:
     """Scan a path; states are empty where no certified answer is known."""
     groups = samples_of(path.case, _table(path, values))
     if len(groups) > 1:
         return _climbed(path, line, values, engine)
     samples = groups[0][1]
     machine = Scan(samples.train, engine)
-    parts: list[States] = []
+    parts: list[StatesByName] = []
     for at_ in range(0, len(values), BLOCK):
         block = slice(at_, at_ + BLOCK)
         here = values[block]
         situations = samples.take(block).situations(1)
         solver = engine_named(engine, len(values))
         found = machine.answer(situations, CERTIFY.tolerance, solver, starts=(1,))
-        told = states(line, here, found.equilibria, found.passed)
+        told = states_by_name(line, here, found.equilibria, found.passed)
         left = _thinned(np.flatnonzero(~found.passed), ASKED)
         if len(left):
             for name, more in _climbed(path, line, here[left], engine).items():
@@ -186,13 +195,13 @@ def scanned(path: Path, line: Line, values: Array, engine: str) -> States:
     return {name: np.concatenate([p[name] for p in parts]) for name in parts[0]}
 
 
-def _climbed(path: Path, line: Line, values: Array, engine: str) -> States:
+def _climbed(path: Path, line: Line, values: Array, engine: str) -> StatesByName:
     """States by the ladder from the hot path to the slowest way."""
-    told: States = {}
+    told: StatesByName = {}
     table = _table(path, values)
     for block in solve_blocks(path.case, table, positions=[1], engine=engine, workers=1):
         rows = block.rows
-        here = states(line, values[rows], block.equilibria[0], block.certified[:, 0])
+        here = states_by_name(line, values[rows], block.equilibria[0], block.certified[:, 0])
         for name, found in here.items():
             told.setdefault(name, np.full(len(values), "", dtype="<U16"))[rows] = found
     return told

@@ -54,7 +54,7 @@ class HotPath(NamedTuple):
     """Distance between rigid elements, over the lengths at hand, that is round-off."""
     sign: float = 1e-12
     """Violation of a sign, over the largest quantity of its sort, that counts as round-off."""
-    hurry: float = 1e-3
+    gross: float = 1e-3
     """The same that no later pass mends, so that it is acted on at once."""
     nearly: float = 1e-2
     """Misfit of the laws, relative, from which on signs are looked at before passes settle."""
@@ -86,18 +86,20 @@ class HotPath(NamedTuple):
     """Share of the load along a loose move from which on it counts."""
 
 
-class Lanes(NamedTuple):
+class Abreast(NamedTuple):
     """Samples of a set side by side; what is out of the ordinary is left undecided."""
 
+    widths: tuple[int, ...] = (8, 16, 32, 64)
+    """How many at a time: the first number that is enough, or the last."""
     rounds: int = 4
     """Times that samples begin again beside those that took as long."""
     few: float = 0.125
-    """Share of the lanes that is not waited for, but in the last round."""
+    """Share of the samples that is not waited for, but in the last round."""
     fewest: int = 4
-    """Samples up to which no lane is filled up with what is in another."""
+    """Samples up to which the width is not filled up with one of them."""
     passes: int = 30
     """Passes after which a sample is left undecided."""
-    haste: int = 2
+    patience: int = 2
     """Patience (see `HotPath`) where all wrong signs are exchanged at once."""
     turned: float = 10.0
     """Weight of the angle by which arcs still turn among what has to settle."""
@@ -567,7 +569,7 @@ class Job(NamedTuple):
     """Equilibria up to which compiling, or reading what was compiled, costs more than it saves."""
     loading: int = 100
     """Equilibria, solved case by case, from which on reading what was compiled is worth while."""
-    pilots: int = 16
+    trial_samples: int = 16
     """Samples that show the others where to begin."""
     worth: int = 32
     """How many times as many samples it takes for that to be worth while."""
@@ -626,7 +628,7 @@ class Allowed(NamedTuple):
 
 LAWS = Laws()
 HOT = HotPath()
-LANES = Lanes()
+ABREAST = Abreast()
 STATICS = Statics()
 CERTIFY = Certify()
 BOUND = Bound()

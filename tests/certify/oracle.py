@@ -96,7 +96,7 @@ class Pull:
 
 
 @dataclass(frozen=True)
-class State:
+class ClaimedState:
     """A train, a position and an answer to be judged."""
 
     train: Train
@@ -358,7 +358,7 @@ ROUNDED = 16.0 * float(np.finfo(float).eps)
 """Rounding of energies, relative to the sum of their sizes."""
 
 
-def force_balance(state: State) -> dict[str, float]:
+def force_balance(state: ClaimedState) -> dict[str, float]:
     """Unbalanced force [N] on gears that can be displaced."""
     train = state.train
     total = {name: -force @ train.gears[name].frame for name, _, _, force in state.bearings()}
@@ -371,7 +371,7 @@ def force_balance(state: State) -> dict[str, float]:
     return {g: float(np.linalg.norm(train.gears[g].frame @ f)) for g, f in total.items()}
 
 
-def moment_balance(state: State) -> dict[str, float]:
+def moment_balance(state: ClaimedState) -> dict[str, float]:
     """Unbalanced moment over base radius [N] on gears that turn as one, by one of them."""
     train = state.train
     unbalanced = {}
@@ -382,7 +382,7 @@ def moment_balance(state: State) -> dict[str, float]:
     return unbalanced
 
 
-def penetration(state: State) -> dict[str, float]:
+def penetration(state: ClaimedState) -> dict[str, float]:
     """Overlap [m] of contacts that a force of the claimed size does not explain."""
     overlaps = {}
     for push in state.pushes:
@@ -392,14 +392,14 @@ def penetration(state: State) -> dict[str, float]:
     return overlaps
 
 
-def complementarity(state: State) -> dict[str, float]:
+def complementarity(state: ClaimedState) -> dict[str, float]:
     """Work [J] of a force over an open gap, by contact."""
     return {
         p.name: p.force * (p.law.compression(max(p.force, 0.0)) - p.approach) for p in state.pushes
     }
 
 
-def deformation_law(state: State, band: float) -> dict[str, float]:
+def deformation_law(state: ClaimedState, band: float) -> dict[str, float]:
     """Misfit [m] of compressed contacts, shafts and bearings with their laws.
 
     Parameters
@@ -430,7 +430,7 @@ def deformation_law(state: State, band: float) -> dict[str, float]:
     return misfits
 
 
-def cone_membership(state: State, band: float) -> dict[str, float]:
+def cone_membership(state: ClaimedState, band: float) -> dict[str, float]:
     """Excess [N] of forces over what their contacts or graphs admit.
 
     Parameters
@@ -461,7 +461,7 @@ def cone_membership(state: State, band: float) -> dict[str, float]:
     return excess
 
 
-def energy_gap(state: State) -> dict[str, float]:
+def energy_gap(state: ClaimedState) -> dict[str, float]:
     """Potential less complementary energy [J], beyond rounding: zero at an equilibrium.
 
     Bearings and rings may hold far more energy against one another than the load brings in.
@@ -518,7 +518,7 @@ class Figures:
 
 def judged(train: Train, answer: Equilibrium) -> dict[str, Figures]:
     """All residuals of a claim; infinite, with the reason for an element, where none is judged."""
-    state = State(train, answer)
+    state = ClaimedState(train, answer)
     if state.fault:
         return {name: Figures({state.fault: math.inf}, unit, 1.0) for name, unit in UNITS.items()}
     load, deflection = state.force_scale, state.length_scale

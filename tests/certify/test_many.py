@@ -22,7 +22,7 @@ from benchmarks import families
 from loadshare.certify import RESIDUALS, Judge, Residual, Verdicts, certify
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.residuals import scaled_residuals
-from loadshare.certify.state import State
+from loadshare.certify.state import ClaimedState
 from loadshare.settings import CERTIFY
 from loadshare.train import Train, build_train
 from loadshare.train.equilibria import Equilibria
@@ -137,7 +137,7 @@ def alike(train: Train, situations: Situations, found: Equilibria) -> Verdicts:
 def residuals(train: Train, situations: Situations, found: Equilibria) -> np.ndarray:
     """All scaled residuals, shape (S, 7)."""
     with np.errstate(all="ignore"):
-        return scaled_residuals(State(mechanics_of(train), situations, found))
+        return scaled_residuals(ClaimedState(mechanics_of(train), situations, found))
 
 
 def agree(train: Train, indices: list[int], situations: Situations, found: Equilibria) -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.certify.oracle import State
+from tests.certify.oracle import ClaimedState
 from tests.support import answer, disagreement, furthest, lost_contact, round_ring, shipped
 
 import loadshare as ls
@@ -27,7 +27,7 @@ from loadshare.solver import Options
 from loadshare.solver.contradiction import contradiction
 from loadshare.solver.hot import places, vectorised
 from loadshare.solver.hot.exchange import Found, exchange, first_sets
-from loadshare.solver.hot.state import at_rest
+from loadshare.solver.hot.iterate import at_rest
 from loadshare.train import Train, build_train
 from loadshare.train.situations import situation_of
 
@@ -45,9 +45,9 @@ def by_numpy(monkeypatch):
     monkeypatch.setattr(hot, "engine_at_hand", lambda _name, _count: vectorised.settle)
 
 
-def failing(elements, data, basis, code, rows, state, one_only):
+def failing(structure, loading, basis, states, rows, state, one_only):
     """An engine that finds no answer on any set."""
-    return np.full(len(rows), places.FAILED, np.int8), np.repeat(code[None, :], len(rows), 0)
+    return np.full(len(rows), places.FAILED, np.int8), np.repeat(states[None, :], len(rows), 0)
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -73,8 +73,8 @@ def test_what_exchange_leaves_is_searched_for(monkeypatch):
     with monkeypatch.context() as without:
         without.setattr(
             "loadshare.job.machine.exchange",
-            lambda elements, data, state, _, code=None, **how: exchange(
-                elements, data, state, failing, code, **how
+            lambda structure, loading, state, _, states=None, **how: exchange(
+                structure, loading, state, failing, states, **how
             ),
         )
         searched = own.answer(own.situations([1, 2]), CERTIFY.tolerance, vectorised.settle)
@@ -93,11 +93,11 @@ def test_an_answer_that_was_searched_for_says_so(monkeypatch):
     """And is of least norm, like any other."""
     settle, visits = vectorised.settle, []
 
-    def slow(elements, data, basis, code, rows, state, one_only):
+    def slow(structure, loading, basis, states, rows, state, one_only):
         visits.append(bool(state.stays.any()))
         if not visits[-1]:
-            return failing(elements, data, basis, code, rows, state, one_only)
-        return settle(elements, data, basis, code, rows, state, one_only)
+            return failing(structure, loading, basis, states, rows, state, one_only)
+        return settle(structure, loading, basis, states, rows, state, one_only)
 
     monkeypatch.setattr(vectorised, "settle", slow)
     case = shipped("fgfbstts/limit_ring")
@@ -121,14 +121,14 @@ def test_a_wrong_set_is_not_handed_out(monkeypatch):
     """
     settle = vectorised.settle
 
-    def lost(elements, data):
+    def lost(structure, loading):
         nothing = np.zeros(1, bool)
-        sets = first_sets(elements, data)
-        return at_rest(elements, data), Found(nothing, sets, np.zeros(1, int), nothing)
+        sets = first_sets(structure, loading)
+        return at_rest(structure, loading), Found(nothing, sets, np.zeros(1, int), nothing)
 
-    def content(elements, data, basis, code, rows, state, one_only):
-        settle(elements, data, basis, code, rows, state, one_only)
-        return np.full(len(rows), places.DONE, np.int8), np.repeat(code[None, :], len(rows), 0)
+    def content(structure, loading, basis, states, rows, state, one_only):
+        settle(structure, loading, basis, states, rows, state, one_only)
+        return np.full(len(rows), places.DONE, np.int8), np.repeat(states[None, :], len(rows), 0)
 
     monkeypatch.setattr(vectorised, "settle", content)
     monkeypatch.setattr("loadshare.job.machine.search", lost)
@@ -403,7 +403,7 @@ def test_a_squeeze_is_refused_by_its_certificate():
     wedged = replace(found, ring_force=forced)
     assert "cone_membership" in certify(train, wedged).failing
     band = 1e-9 * certify(train, found).deflection
-    state = State(train, wedged)
+    state = ClaimedState(train, wedged)
     assert state.squeezes(band)["ring 4: arcs"] > 1e-9 * load
     assert state.squeezes(band)["ring 5: arcs"] < 1e-9 * load
 
@@ -420,10 +420,10 @@ def test_the_turn_of_a_squeeze():
 
 def test_only_rigid_arcs_between_firm_neighbours_squeeze():
     elastic = build_train(shipped("fgfbstts/limit_ring").replace({"rings.4.stiffness": "1e9 N/m"}))
-    state = State(elastic, answer(elastic)[0])
+    state = ClaimedState(elastic, answer(elastic)[0])
     assert state.squeezes(1e-12).keys() == {"ring 5: arcs"}
     giving = build_train(shipped("fgfbstts/all_elements"))
-    assert State(giving, answer(giving)[0]).squeezes(1e-12) == {}
+    assert ClaimedState(giving, answer(giving)[0]).squeezes(1e-12) == {}
 
 
 def test_climbing_alone_gives_the_answer_of_the_hot_path():

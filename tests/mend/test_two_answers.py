@@ -59,7 +59,7 @@ def test_its_displacement_is_refused(name, reduce):
 
 
 def test_samples_side_by_side_agree():
-    """Three hundred equal samples go through the lanes of the compiled engine."""
+    """Three hundred equal samples go through the compiled engine."""
     train = train_of("two_answers")
     machine = Machine(train)
     one = machine.answer(machine.situations([1]), 1e-9, engine_named("vectorised", 1))

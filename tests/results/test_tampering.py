@@ -20,7 +20,7 @@ import loadshare as ls
 from loadshare.certify import certify
 from loadshare.results.claim import claim_of
 from loadshare.results.derive import position_of, result_from
-from loadshare.results.document import FORMAT, plain
+from loadshare.results.document import FORMAT, as_data
 from loadshare.results.reading import read_document
 from loadshare.results.writing import DOCUMENT
 from loadshare.study.march import march
@@ -227,7 +227,7 @@ def test_a_march_begins_where_the_step_before_ended():
     # An equilibrium of the same step from another slip, which the march never had.
     train = build_train(found.case).remembering({"4": [1e-5, 0.0, 0.0], "5": np.zeros(3)})
     step = stepped(train, 3)
-    claim = plain(claim_of(train, step.equilibrium))
+    claim = as_data(claim_of(train, step.equilibrium))
     strange = changed(document, path[:-1], claim)
     assert "is not the slip at the end of the step before" in told(strange)
     later = {**document, "positions": document["positions"][1:]}

@@ -12,7 +12,7 @@ from benchmarks.random_trains.draw import draw
 from loadshare.errors import Refused
 from loadshare.job import machine
 from loadshare.scene import assemble
-from loadshare.scene.elements import elements_of
+from loadshare.scene.structure import structure_of
 from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.runaway import runaway
 from loadshare.train import build_train
@@ -21,14 +21,14 @@ from loadshare.train import build_train
 @pytest.mark.parametrize("name", ["base", "limit_ring", "all_elements", "spline_clearance"])
 def test_what_is_held_is_balanced(name):
     train = build_train(shipped(f"fgfbstts/{name}"))
-    scene, elements = assemble(train, 1), elements_of(train)
-    assert not is_unbalanced(elements, scene.load)
-    assert not is_unbalanced(elements, np.zeros(scene.size))
+    scene, structure = assemble(train, 1), structure_of(train)
+    assert not is_unbalanced(structure, scene.load)
+    assert not is_unbalanced(structure, np.zeros(scene.size))
 
 
 def test_what_a_ring_alone_holds_is_not_told_to_be_free():
     scene = assemble(build_train(round_ring()), 1)
-    assert not is_unbalanced(elements_of(scene.train), scene.load)
+    assert not is_unbalanced(structure_of(scene.train), scene.load)
 
 
 @pytest.mark.parametrize("number", range(24))
@@ -36,7 +36,7 @@ def test_what_is_told_to_be_free_moves_without_end(number):
     """The linear programme names what moves, and none of these is solved."""
     case = draw(11, number)
     scene = assemble(build_train(case), 1)
-    if is_unbalanced(elements_of(scene.train), scene.load):
+    if is_unbalanced(structure_of(scene.train), scene.load):
         assert runaway(scene)
         with pytest.raises(Refused, match="nothing balances the load"):
             ls.solve(case, positions=[1])
@@ -46,7 +46,7 @@ def test_nothing_is_searched_for_without_balance(monkeypatch):
     """A stepped star whose sun drifts away from its planets."""
     case = draw(11, 1)
     scene = assemble(build_train(case), 1)
-    assert is_unbalanced(elements_of(scene.train), scene.load)
+    assert is_unbalanced(structure_of(scene.train), scene.load)
     monkeypatch.setattr(machine, "search", lambda *_: pytest.fail("a search was made"))
     with pytest.raises(Refused, match="nothing balances the load on gear sun rotation"):
         ls.solve(case)

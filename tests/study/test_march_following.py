@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.certify.oracle import State
+from tests.certify.oracle import ClaimedState
 from tests.certify.test_bound_following import two_shafts
 
 from loadshare.study.answers import certified
@@ -62,7 +62,7 @@ def test_every_step_is_within_what_its_own_torque_allows(friction, rooms):
         train = with_splines(load, friction, rooms).remembering(before)
         answer = stepped(train, 1)
         assert answer.certificate.passed
-        state, found = State(train, answer.equilibrium), answer.equilibrium
+        state, found = ClaimedState(train, answer.equilibrium), answer.equilibrium
         for gear, spline in train.splines.items():
             bound = spline.bound(state.transmitted(gear))
             room = max(spline.clearance - bound / spline.bending_stiffness, 0.0)

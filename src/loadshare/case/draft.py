@@ -81,7 +81,7 @@ def read_draft(data: Mapping[str, Any], origin: Origin) -> Draft:
     return draft
 
 
-def plain(given: Any) -> Any:
+def as_data(given: Any) -> Any:
     """Return what a user built in Python as plain data, the same that a file would give.
 
     Parameters
@@ -99,19 +99,19 @@ def plain(given: Any) -> Any:
     CaseError
         If it is nested too deeply.
     """
-    return _plain(given, 0)
+    return _as_data(given, 0)
 
 
-def _plain(given: Any, depth: int) -> Any:
+def _as_data(given: Any, depth: int) -> Any:
     if depth > ALLOWED.depth:
         allowed = f"at most {ALLOWED.depth} tables and lists within one another"
         raise CaseError([Problem("case", "", "", "is nested too deeply", allowed)])
     if isinstance(given, Element):
         return written(given)
     if isinstance(given, Mapping):
-        return {str(k): _plain(item, depth + 1) for k, item in given.items() if item is not None}
+        return {str(k): _as_data(item, depth + 1) for k, item in given.items() if item is not None}
     if isinstance(given, list | tuple):
-        return [_plain(item, depth + 1) for item in given]
+        return [_as_data(item, depth + 1) for item in given]
     return as_text(given)
 
 

@@ -13,7 +13,7 @@ from pydantic import PrivateAttr
 
 from loadshare.case.checks import check
 from loadshare.case.content import ABOUT, Content
-from loadshare.case.draft import plain, read_draft
+from loadshare.case.draft import as_data, read_draft
 from loadshare.case.keys import covers, parse
 from loadshare.case.origin import Origin
 from loadshare.case.revise import revise
@@ -56,7 +56,7 @@ class Case(Content):
         origin: Origin | None = None,
         **sections: Any,
     ) -> None:
-        data = plain({**(content or {}), **sections})
+        data = as_data({**(content or {}), **sections})
         origin = origin or Origin(name or "case")
         draft = read_draft(data, origin)
         problems = [*draft.problems, *check(draft)]

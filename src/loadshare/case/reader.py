@@ -11,7 +11,7 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from loadshare.case.checks import check
-from loadshare.case.draft import Draft, plain, read_draft
+from loadshare.case.draft import Draft, as_data, read_draft
 from loadshare.case.keys import Path, parse, walk
 from loadshare.case.model import Case
 from loadshare.case.origin import Origin
@@ -75,7 +75,7 @@ def load_draft(path: str | FilePath, changes: Mapping[str, Any] | None = None) -
     """
     path = FilePath(path)
     data, files, problems = _read(path, ())
-    data, origin = revise(plain(data), Origin(str(path), files), changes or {})
+    data, origin = revise(as_data(data), Origin(str(path), files), changes or {})
     draft = read_draft(data, origin)
     draft.problems[:] = [*problems, *draft.problems, *check(draft)]
     return draft

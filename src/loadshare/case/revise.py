@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from loadshare.case.content import Content
-from loadshare.case.draft import plain
+from loadshare.case.draft import as_data
 from loadshare.case.keys import Path, dotted, look_up, parse
 from loadshare.case.origin import Origin
 from loadshare.case.words import as_given, did_you_mean
@@ -47,13 +47,13 @@ def revise(
         try:
             path = parse(key)
         except ValueError:
-            problems.append(Problem(FILE, key, as_given(plain(value)), "is not a key path"))
+            problems.append(Problem(FILE, key, as_given(as_data(value)), "is not a key path"))
             continue
-        lost = change(changed, path, plain(value))
+        lost = change(changed, path, as_data(value))
         if lost is None:
             moved.add(path)
         else:
-            problems.append(Problem(FILE, key, as_given(plain(value)), "leads nowhere", "", lost))
+            problems.append(Problem(FILE, key, as_given(as_data(value)), "leads nowhere", "", lost))
     if problems:
         raise CaseError(problems)
     files = {

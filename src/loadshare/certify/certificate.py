@@ -19,7 +19,7 @@ from loadshare.certify.floats import FloatState, float_states
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.pulls import fault_of
 from loadshare.certify.residuals import FIGURES, RESIDUALS, scales, worst_of_one
-from loadshare.certify.state import State
+from loadshare.certify.state import ClaimedState
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.later import Later, known
 from loadshare.settings import CERTIFY
@@ -200,9 +200,9 @@ class _Single:
             self.claimed = claimed or Equilibria.of(train, answer)
 
     @cached_property
-    def state(self) -> State:
+    def state(self) -> ClaimedState:
         with np.errstate(all="ignore"):
-            return State(mechanics_of(self.train), self.situation, self.claimed)
+            return ClaimedState(mechanics_of(self.train), self.situation, self.claimed)
 
     @cached_property
     def fault(self) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.pulls import Pull, pulls_of
-from loadshare.certify.state import State
+from loadshare.certify.state import ClaimedState
 from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
@@ -80,7 +80,9 @@ class FloatState:
     friction: float | None
 
 
-def float_states(state: State, undetermined: Collection[str], band: float) -> dict[str, FloatState]:
+def float_states(
+    state: ClaimedState, undetermined: Collection[str], band: float
+) -> dict[str, FloatState]:
     """Judge every float of a train.
 
     Parameters
@@ -119,7 +121,7 @@ class _Rests:
         return (self.settled and margin <= self.near) or force > self.pressed
 
 
-def _drum_touches(state: State, gear: str, rests: _Rests) -> Iterator[tuple[Touch, Array]]:
+def _drum_touches(state: ClaimedState, gear: str, rests: _Rests) -> Iterator[tuple[Touch, Array]]:
     """Boundaries of a gear's drum, and their forces on it (2,) [N]."""
     for d, ring in enumerate(state.of.train.drums):
         if ring.gear != gear:
@@ -152,7 +154,7 @@ def _ring_touches(
 
 
 def _float_state(
-    state: State,
+    state: ClaimedState,
     gear: str,
     rests: _Rests,
     touches: list[tuple[Touch, Array]],

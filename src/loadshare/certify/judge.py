@@ -12,7 +12,7 @@ from loadshare.certify.bound.batch import is_covered, judged
 from loadshare.certify.bound.one import columns_of
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.residuals import scaled_residuals
-from loadshare.certify.state import State
+from loadshare.certify.state import ClaimedState
 from loadshare.certify.validity import measuring
 from loadshare.certify.verdicts import Verdicts
 from loadshare.settings import CERTIFY
@@ -108,7 +108,7 @@ class Judge:
     def _together(self, situations: Situations, answers: Equilibria) -> tuple[Array, Array, Array]:
         """Largest scaled residuals and both scales."""
         with np.errstate(all="ignore"):
-            state = State(self.mechanics, situations, answers)
+            state = ClaimedState(self.mechanics, situations, answers)
             # Column by column: rows are too short to be worth a loop each.
             worst = np.maximum.reduce(list(scaled_residuals(state).T))
             return worst, state.load, state.deflection

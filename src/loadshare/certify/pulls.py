@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.certify.state import State
+from loadshare.certify.state import ClaimedState
 from loadshare.contact.radial import RadialLaw, round_ring_law
 from loadshare.train.memory import SlipFriction, SlipStop
 
@@ -50,7 +50,7 @@ class Pull:
         return float(np.linalg.norm(self.reaction))
 
 
-def pulls_of(state: State) -> tuple[Pull, ...]:
+def pulls_of(state: ClaimedState) -> tuple[Pull, ...]:
     """Return the radial elements of the first claim.
 
     Raises
@@ -68,7 +68,7 @@ def pulls_of(state: State) -> tuple[Pull, ...]:
     )  # fmt: skip
 
 
-def _spline_laws(state: State) -> list[RadialLaw]:
+def _spline_laws(state: ClaimedState) -> list[RadialLaw]:
     """Laws of splines; with memory of friction, and then of the stops."""
     train = state.of.train
     if not train.splines:
@@ -80,7 +80,7 @@ def _spline_laws(state: State) -> list[RadialLaw]:
     return [part(s).law(torque) for part in (SlipFriction, SlipStop) for s, torque in splines]
 
 
-def fault_of(state: State) -> str:
+def fault_of(state: ClaimedState) -> str:
     """Why the first claim cannot be judged, else empty.
 
     A figure is not a number, a spline has no law, or a gear stands beyond the neighbour on whose

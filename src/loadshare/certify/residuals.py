@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.graphs import complementary, energy, interval, strength
-from loadshare.certify.state import State, size
+from loadshare.certify.state import ClaimedState, size
 from loadshare.settings import CERTIFY
 
 Array = NDArray[np.float64]
@@ -26,7 +26,7 @@ EPS = float(np.finfo(float).eps)
 """Round-off of a length, relative to it."""
 
 
-def force_balance(state: State) -> Blocks:
+def force_balance(state: ClaimedState) -> Blocks:
     """Unbalanced force [N] on gears that can be displaced."""
     of = state.of
     if not len(of.moving):
@@ -46,13 +46,13 @@ def force_balance(state: State) -> Blocks:
     return [(size(balance), of.bearings)]
 
 
-def moment_balance(state: State) -> Blocks:
+def moment_balance(state: ClaimedState) -> Blocks:
     """Unbalanced moment over the largest base radius [N] of gears that turn as one."""
     of = state.of
     return [(np.abs(of.group_moment @ state.moment), of.turning_gears)]
 
 
-def penetration(state: State) -> Blocks:
+def penetration(state: ClaimedState) -> Blocks:
     """Overlap [m] that a force of the claimed size does not explain."""
     blocks = [(state.overlap, state.of.contacts)]
     if state.of.pulls:
@@ -61,12 +61,12 @@ def penetration(state: State) -> Blocks:
     return blocks
 
 
-def complementarity(state: State) -> Blocks:
+def complementarity(state: ClaimedState) -> Blocks:
     """Work [J] of a force over an open gap."""
     return [(-state.force * state.overlap, state.of.contacts)]
 
 
-def deformation_law(state: State) -> Blocks:
+def deformation_law(state: ClaimedState) -> Blocks:
     """Misfit [m] of a compressed contact, a shaft or a bearing with its law.
 
     A contact with less force than the band counts as open; complementarity judges it then.
@@ -89,7 +89,7 @@ def deformation_law(state: State) -> Blocks:
     return blocks
 
 
-def cone_membership(state: State) -> Blocks:
+def cone_membership(state: ClaimedState) -> Blocks:
     """Excess [N] of a force over what its contact or graph admits.
 
     Within a band about its radius, a graph's corner admits its whole step.
@@ -106,7 +106,7 @@ def cone_membership(state: State) -> Blocks:
     return blocks
 
 
-def _beside_graphs(state: State, band: Array) -> Array:
+def _beside_graphs(state: ClaimedState, band: Array) -> Array:
     """Excess [N] of the reactions of radial elements over what their graphs admit.
 
     About its centre, within the band, an element has no direction; along its axis it never pulls.
@@ -124,7 +124,7 @@ def _beside_graphs(state: State, band: Array) -> Array:
     return np.asarray(np.maximum(np.maximum(excess, lifting), np.where(out, sideways, 0.0)))
 
 
-def _squeezes(state: State, band: Array) -> Array:
+def _squeezes(state: ClaimedState, band: Array) -> Array:
     """Force [N] across the two rigid arcs of a ring that a squeeze between them leaves open.
 
     A centre in touch with both, up to a length, lies anywhere within y across them, where
@@ -162,7 +162,7 @@ def turned(wedge: Scalars, band: Scalars, distance: Scalars) -> Scalars:
     return across / (wedge + (wedge * wedge + across) ** 0.5)  # type: ignore[no-any-return]
 
 
-def energy_gap(state: State) -> Blocks:
+def energy_gap(state: ClaimedState) -> Blocks:
     """Potential and complementary energy less the work [J], beyond rounding: none at equilibrium.
 
     Bearings and rings may hold far more energy against one another than the load brings in.
@@ -194,7 +194,7 @@ def energy_gap(state: State) -> Blocks:
     return [(np.maximum(gap - CERTIFY.rounded * sizes, 0.0)[None], ("the whole train",))]
 
 
-FIGURES: dict[str, tuple[Callable[[State], Blocks], str]] = {
+FIGURES: dict[str, tuple[Callable[[ClaimedState], Blocks], str]] = {
     "force_balance": (force_balance, "N"),
     "moment_balance": (moment_balance, "N"),
     "penetration": (penetration, "m"),
@@ -208,12 +208,12 @@ RESIDUALS = tuple(FIGURES)
 """Names of the residuals, in order."""
 
 
-def scales(state: State) -> dict[str, Array]:
+def scales(state: ClaimedState) -> dict[str, Array]:
     """Scale of every unit, shape (S,)."""
     return {"N": state.load, "m": state.deflection, "J": state.load * state.deflection}
 
 
-def scaled_residuals(state: State) -> Array:
+def scaled_residuals(state: ClaimedState) -> Array:
     """All residuals (S, 7), in the order of `RESIDUALS`; infinite where none can be judged."""
     scale = scales(state)
     figures = np.stack([_worst(of(state)) / scale[unit] for of, unit in FIGURES.values()])

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
-class State:
+class ClaimedState:
     """S claims at the positions where they stand.
 
     The samples are the last axis of every array, next to one another in memory: sums and largest

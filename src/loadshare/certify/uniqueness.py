@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 from loadshare.certify.bound.one import columns_of
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.pulls import Pull, pulls_of
-from loadshare.certify.state import State
+from loadshare.certify.state import ClaimedState
 from loadshare.contact.radial import Piece
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
@@ -96,7 +96,7 @@ def uniqueness(train: Train, answer: Equilibrium) -> Uniqueness:
     if not train.drums and not following:
         return Uniqueness("convex", 0.0, "")
     here = situation_of(train, answer.index)
-    system = _System(State(mechanics_of(train), here, Equilibria.of(train, answer)))
+    system = _System(ClaimedState(mechanics_of(train), here, Equilibria.of(train, answer)))
     if not system.bent:
         return Uniqueness("least energy", 0.0, "")
     curvature = system.curvature()
@@ -117,7 +117,7 @@ class _System:
     Coordinates and rows are those of the bound's `Columns`.
     """
 
-    def __init__(self, state: State) -> None:
+    def __init__(self, state: ClaimedState) -> None:
         self.state = state
         train = state.of.train
         self.columns = columns_of(train)

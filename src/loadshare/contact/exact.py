@@ -22,7 +22,7 @@ _NONE, _BOTH = np.zeros((0, 2)), np.eye(2)
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class GraphState:
     """Where a radial element stands on its graph: on a piece, or on the step in front of one."""
 
     piece: int
@@ -34,24 +34,24 @@ class ActiveSet:
     """Closed rows and the places of the radial elements."""
 
     closed: tuple[bool, ...]
-    places: tuple[Place, ...]
+    graph_states: tuple[GraphState, ...]
 
     def fits(self, programme: Programme) -> bool:
         """Whether the set speaks of the rows and graphs of this programme."""
         graphs = [len(cone.law.pieces) for cone in programme.cones]
         return (
             len(self.closed) == len(programme.gaps)
-            and len(self.places) == len(graphs)
+            and len(self.graph_states) == len(graphs)
             and all(
-                place.piece < size + place.corner
-                for place, size in zip(self.places, graphs, strict=True)
+                graph_state.piece < size + graph_state.corner
+                for graph_state, size in zip(self.graph_states, graphs, strict=True)
             )
         )
 
 
 def first_guess(programme: Programme) -> ActiveSet:
     """Assumed rows closed, everything else open and on its first piece."""
-    start = (Place(0, corner=cone.law.step(0)[1] > 0.0) for cone in programme.cones)
+    start = (GraphState(0, corner=cone.law.step(0)[1] > 0.0) for cone in programme.cones)
     return ActiveSet(tuple(bool(c) for c in programme.assumed_closed), tuple(start))
 
 
@@ -65,14 +65,14 @@ def identify(programme: Programme, point: Point) -> ActiveSet:
     compressed = programme.linear * forces + programme.hertz * np.cbrt(forces) ** 2
     slack = programme.gaps + compressed - programme.rows @ point.x
     closed = programme.assumed_closed | (forces * (programme.linear + 1.0) > slack)
-    places = (
+    graph_states = (
         _nearest(cone, float(np.linalg.norm(cone.offset(point.x))), float(np.linalg.norm(force)))
         for cone, force in zip(programme.cones, point.cone_forces, strict=True)
     )
-    return ActiveSet(tuple(bool(c) for c in closed), tuple(places))
+    return ActiveSet(tuple(bool(c) for c in closed), tuple(graph_states))
 
 
-def _nearest(cone: Cone, radius: float, force: float) -> Place:
+def _nearest(cone: Cone, radius: float, force: float) -> GraphState:
     """Place on the graph that is nearest to (radius, force)."""
     law = cone.law
     candidates = []
@@ -81,12 +81,12 @@ def _nearest(cone: Cone, radius: float, force: float) -> Place:
         inner = min(max(radius - begin, 0.0), piece.length)
         size = piece.force + (piece.stiffness * inner if piece.stiffness else 0.0)
         distance = np.hypot(radius - begin - inner, force - size)
-        candidates.append((distance, Place(k)))
+        candidates.append((distance, GraphState(k)))
     for k in range(len(law.pieces) + 1):
         low, high = law.step(k)
         if high > low:
             distance = np.hypot(radius - law.start(k), force - min(max(force, low), high))
-            candidates.append((distance, Place(k, corner=True)))
+            candidates.append((distance, GraphState(k, corner=True)))
     return min(candidates, key=lambda c: float(c[0]))[1]
 
 
@@ -183,9 +183,9 @@ def _newton_system(programme: Programme, active: ActiveSet, at: Point) -> Point 
     columns = [programme.rows[closed].T]
     bounds = [gaps[closed]]
     multipliers: list[tuple[int, Array]] = []  # cone number and the directions of its multiplier
-    for j, (cone, place) in enumerate(zip(programme.cones, active.places, strict=True)):
+    for j, (cone, graph_state) in enumerate(zip(programme.cones, active.graph_states, strict=True)):
         tangent, residual_force, directions, bound = _cone_tangent(
-            cone, place, at.x, at.cone_forces[j]
+            cone, graph_state, at.x, at.cone_forces[j]
         )
         stiffness += cone.matrix.T @ tangent @ cone.matrix
         load += cone.matrix.T @ (tangent @ (cone.matrix @ at.x) - residual_force)
@@ -209,9 +209,9 @@ def _newton_system(programme: Programme, active: ActiveSet, at: Point) -> Point 
     forces = np.zeros(len(programme.gaps))
     forces[closed] = solved.values[size : size + flanks]
     cone_forces = np.zeros((len(programme.cones), 2))
-    for j, (cone, place) in enumerate(zip(programme.cones, active.places, strict=True)):
-        if not place.corner:
-            cone_forces[j] = _piece_force(cone, place, cone.offset(x))
+    for j, (cone, graph_state) in enumerate(zip(programme.cones, active.graph_states, strict=True)):
+        if not graph_state.corner:
+            cone_forces[j] = _piece_force(cone, graph_state, cone.offset(x))
     at_multiplier = size + flanks
     for j, directions in multipliers:
         width = len(directions)
@@ -231,10 +231,10 @@ def _row_tangents(programme: Programme, forces: Array) -> tuple[Array, Array]:
     )
 
 
-def _piece_force(cone: Cone, place: Place, offset: Array) -> Array:
+def _piece_force(cone: Cone, graph_state: GraphState, offset: Array) -> Array:
     """Force of a radial element on a piece, as a vector along its offset."""
-    piece = cone.law.pieces[place.piece]
-    begin = cone.law.start(place.piece)
+    piece = cone.law.pieces[graph_state.piece]
+    begin = cone.law.start(graph_state.piece)
     radius = _size(offset)
     if piece.force == piece.stiffness * begin or radius == 0.0:
         return np.asarray(piece.stiffness * offset)
@@ -242,13 +242,13 @@ def _piece_force(cone: Cone, place: Place, offset: Array) -> Array:
 
 
 def _cone_tangent(
-    cone: Cone, place: Place, x: Array, force: Array
+    cone: Cone, graph_state: GraphState, x: Array, force: Array
 ) -> tuple[Array, Array, Array, Array]:
     """Tangent (2, 2), force at x (2,), multiplier directions (d, 2) and their bounds (d,)."""
     offset = cone.offset(x)
     radius = _size(offset)
-    if place.corner:
-        limit = cone.law.start(place.piece)
+    if graph_state.corner:
+        limit = cone.law.start(graph_state.piece)
         if limit == 0.0:
             return np.zeros((2, 2)), np.zeros(2), _BOTH, np.zeros(2)
         along = offset / radius if radius > 0.0 else _direction(force)
@@ -258,8 +258,8 @@ def _cone_tangent(
         # radius.
         tangent = size / limit * across
         return tangent, tangent @ offset, along[None, :], np.array([limit])
-    piece = cone.law.pieces[place.piece]
-    begin = cone.law.start(place.piece)
+    piece = cone.law.pieces[graph_state.piece]
+    begin = cone.law.start(graph_state.piece)
     if piece.force == piece.stiffness * begin:
         return piece.stiffness * _BOTH, piece.stiffness * offset, _NONE, np.zeros(0)
     if radius == 0.0:
@@ -296,45 +296,45 @@ def _exchange(programme: Programme, active: ActiveSet, point: Point, one_only: b
         if excess > 1.0:
             wrong.append((float(excess), e))
     count = len(active.closed)
-    moves: dict[int, Place] = {}
-    for j, (cone, place) in enumerate(zip(programme.cones, active.places, strict=True)):
-        excess, moved = _misplaced(cone, place, point, j, force_band, length_band)
+    moves: dict[int, GraphState] = {}
+    for j, (cone, graph_state) in enumerate(zip(programme.cones, active.graph_states, strict=True)):
+        excess, moved = _misplaced(cone, graph_state, point, j, force_band, length_band)
         if excess > 1.0:
             wrong.append((excess, count + j))
             moves[count + j] = moved
     if one_only and wrong:
         wrong = [min(wrong, key=lambda w: w[1])]
-    rows, places = list(active.closed), list(active.places)
+    rows, graph_states = list(active.closed), list(active.graph_states)
     for _, k in wrong:
         if k < count:
             rows[k] = not rows[k]
         else:
-            places[k - count] = moves[k]
-    return replace(active, closed=tuple(rows), places=tuple(places))
+            graph_states[k - count] = moves[k]
+    return replace(active, closed=tuple(rows), graph_states=tuple(graph_states))
 
 
 def _misplaced(
-    cone: Cone, place: Place, point: Point, j: int, force_band: float, length_band: float
-) -> tuple[float, Place]:
+    cone: Cone, graph_state: GraphState, point: Point, j: int, force_band: float, length_band: float
+) -> tuple[float, GraphState]:
     """By how many bands a radial element is off its place, and where it should stand instead."""
-    law, k = cone.law, place.piece
+    law, k = cone.law, graph_state.piece
     offset = cone.offset(point.x)
-    if place.corner:
+    if graph_state.corner:
         low, high = law.step(k)
         along = _direction(offset) if law.start(k) > 0.0 else _direction(point.cone_forces[j])
         size = float(along @ point.cone_forces[j])
         if size > high:
-            return (size - high) / force_band, Place(k)
-        return (low - size) / force_band, Place(k - 1) if k > 0 else place
+            return (size - high) / force_band, GraphState(k)
+        return (low - size) / force_band, GraphState(k - 1) if k > 0 else graph_state
     radius = _size(offset)
     begin, end = law.start(k), law.start(k + 1)
     if radius > end:
         low, high = law.step(k + 1)
-        return (radius - end) / length_band, Place(k + 1, corner=high > low)
+        return (radius - end) / length_band, GraphState(k + 1, corner=high > low)
     if radius < begin and k > 0:
         low, high = law.step(k)
-        back = Place(k, corner=True) if high > low else Place(k - 1)
+        back = GraphState(k, corner=True) if high > low else GraphState(k - 1)
         return (begin - radius) / length_band, back
     if k == 0 and law.pieces[0].force > 0.0 and offset @ point.cone_forces[j] < 0.0:
-        return 2.0, Place(0, corner=True)
-    return 0.0, place
+        return 2.0, GraphState(0, corner=True)
+    return 0.0, graph_state

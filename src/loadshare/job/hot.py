@@ -83,16 +83,16 @@ def _bound(train: Train, equilibrium: Equilibrium, first: Equilibrium) -> Bound:
 
 def _record(machine: Machine, found: Answers, row: int) -> Record:
     """How the hot path answered."""
-    elements, code = machine.elements, found.code[row]
-    basis = elements.basis(code)
-    acting = code[: elements.rows] != 0
+    structure, states = machine.structure, found.states[row]
+    basis = structure.basis(states)
+    acting = states[: structure.rows] != 0
     rows = {
         name: Role.IN_PLAY if acts else Role.OPEN
-        for name, acts in zip(elements.row_names, acting, strict=True)
+        for name, acts in zip(structure.row_names, acting, strict=True)
     }
     radials = {
         r.name: Role.IN_PLAY if place else Role.OPEN
-        for r, place in zip(elements.radials, code[elements.rows :], strict=True)
+        for r, place in zip(structure.radials, states[structure.rows :], strict=True)
     }
     redundants = basis.redundant.shape[1]
     return Record(
@@ -102,8 +102,8 @@ def _record(machine: Machine, found: Answers, row: int) -> Record:
         iterations=(),
         plan=Plan(rows, radials),
         rounds=int(found.turns[row]),
-        removed=elements.removed,
-        coordinates=elements.coordinates.names,
+        removed=structure.removed,
+        coordinates=structure.coordinates.names,
     )
 
 

@@ -22,8 +22,8 @@ from loadshare.job.answer import Answer
 from loadshare.job.hot import hot_answers
 from loadshare.job.machine import Machine
 from loadshare.scene.assemble import scene_of
-from loadshare.scene.elements import elements_of
 from loadshare.scene.scene import Scene
+from loadshare.scene.structure import structure_of
 from loadshare.settings import JOB, PLACES
 from loadshare.solver import Iteration, Options, solve_scene
 from loadshare.solver.balance import is_unbalanced
@@ -117,10 +117,10 @@ def climb(
         If no rung gives a certified answer; the message says what failed at the first rung and
         carries its figures.
     """
-    elements = elements_of(train)
-    scene = scene_of(elements, situation_of(train, index))
+    structure = structure_of(train)
+    scene = scene_of(structure, situation_of(train, index))
     _refuse_if_contradicted(scene, JOB.plainly)
-    if is_unbalanced(elements, scene.load):
+    if is_unbalanced(structure, scene.load):
         _refuse_if_driven(scene)
     lighter = cache(partial(_under_less, train, index, tolerance))
     if math.isfinite(steps):

@@ -44,7 +44,9 @@ def least_places(
         All of these answers, by number.
     """
     scenes = {
-        row: scene_of(machine.elements, situations.take(slice(row, row + 1)), found.data.one(row))
+        row: scene_of(
+            machine.structure, situations.take(slice(row, row + 1)), found.loading.one(row)
+        )
         for row in rows
     }
     claimed = {row: found.equilibria.one(row, scene.position) for row, scene in scenes.items()}

@@ -14,16 +14,16 @@ from numpy.typing import NDArray
 from loadshare import compilation
 from loadshare.certify import Judge, Verdicts
 from loadshare.certify.validity import Measuring, measuring
-from loadshare.scene.data import Data, data_of
-from loadshare.scene.elements import Elements, elements_of
+from loadshare.scene.loading import Loading, loading_of
+from loadshare.scene.structure import Structure, structure_of
 from loadshare.settings import JOB
 from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.answer import equilibria, pin, without_noise
 from loadshare.solver.hot.determined import determined
-from loadshare.solver.hot.exchange import Codes, Engine, Found, exchange, first_sets
+from loadshare.solver.hot.exchange import Engine, Found, States, exchange, first_sets
+from loadshare.solver.hot.iterate import Iterate, at_rest, pushes
 from loadshare.solver.hot.proximal import search
-from loadshare.solver.hot.state import State, at_rest, pushes
 from loadshare.train import Train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations, situation_of, stack
@@ -117,13 +117,13 @@ class Answers:
 
     Attributes
     ----------
-    data : Data
+    loading : Loading
         The numbers of the samples.
     equilibria : Equilibria
     verdicts : Verdicts
     passed : ndarray of bool, shape (S,)
         Certified.
-    code : ndarray of int8, shape (S, switches)
+    states : ndarray of int8, shape (S, switches)
         Which elements act.
     turns : ndarray of int, shape (S,)
         Sets visited.
@@ -133,11 +133,11 @@ class Answers:
         Returns `determined`.
     """
 
-    data: Data
+    loading: Loading
     equilibria: Equilibria
     verdicts: Verdicts
     passed: NDArray[np.bool_]
-    code: Codes
+    states: States
     turns: NDArray[np.intp]
     searched: NDArray[np.bool_]
     determine: Callable[[], NDArray[np.bool_]]
@@ -159,7 +159,7 @@ class _Start:
     same: a slip is found from stick more surely than from another sample's slip.
     """
 
-    code: Codes
+    states: States
     share: NDArray[np.float64]
 
 
@@ -185,9 +185,9 @@ class Machine:
         self._own: tuple[tuple[int, ...], Situations] | None = None
 
     @cached_property
-    def elements(self) -> Elements:
+    def structure(self) -> Structure:
         """Statics of the train."""
-        return elements_of(self.train)
+        return structure_of(self.train)
 
     @cached_property
     def judge(self) -> Judge:
@@ -201,7 +201,7 @@ class Machine:
 
     def share(self, other: Machine) -> None:
         """Take over what is reduced of a machine that differs in its situations only."""
-        self.__dict__["elements"], self.__dict__["judge"] = other.elements, other.judge
+        self.__dict__["structure"], self.__dict__["judge"] = other.structure, other.judge
         self.__dict__["measuring"] = other.measuring
 
     def situations(self, indices: Sequence[int]) -> Situations:
@@ -243,27 +243,27 @@ class Machine:
     def _answer(
         self, situations: Situations, tolerance: float, engine: Engine, starts: Sequence[int]
     ) -> Answers:
-        data = data_of(self.elements, situations)
-        state, code = at_rest(self.elements, data), first_sets(self.elements, data)
-        beside = None if starts else self._beside(data.count)
+        loading = loading_of(self.structure, situations)
+        iterate, states = at_rest(self.structure, loading), first_sets(self.structure, loading)
+        beside = None if starts else self._beside(loading.count)
         if beside is not None:
-            self._begin(slice(None), beside, data, state, code)
-        parts = _parts(data.count, len(starts))
-        many = bool(parts) and parts[0].stop >= JOB.worth * JOB.pilots
+            self._begin(slice(None), beside, loading, iterate, states)
+        parts = _parts(loading.count, len(starts))
+        many = bool(parts) and parts[0].stop >= JOB.worth * JOB.trial_samples
         for part, index in zip(parts, starts, strict=True):
             begin = self._start(index, engine)
             if begin is not None:
-                first = slice(part.start, part.start + JOB.pilots) if many else part
-                self._begin(first, begin, data, state, code)
-        found = self._pilots(parts, data, state, code, engine) if many else None
+                first = slice(part.start, part.start + JOB.trial_samples) if many else part
+                self._begin(first, begin, loading, iterate, states)
+        found = self._trial_samples(parts, loading, iterate, states, engine) if many else None
         more = exchange(
-            self.elements, data, state, engine, code, only=~found.solved if found else None
+            self.structure, loading, iterate, engine, states, only=~found.solved if found else None
         )
         found = found.completed(more) if found else more
         begun = bool(starts) or beside is not None
         left = ~found.solved
-        tries = np.full(data.count, 0 if begun else 1)
-        searched = np.zeros(data.count, dtype=bool)
+        tries = np.full(loading.count, 0 if begun else 1)
+        searched = np.zeros(loading.count, dtype=bool)
         while True:
             found = found.without(left)
             for number, singly in enumerate((False, True)):
@@ -271,88 +271,108 @@ class Machine:
                 # element after another.
                 fresh = ~found.solved & ~searched & (tries == number)
                 if fresh.any():
-                    rest = at_rest(self.elements, data)
+                    rest = at_rest(self.structure, loading)
                     more = exchange(
-                        self.elements, data, rest, vectorised.settle, only=fresh, singly=singly
+                        self.structure, loading, rest, vectorised.settle, only=fresh, singly=singly
                     )
-                    state, found = state.completed(rest, fresh & more.solved), found.completed(more)
+                    iterate, found = (
+                        iterate.completed(rest, fresh & more.solved),
+                        found.completed(more),
+                    )
                     tries[fresh] += 1
             if not (starts or searched.any()) and found.solved.all():
-                self._last = self._as_start(data, state, found)
+                self._last = self._as_start(loading, iterate, found)
             left = ~found.solved & ~searched
-            found = self._search(data, state, found, left)
+            found = self._search(loading, iterate, found, left)
             searched |= left
-            pin(self.elements, data, state, found.code)
-            answers, verdicts = self._judged(situations, state, tolerance, engine)
+            pin(self.structure, loading, iterate, found.states)
+            answers, verdicts = self._judged(situations, iterate, tolerance, engine)
             unproved = found.solved & ~verdicts.passed & (verdicts.worst <= tolerance)
-            if unproved.any() and without_noise(self.elements, state, unproved):
-                answers, verdicts = self._judged(situations, state, tolerance, engine)
+            if unproved.any() and without_noise(self.structure, iterate, unproved):
+                answers, verdicts = self._judged(situations, iterate, tolerance, engine)
             left = found.solved & ~verdicts.passed & ~searched
             if not left.any():
                 break
         quick = engine is not vectorised.settle
         return Answers(
-            data,
+            loading,
             answers,
             verdicts,
             found.solved & verdicts.passed,
-            found.code,
+            found.states,
             found.turns,
             searched,
-            partial(determined, self.elements, data, state, found.code, found.held, quick),
+            partial(determined, self.structure, loading, iterate, found.states, found.held, quick),
         )
 
     def _judged(
-        self, situations: Situations, state: State, tolerance: float, engine: Engine
+        self, situations: Situations, iterate: Iterate, tolerance: float, engine: Engine
     ) -> tuple[Equilibria, Verdicts]:
         quick = engine is not vectorised.settle
-        answers = equilibria(self.elements, state, quick)
+        answers = equilibria(self.structure, iterate, quick)
         return answers, self.judge.judge(situations, answers, tolerance, compiled=quick)
 
-    def _search(self, data: Data, state: State, found: Found, rows: NDArray[np.bool_]) -> Found:
+    def _search(
+        self, loading: Loading, iterate: Iterate, found: Found, rows: NDArray[np.bool_]
+    ) -> Found:
         """Search an equilibrium of single samples by the proximal method."""
         for row in np.flatnonzero(rows).tolist():
-            alone = data.one(row)
-            if is_unbalanced(self.elements, alone.load[0]):
+            alone = loading.one(row)
+            if is_unbalanced(self.structure, alone.load[0]):
                 continue
-            one, more = search(self.elements, alone)
+            one, more = search(self.structure, alone)
             if more.solved[0]:
-                state.put(row, one)
+                iterate.put(row, one)
                 found = found.replaced(row, more)
         return found
 
-    def _begin(self, part: slice, begin: _Start, data: Data, state: State, code: Codes) -> None:
-        code[part, : self.elements.rows] = begin.code
-        state.begin(part, begin.share, data)
+    def _begin(
+        self, part: slice, begin: _Start, loading: Loading, iterate: Iterate, states: States
+    ) -> None:
+        states[part, : self.structure.rows] = begin.states
+        iterate.begin(part, begin.share, loading)
 
-    def _pilots(
-        self, parts: Sequence[slice], data: Data, state: State, code: Codes, engine: Engine
+    def _trial_samples(
+        self,
+        parts: Sequence[slice],
+        loading: Loading,
+        iterate: Iterate,
+        states: States,
+        engine: Engine,
     ) -> Found:
         """Solve the first samples of every part; the others begin where most of these stand."""
-        pilots = np.concatenate([np.arange(p.start, p.start + JOB.pilots) for p in parts])
-        some = np.zeros(data.count, dtype=bool)
-        some[pilots] = True
-        found = exchange(self.elements, data, state, engine, code, only=some)
-        pilots = pilots[found.solved[pilots]]
-        if len(pilots):
+        trial_samples = np.concatenate(
+            [np.arange(p.start, p.start + JOB.trial_samples) for p in parts]
+        )
+        some = np.zeros(loading.count, dtype=bool)
+        some[trial_samples] = True
+        found = exchange(self.structure, loading, iterate, engine, states, only=some)
+        trial_samples = trial_samples[found.solved[trial_samples]]
+        if len(trial_samples):
             # The set from which it takes the fewest changes to all the others.
-            closed = found.code[pilots, : self.elements.rows].astype(float)
+            closed = found.states[trial_samples, : self.structure.rows].astype(float)
             apart = closed.sum(axis=1) - 2.0 * closed @ closed.mean(axis=0)
-            middle = pilots[apart.argmin()]
-            alike = pilots[(found.code[pilots] == found.code[middle]).all(axis=1)]
-            share = np.abs(state.force[alike]) / pushes(data)[alike, None]
-            begin = _Start(found.code[middle, : self.elements.rows], share.mean(axis=0))
+            middle = trial_samples[apart.argmin()]
+            alike = trial_samples[(found.states[trial_samples] == found.states[middle]).all(axis=1)]
+            share = np.abs(iterate.force[alike]) / pushes(loading)[alike, None]
+            begin = _Start(found.states[middle, : self.structure.rows], share.mean(axis=0))
             for part in parts:
-                self._begin(slice(part.start + JOB.pilots, part.stop), begin, data, state, code)
+                self._begin(
+                    slice(part.start + JOB.trial_samples, part.stop),
+                    begin,
+                    loading,
+                    iterate,
+                    states,
+                )
         return found
 
     def _start(self, index: int, engine: Engine) -> _Start | None:
         """What the train itself does at a position; None if the hot path does not know."""
         if index not in self._starts:
-            data = data_of(self.elements, situation_of(self.train, index))
-            state = at_rest(self.elements, data)
-            found = exchange(self.elements, data, state, engine)
-            start = self._as_start(data, state, found)
+            loading = loading_of(self.structure, situation_of(self.train, index))
+            iterate = at_rest(self.structure, loading)
+            found = exchange(self.structure, loading, iterate, engine)
+            start = self._as_start(loading, iterate, found)
             self._starts[index] = start if found.solved[0] else None
         return self._starts[index]
 
@@ -361,13 +381,13 @@ class Machine:
         if self._near is None:
             return None
         names, start = self._near
-        return start if names == self._names and len(start.code) == count else None
+        return start if names == self._names and len(start.states) == count else None
 
-    def _as_start(self, data: Data, state: State, found: Found) -> _Start:
-        share = np.abs(state.force) / pushes(data)[:, None]
-        return _Start(found.code[:, : self.elements.rows], share)
+    def _as_start(self, loading: Loading, iterate: Iterate, found: Found) -> _Start:
+        share = np.abs(iterate.force) / pushes(loading)[:, None]
+        return _Start(found.states[:, : self.structure.rows], share)
 
     @property
     def _names(self) -> tuple[str, ...]:
         """Contacts and forces, in order."""
-        return (*self.elements.row_names, *self.elements.kinds)
+        return (*self.structure.row_names, *self.structure.kinds)

@@ -22,7 +22,7 @@ from loadshare.job.block import Block, solve_block
 from loadshare.job.machine import Machine, engine_named
 from loadshare.job.positions import Progress, wanted_positions
 from loadshare.job.recent import Recent
-from loadshare.job.table import KEPT, Table, kept
+from loadshare.job.table import KEPT, Table, checked
 from loadshare.settings import CERTIFY, JOB
 from loadshare.train.samples import Samples, samples_of
 
@@ -178,4 +178,4 @@ def solve_many(
         least_norm=least_norm,
     )
     count = len(np.atleast_1d(np.asarray(next(iter(samples.values()), []))))
-    return Table.of(blocks, count, kept(keep), progress).dataset(case, tolerance)
+    return Table.of(blocks, count, checked(keep), progress).dataset(case, tolerance)

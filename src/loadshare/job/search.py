@@ -18,13 +18,13 @@ from loadshare.job.answer import Answer
 from loadshare.job.ladder import climb_all
 from loadshare.job.machine import Machine
 from loadshare.job.positions import prepared
-from loadshare.scene.data import data_of
+from loadshare.scene.loading import loading_of
 from loadshare.settings import CERTIFY, JOB
 from loadshare.solver import Options
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.answer import equilibria
 from loadshare.solver.hot.exchange import exchange, first_sets
-from loadshare.solver.hot.state import at_rest
+from loadshare.solver.hot.iterate import at_rest
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.ring import DrumRing
 from loadshare.train.situations import situation_of, stack
@@ -107,21 +107,23 @@ def _same(one: Equilibrium, other: Equilibrium, known: Answer) -> bool:
 
 def _starts(machine: Machine, position: int, rng: np.random.Generator) -> list[Equilibrium]:
     """Certified equilibria from random sets of contacts and random places."""
-    elements = machine.elements
+    structure = machine.structure
     situations = stack([situation_of(machine.train, position)] * JOB.starts)
-    data = data_of(elements, situations)
-    state, code = at_rest(elements, data), first_sets(elements, data)
-    rows = elements.rows
-    code[:, :rows] = np.where(
-        rng.random((JOB.starts, rows)) < 0.5, rng.integers(0, 2, (JOB.starts, rows)), code[:, :rows]
+    loading = loading_of(structure, situations)
+    iterate, states = at_rest(structure, loading), first_sets(structure, loading)
+    rows = structure.rows
+    states[:, :rows] = np.where(
+        rng.random((JOB.starts, rows)) < 0.5,
+        rng.integers(0, 2, (JOB.starts, rows)),
+        states[:, :rows],
     )
-    scale = np.abs(data.nominal).max(initial=0.0)
+    scale = np.abs(loading.nominal).max(initial=0.0)
     # From a thousandth of a millionth of the rings' distance up to a tenth of it.
-    state.x[:] = (
-        rng.normal(size=state.x.shape) * scale * 10.0 ** -rng.uniform(1, 9, (JOB.starts, 1))
+    iterate.x[:] = (
+        rng.normal(size=iterate.x.shape) * scale * 10.0 ** -rng.uniform(1, 9, (JOB.starts, 1))
     )
-    found = exchange(elements, data, state, vectorised.settle, code)
-    answers = equilibria(elements, state, False)
+    found = exchange(structure, loading, iterate, vectorised.settle, states)
+    answers = equilibria(structure, iterate, False)
     verdicts = machine.judge.judge(situations, answers, CERTIFY.tolerance)
     good = np.flatnonzero(found.solved & verdicts.passed).tolist()
     return [answers.one(row, position) for row in good]

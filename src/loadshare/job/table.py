@@ -63,7 +63,7 @@ KEPT: dict[str, Variable] = {
 """Of each sample at each position, if it is asked for."""
 
 
-def kept(names: Iterable[str]) -> tuple[str, ...]:
+def checked(names: Iterable[str]) -> tuple[str, ...]:
     """Return variables to keep.
 
     Raises
@@ -133,7 +133,7 @@ class Table:
             "component": list(COMPONENTS),
             "contact": list(self.names.contacts),
         }
-        self.kept = {name: self._empty(np.nan, KEPT[name].dims) for name in keep}
+        self.variables = {name: self._empty(np.nan, KEPT[name].dims) for name in keep}
         self.each = {name: self._empty(e.none, (), e.type_) for name, e in EACH.items()}
         self.message: dict[str, str] = {}
 
@@ -169,7 +169,7 @@ class Table:
             self.message[f"sample {row}, position {index}"] = why
         for p, answers in enumerate(block.equilibria):
             torque, _ = mesh_torques(answers)
-            for name, values in self.kept.items():
+            for name, values in self.variables.items():
                 values[place, p] = self._read(name, answers, torque)
 
     def _read(self, name: str, answers: Equilibria, torque: Array) -> Array:
@@ -187,7 +187,9 @@ class Table:
         """Return everything with labels."""
         import xarray as xr
 
-        data = {name: KEPT[name].labelled(values, *EVERY) for name, values in self.kept.items()}
+        data = {
+            name: KEPT[name].labelled(values, *EVERY) for name, values in self.variables.items()
+        }
         for name, each in EACH.items():
             attributes = {"units": each.units, "long_name": each.long_name}
             data[name] = EVERY, self.each[name], attributes

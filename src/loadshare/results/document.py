@@ -35,32 +35,32 @@ def to_document(result: Result) -> dict[str, Any]:
         "format": FORMAT,
         "case": result.stamp.case,
         "version": result.stamp.version,
-        "stamp": plain(result.stamp),
+        "stamp": as_data(result.stamp),
         "input": result.case.to_dict(),
-        "frames": plain(result.frames),
-        "stages": plain(result.stages),
+        "frames": as_data(result.frames),
+        "stages": as_data(result.stages),
         "positions": [_told(p) for p in result.positions],
         "omega": dict(result.omega),
         "pair_omega": dict(result.pair_omega),
     }
 
 
-def plain(given: Any) -> Any:
+def as_data(given: Any) -> Any:
     """Return dataclasses, mappings and tuples as JSON knows them; what is infinite is null."""
     if isinstance(given, Mapping):
-        return {key: plain(value) for key, value in given.items()}
+        return {key: as_data(value) for key, value in given.items()}
     if is_dataclass(given):
-        return {f.name: plain(getattr(given, f.name)) for f in fields(given)}
+        return {f.name: as_data(getattr(given, f.name)) for f in fields(given)}
     if isinstance(given, list | tuple):
-        return [plain(value) for value in given]
+        return [as_data(value) for value in given]
     return None if isinstance(given, float) and math.isinf(given) else given
 
 
 def _told(p: Position) -> dict[str, Any]:
     """What a position tells; parts of its certificate stand beside one another."""
-    told = {name: plain(getattr(p, name)) for name in _TOLD}
-    told["validity"] = {"verdict": p.validity.verdict} | plain(p.validity)
-    told["uniqueness"] = plain(p.uniqueness) | {"told": p.uniqueness.told}
+    told = {name: as_data(getattr(p, name)) for name in _TOLD}
+    told["validity"] = {"verdict": p.validity.verdict} | as_data(p.validity)
+    told["uniqueness"] = as_data(p.uniqueness) | {"told": p.uniqueness.told}
     return told | _judged(p.certificate)
 
 
@@ -68,6 +68,6 @@ def _judged(certificate: Certificate) -> dict[str, Any]:
     verdict: dict[str, Any] = {"passed": certificate.passed}
     verdict |= {name: r.scaled for name, r in certificate.residuals.items()}
     scales = {name: getattr(certificate, name) for name in ("load", "deflection", "tolerance")}
-    verdict["bound"] = plain(certificate.bound)
-    residuals = plain(certificate.residuals)
+    verdict["bound"] = as_data(certificate.bound)
+    residuals = as_data(certificate.residuals)
     return {"certificate": verdict, "residuals": residuals, "scales": scales}

@@ -25,7 +25,7 @@ from loadshare.later import known
 from loadshare.results.claim import Claim, misnamed
 from loadshare.results.derive import position_of, result_from
 from loadshare.results.differences import DIGITS, ROUND_OFF, differences
-from loadshare.results.document import FORMAT, plain, to_document
+from loadshare.results.document import FORMAT, as_data, to_document
 from loadshare.results.result import Effort, Position, Result, Stamp
 from loadshare.scene import assemble
 from loadshare.solver.position import of_least_norm
@@ -287,7 +287,7 @@ def _loosened(positions: Iterable[Position], train: Train) -> Iterator[Wrong]:
     for at, p in enumerate(positions):
         scene = assemble(p.claim.train(train), p.position)
         ranges = of_least_norm(scene, p.equilibrium).undetermined
-        for path, was, wrong, expected in differences(plain(ranges), plain(p.undetermined)):
+        for path, was, wrong, expected in differences(as_data(ranges), as_data(p.undetermined)):
             yield ("positions", at, "undetermined", *path), was, wrong, expected
 
 

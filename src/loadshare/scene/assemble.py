@@ -10,9 +10,9 @@ import numpy as np
 from loadshare.contact.law import Law, PowerLaw, TableLaw
 from loadshare.contact.problem import ArcRow, FollowingLaw, Row
 from loadshare.contact.radial import RadialLaw, round_ring_law
-from loadshare.scene.data import Data, data_of
-from loadshare.scene.elements import ArcElement, Elements, RadialElement, elements_of
+from loadshare.scene.loading import Loading, loading_of
 from loadshare.scene.scene import GearRadial, Scene
+from loadshare.scene.structure import ArcElement, RadialElement, Structure, structure_of
 from loadshare.train.memory import SlipFriction, SlipStop
 from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Spline, Train
@@ -20,69 +20,69 @@ from loadshare.train.train import Spline, Train
 
 def assemble(train: Train, index: int) -> Scene:
     """Assemble the scene of position `index` (1-based) of a train."""
-    return scene_of(elements_of(train), situation_of(train, index))
+    return scene_of(structure_of(train), situation_of(train, index))
 
 
-def scene_of(elements: Elements, situation: Situations, data: Data | None = None) -> Scene:
+def scene_of(structure: Structure, situation: Situations, loading: Loading | None = None) -> Scene:
     """Assemble the scene of a single sample.
 
     Parameters
     ----------
-    elements : Elements
+    structure : Structure
     situation : Situations
         Of one sample.
-    data : Data, optional
+    loading : Loading, optional
         Its numbers, where they are at hand.
     """
-    data = data or data_of(elements, situation)
-    columns, vectors = elements.columns, elements.vectors
-    force, length = elements.force, elements.length
-    gap, springs = data.gap[0] * length, vectors[columns.springs]
-    stiffness = force / length / data.bending[0, columns.springs]
-    laws = [_law(elements, data, column) for column in range(len(elements.names))]
+    loading = loading or loading_of(structure, situation)
+    columns, vectors = structure.columns, structure.vectors
+    force, length = structure.force, structure.length
+    gap, springs = loading.gap[0] * length, vectors[columns.springs]
+    stiffness = force / length / loading.bending[0, columns.springs]
+    laws = [_law(structure, loading, column) for column in range(len(structure.names))]
     rows = range(columns.flat.start, columns.flat.stop)
-    levers = elements.train.levers
+    levers = structure.train.levers
     return Scene(
-        train=elements.train,
+        train=structure.train,
         situation=situation,
-        coordinates=elements.coordinates.names,
+        coordinates=structure.coordinates.names,
         springs=springs,
         stiffness=springs.T * stiffness @ springs,
-        load=data.load[0] * force + springs.T @ (stiffness * gap[columns.springs]),
+        load=loading.load[0] * force + springs.T @ (stiffness * gap[columns.springs]),
         rows=tuple(
-            Row(elements.names[k], elements.kinds[k], vectors[k], float(gap[k]), laws[k])
+            Row(structure.names[k], structure.kinds[k], vectors[k], float(gap[k]), laws[k])
             for k in rows
         ),
         arcs=tuple(
             _arc(situation, arc, law)
-            for arc, law in zip(elements.arcs, laws[columns.arcs], strict=True)
+            for arc, law in zip(structure.arcs, laws[columns.arcs], strict=True)
         ),
         radials=tuple(
             GearRadial(
                 r.name,
                 r.matrix,
                 r.centre,
-                source := _source(elements.train, situation, r),
+                source := _source(structure.train, situation, r),
                 {} if isinstance(source, RadialLaw) else levers(r.gear),
                 gear=r.gear,
             )
-            for r in elements.radials
+            for r in structure.radials
         ),
-        rotation=elements.coordinates.rotation,
-        displacement=elements.coordinates.displacement,
-        removed=elements.removed,
+        rotation=structure.coordinates.rotation,
+        displacement=structure.coordinates.displacement,
+        removed=structure.removed,
     )
 
 
-def _law(elements: Elements, data: Data, column: int) -> Law:
+def _law(structure: Structure, loading: Loading, column: int) -> Law:
     """Law of a spring or contact, in SI."""
-    force, length = elements.force, elements.length
-    m = data.tabulated[column]
+    force, length = structure.force, structure.length
+    m = loading.tabulated[column]
     if m >= 0:
-        points = data.tables[0, m] * np.array([[force], [length]])
+        points = loading.tables[0, m] * np.array([[force], [length]])
         forces, compressions = points[:, np.isfinite(points[0])].tolist()
         return TableLaw(tuple(forces), tuple(compressions))
-    b, c = float(data.bending[0, column]), float(data.hertz[0, column])
+    b, c = float(loading.bending[0, column]), float(loading.hertz[0, column])
     return PowerLaw(b * length / force, c * length / math.cbrt(force) ** 2)
 
 

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
+from loadshare.scene.structure import Structure
 from loadshare.settings import PLACES
 
 
-def is_unbalanced(elements: Elements, load: Array) -> bool:
+def is_unbalanced(structure: Structure, load: Array) -> bool:
     r"""Tell whether the load drives a move that nothing resists.
 
     The forces nearest to balance, :math:`\min_\mu \lVert f - A^T\mu\rVert` with contacts that push
@@ -22,7 +22,7 @@ def is_unbalanced(elements: Elements, load: Array) -> bool:
 
     Parameters
     ----------
-    elements : Elements
+    structure : Structure
     load : ndarray, shape (n,)
     """
     from scipy.optimize import nnls
@@ -30,8 +30,8 @@ def is_unbalanced(elements: Elements, load: Array) -> bool:
     size = float(np.linalg.norm(load))
     if not size:
         return False
-    columns, vectors = elements.columns, elements.vectors
-    pushing, arcs = vectors[columns.flat], [a.relative for a in elements.arcs]
+    columns, vectors = structure.columns, structure.vectors
+    pushing, arcs = vectors[columns.flat], [a.relative for a in structure.arcs]
     held = np.vstack([vectors[columns.springs], vectors[columns.radials], *arcs])
     try:
         forces, _ = nnls(np.vstack([held, -held, pushing]).T, load / size)

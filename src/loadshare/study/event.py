@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from loadshare.solver.hot import places as at
+from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.active import switch_names
 from loadshare.study.follow.line import Line
 from loadshare.study.follow.search import Change
@@ -90,23 +90,23 @@ def events_of(line: Line, position: int, change: Change) -> list[Event]:
         1-based.
     change : Change
     """
-    elements = line.elements
-    rows, kinds = elements.rows, elements.kinds[elements.columns.contacts]
-    names = switch_names(elements)
-    pairs = list(zip(change.before.code, change.after.code, strict=True))
+    structure = line.structure
+    rows, kinds = structure.rows, structure.kinds[structure.columns.contacts]
+    names = switch_names(structure)
+    pairs = list(zip(change.before.states, change.after.states, strict=True))
     changed = [k for k, (here, then) in enumerate(pairs) if here != then]
     found = []
     for k in sorted(changed, key=lambda k: (k >= rows, names[k] if k < rows else "")):
-        ring = k >= rows and elements.radials[k - rows].kind == "ring"
-        before, after = (_state(code, k < rows, ring) for code in pairs[k])
+        ring = k >= rows and structure.radials[k - rows].kind == "ring"
+        before, after = (_state(states, k < rows, ring) for states in pairs[k])
         if before == after:
             continue
         gear = None
         if k >= rows:
-            gear = elements.radials[k - rows].gear
+            gear = structure.radials[k - rows].gear
             kind = _SPLINE.get((before, after), f"{before} becomes {after}")
         elif kinds[k] in ("stop", "arc"):
-            gear = next(g for g in elements.train.rings if names[k].startswith(f"ring {g}:"))
+            gear = next(g for g in structure.train.rings if names[k].startswith(f"ring {g}:"))
             kind = f"float {'reaches' if after == 'closed' else 'leaves'} boundary"
         else:
             kind = f"contact {'closes' if after == 'closed' else 'opens'}"
@@ -129,10 +129,10 @@ def events_of(line: Line, position: int, change: Change) -> list[Event]:
     return found
 
 
-def _state(code: int, is_row: bool, is_ring: bool) -> str:
+def _state(states: int, is_row: bool, is_ring: bool) -> str:
     """Words for the state that a code names."""
     if is_row:
-        return "open" if code == at.OPEN else "closed"
+        return "open" if states == at.OPEN else "closed"
     if is_ring:
-        return "inside" if code == at.OPEN else "on boundary"
-    return _STATES[code]
+        return "inside" if states == at.OPEN else "on boundary"
+    return _STATES[states]

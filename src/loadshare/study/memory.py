@@ -26,9 +26,9 @@ from loadshare.job.hot import SEARCHED
 from loadshare.job.ladder import rungs
 from loadshare.scene import assemble
 from loadshare.scene.assemble import scene_of
-from loadshare.scene.data import data_of
-from loadshare.scene.elements import elements_of
+from loadshare.scene.loading import loading_of
 from loadshare.scene.scene import Array, Scene
+from loadshare.scene.structure import structure_of
 from loadshare.settings import CERTIFY
 from loadshare.solver import Options, Record, solve_scene
 from loadshare.solver.hot.proximal import search
@@ -152,21 +152,21 @@ def _searched(train: Train, index: int) -> Answer | None:
     """
     if any(spline.friction_force is None for spline in train.splines.values()):
         return None
-    elements, situation = elements_of(train), situation_of(train, index)
-    scene, data = scene_of(elements, situation), data_of(elements, situation)
+    structure, situation = structure_of(train), situation_of(train, index)
+    scene, loading = scene_of(structure, situation), loading_of(structure, situation)
     try:
         laws = {r.name: r.law(0.0) for r in scene.radials}
     except ValueError:
         # A spline has no law with memory; the general programme says why.
         return None
-    state, found = search(elements, data)
+    iterate, found = search(structure, loading)
     if not found.solved[0]:
         return None
-    force, row = state.force[0] * elements.force, elements.springs
-    forces = dict(zip(elements.row_names, force[row:].tolist(), strict=False))
-    columns = {r.name: elements.radial_column(j) for j, r in enumerate(scene.radials)}
+    force, row = iterate.force[0] * structure.force, structure.springs
+    forces = dict(zip(structure.row_names, force[row:].tolist(), strict=False))
+    columns = {r.name: structure.radial_column(j) for j, r in enumerate(scene.radials)}
     settled = Settled(
-        x=state.x[0] * elements.length,
+        x=iterate.x[0] * structure.length,
         forces=forces,
         radial_forces={name: force[k : k + 2] for name, k in columns.items()},
         laws=laws,

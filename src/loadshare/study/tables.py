@@ -140,7 +140,7 @@ def sensitivity_dataset(found: Sensitivity) -> xr.Dataset:
 
     each = ("position", "input", "side")
 
-    def laid(name: str, ending: str, *dims: str) -> tuple[Any, ...]:
+    def entry(name: str, ending: str, *dims: str) -> tuple[Any, ...]:
         rows = []
         for at in product(*(coords[d] for d in dims if d in each)):
             if "position" in dims:
@@ -160,7 +160,7 @@ def sensitivity_dataset(found: Sensitivity) -> xr.Dataset:
     )
     return xr.Dataset(
         {
-            name + ending: laid(name, ending, *dims)
+            name + ending: entry(name, ending, *dims)
             for name, *dims in figures
             for ending in ("", "_error")
         },

@@ -23,15 +23,15 @@ Check: TypeAlias = tuple[str, float | str, bool, str]
 
 def millimetres(length: float) -> str:
     """A length [m] as text in mm."""
-    return f"{plain(length * 1e3)} mm"
+    return f"{digits(length * 1e3)} mm"
 
 
 def degrees(angle: float) -> str:
     """An angle [rad] as text in degrees."""
-    return f"{plain(math.degrees(angle))} deg"
+    return f"{digits(math.degrees(angle))} deg"
 
 
-def plain(number: float) -> str:
+def digits(number: float) -> str:
     """A number with six figures."""
     return f"{number:.6g}"
 
@@ -41,7 +41,7 @@ def written(key: str, value: float) -> str:
     name = key.rpartition(".")[2]
     if name in LENGTHS:
         return millimetres(value)
-    return degrees(value) if name in ANGLES else plain(value)
+    return degrees(value) if name in ANGLES else digits(value)
 
 
 def problem(key: str, given: float | str, message: str, allowed: str, hint: str = "") -> Problem:

@@ -17,10 +17,10 @@ from tests.support import SHIPPED, shipped
 
 import loadshare as ls
 from loadshare.job.machine import Answers, Machine, engine_named
-from loadshare.settings import CERTIFY, JOB
+from loadshare.settings import ABREAST, CERTIFY, JOB
 from loadshare.solver.hot import compiled, vectorised
-from loadshare.solver.hot import places as at
-from loadshare.solver.hot.lanes.signs import misplaced
+from loadshare.solver.hot import contact_states as at
+from loadshare.solver.hot.kernel.signs import misplaced
 from loadshare.train import build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.samples import samples_of
@@ -61,14 +61,14 @@ def moves(machine: Machine, found: Equilibria) -> np.ndarray:
 def contact_forces(machine: Machine, found: Answers) -> np.ndarray:
     """Force of every switch [N], (S, switches); radial elements count as carrying."""
     rows = np.concatenate([found.equilibria.flank_force, found.equilibria.ring_force], axis=1)
-    radials = machine.elements.switches - machine.elements.rows
+    radials = machine.structure.switches - machine.structure.rows
     return np.pad(rows, ((0, 0), (0, radials)), constant_values=np.nan)
 
 
-def in_few_lanes(*given):
+def few_abreast(*given):
     """Eight at a time, so that samples wait, and the slow ones begin again beside one another."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compiled, "WIDTHS", (8,))
+        patch.setattr(compiled, "ABREAST", ABREAST._replace(widths=(8,)))
         return compiled.settle(*given)
 
 
@@ -84,7 +84,7 @@ def agree(machine: Machine, situations: Situations) -> Answers:
     """All engines certify the same samples, with the same elements and the same figures."""
     one, *others = (
         machine.answer(situations, CERTIFY.tolerance, engine)
-        for engine in (vectorised.settle, compiled.settle, in_few_lanes, alone)
+        for engine in (vectorised.settle, compiled.settle, few_abreast, alone)
     )
     for other in others:
         same(machine, one, other)
@@ -95,7 +95,7 @@ def same(machine: Machine, one: Answers, other: Answers) -> None:
     """Two engines agree on what they certify."""
     assert one.passed.tolist() == other.passed.tolist()
     rows = one.passed
-    apart_at = np.argwhere(one.code[rows] != other.code[rows])
+    apart_at = np.argwhere(one.states[rows] != other.states[rows])
     for found in (one, other):
         pushes = contact_forces(machine, found)[rows]
         largest = np.nanmax(np.abs(pushes), axis=1, initial=0.0)
@@ -125,7 +125,7 @@ def test_random_samples(name):
     for index in range(1, min(group.train.count, 2) + 1):
         found = agree(machine, group.situations(index))
         passed += found.passed.tolist()
-        sets |= {code.tobytes() for code in found.code}
+        sets |= {states.tobytes() for states in found.states}
     assert np.mean(passed) >= 0.9, name
     assert len(sets) > 1 or name in ("errors", "tables"), "nothing opened or closed"
 

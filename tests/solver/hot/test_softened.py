@@ -10,7 +10,7 @@ import pytest
 from tests.solver.hot.trains import VARIED
 
 from loadshare.job.machine import Machine
-from loadshare.scene.data import data_of
+from loadshare.scene.loading import loading_of
 from loadshare.solver.hot.softened import Laws
 from loadshare.train import build_train
 
@@ -25,11 +25,11 @@ def machine_of(name: str) -> Machine:
 def drawn(name: str, seed: int) -> tuple[Laws, np.ndarray, np.ndarray]:
     """Laws, where the elements are pressed, and a way from there."""
     own, rng = machine_of(name), np.random.default_rng(seed)
-    data = data_of(own.elements, own.situations([1]))
-    count = len(own.elements.vectors)
+    loading = loading_of(own.structure, own.situations([1]))
+    count = len(own.structure.vectors)
     force = np.abs(rng.normal(size=count))
     reach = 10.0 ** rng.uniform(-1.0, 1.5)
-    laws = Laws(own.elements, data, force, SOFTER, PULL)
+    laws = Laws(own.structure, loading, force, SOFTER, PULL)
     return laws, *(reach * rng.normal(size=(2, count)))
 
 

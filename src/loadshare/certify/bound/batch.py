@@ -21,12 +21,12 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.certify.arrays import arrays_of
 from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.laws import CLOSED, OPEN
 from loadshare.certify.bound.statics import Statics, held_moves
 from loadshare.certify.mechanics import mechanics_of
-from loadshare.certify.plain import plain
 from loadshare.certify.validity import measuring
 from loadshare.settings import BOUND, CERTIFY
 from loadshare.train.equilibria import Equilibria
@@ -35,7 +35,7 @@ from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
-Codes = NDArray[np.int8]
+Acts = NDArray[np.int8]
 Flags = NDArray[np.bool_]
 Numbers = NDArray[np.intp]
 Places = NDArray[np.uintp]
@@ -127,7 +127,7 @@ class Found(NamedTuple):
     """Figures of S claims."""
 
     number: Numbers  # (S,): of what acts; −1 if there is too much of it
-    acts: Codes  # (S, c + q)
+    acts: Acts  # (S, c + q)
     misfit: Array  # (S, rows) [m]
     left: Array  # (S, n): of the balance [N]
     soft: Array  # (S, q): compliance where a radial element stands [m/N]
@@ -160,7 +160,7 @@ class Sets(NamedTuple):
     most: Array
 
 
-class Sheet(NamedTuple):
+class Workspace(NamedTuple):
     """What is found of the claims at hand, overwritten by the next; w of them stand abreast."""
 
     x: Array  # (n, w): coordinates [m]
@@ -217,9 +217,9 @@ def judged(columns: Columns, situations: Situations, answers: Equilibria) -> Jud
     plan = _plans.get(columns)
     if plan is None or not np.array_equal(plan.layout.spring, held[0]):
         plan = _plans[columns] = Plan(columns, *held)
-    here, claim = plain(situations, answers)
+    here, claim = arrays_of(situations, answers)
     found, sets = plan.found(len(answers.rotation)), plan.sets()
-    count = kernel.find_all(plan.layout, here, claim, plan.sheet(), found, sets)
+    count = kernel.find_all(plan.layout, here, claim, plan.work(), found, sets)
     acts = found.acts[sets.first[:count]]
     errors = np.empty_like(found.largest)
     groups = plan.groups(acts, sets.least[:count], sets.most[:count])
@@ -271,14 +271,14 @@ class Plan:
         """Rows of L."""
         return len(self.contacts) + len(self.springs) + 2 * len(self.pulls)
 
-    def sheet(self) -> Sheet:
-        """Return an empty sheet."""
+    def work(self) -> Workspace:
+        """Return an empty workspace."""
         of, m, n = self.layout, len(self.layout.start) - 1, self.contacts.shape[1]
         arcs, pulls, flanks, gears = len(of.apart), len(self.pulls), len(of.arm), len(of.radius)
         abreast = n, self.varying, 3 * gears, m, flanks, flanks, m, 2 * pulls, n, n
         single = len(self.contacts), (arcs, 2), arcs, pulls, (pulls, 6), (pulls, 2), (pulls, 3)
         sizes = *((size, BOUND.abreast) for size in abreast), *single
-        return Sheet(*(np.zeros(size) for size in sizes))
+        return Workspace(*(np.zeros(size) for size in sizes))
 
     def found(self, count: int) -> Found:
         """Return room for the figures of so many claims."""
@@ -302,7 +302,7 @@ class Plan:
         )
         return Sets(first, key, np.full(size, np.inf), np.zeros(size))
 
-    def _known(self, acts: Codes) -> Operators:
+    def _known(self, acts: Acts) -> Operators:
         """Statics of what acts.
 
         A load is carried by radial elements only where nothing else does, and by what yields
@@ -339,7 +339,7 @@ class Plan:
         self._statics[acts.tobytes()] = found
         return found
 
-    def groups(self, acts: Codes, least: Array, most: Array) -> Groups:
+    def groups(self, acts: Acts, least: Array, most: Array) -> Groups:
         """Return what is the same for the claims of some sets.
 
         Parameters
@@ -383,7 +383,7 @@ class Plan:
         return np.append(figures[:, :first], np.repeat(figures[:, first:], 2, axis=1), axis=1)
 
     def _put(
-        self, found: Groups, acts: Codes, every: list[Operators], least: Array, most: Array
+        self, found: Groups, acts: Acts, every: list[Operators], least: Array, most: Array
     ) -> None:
         """Write what is known of some sets in its place."""
         springs = np.ones((len(acts), len(self.springs)))
@@ -420,7 +420,7 @@ class Plan:
         root = redundant @ (vectors / np.sqrt(values)[:, None, :])
         found.root[:] = root.transpose(0, 2, 1)
 
-    def _put_figures(self, found: Groups, acts: Codes, soft: Array) -> None:
+    def _put_figures(self, found: Groups, acts: Acts, soft: Array) -> None:
         """Write sizes of forces and ways, from the largest compliances."""
         of, contacts = self.layout, len(self.contacts)
         flanks, pulls, arcs = len(of.arm), self._rows - 2 * len(self.pulls), len(of.apart)

@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
-from loadshare.certify.bound.laws import Codes, Elements, elements
+from loadshare.certify.bound.laws import Acts, Elements, elements
 from loadshare.certify.bound.response import Part, Response, yielding
 from loadshare.certify.bound.signs import doubts
 from loadshare.settings import BOUND
@@ -72,7 +72,7 @@ class Box:
             getattr(self, f.name)[rows] = getattr(other, f.name)
 
     @classmethod
-    def unproved(cls, claim: Claim, act: Codes) -> Box:
+    def unproved(cls, claim: Claim, act: Acts) -> Box:
         """Return boxes without end."""
         columns = claim.columns
         return cls(
@@ -84,7 +84,7 @@ class Box:
         )
 
 
-def boxes(claim: Claim, act: Codes, scale: Array, verge: Flags | None = None) -> Box:
+def boxes(claim: Claim, act: Acts, scale: Array, verge: Flags | None = None) -> Box:
     """Bound the errors of S claims, taking their elements to act as given.
 
     Parameters
@@ -106,7 +106,7 @@ def boxes(claim: Claim, act: Codes, scale: Array, verge: Flags | None = None) ->
     return box
 
 
-def _boxes(claim: Claim, act: Codes, scale: Array, verge: Flags, softest: float) -> Box:
+def _boxes(claim: Claim, act: Acts, scale: Array, verge: Flags, softest: float) -> Box:
     """Bound errors with turns of light forces as soft as `softest` times the softest element."""
     found = elements(claim, act, scale, verge, softest)
     left, rounding = claim.balance(found.force)

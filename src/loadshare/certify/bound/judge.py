@@ -13,7 +13,7 @@ from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.held import STILL, Held, with_held_slips
-from loadshare.certify.bound.laws import Act, Codes, first_acts
+from loadshare.certify.bound.laws import Act, Acts, first_acts
 from loadshare.certify.bound.locked import locked, without
 from loadshare.certify.bound.open_slips import is_inside, open_slips, reaction_error
 from loadshare.certify.bound.quick import quick_boxes
@@ -263,7 +263,7 @@ def _with_light_friction(claim: Claim, scale: Array) -> tuple[Array, Array]:
     return force[0], coordinate[0]
 
 
-def _fine(claim: Claim, act: Codes, scale: Array) -> tuple[Array, Array]:
+def _fine(claim: Claim, act: Acts, scale: Array) -> tuple[Array, Array]:
     """Errors from residuals in twice the precision."""
     box = boxes(claim, act, scale)
     force, coordinate = box.force.copy(), box.coordinate.copy()

@@ -21,7 +21,7 @@ from loadshare.certify.bound.twofold import exact, minus, plus, power_two_thirds
 from loadshare.settings import BOUND
 
 Array = NDArray[np.float64]
-Codes = NDArray[np.int8]
+Acts = NDArray[np.int8]
 Flags = NDArray[np.bool_]
 
 
@@ -91,7 +91,7 @@ class Elements:
         Change with the torque of friction that is put aside [1/m].
     """
 
-    act: Codes
+    act: Acts
     active: Flags
     force: Array
     rounding: Array
@@ -111,7 +111,7 @@ class Elements:
     spare: Array
 
 
-def first_acts(claim: Claim, noise: float = BOUND.noise) -> Codes:
+def first_acts(claim: Claim, noise: float = BOUND.noise) -> Acts:
     """How the elements act by the claim's own forces, shape (S, elements).
 
     Parameters
@@ -140,7 +140,7 @@ def first_acts(claim: Claim, noise: float = BOUND.noise) -> Codes:
     return np.concatenate([scalar, radials], axis=1)
 
 
-def _radial_acts(claim: Claim, noise: Array) -> Codes:
+def _radial_acts(claim: Claim, noise: Array) -> Acts:
     columns = claim.columns
     pair = claim.forces[:, columns.radials].reshape(claim.count, -1, 2)
     where = claim.lengths[0].value[:, columns.radials].reshape(claim.count, -1, 2)
@@ -171,7 +171,7 @@ def _radial_acts(claim: Claim, noise: Array) -> Codes:
 
 
 def elements(
-    claim: Claim, act: Codes, scale: Array, verge: Flags | None, softest: float = BOUND.softest
+    claim: Claim, act: Acts, scale: Array, verge: Flags | None, softest: float = BOUND.softest
 ) -> Elements:
     """Describe the elements at S claims.
 
@@ -345,7 +345,7 @@ def _springs(claim: Claim, active: Flags, soft: Array, misfit: Array, width: Arr
     width[:, linear] += EPS * np.abs(yielded)
 
 
-def _pairs(claim: Claim, act: Codes, found: Elements, softest: float) -> None:
+def _pairs(claim: Claim, act: Acts, found: Elements, softest: float) -> None:
     """Arcs and radial elements."""
     columns, here = claim.columns, claim.situations
     first, count = columns.first_pair, claim.count
@@ -424,7 +424,7 @@ def _pairs(claim: Claim, act: Codes, found: Elements, softest: float) -> None:
         found.width[:, first:] += np.repeat(found.shrinks * lost, 2, axis=1)
 
 
-def _put_aside(claim: Claim, acts: Codes) -> tuple[Array, Array]:
+def _put_aside(claim: Claim, acts: Acts) -> tuple[Array, Array]:
     """Friction of splines that are taken as open, (S, radials): its level [N], and per torque."""
     is_open = acts == Act.OPEN
     spare = np.zeros(acts.shape)
@@ -435,7 +435,7 @@ def _put_aside(claim: Claim, acts: Codes) -> tuple[Array, Array]:
     return np.where(is_open, claim.graphs[:, :, 2], 0.0), spare
 
 
-def _follow(claim: Claim, acts: Codes, yields: Array, follows: Array, shrinks: Array) -> None:
+def _follow(claim: Claim, acts: Acts, yields: Array, follows: Array, shrinks: Array) -> None:
     """Change of a spline's level and of its room with its torque, where they enter."""
     train, here = claim.columns.train, claim.situations
     rounds, splines = len(train.rounds), len(train.splines)

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from loadshare.certify.bound.bound import Box, aside, put_aside, rounding_of
 from loadshare.certify.bound.claim import EPS, Claim
-from loadshare.certify.bound.laws import Act, Codes, Elements, elements
+from loadshare.certify.bound.laws import Act, Acts, Elements, elements
 from loadshare.certify.bound.signs import doubts
 from loadshare.certify.bound.statics import Statics, held_moves
 from loadshare.settings import BOUND
@@ -38,7 +38,7 @@ DIGITS = 20
 """Ways of acting that make one number below 2⁶³."""
 
 
-def quick_boxes(claim: Claim, act: Codes, scale: Array, rounded: bool = False) -> Box:
+def quick_boxes(claim: Claim, act: Acts, scale: Array, rounded: bool = False) -> Box:
     """Bound the errors of S claims; infinite where nothing is shown.
 
     Parameters
@@ -77,7 +77,7 @@ def quick_boxes(claim: Claim, act: Codes, scale: Array, rounded: bool = False) -
     return box
 
 
-def _with_near(claim: Claim, act: Codes) -> tuple[Codes, Flags]:
+def _with_near(claim: Claim, act: Acts) -> tuple[Acts, Flags]:
     """Ways of acting with contacts that all but touch closed, and which have a twin that acts.
 
     Two opposed contacts of a ring, without clearance between them, are one contact that holds both
@@ -114,7 +114,7 @@ def _with_near(claim: Claim, act: Codes) -> tuple[Codes, Flags]:
     return act, doubled
 
 
-def alike(codes: Codes) -> list[NDArray[np.intp]]:
+def alike(codes: Acts) -> list[NDArray[np.intp]]:
     """Rows with the same codes."""
     if (codes == codes[:1]).all():
         return [np.arange(len(codes))]
@@ -128,7 +128,7 @@ def alike(codes: Codes) -> list[NDArray[np.intp]]:
     return np.split(order, np.cumsum(np.bincount(group))[:-1])
 
 
-def _groups(claim: Claim, act: Codes) -> list[NDArray[np.intp]]:
+def _groups(claim: Claim, act: Acts) -> list[NDArray[np.intp]]:
     """Rows with the same codes; of few claims that lean on a ring or spline, each by itself.
 
     By itself the turn of its line is one more compliance. Many share the line of one of them, and
@@ -184,7 +184,7 @@ class _Group:
         active = found.active[rows[0]].copy()
         for k in (0, 1):
             active[first + 2 * self.lined + k] = False
-        self.plain = np.flatnonzero(active)
+        self.scalar = np.flatnonzero(active)
         matrix = columns.matrix.high
         self.reference = found.line[rows[len(rows) // 2]][self.lined]
         along = [
@@ -199,30 +199,30 @@ class _Group:
             np.array([-u[1], u[0]]) @ matrix[first + 2 * j : first + 2 * j + 2]
             for u, j in zip(self.reference[self.turning], self.lined[self.turning], strict=True)
         ]
-        self.line = slice(len(self.plain), len(self.plain) + len(self.lined))
+        self.line = slice(len(self.scalar), len(self.scalar) + len(self.lined))
         self.directions = np.concatenate(
-            [matrix[self.plain], np.reshape([*along, *across], (-1, matrix.shape[1]))]
+            [matrix[self.scalar], np.reshape([*along, *across], (-1, matrix.shape[1]))]
         )
         self.statics = Statics.of(self.directions)
         self.is_sliding = np.zeros(len(self.directions), dtype=bool)
         for k in (0, 1):
-            self.is_sliding[np.searchsorted(self.plain, first + 2 * self.slips + k)] = True
+            self.is_sliding[np.searchsorted(self.scalar, first + 2 * self.slips + k)] = True
         self.is_left = self.is_sliding.copy()
         self.is_left[self.line.stop :] = True
         self.is_covered = True
         self.over = np.full((len(rows), len(self.directions)), 1.0 / BOUND.secant)
         over = _over_tangents(claim, found, self.pick, scale)
-        flanks = np.flatnonzero(self.plain < columns.flanks.stop)
-        self.over[:, flanks] = over[:, self.plain[flanks]]
+        flanks = np.flatnonzero(self.scalar < columns.flanks.stop)
+        self.over[:, flanks] = over[:, self.scalar[flanks]]
         self.is_endless = (self.over > 1.0 / BOUND.secant).any(axis=0)
         self.may_open = (self._at_ends(self._pushed()) < BOUND.light * scale[:, None]).any(axis=0)
         self._set_particular()
         self._set_stiffness()
 
-    def _columns(self, plain: Array, lined: Array) -> Array:
+    def _columns(self, scalar: Array, lined: Array) -> Array:
         """Figures of all columns of the claims and figures of the lines, side by side."""
         rest = np.zeros((len(lined), int(self.turning.sum())))
-        return np.concatenate([plain[self.pick][:, self.plain], lined, rest], axis=1)
+        return np.concatenate([scalar[self.pick][:, self.scalar], lined, rest], axis=1)
 
     def _pushed(self) -> Array:
         """Forces of what may open, shape (rows, m): infinite of what cannot."""
@@ -248,7 +248,7 @@ class _Group:
         """Figures of all columns (rows, m), as directions are; those of turns infinite."""
         at = self.claim.columns.first_pair + 2 * self.lined
         turns = np.full((len(figures), int(self.turning.sum())), np.inf)
-        return np.concatenate([figures[:, self.plain], figures[:, at], turns], axis=1)
+        return np.concatenate([figures[:, self.scalar], figures[:, at], turns], axis=1)
 
     def _set_particular(self) -> None:
         """Find how a load is carried by what yields in proportion."""
@@ -329,10 +329,10 @@ class _Group:
         )
         misfit = self._columns(found.misfit, off)
         # A contact without force misses its law only where it overlaps.
-        contacts = columns.is_contact[self.plain]
-        idle = contacts & (found.force[pick][:, self.plain] == 0.0)
-        misfit[:, : len(self.plain)] = np.where(
-            idle, np.maximum(misfit[:, : len(self.plain)], 0.0), misfit[:, : len(self.plain)]
+        contacts = columns.is_contact[self.scalar]
+        idle = contacts & (found.force[pick][:, self.scalar] == 0.0)
+        misfit[:, : len(self.scalar)] = np.where(
+            idle, np.maximum(misfit[:, : len(self.scalar)], 0.0), misfit[:, : len(self.scalar)]
         )
         over = np.where(at < columns.arcs.stop, np.minimum(off, 0.0), np.maximum(off, 0.0))
         misfit[:, self.line] = np.where(size == 0.0, over, off)
@@ -372,7 +372,7 @@ class _Group:
             near = (way <= 0.05 * distance).all(axis=1) & (errors <= box).all(axis=1)
             box = np.where(near[:, None], box, 2.0 * errors)
         whole = aside(claim, found, pick)
-        whole[:, self.plain] += errors[:, : len(self.plain)]
+        whole[:, self.scalar] += errors[:, : len(self.scalar)]
         for k in (0, 1):
             # The line itself may turn.
             whole[:, at + k] += errors[:, self.line]
@@ -382,7 +382,7 @@ class _Group:
         proved = self._is_proved(whole, places, moved, stray, scale) & near
         self._cover_twins(whole)
         shared = np.abs(self.rigid).max(axis=1, initial=0.0) > BOUND.shared
-        whole[:, self.plain[shared[: len(self.plain)]]] = np.inf
+        whole[:, self.scalar[shared[: len(self.scalar)]]] = np.inf
         for k in (0, 1):
             whole[:, at[shared[self.line]] + k] = np.inf
         whole[~proved], places[~proved] = np.inf, np.inf
@@ -417,7 +417,7 @@ class _Group:
         claim, found, pick = self.claim, self.found, self.pick
         columns = claim.columns
         rates, arms = found.follows[pick], np.abs(columns.moments)
-        at = self.plain[self.plain < columns.flanks.stop]
+        at = self.scalar[self.scalar < columns.flanks.stop]
         arcs = claim.arcs[1].shape[1]
         total, most = np.zeros_like(errors), np.zeros(len(errors))
         for pair in np.flatnonzero(rates.any(axis=0)).tolist():

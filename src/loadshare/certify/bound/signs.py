@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.bound.claim import Claim
-from loadshare.certify.bound.laws import Act, Codes, Elements
+from loadshare.certify.bound.laws import Act, Acts, Elements
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -74,7 +74,7 @@ def _room(
     claim: Claim,
     found: Elements,
     rows: NDArray[np.intp] | slice,
-    act: Codes,
+    act: Acts,
     error: Array,
     moved: Array,
     level_error: Array,

@@ -17,14 +17,14 @@ from numpy.typing import NDArray
 
 from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
-from loadshare.certify.bound.laws import Act, Codes, elements
+from loadshare.certify.bound.laws import Act, Acts, elements
 from loadshare.certify.bound.quick import quick_boxes
 from loadshare.settings import BOUND
 
 Array = NDArray[np.float64]
 
 
-def on_the_verge(claim: Claim, act: Codes, scale: Array, box: Box) -> Box:
+def on_the_verge(claim: Claim, act: Acts, scale: Array, box: Box) -> Box:
     """Bound the error of one claim some of whose elements may act otherwise.
 
     Parameters
@@ -84,7 +84,7 @@ def on_the_verge(claim: Claim, act: Codes, scale: Array, box: Box) -> Box:
     return quick_boxes(claim, act, scale)
 
 
-def _each(claim: Claim, acts: Codes, scale: Array, verge: NDArray[np.bool_]) -> Box:
+def _each(claim: Claim, acts: Acts, scale: Array, verge: NDArray[np.bool_]) -> Box:
     """Boxes of one claim with its elements acting in several ways."""
     rows = np.zeros(len(acts), dtype=np.intp)
     return boxes(claim.take(rows), acts, scale[rows], np.broadcast_to(verge, acts.shape))
@@ -102,21 +102,21 @@ def _held_by_twins(claim: Claim, box: Box) -> NDArray[np.bool_]:
     return held
 
 
-def _with(act: Codes, changes: dict[int, int]) -> Codes:
+def _with(act: Acts, changes: dict[int, int]) -> Acts:
     changed = act.copy()
     for e, way in changes.items():
         changed[e] = way
     return changed
 
 
-def _idle(claim: Claim, act: Codes, doubtful: list[int], scale: Array) -> set[int]:
+def _idle(claim: Claim, act: Acts, doubtful: list[int], scale: Array) -> set[int]:
     """Doubtful contacts that cannot change a force, whether they touch or not."""
     contacts = [e for e in doubtful if e < len(claim.columns.contacts)]
     closed, verge = _closed(act, contacts)
     return _alone(claim, closed, contacts, verge, scale)
 
 
-def _without_idle(claim: Claim, act: Codes, doubtful: list[int], scale: Array) -> Codes:
+def _without_idle(claim: Claim, act: Acts, doubtful: list[int], scale: Array) -> Acts:
     """One way of acting, with those doubtful elements open that cannot change a force in it."""
     limits = [e for e in doubtful if act[e] == Act.STOP and _is_limit(claim, e)]
     verge = np.zeros((1, len(act)), dtype=bool)
@@ -136,7 +136,7 @@ def _is_limit(claim: Claim, e: int) -> bool:
 
 
 def _alone(
-    claim: Claim, act: Codes, some: list[int], verge: NDArray[np.bool_], scale: Array
+    claim: Claim, act: Acts, some: list[int], verge: NDArray[np.bool_], scale: Array
 ) -> set[int]:
     """Elements, of some that are closed, without part in any self-stress."""
     columns = claim.columns
@@ -157,7 +157,7 @@ def _alone(
     return {e for e in some if share(e) < BOUND.idle}
 
 
-def _closed(act: Codes, doubtful: Iterable[int]) -> tuple[Codes, NDArray[np.bool_]]:
+def _closed(act: Acts, doubtful: Iterable[int]) -> tuple[Acts, NDArray[np.bool_]]:
     """Ways of acting with all doubtful contacts closed, and which these are."""
     verge = np.zeros(act.shape, dtype=bool)
     verge[0, list(doubtful)] = True

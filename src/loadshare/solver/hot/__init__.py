@@ -9,5 +9,5 @@ has the wrong sign is exchanged, all at once first and one at a time when that g
 sample that finds no consistent set is left to the next rung of the ladder.
 
 `vectorised` does this with NumPy for all samples of a set together, `compiled` with Numba for
-samples side by side (`lanes`); `exchange` leads either of them from set to set.
+samples side by side (`kernel`); `exchange` leads either of them from set to set.
 """

@@ -7,30 +7,35 @@ from typing import NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.data import Data
-from loadshare.scene.elements import Elements
+from loadshare.scene.loading import Loading
 from loadshare.scene.scene import Array
+from loadshare.scene.structure import Structure
 from loadshare.settings import HOT
-from loadshare.solver.hot.exchange import Codes
-from loadshare.solver.hot.places import PINNED
-from loadshare.solver.hot.state import State
+from loadshare.solver.hot.contact_states import PINNED
+from loadshare.solver.hot.exchange import States
+from loadshare.solver.hot.iterate import Iterate
 from loadshare.train.equilibria import Equilibria, Names
 
 
-def equilibria(elements: Elements, state: State, compiled: bool = False) -> Equilibria:
+def equilibria(structure: Structure, iterate: Iterate, compiled: bool = False) -> Equilibria:
     """Return displacements and forces of all samples in SI units.
 
     With `compiled`, products are those of Numba, which pass over zeros: the same but for round-off.
     """
-    names = Names(elements.train)
-    to = _map(elements, names)
-    force, tables = state.force, (state.x, state.x, state.force, state.force, state.force)
+    names = Names(structure.train)
+    to = _map(structure, names)
+    force, tables = (
+        iterate.force,
+        (iterate.x, iterate.x, iterate.force, iterate.force, iterate.force),
+    )
     if compiled:
         from loadshare.solver.hot import products
 
-        known = elements.kept.get(("entries",))
+        known = structure.cache.get(("entries",))
         if known is None:
-            known = elements.keep(("entries",), [products.entries(part) for part in to.matrices])
+            known = structure.remember(
+                ("entries",), [products.entries(part) for part in to.matrices]
+            )
         found = [products.times(table, few) for table, few in zip(tables, known, strict=True)]
         pushes = products.pushes
     else:
@@ -39,44 +44,44 @@ def equilibria(elements: Elements, state: State, compiled: bool = False) -> Equi
     rotation, displacement, reaction, torque, support = found
     rotation += to.turned
     count, gears, radials = len(force), len(names.gears), len(names.radials)
-    flanks, rings = elements.columns.flanks, elements.columns.rings
+    flanks, rings = structure.columns.flanks, structure.columns.rings
     return Equilibria(
         names,
         rotation,
         displacement.reshape(count, gears, 3),
-        pushes(force, flanks.start, flanks.stop, elements.force),
-        pushes(force, rings.start, rings.stop, elements.force),
+        pushes(force, flanks.start, flanks.stop, structure.force),
+        pushes(force, rings.start, rings.stop, structure.force),
         reaction.reshape(count, radials, 3),
         torque,
         support.reshape(count, gears, 2),
     )
 
 
-def pin(elements: Elements, data: Data, state: State, code: Codes) -> None:
+def pin(structure: Structure, loading: Loading, iterate: Iterate, states: States) -> None:
     """Put gears that are pinned to where their pins are, to the last digit.
 
     A friction bound may be so far above the load that a slip by round-off is work that counts.
     """
-    for j in range(code.shape[1] - elements.rows):
-        rows = np.flatnonzero(code[:, elements.rows + j] == PINNED)
-        first = elements.radial_column(j)
+    for j in range(states.shape[1] - structure.rows):
+        rows = np.flatnonzero(states[:, structure.rows + j] == PINNED)
+        first = structure.radial_column(j)
         for column in (first, first + 1) if len(rows) else ():
-            (at,) = np.flatnonzero(elements.vectors[column])
-            pins = np.broadcast_to(data.gap[:, column], len(code))
-            state.x[rows, at] = pins[rows] / elements.vectors[column, at]
+            (at,) = np.flatnonzero(structure.vectors[column])
+            pins = np.broadcast_to(loading.gap[:, column], len(states))
+            iterate.x[rows, at] = pins[rows] / structure.vectors[column, at]
 
 
-def without_noise(elements: Elements, state: State, rows: NDArray[np.bool_]) -> bool:
+def without_noise(structure: Structure, iterate: Iterate, rows: NDArray[np.bool_]) -> bool:
     """Let radial elements of some samples carry nothing where they carry round-off; tell if any do.
 
     What holds a gear that no load reaches pulls by what the sums of its contacts leave.
     """
-    first = elements.columns.radials.start
-    pairs = state.force[rows, first:].reshape(int(rows.sum()), -1, 2)
+    first = structure.columns.radials.start
+    pairs = iterate.force[rows, first:].reshape(int(rows.sum()), -1, 2)
     size = np.sqrt((pairs * pairs).sum(axis=2))
-    largest = np.abs(state.force[rows]).max(axis=1, initial=0.0)
+    largest = np.abs(iterate.force[rows]).max(axis=1, initial=0.0)
     noise = (size > 0.0) & (size <= HOT.sign * largest[:, None])
-    state.force[rows, first:] = np.where(noise[:, :, None], 0.0, pairs).reshape(len(pairs), -1)
+    iterate.force[rows, first:] = np.where(noise[:, :, None], 0.0, pairs).reshape(len(pairs), -1)
     return bool(noise.any())
 
 
@@ -103,19 +108,19 @@ class _Map(NamedTuple):
     turned: Array
 
 
-def _map(elements: Elements, names: Names) -> _Map:
+def _map(structure: Structure, names: Names) -> _Map:
     """Return the matrices of a machine, written down once."""
-    known = elements.kept.get(("map",))
+    known = structure.cache.get(("map",))
     if known is not None:
         return cast(_Map, known)
-    train, at, columns = elements.train, elements.coordinates, elements.columns
-    gears, n, m = len(names.gears), elements.size, len(elements.kinds)
+    train, at, columns = structure.train, structure.coordinates, structure.columns
+    gears, n, m = len(names.gears), structure.size, len(structure.kinds)
     rotation, turned = np.zeros((n, gears)), np.zeros(gears)
     displacement, support = np.zeros((n, gears, 3)), np.zeros((m, gears, 2))
     reaction, torque = np.zeros((m, len(names.radials), 3)), np.zeros((m, len(train.shafts)))
-    for column, (s, rate) in enumerate(elements.shafts, columns.shafts.start):
+    for column, (s, rate) in enumerate(structure.shafts, columns.shafts.start):
         torque[column, s] = 1.0 / rate
-    for column, (g, k) in enumerate(elements.supports, columns.supports.start):
+    for column, (g, k) in enumerate(structure.supports, columns.supports.start):
         support[column, g, k] = 1.0
     for g, name in enumerate(names.gears):
         gear, r, where = train.gears[name], at.rotation[name], at.displacement.get(name)
@@ -125,17 +130,17 @@ def _map(elements: Elements, names: Names) -> _Map:
         if where is not None:
             displacement[where, g] = gear.frame
     for j, (_, name) in enumerate(names.radials):
-        column = elements.radial_column(j)
+        column = structure.radial_column(j)
         reaction[column : column + 2, j] = -train.gears[name].frame
     found = _Map(
         (
-            rotation * elements.length,
-            displacement.reshape(n, -1) * elements.length,
-            reaction.reshape(m, -1) * elements.force,
-            torque * elements.force,
-            support.reshape(m, -1) * elements.force,
+            rotation * structure.length,
+            displacement.reshape(n, -1) * structure.length,
+            reaction.reshape(m, -1) * structure.force,
+            torque * structure.force,
+            support.reshape(m, -1) * structure.force,
         ),
         turned,
     )
-    elements.keep(("map",), found)
+    structure.remember(("map",), found)
     return found

@@ -13,67 +13,77 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.data import Data
-from loadshare.scene.elements import Elements
+from loadshare.scene.loading import Loading
 from loadshare.scene.scene import Array
 from loadshare.scene.statics import unresisted
+from loadshare.scene.structure import Structure
 from loadshare.settings import PLACES, STATICS
-from loadshare.solver.hot import places as at
-from loadshare.solver.hot.exchange import Codes
-from loadshare.solver.hot.places import FREE, HELD, LEVEL
-from loadshare.solver.hot.state import State, pushes
+from loadshare.solver.hot import contact_states as at
+from loadshare.solver.hot.contact_states import FREE, HELD, LEVEL
+from loadshare.solver.hot.exchange import States
+from loadshare.solver.hot.iterate import Iterate, pushes
 from loadshare.solver.hot.vectorised import arc_at, pick
 
 Flags = NDArray[np.bool_]
 
 
 def determined(
-    elements: Elements, data: Data, state: State, code: Codes, held: Flags, compiled: bool = False
+    structure: Structure,
+    loading: Loading,
+    iterate: Iterate,
+    states: States,
+    held: Flags,
+    compiled: bool = False,
 ) -> Flags:
     """Whether each sample's forces determine all of its displacements, shape (S,).
 
     Parameters
     ----------
-    elements : Elements
-    data : Data
-    state : State
-    code : ndarray of int8, shape (S, switches)
+    structure : Structure
+    loading : Loading
+    iterate : Iterate
+    states : ndarray of int8, shape (S, switches)
         Elements that act.
     held : ndarray of bool, shape (S,)
         Whether these leave no coordinate loose.
     compiled : bool
         With Numba: the same answer.
     """
-    least = PLACES.carries * pushes(data)
+    least = PLACES.carries * pushes(loading)
     if compiled:
-        return _compiled(elements, data, state, code, held, least)
-    first, last = elements.springs, elements.columns.contacts.stop
-    force = state.force[:, first:last]
+        return _compiled(structure, loading, iterate, states, held, least)
+    first, last = structure.springs, structure.columns.contacts.stop
+    force = iterate.force[:, first:last]
     carries = np.maximum(least, PLACES.carries * np.abs(force).max(axis=1, initial=0.0))
-    idle = ((code[:, : elements.rows] != at.OPEN) & (force <= carries[:, None])).any(axis=1)
-    kinds = _kinds(elements, data, state, carries)
-    unlike = (kinds != HELD) & (code[:, elements.rows :] != at.OPEN)
+    idle = ((states[:, : structure.rows] != at.OPEN) & (force <= carries[:, None])).any(axis=1)
+    kinds = _kinds(structure, loading, iterate, carries)
+    unlike = (kinds != HELD) & (states[:, structure.rows :] != at.OPEN)
     found = held & ~idle & ~unlike.any(axis=1)
     rest = np.flatnonzero(~found)
     if len(rest):
-        carry = state.force[rest, first:last] > carries[rest, None]
-        columns = elements.columns.flat
-        room = pick(data.gap, rest)[:, columns] - state.x[rest] @ elements.vectors[columns].T
+        carry = iterate.force[rest, first:last] > carries[rest, None]
+        columns = structure.columns.flat
+        room = pick(loading.gap, rest)[:, columns] - iterate.x[rest] @ structure.vectors[columns].T
         near = room <= PLACES.play
         for alike, some in _alike(np.hstack([carry.astype(np.int8), kinds[rest]])):
-            found[rest[alike]] = _fixed(elements, data, state, some, rest[alike], near[alike])
+            found[rest[alike]] = _fixed(structure, loading, iterate, some, rest[alike], near[alike])
     return np.asarray(found)
 
 
 def _compiled(
-    elements: Elements, data: Data, state: State, code: Codes, held: Flags, least: Array
+    structure: Structure,
+    loading: Loading,
+    iterate: Iterate,
+    states: States,
+    held: Flags,
+    least: Array,
 ) -> Flags:
     """The same with Numba; NumPy is asked of samples that touch something that may hold them."""
     from loadshare.solver.hot.touching import Touching
 
-    touching = Touching(elements, data, state, code, held, least)
+    touching = Touching(structure, loading, iterate, states, held, least)
     number = touching.number
-    left_by = [_moves(elements, data, some) for some in touching.sets]
+    left_by = [_moves(structure, loading, some) for some in touching.sets]
     # Of every set, and of none: whether no move is left, and how few limits hold none that is.
     fixed = np.array([*(not of.moves.shape[1] for of in left_by), True])
     few = np.array([*(of.fewest for of in left_by), 0])
@@ -83,32 +93,32 @@ def _compiled(
     )
     for alike, (at_set,) in _alike(number[rest, None]) if len(rest) else ():
         rows = rest[alike]
-        columns = elements.columns.flat
-        room = pick(data.gap, rows)[:, columns] - state.x[rows] @ elements.vectors[columns].T
+        columns = structure.columns.flat
+        room = pick(loading.gap, rows)[:, columns] - iterate.x[rows] @ structure.vectors[columns].T
         near = room <= PLACES.play
-        found[rows] = _fixed(elements, data, state, touching.sets[at_set], rows, near)
+        found[rows] = _fixed(structure, loading, iterate, touching.sets[at_set], rows, near)
     return np.asarray(found)
 
 
-def _kinds(elements: Elements, data: Data, state: State, carries: Array) -> Codes:
+def _kinds(structure: Structure, loading: Loading, iterate: Iterate, carries: Array) -> States:
     """How every radial element holds, shape (S, radials)."""
-    everyone = np.arange(data.count)
-    kinds = np.empty((data.count, len(elements.radials)), dtype=np.int8)
+    everyone = np.arange(loading.count)
+    kinds = np.empty((loading.count, len(structure.radials)), dtype=np.int8)
     for j in range(kinds.shape[1]):
-        law = at.graph(pick(data.radial, everyone)[:, j], state.force @ data.carried[j])
-        column = elements.radial_column(j)
-        size = np.hypot(state.force[:, column], state.force[:, column + 1])
+        law = at.graph(pick(loading.radial, everyone)[:, j], iterate.force @ loading.carried[j])
+        column = structure.radial_column(j)
+        size = np.hypot(iterate.force[:, column], iterate.force[:, column + 1])
         level = (np.abs(size - law.bound) <= carries) & (law.reach > law.stick)
         kinds[:, j] = np.where(level, np.where(size <= carries, FREE, LEVEL), HELD)
     return kinds
 
 
-def _alike(codes: NDArray[Any]) -> Iterator[tuple[NDArray[np.intp], NDArray[Any]]]:
-    """Yield samples that have one code, and it."""
-    order = np.lexsort(codes.T) if codes.shape[1] else np.arange(len(codes))
-    changes = np.flatnonzero((codes[order][1:] != codes[order][:-1]).any(axis=1)) + 1
+def _alike(sets: NDArray[Any]) -> Iterator[tuple[NDArray[np.intp], NDArray[Any]]]:
+    """Yield samples that have one set, and it."""
+    order = np.lexsort(sets.T) if sets.shape[1] else np.arange(len(sets))
+    changes = np.flatnonzero((sets[order][1:] != sets[order][:-1]).any(axis=1)) + 1
     for part in np.split(order, changes):
-        yield part, codes[part[0]]
+        yield part, sets[part[0]]
 
 
 class _Moves(NamedTuple):
@@ -129,53 +139,55 @@ class _Moves(NamedTuple):
     fewest: int
 
 
-def _moves(elements: Elements, data: Data, some: Codes) -> _Moves:
+def _moves(structure: Structure, loading: Loading, some: States) -> _Moves:
     """Put together what a set of carrying elements leaves; computed once."""
     key = ("moves", some.tobytes())
-    known = elements.kept.get(key)
+    known = structure.cache.get(key)
     if known is not None:
         return cast(_Moves, known)
-    carry, kinds = some[: elements.rows], some[elements.rows :]
-    flat, columns, vectors = elements.flat, elements.columns, elements.vectors
+    carry, kinds = some[: structure.rows], some[structure.rows :]
+    flat, columns, vectors = structure.flat, structure.columns, structure.vectors
     holding = [vectors[columns.springs], vectors[columns.flat][carry[:flat] != 0]]
-    holding += [data.relative[a] for a in np.flatnonzero(carry[flat:])]
-    holding += [_radial(elements, j) for j in np.flatnonzero(kinds == HELD).tolist()]
+    holding += [loading.relative[a] for a in np.flatnonzero(carry[flat:])]
+    holding += [_radial(structure, j) for j in np.flatnonzero(kinds == HELD).tolist()]
     moves = unresisted(np.vstack(holding))
 
     def meets(matrix: Array) -> bool:
         return bool(np.abs(matrix @ moves).max(initial=0.0) > PLACES.loose)
 
     def radials(which: Flags) -> tuple[int, ...]:
-        return tuple(j for j in np.flatnonzero(which).tolist() if meets(_radial(elements, j)))
+        return tuple(j for j in np.flatnonzero(which).tolist() if meets(_radial(structure, j)))
 
     def leave(parts: list[Array]) -> bool:
         met = np.vstack([np.zeros((1, len(moves))), *parts]) @ moves
         return bool(unresisted(met).shape[1] > 0)
 
-    idle = elements.springs + np.flatnonzero(carry[:flat] == 0)
+    idle = structure.springs + np.flatnonzero(carry[:flat] == 0)
     idle = idle[np.abs(vectors[idle] @ moves).max(axis=1, initial=0.0) > PLACES.loose]
     level, free = radials(kinds == LEVEL), radials(kinds != HELD)
-    arcs = tuple(a for a in np.flatnonzero(carry[flat:] == 0).tolist() if meets(data.relative[a]))
-    pieces = [_radial(elements, j) for j in level]
-    limits = [vectors[idle], *(data.relative[a] for a in arcs)]
-    limits += [_radial(elements, j) for j in free]
+    arcs = tuple(
+        a for a in np.flatnonzero(carry[flat:] == 0).tolist() if meets(loading.relative[a])
+    )
+    pieces = [_radial(structure, j) for j in level]
+    limits = [vectors[idle], *(loading.relative[a] for a in arcs)]
+    limits += [_radial(structure, j) for j in free]
     some_left, may_be_held = leave(pieces), not leave(limits)
     met: list[int] = []
     if may_be_held and moves.shape[1]:
-        met += (idle - elements.springs).tolist()
+        met += (idle - structure.springs).tolist()
         met += [flat + a for a in arcs]
-        met += [elements.rows + j for j in free]
+        met += [structure.rows + j for j in free]
     fewest = moves.shape[1] - len(level) if some_left else -1 if may_be_held else 0
     found = _Moves(moves, level, idle, arcs, free, some_left, may_be_held, tuple(met), fewest)
-    elements.keep(key, found)
+    structure.remember(key, found)
     return found
 
 
 def _fixed(
-    elements: Elements,
-    data: Data,
-    state: State,
-    some: Codes,
+    structure: Structure,
+    loading: Loading,
+    iterate: Iterate,
+    some: States,
     rows: NDArray[np.intp],
     near: Flags,
 ) -> Flags:
@@ -183,14 +195,14 @@ def _fixed(
 
     `near`, shape (len(rows), flat), tells which flanks and stops they touch.
     """
-    left_by = _moves(elements, data, some)
+    left_by = _moves(structure, loading, some)
     moves, level = left_by.moves, left_by.level
     if not moves.shape[1]:
         return np.ones(len(rows), dtype=bool)
     found = np.zeros(len(rows), dtype=bool)
     if not left_by.may_be_held:
         return found
-    touched = _touched(elements, data, state, some, left_by, rows, near)
+    touched = _touched(structure, loading, iterate, some, left_by, rows, near)
     # What no level piece could hold is pinched by contacts or moves.
     some_touch = touched.flags.any(axis=1)
     these = np.flatnonzero(some_touch) if left_by.some_left else np.arange(len(rows))
@@ -198,7 +210,7 @@ def _fixed(
         return found
     across = np.zeros((len(these), len(level), moves.shape[1]))
     for k, j in enumerate(level):
-        across[:, k] = _across(elements, state, j, rows[these]) @ moves
+        across[:, k] = _across(structure, iterate, j, rows[these]) @ moves
     left = moves.shape[1] - (np.linalg.svd(across, compute_uv=False) > STATICS.rank).sum(axis=1)
     found[these] = left == 0
     doubtful = (left > 0) & (touched.flags[these].sum(axis=1) > left)
@@ -208,9 +220,9 @@ def _fixed(
     return found
 
 
-def _radial(elements: Elements, j: int) -> Array:
-    column = elements.radial_column(j)
-    return elements.vectors[column : column + 2]
+def _radial(structure: Structure, j: int) -> Array:
+    column = structure.radial_column(j)
+    return structure.vectors[column : column + 2]
 
 
 class _Touched(NamedTuple):
@@ -227,17 +239,17 @@ class _Touched(NamedTuple):
 
 
 def _touched(
-    elements: Elements,
-    data: Data,
-    state: State,
-    some: Codes,
+    structure: Structure,
+    loading: Loading,
+    iterate: Iterate,
+    some: States,
     left_by: _Moves,
     rows: NDArray[np.intp],
     near: Flags,
 ) -> _Touched:
     """Find what samples touch, from where they stand."""
-    moves, flat, x = left_by.moves, left_by.flat, state.x[rows]
-    touches, directions = [near[:, flat - elements.springs]], []
+    moves, flat, x = left_by.moves, left_by.flat, iterate.x[rows]
+    touches, directions = [near[:, flat - structure.springs]], []
 
     def add(direction: Array, room: Array) -> None:
         directions.append(direction)
@@ -245,27 +257,27 @@ def _touched(
         touches.append(met[:, None])
 
     for a in left_by.arcs:
-        normal, margin = arc_at(data, a, rows, x)
-        add(-normal @ data.relative[a] @ moves, margin)
+        normal, margin = arc_at(loading, a, rows, x)
+        add(-normal @ loading.relative[a] @ moves, margin)
     for j in left_by.radials:
-        column, matrix = elements.radial_column(j), _radial(elements, j)
-        law = at.graph(pick(data.radial, rows)[:, j], state.force[rows] @ data.carried[j])
-        offset = x @ matrix.T - pick(data.gap[:, column : column + 2], rows)
+        column, matrix = structure.radial_column(j), _radial(structure, j)
+        law = at.graph(pick(loading.radial, rows)[:, j], iterate.force[rows] @ loading.carried[j])
+        offset = x @ matrix.T - pick(loading.gap[:, column : column + 2], rows)
         radius = np.linalg.norm(offset, axis=1)
         outward = offset / np.where(radius > 0.0, radius, 1.0)[:, None] @ matrix @ moves
         add(outward, law.reach - radius)
-        if some[elements.rows + j] == LEVEL:
+        if some[structure.rows + j] == LEVEL:
             add(-outward, radius - law.stick)
-    return _Touched(np.concatenate(touches, axis=1), elements.vectors[flat] @ moves, directions)
+    return _Touched(np.concatenate(touches, axis=1), structure.vectors[flat] @ moves, directions)
 
 
-def _across(elements: Elements, state: State, j: int, rows: NDArray[np.intp]) -> Array:
+def _across(structure: Structure, iterate: Iterate, j: int, rows: NDArray[np.intp]) -> Array:
     """Direction (k, n) across the force of a radial element."""
-    column = elements.radial_column(j)
-    pull = state.force[rows, column : column + 2]
+    column = structure.radial_column(j)
+    pull = iterate.force[rows, column : column + 2]
     pull = pull / np.linalg.norm(pull, axis=1)[:, None]
     turned = np.stack([-pull[:, 1], pull[:, 0]], axis=1)
-    return np.asarray(turned @ _radial(elements, j))
+    return np.asarray(turned @ _radial(structure, j))
 
 
 def _pinched(limits: Array) -> bool:

@@ -14,19 +14,19 @@ from itertools import pairwise, permutations
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.data import Data
-from loadshare.scene.elements import Elements
+from loadshare.scene.loading import Loading
 from loadshare.scene.scene import Array
 from loadshare.scene.statics import Basis
+from loadshare.scene.structure import Structure
 from loadshare.settings import EXCHANGE
-from loadshare.solver.hot import places as at
-from loadshare.solver.hot.state import State
+from loadshare.solver.hot import contact_states as at
+from loadshare.solver.hot.iterate import Iterate
 from loadshare.solver.hot.vectorised import pick
 
-Codes = NDArray[np.int8]
+States = NDArray[np.int8]
 Engine = Callable[
-    [Elements, Data, Basis, Codes, NDArray[np.intp], State, NDArray[np.bool_]],
-    tuple[Codes, Codes],
+    [Structure, Loading, Basis, States, NDArray[np.intp], Iterate, NDArray[np.bool_]],
+    tuple[States, States],
 ]
 
 WORD = 8
@@ -42,7 +42,7 @@ class Found:
     ----------
     solved : ndarray of bool, shape (S,)
         Samples with a consistent set.
-    code : ndarray of int8, shape (S, switches)
+    states : ndarray of int8, shape (S, switches)
         The sets.
     turns : ndarray of int, shape (S,)
         Sets that each sample visited.
@@ -51,7 +51,7 @@ class Found:
     """
 
     solved: NDArray[np.bool_]
-    code: Codes
+    states: States
     turns: NDArray[np.intp]
     held: NDArray[np.bool_]
 
@@ -60,7 +60,7 @@ class Found:
         mine = self.solved
         return Found(
             mine | other.solved,
-            np.where(mine[:, None], self.code, other.code),
+            np.where(mine[:, None], self.states, other.states),
             self.turns + other.turns,
             np.where(mine, self.held, other.held),
         )
@@ -74,56 +74,56 @@ class Found:
         here = np.arange(len(self.solved)) == row
         return Found(
             self.solved | here,
-            np.where(here[:, None], other.code, self.code),
+            np.where(here[:, None], other.states, self.states),
             self.turns + np.where(here, other.turns, 0),
             np.where(here, other.held, self.held),
         )
 
 
-def first_sets(elements: Elements, data: Data) -> Codes:
+def first_sets(structure: Structure, loading: Loading) -> States:
     """Drive flanks closed under load, other rows open, radial elements on their first piece."""
-    count = data.count
-    code = np.zeros((count, elements.switches), dtype=np.int8)
+    count = loading.count
+    states = np.zeros((count, structure.switches), dtype=np.int8)
     everyone = np.arange(count)
-    push = pick(data.push, everyone)
-    for k, kind in enumerate(elements.kinds[elements.columns.flanks]):
+    push = pick(loading.push, everyone)
+    for k, kind in enumerate(structure.kinds[structure.columns.flanks]):
         if kind == "drive flank":
-            code[:, k] = np.where(push > 0.0, at.CLOSED, at.OPEN)
-    for j, radial in enumerate(elements.radials):
-        gear = elements.train.gears[radial.gear]
-        driving = elements.train.gears[elements.train.input]
+            states[:, k] = np.where(push > 0.0, at.CLOSED, at.OPEN)
+    for j, radial in enumerate(structure.radials):
+        gear = structure.train.gears[radial.gear]
+        driving = structure.train.gears[structure.train.input]
         torque = np.broadcast_to(push * driving.base_radius / (gear.ratio or 1.0), (count,))
-        law = at.graph(pick(data.radial, everyone)[:, j], torque)
+        law = at.graph(pick(loading.radial, everyone)[:, j], torque)
         rigid = np.isinf(law.last) & (law.reach == 0.0)
         free = (law.bound == 0.0) & (law.stick == 0.0)
         resting = np.where(law.reach > 0.0, at.OPEN, np.where(rigid, at.PINNED, at.STOP))
         held = np.where(law.stick > 0.0, at.STICK, at.PINNED)
-        code[:, elements.rows + j] = np.where(free, resting, held)
-    _relieve(elements, data, code)
-    return code
+        states[:, structure.rows + j] = np.where(free, resting, held)
+    _relieve(structure, loading, states)
+    return states
 
 
-def _relieve(elements: Elements, data: Data, code: Codes) -> None:
+def _relieve(structure: Structure, loading: Loading, states: States) -> None:
     """Let a rigid ring without play alone hold a gear that a spline would pin in the same place.
 
     How the two share the force is open; a spline that carries nothing is one answer.
     """
-    radials = elements.radials
+    radials = structure.radials
     for (i, spline), (j, ring) in permutations(enumerate(radials), 2):
         if spline.gear != ring.gear or ring.kind != "ring":
             continue
-        centres = [data.gap[:, c : c + 2] for c in map(elements.radial_column, (i, j))]
+        centres = [loading.gap[:, c : c + 2] for c in map(structure.radial_column, (i, j))]
         together = (centres[0] == centres[1]).all(axis=1)
-        pinned = (code[:, elements.rows + np.array([i, j])] == at.PINNED).all(axis=1)
-        code[pinned & together, elements.rows + i] = at.OPEN
+        pinned = (states[:, structure.rows + np.array([i, j])] == at.PINNED).all(axis=1)
+        states[pinned & together, structure.rows + i] = at.OPEN
 
 
 def exchange(
-    elements: Elements,
-    data: Data,
-    state: State,
+    structure: Structure,
+    loading: Loading,
+    iterate: Iterate,
     engine: Engine,
-    code: Codes | None = None,
+    states: States | None = None,
     only: NDArray[np.bool_] | None = None,
     singly: bool = False,
     limit: int | None = None,
@@ -132,13 +132,13 @@ def exchange(
 
     Parameters
     ----------
-    elements : Elements
-    data : Data
-    state : State
+    structure : Structure
+    loading : Loading
+    iterate : Iterate
         At the start; renewed in place.
     engine : Engine
         `vectorised.settle` or `compiled.settle`.
-    code : ndarray of int8, shape (S, switches), optional
+    states : ndarray of int8, shape (S, switches), optional
         Sets to begin with.
     only : ndarray of bool, shape (S,), optional
         Samples to solve; all by default.
@@ -152,47 +152,49 @@ def exchange(
     Found
         Samples that ran into a cycle, a mechanism or a law without meaning are not solved.
     """
-    given = first_sets(elements, data) if code is None else code
+    given = first_sets(structure, loading) if states is None else states
     count, switches = given.shape
     # Rows of whole words, so that sets can be told apart word by word.
-    code = np.zeros((count, -(-max(switches, 1) // WORD) * WORD), dtype=np.int8)
-    code[:, :switches] = given
+    states = np.zeros((count, -(-max(switches, 1) // WORD) * WORD), dtype=np.int8)
+    states[:, :switches] = given
     solved = np.zeros(count, dtype=bool)
     turns = np.zeros(count, dtype=np.intp)
     held = np.zeros(count, dtype=bool)
     one_only = np.full(count, singly)
     limit = limit or EXCHANGE.turns
-    rounds = _Rounds(elements)
+    rounds = _Rounds(structure)
     waiting = _Waiting()
     rows = np.arange(count) if only is None else np.flatnonzero(only)
-    waiting.add(code[rows], rows)
+    waiting.add(states[rows], rows)
     while waiting:
         here, rows = waiting.most()
         visited = turns[rows] + 1
         turns[rows] = visited
-        basis = elements.basis(here[:switches])
-        verdict, proposal = engine(elements, data, basis, here[:switches], rows, state, one_only)
+        basis = structure.basis(here[:switches])
+        verdict, proposal = engine(
+            structure, loading, basis, here[:switches], rows, iterate, one_only
+        )
         onward = verdict == at.OTHER
         if singly or visited.max() >= min(limit, EXCHANGE.together + 1):
             onward &= visited < limit
             judged = onward if singly else onward & (visited > EXCHANGE.together)
             for k in judged.nonzero()[0].tolist():
-                force = state.force[rows[k]]
+                force = iterate.force[rows[k]]
                 verdict[k] = rounds.judged(int(rows[k]), here[:switches], proposal[k], force)
                 onward[k] = verdict[k] == at.OTHER
         goes = onward.nonzero()[0]
         if len(goes) < len(rows):
             stay = rows[~onward]
             done = verdict[~onward] == at.DONE
-            code[stay], solved[stay] = here, done
+            states[stay], solved[stay] = here, done
             held[stay] = False if basis.loose.shape[1] else done
         if len(goes):
             rows = rows[goes]
             one_only[rows] |= visited[goes] >= EXCHANGE.together
-            other = np.zeros((len(rows), code.shape[1]), dtype=np.int8)
+            other = np.zeros((len(rows), states.shape[1]), dtype=np.int8)
             other[:, :switches] = proposal[goes]
-            waiting.add(_without_wedges(elements, data, here, other), rows)
-    return Found(solved, code[:, :switches], turns, held)
+            waiting.add(_without_wedges(structure, loading, here, other), rows)
+    return Found(solved, states[:, :switches], turns, held)
 
 
 class _Rounds:
@@ -203,11 +205,11 @@ class _Rounds:
     the certificate says whether it may.
     """
 
-    def __init__(self, elements: Elements) -> None:
-        self.elements = elements
+    def __init__(self, structure: Structure) -> None:
+        self.structure = structure
         self._visits: dict[int, list[bytes]] = {}
 
-    def judged(self, row: int, here: Codes, proposal: Codes, force: Array) -> int:
+    def judged(self, row: int, here: States, proposal: States, force: Array) -> int:
         """DONE, OTHER or FAILED for a sample that is to go from one set to another."""
         visits = self._visits.setdefault(row, [])
         visits.append(here.tobytes())
@@ -220,9 +222,9 @@ class _Rounds:
             return at.OTHER
         return at.DONE if self._is_idle(here, proposal, force) else at.FAILED
 
-    def _is_idle(self, here: Codes, proposal: Codes, force: Array) -> bool:
+    def _is_idle(self, here: States, proposal: States, force: Array) -> bool:
         """Whether all that differs acts here, not in the proposal, and carries nothing."""
-        rows, columns = self.elements.rows, self.elements.columns
+        rows, columns = self.structure.rows, self.structure.columns
         differ = here != proposal
         if proposal[differ].any():
             return False
@@ -236,7 +238,7 @@ class _Waiting:
     """Samples that wait to be solved, by the set that they go to."""
 
     def __init__(self) -> None:
-        self.sets: dict[int, Codes] = {}
+        self.sets: dict[int, States] = {}
         self.parts: dict[int, list[NDArray[np.intp]]] = {}
         self.sizes: dict[int, int] = {}
         # Sizes once more, the largest first; one that is out of date is passed over.
@@ -245,7 +247,7 @@ class _Waiting:
     def __bool__(self) -> bool:
         return bool(self.sizes)
 
-    def most(self) -> tuple[Codes, NDArray[np.intp]]:
+    def most(self) -> tuple[States, NDArray[np.intp]]:
         """Take the set to which most samples go, and them."""
         size, key = heappop(self.largest)
         while self.sizes.get(key) != -size:
@@ -254,39 +256,41 @@ class _Waiting:
         parts = self.parts.pop(key)
         return self.sets[key], parts[0] if len(parts) == 1 else np.concatenate(parts)
 
-    def add(self, code: Codes, rows: NDArray[np.intp]) -> None:
-        """Let samples wait for the sets in `code`, shape (len(rows), whole words)."""
+    def add(self, states: States, rows: NDArray[np.intp]) -> None:
+        """Let samples wait for the sets in `states`, shape (len(rows), whole words)."""
         if not len(rows):
             return
         # Should two sets have one key, a sample is solved on the other one: what it finds there
         # is judged there.
-        keys = code.view(np.int64) @ _KEYS[: code.shape[1] // WORD]
+        keys = states.view(np.int64) @ _KEYS[: states.shape[1] // WORD]
         if (keys == keys[0]).all():
-            self._put(int(keys[0]), code[0], rows)
+            self._put(int(keys[0]), states[0], rows)
             return
         order = keys.argsort()
         keys, rows = keys[order], rows[order]
         ends = (keys[1:] != keys[:-1]).nonzero()[0] + 1
         for first, end in pairwise([0, *ends.tolist(), len(rows)]):
-            self._put(int(keys[first]), code[order[first]], rows[first:end])
+            self._put(int(keys[first]), states[order[first]], rows[first:end])
 
-    def _put(self, key: int, code: Codes, rows: NDArray[np.intp]) -> None:
-        self.sets.setdefault(key, code)
+    def _put(self, key: int, states: States, rows: NDArray[np.intp]) -> None:
+        self.sets.setdefault(key, states)
         self.parts.setdefault(key, []).append(rows)
         size = self.sizes[key] = self.sizes.get(key, 0) + len(rows)
         heappush(self.largest, (-size, key))
 
 
-def _without_wedges(elements: Elements, data: Data, here: Codes, proposal: Codes) -> Codes:
+def _without_wedges(
+    structure: Structure, loading: Loading, here: States, proposal: States
+) -> States:
     """Let only one of two opposed rigid arcs act, the one that is new, unless both act here."""
-    for one, other in elements.opposed:
+    for one, other in structure.opposed:
         if not (proposal[:, one] & proposal[:, other]).any():
             continue
         if here[one] != at.OPEN and here[other] != at.OPEN:
             continue
-        columns = elements.springs + np.array([one, other])
+        columns = structure.springs + np.array([one, other])
         both = (proposal[:, one] != at.OPEN) & (proposal[:, other] != at.OPEN)
-        if both.any() and not data.bending[:, columns].any():
+        if both.any() and not loading.bending[:, columns].any():
             leaves = one if here[one] != at.OPEN else other
             proposal[both, leaves] = at.OPEN
     return proposal

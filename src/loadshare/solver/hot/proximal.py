@@ -19,15 +19,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from loadshare.scene.data import Data
-from loadshare.scene.elements import Elements
+from loadshare.scene.loading import Loading
 from loadshare.scene.scene import Array
+from loadshare.scene.structure import Structure
 from loadshare.settings import HOT, SEARCH
-from loadshare.solver.hot import places as at
+from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot import vectorised
-from loadshare.solver.hot.exchange import Codes, Found, exchange, first_sets
+from loadshare.solver.hot.exchange import Found, States, exchange, first_sets
+from loadshare.solver.hot.iterate import Iterate, at_rest
 from loadshare.solver.hot.softened import Laws
-from loadshare.solver.hot.state import State, at_rest
 from loadshare.solver.hot.vectorised import arc_at, beyond
 
 HALVES = 0.5 ** np.arange(48, -1, -1)
@@ -58,24 +58,24 @@ class Proximal:
 
     Parameters
     ----------
-    elements : Elements
-    data : Data
+    structure : Structure
+    loading : Loading
         Of the sample alone.
     """
 
-    def __init__(self, elements: Elements, data: Data) -> None:
-        self.elements, self.data, self.rows = elements, data, np.zeros(1, dtype=int)
-        self.springs, self.scalar = elements.springs, elements.columns.contacts.stop
-        self.load = data.load[0]
-        self.gap = np.array(data.gap[0])
-        self.vectors = np.array(elements.vectors)
-        self.x = np.zeros(elements.size)
+    def __init__(self, structure: Structure, loading: Loading) -> None:
+        self.structure, self.loading, self.rows = structure, loading, np.zeros(1, dtype=int)
+        self.springs, self.scalar = structure.springs, structure.columns.contacts.stop
+        self.load = loading.load[0]
+        self.gap = np.array(loading.gap[0])
+        self.vectors = np.array(structure.vectors)
+        self.x = np.zeros(structure.size)
         self.force = np.zeros(len(self.vectors))
         self.looks = 0
         self.pull = SEARCH.stiffer[0]
-        self.laws = Laws(elements, data, self.force, SEARCH.softer, self.pull)
+        self.laws = Laws(structure, loading, self.force, SEARCH.softer, self.pull)
 
-    def passes(self) -> Iterator[Codes]:
+    def passes(self) -> Iterator[States]:
         """Make one pass after another; each gives the set (switches,) where it ends."""
         for self.pull in SEARCH.stiffer:
             extent = max(float(np.abs(v).max(initial=1.0)) for v in (self.gap, self.x))
@@ -84,38 +84,38 @@ class Proximal:
             # A radius that gives way as much as the rest is held: steeper, and a float that has far
             # to roll would do so in tiny steps, each pressed out of the round and back again.
             # Slip that is remembered may have less room than that would tell apart.
-            yielding = 0.0 if self.elements.train.slip is not None else self.pull
+            yielding = 0.0 if self.structure.train.slip is not None else self.pull
             rounded = max(SEARCH.shared * softer, yielding)
-            self.laws = Laws(self.elements, self.data, self.force, softer, rounded)
+            self.laws = Laws(self.structure, self.loading, self.force, softer, rounded)
             if not self.laws.graph.valid.all():
                 return
             found = self._minimise()
             if self.looks > SEARCH.looks:
                 return
-            code = self._code(found)
+            states = self._code(found)
             self.x, self.force = found.x, found.force
-            yield code
+            yield states
 
-    def store(self, state: State) -> None:
+    def store(self, iterate: Iterate) -> None:
         """Write down where the passes stand."""
-        state.x[0], state.force[0], state.stays[0] = self.x, self.force, True
-        state.root[0] = np.maximum(np.cbrt(np.maximum(self.force, 0.0)), state.floor[0])
+        iterate.x[0], iterate.force[0], iterate.stays[0] = self.x, self.force, True
+        iterate.root[0] = np.maximum(np.cbrt(np.maximum(self.force, 0.0)), iterate.floor[0])
 
-    def without_idle(self, code: Codes) -> Codes:
+    def without_idle(self, states: States) -> States:
         """Open what carries all but nothing where the passes stand."""
         idle = np.abs(self.force) <= SEARCH.idle * np.abs(self.force).max(initial=0.0)
         apart = idle[self.scalar :].reshape(-1, 2).all(axis=1)
         law = self.laws.graph
         free = (law.bound == 0.0) & (law.stick == 0.0) & (law.reach > 0.0)
         opened = np.append(idle[self.springs : self.scalar], apart & free)
-        return np.where(opened, at.OPEN, code).astype(np.int8)
+        return np.where(opened, at.OPEN, states).astype(np.int8)
 
     def _face_arcs(self) -> None:
         """Replace arcs by their faces at the last pass."""
-        first = self.elements.columns.arcs.start
-        for a in range(len(self.elements.arcs)):
-            normal, margin = arc_at(self.data, a, self.rows, self.x[None, :])
-            self.vectors[first + a] = -normal[0] @ self.data.relative[a]
+        first = self.structure.columns.arcs.start
+        for a in range(len(self.structure.arcs)):
+            normal, margin = arc_at(self.loading, a, self.rows, self.x[None, :])
+            self.vectors[first + a] = -normal[0] @ self.loading.relative[a]
             self.gap[first + a] = margin[0] + self.vectors[first + a] @ self.x
 
     def _minimise(self) -> _Point:
@@ -207,15 +207,15 @@ class Proximal:
                 low, at_low, at_high = share, slope, 0.5 * at_high
         return self._at(here.x + share * step)
 
-    def _code(self, found: _Point) -> Codes:
+    def _code(self, found: _Point) -> States:
         """The set on which a pass ended."""
-        elements, laws = self.elements, self.laws
+        structure, laws = self.structure, self.laws
         law = laws.graph
-        code = np.zeros(elements.switches, dtype=np.int8)
-        code[: elements.rows] = found.force[self.springs : self.scalar] > 0.0
+        states = np.zeros(structure.switches, dtype=np.int8)
+        states[: structure.rows] = found.force[self.springs : self.scalar] > 0.0
         radius = laws.radii(found.pressed)
         idle = (law.bound == 0.0) & (law.stick == 0.0)
-        code[elements.rows :] = np.select(
+        states[structure.rows :] = np.select(
             [radius <= laws.rise, radius <= laws.jump, radius <= laws.level],
             [
                 np.where(idle, at.OPEN, np.where(law.stick > 0.0, at.STICK, at.PINNED)),
@@ -224,16 +224,16 @@ class Proximal:
             ],
             beyond(law),
         )
-        return code
+        return states
 
 
-def search(elements: Elements, data: Data) -> tuple[State, Found]:
+def search(structure: Structure, loading: Loading) -> tuple[Iterate, Found]:
     """Lead a single sample to a consistent set from where the proximal passes end.
 
     Parameters
     ----------
-    elements : Elements
-    data : Data
+    structure : Structure
+    loading : Loading
         Of one sample.
 
     Returns
@@ -241,24 +241,24 @@ def search(elements: Elements, data: Data) -> tuple[State, Found]:
     State, Found
         Not solved where the sample has no equilibrium, or the passes find none.
     """
-    state, passes, before = at_rest(elements, data), Proximal(elements, data), b""
+    iterate, passes, before = at_rest(structure, loading), Proximal(structure, loading), b""
     found = Found(
-        np.zeros(1, bool), first_sets(elements, data), np.zeros(1, int), np.zeros(1, bool)
+        np.zeros(1, bool), first_sets(structure, loading), np.zeros(1, int), np.zeros(1, bool)
     )
     tried: list[bytes] = []
-    for code in passes.passes():
+    for states in passes.passes():
         # A set that a pass confirms is worth an exact solve; near it, so are a few others.
-        key = code.tobytes()
+        key = states.tobytes()
         if key == before and tried.count(key) < SEARCH.tries:
             tried.append(key)
             # What carries nothing where a set fails may only be in the way.
-            lean = passes.without_idle(code)
-            for start in (code, lean) if (lean != code).any() else (code,):
-                passes.store(state)
+            lean = passes.without_idle(states)
+            for start in (states, lean) if (lean != states).any() else (states,):
+                passes.store(iterate)
                 more = exchange(
-                    elements,
-                    data,
-                    state,
+                    structure,
+                    loading,
+                    iterate,
                     vectorised.settle,
                     start[None, :],
                     singly=True,
@@ -266,26 +266,26 @@ def search(elements: Elements, data: Data) -> tuple[State, Found]:
                 )
                 found = found.completed(more)
                 if found.solved[0]:
-                    return _with_idle_open(elements, data, state, found)
+                    return _with_idle_open(structure, loading, iterate, found)
         before = key
-    return state, found
+    return iterate, found
 
 
 def _with_idle_open(
-    elements: Elements, data: Data, state: State, found: Found
-) -> tuple[State, Found]:
+    structure: Structure, loading: Loading, iterate: Iterate, found: Found
+) -> tuple[Iterate, Found]:
     """Open contacts that carry round-off, if the set holds without them where the gears are.
 
     Of many no bound could tell whether they act.
     """
-    pushes = np.abs(state.force[0])
-    idle = pushes[elements.columns.contacts] <= HOT.sign * pushes.max(initial=0.0)
-    code = found.code.copy()
-    code[0, : elements.rows][idle] = at.OPEN
-    if (code == found.code).all():
-        return state, found
-    lean = deepcopy(state)
-    more = exchange(elements, data, lean, vectorised.settle, code, singly=True, limit=1)
+    pushes = np.abs(iterate.force[0])
+    idle = pushes[structure.columns.contacts] <= HOT.sign * pushes.max(initial=0.0)
+    states = found.states.copy()
+    states[0, : structure.rows][idle] = at.OPEN
+    if (states == found.states).all():
+        return iterate, found
+    lean = deepcopy(iterate)
+    more = exchange(structure, loading, lean, vectorised.settle, states, singly=True, limit=1)
     if not more.solved[0]:
-        return state, found
+        return iterate, found
     return lean, replace(more, turns=found.turns + more.turns)

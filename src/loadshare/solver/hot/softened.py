@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.scene.data import Data
-from loadshare.scene.elements import Elements
+from loadshare.scene.loading import Loading
 from loadshare.scene.scene import Array
-from loadshare.solver.hot import places as at
+from loadshare.scene.structure import Structure
+from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot.vectorised import root_of
 
 
@@ -16,8 +16,8 @@ class Laws:
 
     Parameters
     ----------
-    elements : Elements
-    data : Data
+    structure : Structure
+    loading : Loading
         Of one sample.
     force : ndarray, shape (m,)
         Of the pass before: what softens pulls towards it, and friction follows its torques.
@@ -35,19 +35,19 @@ class Laws:
     """
 
     def __init__(
-        self, elements: Elements, data: Data, force: Array, softer: float, pull: float
+        self, structure: Structure, loading: Loading, force: Array, softer: float, pull: float
     ) -> None:
-        self.springs, self.scalar = elements.springs, elements.columns.contacts.stop
-        self.compliance = data.bending[0, : self.scalar] + softer
-        self.power = np.flatnonzero(data.hertz[0, : self.scalar] > 0.0)
-        self.hertz = data.hertz[0, self.power]
-        self.table = np.flatnonzero(data.tabulated[: self.scalar] >= 0)
-        points = data.tables[0, data.tabulated[self.table]]
+        self.springs, self.scalar = structure.springs, structure.columns.contacts.stop
+        self.compliance = loading.bending[0, : self.scalar] + softer
+        self.power = np.flatnonzero(loading.hertz[0, : self.scalar] > 0.0)
+        self.hertz = loading.hertz[0, self.power]
+        self.table = np.flatnonzero(loading.tabulated[: self.scalar] >= 0)
+        points = loading.tables[0, loading.tabulated[self.table]]
         self.forces_of, self.ends = points[:, 0], points[:, 1] + softer * points[:, 0]
         self.slopes_of = np.diff(self.forces_of, axis=1) / np.diff(self.ends, axis=1)
         self.last_piece = (~np.isnan(self.ends)).sum(axis=1) - 2
         self.lean = np.repeat([softer, pull], [self.scalar, len(force) - self.scalar]) * force
-        self.graph = law = at.graph(data.radial[0], data.carried @ force)
+        self.graph = law = at.graph(loading.radial[0], loading.carried @ force)
         with np.errstate(invalid="ignore"):
             self.rise = np.where(law.first > 0.0, law.stick * (1.0 + pull * law.first), 0.0)
             self.first = law.first / (1.0 + pull * law.first)

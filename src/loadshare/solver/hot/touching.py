@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare import compilation
-from loadshare.scene.data import Data
-from loadshare.scene.elements import Elements
+from loadshare.scene.loading import Loading
 from loadshare.scene.scene import Array
+from loadshare.scene.structure import Structure
 from loadshare.settings import PLACES
-from loadshare.solver.hot.places import FREE, HELD, LEVEL
-from loadshare.solver.hot.state import State
+from loadshare.solver.hot.contact_states import FREE, HELD, LEVEL
+from loadshare.solver.hot.iterate import Iterate
 
-Codes = NDArray[np.int8]
+States = NDArray[np.int8]
 _how = {"nogil": True, "error_model": "numpy", "_nrt": False}
 compiled = compilation.jit(**_how)
 inlined = compilation.within(forceinline=True, **_how)
@@ -31,7 +31,7 @@ class Rows(NamedTuple):
 
 
 class Figures(NamedTuple):
-    """What varies, as in `Data`; further x (S, n), force (S, m) and what carries at least (S,)."""
+    """What varies, as in `Loading`; further x (S, n), force (S, m), and the least load (S,)."""
 
     x: Array
     force: Array
@@ -59,7 +59,7 @@ class Touching:
 
     Parameters
     ----------
-    elements, data, state, code, held
+    structure, loading, iterate, states, held
         As for `determined`.
     least : ndarray, shape (S,)
         What carries is more than this force, and than a share of the largest.
@@ -75,33 +75,41 @@ class Touching:
 
     def __init__(
         self,
-        elements: Elements,
-        data: Data,
-        state: State,
-        code: Codes,
+        structure: Structure,
+        loading: Loading,
+        iterate: Iterate,
+        states: States,
         held: NDArray[np.bool_],
         least: Array,
     ) -> None:
-        self._of = elements.kept.get(("touching",)) or elements.keep(
+        self._of = structure.cache.get(("touching",)) or structure.remember(
             ("touching",),
             Layout(
-                _rows(elements.vectors),
-                _rows(data.relative.reshape(-1, elements.size)),
-                _rows(data.carried),
-                data.nominal,
-                elements.springs,
-                elements.flat,
-                elements.columns.radials.start,
+                _rows(structure.vectors),
+                _rows(loading.relative.reshape(-1, structure.size)),
+                _rows(loading.carried),
+                loading.nominal,
+                structure.springs,
+                structure.flat,
+                structure.columns.radials.start,
             ),
         )
-        figures = state.x, state.force, least, data.gap, data.shift, data.clearance, data.radial
+        figures = (
+            iterate.x,
+            iterate.force,
+            least,
+            loading.gap,
+            loading.shift,
+            loading.clearance,
+            loading.radial,
+        )
         self._here = Figures(*(np.require(array, np.float64, ["C"]) for array in figures))
-        count = len(code)
+        count = len(states)
         self.number, first = np.empty((2, count), dtype=np.intp)
-        self._carries = np.empty((count, elements.rows + len(elements.radials)), dtype=np.int8)
+        self._carries = np.empty((count, structure.rows + len(structure.radials)), dtype=np.int8)
         keys = np.empty(count, dtype=np.uint64)
         sets = _number_all(
-            self._of, self._here, code, held, self.number, self._carries, first, keys
+            self._of, self._here, states, held, self.number, self._carries, first, keys
         )
         self.sets = self._carries[first[:sets]]
 
@@ -111,9 +119,9 @@ class Touching:
         Elements are flanks and stops, then arcs, then radial elements.
         """
         start = np.cumsum([0, *map(len, sets)])
-        elements = np.array([e for asked in sets for e in asked], dtype=np.intp)
+        structure = np.array([e for asked in sets for e in asked], dtype=np.intp)
         found = np.zeros(len(self.number), dtype=np.intp)
-        _touch_all(self._of, self._here, self.number, self._carries, start, elements, found)
+        _touch_all(self._of, self._here, self.number, self._carries, start, structure, found)
         return found
 
 
@@ -123,33 +131,33 @@ def _rows(matrix: Array) -> Rows:
 
 
 @compiled
-def _number_all(of, here, code, held, number, carries, first, key):  # type: ignore[no-untyped-def]
+def _number_all(of, here, states, held, number, carries, first, key):  # type: ignore[no-untyped-def]
     """Tell and number what carries; returns how many sets there are."""
     count, contacts, last = 0, carries.shape[1] - here.radial.shape[1], 0
-    for s in range(len(code)):
-        least, plain = here.least[s], held[s]
+    for s in range(len(states)):
+        least, certain = here.least[s], held[s]
         for k in range(contacts):
             least = max(least, PLACES.carries * abs(here.force[s, of.springs + k]))
         for k in range(contacts):
             carries[s, k] = here.force[s, of.springs + k] > least
-            plain &= code[s, k] == 0 or carries[s, k] != 0
+            certain &= states[s, k] == 0 or carries[s, k] != 0
         for j in range(here.radial.shape[1]):
             carries[s, contacts + j] = _holds(of, here, s, j, least)
-            plain &= code[s, contacts + j] == 0 or carries[s, contacts + j] == HELD
+            certain &= states[s, contacts + j] == 0 or carries[s, contacts + j] == HELD
         number[s] = -1
-        if not plain:
+        if not certain:
             number[s], count = _numbered(s, carries, first, key, count, last)
             last = number[s]
     return count
 
 
 @compiled
-def _touch_all(of, here, number, carries, start, elements, found):  # type: ignore[no-untyped-def]
+def _touch_all(of, here, number, carries, start, structure, found):  # type: ignore[no-untyped-def]
     """See `Touching.met`."""
     for s in range(len(found)):
         if number[s] >= 0:
             for i in range(start[number[s]], start[number[s] + 1]):
-                found[s] += _touches(of, here, s, elements[i], carries)
+                found[s] += _touches(of, here, s, structure[i], carries)
 
 
 @inlined
@@ -160,7 +168,7 @@ def _row(array, s):  # type: ignore[no-untyped-def]
 
 @inlined
 def _graph(of, here, s, j):  # type: ignore[no-untyped-def]
-    """S1, level and S2 of a radial element (see `places.graph`)."""
+    """S1, level and S2 of a radial element (see `contact_states.graph`)."""
     law = here.radial[_row(here.radial, s), j]
     stiffness, given, reach, level = law[0], law[1], law[2], law[3]
     if np.isnan(level):

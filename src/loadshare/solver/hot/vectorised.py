@@ -7,43 +7,43 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.data import Data
-from loadshare.scene.elements import Elements
+from loadshare.scene.loading import Loading
 from loadshare.scene.scene import Array
 from loadshare.scene.statics import Basis
+from loadshare.scene.structure import Structure
 from loadshare.settings import HOT
-from loadshare.solver.hot import places as at
+from loadshare.solver.hot import contact_states as at
+from loadshare.solver.hot.iterate import Iterate
 from loadshare.solver.hot.rest import rest
-from loadshare.solver.hot.state import State
 
 Rows = NDArray[np.intp]
-Codes = NDArray[np.int8]
+States = NDArray[np.int8]
 Flags = NDArray[np.bool_]
 _BOTH = np.eye(2)
 
 
 def settle(
-    elements: Elements,
-    data: Data,
+    structure: Structure,
+    loading: Loading,
     basis: Basis,
-    code: Codes,
+    states: States,
     rows: Rows,
-    state: State,
+    iterate: Iterate,
     one_only: Flags,
-) -> tuple[Codes, Codes]:
+) -> tuple[States, States]:
     """Solve samples on one set and say what has the wrong sign.
 
     Parameters
     ----------
-    elements : Elements
-    data : Data
+    structure : Structure
+    loading : Loading
     basis : Basis
         Of the set.
-    code : ndarray of int8, shape (switches,)
+    states : ndarray of int8, shape (switches,)
         The set.
     rows : ndarray of int, shape (k,)
         Samples to solve.
-    state : State
+    iterate : Iterate
         Where each sample stands; renewed in place.
     one_only : ndarray of bool, shape (S,)
         Exchange only one element of these samples.
@@ -56,41 +56,41 @@ def settle(
         Set to try next.
     """
     with np.errstate(all="ignore"):
-        passes = _Passes(elements, data, basis, code, rows, state)
+        passes = _Passes(structure, loading, basis, states, rows, iterate)
         drift = passes.drift()
         drifting = (drift != 0.0).any(axis=1)
         passes.run(one_only[rows] | drifting)
-        start = state.x[rows]
-        far = state.stays[rows] & (size_of(passes.x - start) > HOT.far * (1.0 + size_of(start)))
+        start = iterate.x[rows]
+        far = iterate.stays[rows] & (size_of(passes.x - start) > HOT.far * (1.0 + size_of(start)))
         if far.any():
             # What all but nothing resists has run away from where it began.
             drift[far], drifting = (passes.x - start)[far], drifting | far
             passes.x[far] = start[far]
         wrong, moved = passes.wrong(HOT.sign)
-        staying = state.stays[rows] & wrong.any(axis=1)
+        staying = iterate.stays[rows] & wrong.any(axis=1)
         if staying.any():
-            wrong, moved = passes.left_in_place(state.x[rows], staying, wrong, moved)
+            wrong, moved = passes.left_in_place(iterate.x[rows], staying, wrong, moved)
         hurried = passes.hurried.any(axis=1)
         wrong[hurried] = passes.hurried[hurried]
         moved[hurried] = passes.hurried_to[hurried]
         if drifting.any():
             # Only what stops the drift is of interest.
-            stopping, places = passes.stopped_by(drift)
-            wrong[drifting], moved[drifting] = stopping[drifting], places[drifting]
+            stopping, states = passes.stopped_by(drift)
+            wrong[drifting], moved[drifting] = stopping[drifting], states[drifting]
             passes.settled &= ~drifting
             passes.refused &= ~drifting
     single = one_only[rows]
     if basis.loose.shape[1]:
         for k in np.flatnonzero(single & passes.settled & wrong.any(axis=1)).tolist():
             wrong[k] &= not passes.rests(k, wrong[k])
-    passes.store(state)
+    passes.store(iterate)
     first = np.zeros_like(wrong)
     first[np.arange(len(rows)), wrong.argmax(axis=1)] = True
     wrong &= first | ~single[:, None]
     verdict = np.where(passes.settled, at.DONE, at.FAILED)
     verdict[wrong.any(axis=1)] = at.OTHER
     verdict[passes.refused] = at.FAILED
-    return verdict.astype(np.int8), np.where(wrong, moved, code).astype(np.int8)
+    return verdict.astype(np.int8), np.where(wrong, moved, states).astype(np.int8)
 
 
 @dataclass(slots=True)
@@ -131,41 +131,41 @@ class _Passes:
 
     def __init__(
         self,
-        elements: Elements,
-        data: Data,
+        structure: Structure,
+        loading: Loading,
         basis: Basis,
-        code: Codes,
+        states: States,
         rows: Rows,
-        state: State,
+        iterate: Iterate,
     ) -> None:
-        self.elements, self.data, self.basis = elements, data, basis
-        self.code, self.rows = code, rows
+        self.structure, self.loading, self.basis = structure, loading, basis
+        self.states, self.rows = states, rows
         columns, count = basis.columns, len(rows)
         shape = (count, len(columns))
-        self.load = np.broadcast_to(pick(data.load, rows), (count, elements.size))
-        self.gap = np.array(np.broadcast_to(pick(data.gap, rows)[:, columns], shape))
-        self.bending = np.broadcast_to(pick(data.bending, rows)[:, columns], shape)
-        self.hertz = np.broadcast_to(pick(data.hertz, rows)[:, columns], shape)
-        self.power = np.flatnonzero((data.hertz[:, columns] > 0.0).any(axis=0))
-        self.table = np.flatnonzero(data.tabulated[columns] >= 0)
-        tables = pick(data.tables, rows)[:, data.tabulated[columns[self.table]]]
+        self.load = np.broadcast_to(pick(loading.load, rows), (count, structure.size))
+        self.gap = np.array(np.broadcast_to(pick(loading.gap, rows)[:, columns], shape))
+        self.bending = np.broadcast_to(pick(loading.bending, rows)[:, columns], shape)
+        self.hertz = np.broadcast_to(pick(loading.hertz, rows)[:, columns], shape)
+        self.power = np.flatnonzero((loading.hertz[:, columns] > 0.0).any(axis=0))
+        self.table = np.flatnonzero(loading.tabulated[columns] >= 0)
+        tables = pick(loading.tables, rows)[:, loading.tabulated[columns[self.table]]]
         self.points = tables[:, :, 0], tables[:, :, 1]
-        self.x, self.floor = state.x[rows], state.floor[rows]
-        self.force, self.root = state.force[rows][:, columns], state.root[rows][:, columns]
+        self.x, self.floor = iterate.x[rows], iterate.floor[rows]
+        self.force, self.root = iterate.force[rows][:, columns], iterate.root[rows][:, columns]
         self.z = self.force @ basis.redundant
         self.lean = self.x, self.force
         self.compression, self.misfit = np.zeros(shape), np.zeros(count)
-        first_arc = elements.columns.arcs.start
+        first_arc = structure.columns.arcs.start
         arcs = columns - first_arc
-        self.arc_at = np.flatnonzero((arcs >= 0) & (arcs < len(elements.arcs)))
+        self.arc_at = np.flatnonzero((arcs >= 0) & (arcs < len(structure.arcs)))
         self.arc = arcs[self.arc_at]
         self.radial = [
-            (j, int(place), int(np.searchsorted(columns, elements.radial_column(j))))
-            for j, place in enumerate(code[elements.rows :])
-            if place != at.OPEN
+            (j, int(status), int(np.searchsorted(columns, structure.radial_column(j))))
+            for j, status in enumerate(states[structure.rows :])
+            if status != at.OPEN
         ]
-        self.scalar = np.flatnonzero(columns < elements.columns.contacts.stop)
-        self.contact = self.scalar[columns[self.scalar] >= elements.springs]
+        self.scalar = np.flatnonzero(columns < structure.columns.contacts.stop)
+        self.contact = self.scalar[columns[self.scalar] >= structure.springs]
         n = basis.redundant
         self.products = (n[:, :, None] * n[:, None, :]).reshape(len(columns), n.shape[1] ** 2)
         self.shared = self._shared()
@@ -173,11 +173,11 @@ class _Passes:
         self.unit = np.where(self.push > 0.0, self.push, 1.0)
         self.settled, self.burst = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
         self.refused = np.zeros(count, dtype=bool)
-        self.hurried = np.zeros((count, elements.switches), dtype=bool)
-        self.hurried_to = np.repeat(code[None, :], count, axis=0)
+        self.hurried = np.zeros((count, structure.switches), dtype=bool)
+        self.hurried_to = np.repeat(states[None, :], count, axis=0)
         self.loose = np.zeros((count, len(self.power)), dtype=int)
-        self.outside = np.zeros((count, elements.switches - elements.rows), dtype=int)
-        self.patience = np.where(code[elements.rows :] == at.WALL, HOT.inward, HOT.outside)
+        self.outside = np.zeros((count, structure.switches - structure.rows), dtype=int)
+        self.patience = np.where(states[structure.rows :] == at.WALL, HOT.inward, HOT.outside)
         self.fixed: dict[int, at.Graph] = {}
         self.linear: dict[int, _Block] = {}
 
@@ -190,7 +190,7 @@ class _Passes:
             Samples whose signs are looked at only when they are settled.
         """
         straight = (at.STICK, at.PINNED)
-        bent = [place for _, place, _ in self.radial if place not in straight]
+        bent = [status for _, status, _ in self.radial if status not in straight]
         curved = len(self.arc) + len(bent) + len(self.table) > 0
         previous = np.full(len(self.rows), np.inf)
         for number in range(HOT.passes):
@@ -271,8 +271,8 @@ class _Passes:
         """
         yields = np.asarray(((self.bending > 0.0) | (self.hertz > 0.0)).any(axis=0))
         yields[self.table] = True
-        for _, place, k in self.radial:
-            yields[k : k + 2] = place != at.PINNED
+        for _, status, k in self.radial:
+            yields[k : k + 2] = status != at.PINNED
         n = self.basis.redundant
         _, sizes, right = np.linalg.svd(n[yields], full_matrices=True)
         return right[int((sizes > HOT.shared).sum()) :].T
@@ -334,16 +334,16 @@ class _Passes:
             return self.load, self.gap
         load, gap = np.array(self.load), self.gap
         for k, a in zip(self.arc_at, self.arc, strict=True):
-            normal, margin = arc_at(self.data, a, self.rows, self.x)
+            normal, margin = arc_at(self.loading, a, self.rows, self.x)
             base = self.basis.directions[k]
-            load -= self.force[:, k, None] * (-normal @ self.data.relative[a] - base)
+            load -= self.force[:, k, None] * (-normal @ self.loading.relative[a] - base)
             gap[:, k] = margin + self.x @ base
         return load, gap
 
     def _blocks(self) -> list[_Block]:
         """Tangents of the radial elements where they are now."""
         blocks = []
-        for j, place, k in self.radial:
+        for j, status, k in self.radial:
             if j in self.linear:
                 blocks.append(self.linear[j])
                 continue
@@ -352,8 +352,8 @@ class _Passes:
             columns = slice(k, k + 2)
             x, force = self.lean
             size = np.maximum(self.push, 1e-300)
-            found = block(columns, place, law, self._offset(j, x), force[:, columns], size)
-            if place in (at.STICK, at.PINNED) and j in self.fixed:
+            found = block(columns, status, law, self._offset(j, x), force[:, columns], size)
+            if status in (at.STICK, at.PINNED) and j in self.fixed:
                 self.linear[j] = found
             blocks.append(found)
         return blocks
@@ -364,12 +364,12 @@ class _Passes:
         It stays far beyond the end of that piece, or friction that follows the torque is gone; a
         stop goes on holding inward, this way and that.
         """
-        for j, place, k in self.radial:
+        for j, status, k in self.radial:
             offset, law = self._offset(j), self._graph(j)
-            if place == at.SLIP:
+            if status == at.SLIP:
                 radius = np.sqrt((offset**2).sum(axis=1))
                 left = (radius > HOT.beyond * law.reach) | (law.bound <= HOT.sign * self.push)
-            elif place == at.WALL:
+            elif status == at.WALL:
                 left = (offset * self.force[:, k : k + 2]).sum(axis=1) < 0.0
             else:
                 continue
@@ -381,17 +381,17 @@ class _Passes:
         known = self.fixed.get(j)
         if known is not None:
             return known
-        numbers = pick(self.data.radial, self.rows)[:, j]
-        carried = self.force @ self.data.carried[j, self.basis.columns]
+        numbers = pick(self.loading.radial, self.rows)[:, j]
+        carried = self.force @ self.loading.carried[j, self.basis.columns]
         found = at.graph(numbers, carried)
         if not np.isnan(numbers[:, 3]).any():
             self.fixed[j] = found
         return found
 
     def _offset(self, j: int, x: Array | None = None) -> Array:
-        column = self.elements.radial_column(j)
-        matrix = self.elements.vectors[column : column + 2]
-        centre = pick(self.data.gap, self.rows)[:, column : column + 2]
+        column = self.structure.radial_column(j)
+        matrix = self.structure.vectors[column : column + 2]
+        centre = pick(self.loading.gap, self.rows)[:, column : column + 2]
         return np.asarray((self.x if x is None else x) @ matrix.T - centre)
 
     def _hurry(self, these: Flags) -> None:
@@ -400,40 +400,40 @@ class _Passes:
         if not these.any():
             return
         before, self.settled = self.settled, these
-        wrong, moved = self.wrong(HOT.hurry)
+        wrong, moved = self.wrong(HOT.gross)
         self.settled = before
         wrong &= these[:, None]
         self.hurried |= wrong
         self.hurried_to[these] = moved[these]
 
-    def wrong(self, sign: float) -> tuple[Flags, Codes]:
+    def wrong(self, sign: float) -> tuple[Flags, States]:
         """Which elements have the wrong sign, and where they should stand instead."""
-        elements, data = self.elements, self.data
-        wrong = np.zeros((len(self.rows), elements.switches), dtype=bool)
-        moved = np.repeat(self.code[None, :], len(self.rows), axis=0)
+        structure, loading = self.structure, self.loading
+        wrong = np.zeros((len(self.rows), structure.switches), dtype=bool)
+        moved = np.repeat(self.states[None, :], len(self.rows), axis=0)
         largest_force = np.maximum(np.abs(self.force).max(axis=1, initial=0.0), self.push)
         furthest = np.abs(self.x).max(axis=1, initial=0.0)
         yielded = np.abs(self.compression[:, self.scalar]).max(axis=1, initial=0.0)
         force_band, faint = sign * largest_force, HOT.sign * largest_force
         length_band = sign * np.maximum(yielded, 1e-3 * furthest)
-        rows = elements.columns.contacts
-        approach = self.x @ elements.vectors[rows].T - pick(data.gap, self.rows)[:, rows]
-        for a in range(len(elements.arcs)):
-            approach[:, elements.flat + a] = -arc_at(data, a, self.rows, self.x)[1]
-        closed = self.code[: elements.rows] == at.CLOSED
-        wrong[:, : elements.rows] = approach > length_band[:, None]
-        place = np.flatnonzero(
+        rows = structure.columns.contacts
+        approach = self.x @ structure.vectors[rows].T - pick(loading.gap, self.rows)[:, rows]
+        for a in range(len(structure.arcs)):
+            approach[:, structure.flat + a] = -arc_at(loading, a, self.rows, self.x)[1]
+        closed = self.states[: structure.rows] == at.CLOSED
+        wrong[:, : structure.rows] = approach > length_band[:, None]
+        row = np.flatnonzero(
             (self.basis.columns >= rows.start) & (self.basis.columns < rows.stop)
         )
-        switch = self.basis.columns[place] - rows.start
-        wrong[:, switch] = self.force[:, place] < -force_band[:, None]
-        moved[:, : elements.rows] = np.where(closed, at.OPEN, at.CLOSED)
+        switch = self.basis.columns[row] - rows.start
+        wrong[:, switch] = self.force[:, row] < -force_band[:, None]
+        moved[:, : structure.rows] = np.where(closed, at.OPEN, at.CLOSED)
         acting = {j: k for j, _, k in self.radial}
-        for j in range(elements.switches - elements.rows):
-            s, k = elements.rows + j, acting.get(j)
+        for j in range(structure.switches - structure.rows):
+            s, k = structure.rows + j, acting.get(j)
             force = self.force[:, k : k + 2] if k is not None else np.zeros((len(self.rows), 2))
             wrong[:, s], moved[:, s] = misplaced(
-                int(self.code[s]),
+                int(self.states[s]),
                 self._graph(j),
                 self._offset(j),
                 force,
@@ -444,24 +444,24 @@ class _Passes:
         slipped = (self.outside >= self.patience) & ~self.settled[:, None]
         pulled = wrong & self.burst[:, None] & np.append(closed, np.zeros_like(slipped[0]))
         wrong &= self.settled[:, None]
-        wrong[:, elements.rows :] |= slipped
+        wrong[:, structure.rows :] |= slipped
         wrong |= pulled
         # What the passes could not settle may still say which flank is open.
-        power = self.basis.columns[self.power] - elements.springs
+        power = self.basis.columns[self.power] - structure.springs
         opening = (self.loose >= HOT.patience) & ~self.settled[:, None]
         wrong[:, power] |= opening
         return wrong, moved
 
     def left_in_place(
-        self, before: Array, these: Flags, wrong: Flags, moved: Codes
-    ) -> tuple[Flags, Codes]:
+        self, before: Array, these: Flags, wrong: Flags, moved: States
+    ) -> tuple[Flags, States]:
         """Leave what no acting element holds where it was before, if that rights all signs."""
         least, loose = self.x, self.basis.loose
         self._move(these, (before - least) @ loose)
-        other, places = self.wrong(HOT.sign)
+        other, states = self.wrong(HOT.sign)
         these = these & ~other.any(axis=1)
         self.x = np.where(these[:, None], self.x, least)
-        return np.where(these[:, None], other, wrong), np.where(these[:, None], places, moved)
+        return np.where(these[:, None], other, wrong), np.where(these[:, None], states, moved)
 
     def _move(self, these: Flags, share: Array) -> None:
         """Go along loose moves by shares (k, l), and roll along arcs in contact meanwhile."""
@@ -478,41 +478,41 @@ class _Passes:
         drifting = np.abs(along).max(axis=1, initial=0.0) > HOT.drift * self.push
         return np.asarray(np.where(drifting[:, None], along @ self.basis.loose.T, 0.0))
 
-    def stopped_by(self, drift: Array) -> tuple[Flags, Codes]:
+    def stopped_by(self, drift: Array) -> tuple[Flags, States]:
         """Go along a drift (k, n) to what is first in the way, if anything: it, and its place."""
-        elements = self.elements
-        stopping = np.zeros((len(self.rows), elements.switches), dtype=bool)
-        rows = elements.columns.contacts
-        speed = drift @ elements.vectors[rows].T
-        room = pick(self.data.gap, self.rows)[:, rows] - self.x @ elements.vectors[rows].T
-        for a in range(len(elements.arcs)):
-            margin = arc_at(self.data, a, self.rows, self.x)[1]
-            room[:, elements.flat + a] = margin
+        structure = self.structure
+        stopping = np.zeros((len(self.rows), structure.switches), dtype=bool)
+        rows = structure.columns.contacts
+        speed = drift @ structure.vectors[rows].T
+        room = pick(self.loading.gap, self.rows)[:, rows] - self.x @ structure.vectors[rows].T
+        for a in range(len(structure.arcs)):
+            margin = arc_at(self.loading, a, self.rows, self.x)[1]
+            room[:, structure.flat + a] = margin
         fast = HOT.drift * np.abs(drift).max(axis=1, initial=0.0)[:, None]
         way = np.where(speed > fast, np.maximum(room, 0.0) / speed, np.inf)
-        way[:, self.code[: elements.rows] == at.CLOSED] = np.inf
-        places = np.repeat(self.code[None, :], len(self.rows), axis=0)
-        places[:, : elements.rows] = at.CLOSED
+        way[:, self.states[: structure.rows] == at.CLOSED] = np.inf
+        states = np.repeat(self.states[None, :], len(self.rows), axis=0)
+        states[:, : structure.rows] = at.CLOSED
         ends = [way]
-        for j in range(elements.switches - elements.rows):
-            column = elements.radial_column(j)
+        for j in range(structure.switches - structure.rows):
+            column = structure.radial_column(j)
             law, offset = self._graph(j), self._offset(j)
-            velocity = drift @ elements.vectors[column : column + 2].T
+            velocity = drift @ structure.vectors[column : column + 2].T
             reached = until(offset, velocity, law.reach, fast[:, 0])
-            free = self.code[elements.rows + j] == at.OPEN
+            free = self.states[structure.rows + j] == at.OPEN
             ends.append(np.where(free, reached, np.inf)[:, None])
-            places[:, elements.rows + j] = beyond(law)
+            states[:, structure.rows + j] = beyond(law)
         ways = np.concatenate(ends, axis=1)
         everyone, nearest = np.arange(len(self.rows)), ways.argmin(axis=1)
         way = ways[everyone, nearest]
         stopping[everyone, nearest] = stopped = np.isfinite(way)
         # From elsewhere the passes may end at the far side of a ring, held inward.
         self.x += np.where(stopped, way, 0.0)[:, None] * drift
-        return stopping, places
+        return stopping, states
 
     def rests(self, k: int, wrong: Flags) -> bool:
         """Find sample `k` a place where nothing that is open overlaps, if only places are wrong."""
-        if (wrong & (self.code != at.OPEN)).any():
+        if (wrong & (self.states != at.OPEN)).any():
             return False
         before, this = self.x, np.arange(len(self.rows)) == k
         for _ in range(HOT.rolls):
@@ -529,34 +529,34 @@ class _Passes:
 
     def _room(self, k: int) -> tuple[Array, Array, list[tuple[Array, Array, float]]]:
         """What is open around sample `k`, as `rest` takes it."""
-        elements, rows, here = self.elements, self.elements.rows, self.rows[k : k + 1]
-        opened = np.flatnonzero(self.code[:rows] == at.OPEN)
+        structure, rows, here = self.structure, self.structure.rows, self.rows[k : k + 1]
+        opened = np.flatnonzero(self.states[:rows] == at.OPEN)
         x, loose = self.x[k : k + 1], self.basis.loose
-        vectors = np.array(elements.vectors[elements.springs + opened])
-        room = pick(self.data.gap, here)[0, elements.springs + opened] - vectors @ x[0]
-        first = elements.flat
-        for a, place in zip(
+        vectors = np.array(structure.vectors[structure.springs + opened])
+        room = pick(self.loading.gap, here)[0, structure.springs + opened] - vectors @ x[0]
+        first = structure.flat
+        for a, row in zip(
             opened[opened >= first] - first, np.flatnonzero(opened >= first), strict=True
         ):
-            normal, margin = arc_at(self.data, a, here, x)
-            vectors[place], room[place] = (-normal @ self.data.relative[a])[0], margin[0]
+            normal, margin = arc_at(self.loading, a, here, x)
+            vectors[row], room[row] = (-normal @ self.loading.relative[a])[0], margin[0]
         discs = []
-        for j in np.flatnonzero(self.code[rows:] == at.OPEN).tolist():
-            column = elements.radial_column(j)
-            matrix = elements.vectors[column : column + 2] @ loose
+        for j in np.flatnonzero(self.states[rows:] == at.OPEN).tolist():
+            column = structure.radial_column(j)
+            matrix = structure.vectors[column : column + 2] @ loose
             discs.append((matrix, self._offset(j)[k], float(self._graph(j).reach[k])))
         closes = vectors @ loose
         finite = np.isfinite(room)
         return closes[finite], room[finite], discs
 
-    def store(self, state: State) -> None:
+    def store(self, iterate: Iterate) -> None:
         """Write back where the samples stand."""
         columns = self.basis.columns
-        state.x[self.rows] = self.x
-        force = np.zeros((len(self.rows), len(self.elements.kinds)))
+        iterate.x[self.rows] = self.x
+        force = np.zeros((len(self.rows), len(self.structure.kinds)))
         force[:, columns] = self.force
-        state.force[self.rows] = force
-        state.root[np.ix_(self.rows, columns)] = self.root
+        iterate.force[self.rows] = force
+        iterate.root[np.ix_(self.rows, columns)] = self.root
 
 
 def pick(array: Array, rows: Rows) -> Array:
@@ -647,10 +647,10 @@ def piece(axis: Array, values: Array, where: Array) -> tuple[Array, Array, Array
     return x0, y0, (values[(*at, k + 1)] - y0) / (axis[(*at, k + 1)] - x0)
 
 
-def arc_at(data: Data, a: int, rows: Rows, x: Array) -> tuple[Array, Array]:
+def arc_at(loading: Loading, a: int, rows: Rows, x: Array) -> tuple[Array, Array]:
     """Normal (k, 3) and margin (k,) of an arc at the coordinates x (k, n); see `Arc`."""
-    nominal = data.nominal[a]
-    moved = pick(data.shift, rows)[:, a] + x @ data.relative[a].T
+    nominal = loading.nominal[a]
+    moved = pick(loading.shift, rows)[:, a] + x @ loading.relative[a].T
     d = nominal + moved
     here = np.sqrt((d * d).sum(axis=1))
     grown = 2.0 * moved @ nominal + (moved * moved).sum(axis=1)
@@ -660,7 +660,7 @@ def arc_at(data: Data, a: int, rows: Rows, x: Array) -> tuple[Array, Array]:
     if beyond.any():
         d[beyond], here[beyond] = nominal, distance
         margin[beyond] = moved[beyond] @ nominal / distance
-    return d / here[:, None], margin + pick(data.clearance, rows)[:, a]
+    return d / here[:, None], margin + pick(loading.clearance, rows)[:, a]
 
 
 def until(offset: Array, velocity: Array, reach: Array, slow: Array) -> Array:
@@ -672,7 +672,7 @@ def until(offset: Array, velocity: Array, reach: Array, slow: Array) -> Array:
     return np.where(square > slow * slow, np.maximum(far, 0.0), np.inf)
 
 
-def beyond(law: at.Graph) -> Codes:
+def beyond(law: at.Graph) -> States:
     """Place of a radial element past its level piece."""
     rigid = np.where(law.reach > 0.0, at.WALL, at.PINNED)
     return np.where(np.isinf(law.last), rigid, at.STOP).astype(np.int8)
@@ -688,24 +688,24 @@ def direction(first: Array, second: Array) -> Array:
 
 
 def block(
-    columns: slice, place: int, law: at.Graph, offset: Array, force: Array, push: Array
+    columns: slice, status: int, law: at.Graph, offset: Array, force: Array, push: Array
 ) -> _Block:
     """Tangent of a radial element at its current offset and force."""
     count = len(offset)
     radius, size = (np.sqrt((v * v).sum(axis=1)) for v in (offset, force))
-    if place in (at.CORNER, at.WALL):
+    if status in (at.CORNER, at.WALL):
         along = direction(force, offset)
-        limit = law.stick if place == at.CORNER else law.reach
+        limit = law.stick if status == at.CORNER else law.reach
         inner, outer = np.zeros(count), limit / np.where(size > 0.0, size, push)
         start = limit
     else:
         along = direction(offset, force)
-        if place == at.STICK:
+        if status == at.STICK:
             inner = outer = 1.0 / law.first
             start = np.zeros(count)
-        elif place == at.PINNED:
+        elif status == at.PINNED:
             inner = outer = start = np.zeros(count)
-        elif place == at.SLIP:
+        elif status == at.SLIP:
             # Beyond the piece the true tangent is too soft to find the way back.
             inner, start = np.zeros(count), np.zeros(count)
             outer = np.clip(radius, law.stick, law.reach) / np.maximum(law.bound, HOT.faint * push)
@@ -720,19 +720,19 @@ def block(
     outer = np.minimum(outer, HOT.softest)
     dyad = along[:, :, None] * along[:, None, :]
     compliance = inner[:, None, None] * dyad + outer[:, None, None] * (_BOTH - dyad)
-    bound = law.bound if place == at.SLIP else None
+    bound = law.bound if status == at.SLIP else None
     return _Block(columns, compliance, start[:, None] * along, along, bound)
 
 
 def misplaced(
-    place: int,
+    status: int,
     law: at.Graph,
     offset: Array,
     force: Array,
     force_band: Array,
     length_band: Array,
     faint: Array,
-) -> tuple[Flags, Codes]:
+) -> tuple[Flags, States]:
     """Whether a radial element has left its place, and where it should stand instead.
 
     A friction bound up to `faint` is none.
@@ -745,30 +745,30 @@ def misplaced(
     back = np.where(law.stick > 0.0, np.where(jump, at.CORNER, at.STICK), at.PINNED)
     back = np.where((law.bound == 0.0) & (law.reach > 0.0), at.OPEN, back)
     inward = (offset * force).sum(axis=1) < 0.0
-    stays = np.full(len(radius), place)
-    if place == at.OPEN:
+    stays = np.full(len(radius), status)
+    if status == at.OPEN:
         up, down = radius > law.reach + length_band, rubs & (radius > length_band)
         after, before = past, np.where(radius < law.stick, at.STICK, level)
-    elif place == at.STICK:
+    elif status == at.STICK:
         up, down = size > law.first * law.stick + force_band, False
         gone = np.where(radius > law.reach + length_band, past, level)
         after, before = np.where(jump, at.CORNER, gone), stays
-    elif place == at.CORNER:
+    elif status == at.CORNER:
         down = inward | (size < law.first * law.stick - force_band)
         up = (size > law.bound + force_band) & ~inward
         after, before = level, np.full(len(radius), at.STICK)
-    elif place == at.PINNED:
+    elif status == at.PINNED:
         yields = (law.bound > 0.0) | (law.reach > 0.0) | np.isfinite(law.last)
         up = (size > law.bound + force_band) & yields
         down, after, before = False, level, stays
-    elif place == at.SLIP:
+    elif status == at.SLIP:
         up = (radius > law.reach + length_band) & rubs & ~inward
         down = (radius < law.stick - length_band) | inward | ~rubs
         after, before = past, np.where(rubs, back, level)
-    elif place == at.STOP:
+    elif status == at.STOP:
         up, down = False, ((radius < law.reach - length_band) | inward) & (law.reach > 0.0)
         # A stop that carries next to nothing sticks: it does not use up its friction.
-        slips = (law.reach > law.stick) & (radius >= law.stick) & (size > HOT.hurry * law.bound)
+        slips = (law.reach > law.stick) & (radius >= law.stick) & (size > HOT.gross * law.bound)
         after, before = stays, np.where(slips, level, back)
     else:
         up, down = False, inward | (size <= force_band)

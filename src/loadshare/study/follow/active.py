@@ -8,24 +8,24 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
+from loadshare.scene.structure import Structure
 from loadshare.settings import FOLLOW
-from loadshare.solver.hot import places as at
+from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.numbers import Numbers
 from loadshare.train.equilibrium import Equilibrium
 
-Codes = NDArray[np.int8]
+States = NDArray[np.int8]
 
 
 @dataclass(frozen=True, slots=True)
-class ActiveSet:
+class WorkingSet:
     """Closed contacts and pieces of the radial laws.
 
     Attributes
     ----------
-    code : tuple of int
-        Of all elements; see `loadshare.solver.hot.places`.
+    states : tuple of int
+        Of all elements; see `loadshare.solver.hot.contact_states`.
     pieces : tuple of int
         On which piece of its table each tabulated contact stands.
     tied : frozenset of int
@@ -33,44 +33,44 @@ class ActiveSet:
         under a law which is infinitely soft at first (c > 0), where nothing else can.
     """
 
-    code: tuple[int, ...]
+    states: tuple[int, ...]
     pieces: tuple[int, ...] = ()
     tied: frozenset[int] = frozenset()
 
-    def changes(self, other: ActiveSet, elements: Elements) -> tuple[str, ...]:
+    def changes(self, other: WorkingSet, structure: Structure) -> tuple[str, ...]:
         """Names of the elements whose state differs, contacts first."""
-        pairs = zip(self.code, other.code, strict=True)
+        pairs = zip(self.states, other.states, strict=True)
         changed = [k for k, (here, there) in enumerate(pairs) if here != there]
-        names, rows = switch_names(elements), elements.rows
+        names, rows = switch_names(structure), structure.rows
         return (
             *sorted(names[k] for k in changed if k < rows),
             *(names[k] for k in changed if k >= rows),
         )
 
 
-def switch_names(elements: Elements) -> tuple[str, ...]:
-    """Names of contacts and radial elements, in the order of a code."""
-    return (*elements.row_names, *(radial.name for radial in elements.radials))
+def switch_names(structure: Structure) -> tuple[str, ...]:
+    """Names of contacts and radial elements, in the order of an active set."""
+    return (*structure.row_names, *(radial.name for radial in structure.radials))
 
 
-def coordinates(elements: Elements, found: Equilibrium) -> Array:
+def coordinates(structure: Structure, found: Equilibrium) -> Array:
     """Coordinates x of an equilibrium, in the units of the elements."""
-    at = elements.coordinates
+    at = structure.coordinates
     x = np.zeros(at.size)
     for gear, where in at.displacement.items():
         x[where] = at.frame[gear] @ found.displacement[gear]
     for gear, rotation in at.rotation.items():
         if rotation.index is not None:
             x[rotation.index] = (found.rotation[gear] - rotation.constant) / rotation.rate
-    return x / elements.length
+    return x / structure.length
 
 
-def read_code(elements: Elements, numbers: Numbers, found: Equilibrium, x: Array) -> Codes:
+def read_code(structure: Structure, numbers: Numbers, found: Equilibrium, x: Array) -> States:
     """Read which elements act from the forces and radii of an equilibrium.
 
     Parameters
     ----------
-    elements : Elements
+    structure : Structure
     numbers : Numbers
         At one value.
     found : Equilibrium
@@ -79,19 +79,19 @@ def read_code(elements: Elements, numbers: Numbers, found: Equilibrium, x: Array
         Its coordinates, in the units of the elements.
     """
     pushes = {**found.flank_force, **found.ring_force}
-    force = np.array([pushes[name] for name in elements.row_names]) / elements.force
-    code = np.zeros(elements.switches, dtype=np.int8)
-    code[: elements.rows][force > FOLLOW.carries * max(1.0, force.max(initial=0.0))] = at.CLOSED
-    rows = elements.columns.contacts
+    force = np.array([pushes[name] for name in structure.row_names]) / structure.force
+    states = np.zeros(structure.switches, dtype=np.int8)
+    states[: structure.rows][force > FOLLOW.carries * max(1.0, force.max(initial=0.0))] = at.CLOSED
+    rows = structure.columns.contacts
     transmitted = numbers.carried[0, :, rows] @ force
-    for j, radial in enumerate(elements.radials):
-        column = elements.radial_column(j)
+    for j, radial in enumerate(structure.radials):
+        column = structure.radial_column(j)
         both = slice(column, column + 2)
         radius = float(np.linalg.norm(numbers.vectors[0, both] @ x - numbers.gap[0, both]))
-        size = float(np.linalg.norm(found.radial_reaction[radial.name])) / elements.force
+        size = float(np.linalg.norm(found.radial_reaction[radial.name])) / structure.force
         law = at.graph(numbers.radial[:, j], transmitted[[j]])
-        code[elements.rows + j] = _nearest(law, radius, size)
-    return code
+        states[structure.rows + j] = _nearest(law, radius, size)
+    return states
 
 
 def _nearest(law: at.Graph, radius: float, size: float) -> int:
@@ -107,7 +107,7 @@ def _nearest(law: at.Graph, radius: float, size: float) -> int:
 
 
 def _parts(law: at.Graph) -> Iterator[tuple[int, float, float, float, float, float]]:
-    """Yield code, radii between, forces between at the first one, and slope: pieces, then steps."""
+    """Yield state, radii between, forces between at the first one, and slope: pieces, steps."""
     first, stick, bound, reach, last = (float(v[0]) for v in law[:5])
     if np.isinf(stick):
         yield at.STICK, 0.0, np.inf, 0.0, 0.0, first
@@ -126,12 +126,12 @@ def _parts(law: at.Graph) -> Iterator[tuple[int, float, float, float, float, flo
 
 
 def read_pieces(
-    elements: Elements, numbers: Numbers, code: tuple[int, ...], x: Array
+    structure: Structure, numbers: Numbers, states: tuple[int, ...], x: Array
 ) -> tuple[int, ...]:
     """Read on which piece of its table each closed tabulated contact stands, at one value."""
     found, tabulated = [], numbers.tabulated[0]
     for k in np.flatnonzero(tabulated >= 0).tolist():
-        if code[k - elements.springs] == at.CLOSED:
+        if states[k - structure.springs] == at.CLOSED:
             approach = float(numbers.vectors[0, k] @ x - numbers.gap[0, k])
             points = numbers.tables[0, tabulated[k], 1]
             last = int(np.isfinite(points).sum()) - 2

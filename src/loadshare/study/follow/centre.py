@@ -119,8 +119,10 @@ def _rooms(equations: Equations, z: Array, numbers: Numbers, facets: Array) -> t
     """
     state = equations.state(z, numbers)
     count, n = len(z), equations.n
-    idle = np.flatnonzero(~equations.acts[equations.elements.springs :])
-    idle = idle[idle < equations.scalars - equations.elements.springs] + equations.elements.springs
+    idle = np.flatnonzero(~equations.acts[equations.structure.springs :])
+    idle = (
+        idle[idle < equations.scalars - equations.structure.springs] + equations.structure.springs
+    )
     approach = state.approach[:, idle]
     room = [np.where(np.isfinite(approach), -approach, np.inf)]
     vectors = np.broadcast_to(numbers.vectors, (count, *numbers.vectors.shape[1:]))

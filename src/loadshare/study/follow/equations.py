@@ -16,11 +16,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
+from loadshare.scene.structure import Structure
 from loadshare.settings import FOLLOW
-from loadshare.solver.hot import places as at
-from loadshare.study.follow.active import ActiveSet, Codes
+from loadshare.solver.hot import contact_states as at
+from loadshare.study.follow.active import States, WorkingSet
 from loadshare.study.follow.numbers import Numbers
 from loadshare.study.follow.ranges import Flags
 
@@ -76,7 +76,7 @@ class Polar:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class State:
+class Evaluation:
     """Everything at S points z.
 
     Attributes
@@ -84,7 +84,7 @@ class State:
     approach, force, slope : ndarray, shape (S, k)
         Of all springs, flanks and stops; F and dF/dδ, zero for open and rigid ones.
     polars : mapping of switch to Polar
-        Arcs and radial elements, by their number in a code.
+        Arcs and radial elements, by their number in an active set.
     margin : mapping of switch to ndarray, shape (S,)
         Distance beyond each arc.
     laws : mapping of switch to Graph
@@ -107,7 +107,7 @@ class Equations:
 
     Parameters
     ----------
-    elements : Elements
+    structure : Structure
     active : ActiveSet
     numbers : Numbers
         At any value: they tell which contacts are rigid, linear, curved or tabulated.
@@ -115,25 +115,25 @@ class Equations:
     Attributes
     ----------
     arcs, radials : range
-        Their numbers in a code.
+        Their numbers in an active set.
     polar_at : mapping of switch to int or None
         Arcs and radial elements that act, and where their unknown forces stand in z.
     """
 
-    def __init__(self, elements: Elements, active: ActiveSet, numbers: Numbers) -> None:
-        self.elements, self.active = elements, active
+    def __init__(self, structure: Structure, active: WorkingSet, numbers: Numbers) -> None:
+        self.structure, self.active = structure, active
         self.tabulated = tabulated = numbers.tabulated[0]
-        self.code: Codes = np.array(active.code, dtype=np.int8)
-        self.n = elements.size
-        self.scalars = elements.columns.arcs.start
-        self.arcs = range(elements.flat, elements.rows)
-        self.radials = range(elements.rows, elements.switches)
-        rows = self.code[: elements.rows] == at.CLOSED
-        acting = np.append(np.ones(elements.springs, dtype=bool), rows)
+        self.states: States = np.array(active.states, dtype=np.int8)
+        self.n = structure.size
+        self.scalars = structure.columns.arcs.start
+        self.arcs = range(structure.flat, structure.rows)
+        self.radials = range(structure.rows, structure.switches)
+        rows = self.states[: structure.rows] == at.CLOSED
+        acting = np.append(np.ones(structure.springs, dtype=bool), rows)
         self.acts = acting[: self.scalars]
         curved: Flags = np.asarray((numbers.hertz > 0.0).any(axis=0))
         yields: Flags = np.asarray((numbers.bending > 0.0).any(axis=0) | curved | (tabulated >= 0))
-        tied = [elements.springs + k for k in active.tied]
+        tied = [structure.springs + k for k in active.tied]
         yields[tied] = curved[tied] = False
         part = slice(0, self.scalars)
         self.rigid = np.flatnonzero(self.acts & ~yields[part])
@@ -148,15 +148,15 @@ class Equations:
         self.polar_at: dict[int, int | None] = {}
         for k in (*self.arcs, *self.radials):
             width = self._forces_of(k, yields)
-            if self.code[k] != at.OPEN:
+            if self.states[k] != at.OPEN:
                 self.polar_at[k] = self.size if width else None
                 self.size += width
 
     def _forces_of(self, k: int, yields: Flags) -> int:
         """How many unknown forces an arc or radial element has that acts."""
         if k in self.arcs:
-            return int(not yields[self.elements.springs + k])
-        return {at.PINNED: 2, at.CORNER: 1, at.WALL: 1}.get(int(self.code[k]), 0)
+            return int(not yields[self.structure.springs + k])
+        return {at.PINNED: 2, at.CORNER: 1, at.WALL: 1}.get(int(self.states[k]), 0)
 
     def matrix(self, k: int, numbers: Numbers) -> Array:
         """Offset of an arc or radial element per unit of the coordinates, (S or 1, 3 or 2, n)."""
@@ -165,12 +165,12 @@ class Equations:
         return np.asarray(numbers.vectors[:, self._columns(k)])
 
     def _columns(self, k: int) -> slice:
-        column = self.elements.radial_column(k - self.radials.start)
+        column = self.structure.radial_column(k - self.radials.start)
         return slice(column, column + 2)
 
     # --- At points ------------------------------------------------------------------------------
 
-    def state(self, z: Array, numbers: Numbers, every: bool = True) -> State:
+    def state(self, z: Array, numbers: Numbers, every: bool = True) -> Evaluation:
         """Return approaches, forces and offsets at points z (S, size); of all, or what acts."""
         x = z[:, : self.n]
         vectors = numbers.vectors[:, : self.scalars]
@@ -199,7 +199,7 @@ class Equations:
                 polars[k], margin[k] = self._arc(k, z, numbers)
             else:
                 polars[k] = self._radial(k, laws[k], z, numbers)
-        return State(approach, force, slope, polars, margin, laws, transmitted)
+        return Evaluation(approach, force, slope, polars, margin, laws, transmitted)
 
     def _arc(self, k: int, z: Array, numbers: Numbers) -> tuple[Polar, Array]:
         a, matrix = k - self.arcs.start, self.matrix(k, numbers)
@@ -221,27 +221,27 @@ class Equations:
         return Polar(matrix, offset, radius, along, size, slope, beyond, sense=-1.0), margin
 
     def _radial(self, k: int, law: at.Graph, z: Array, numbers: Numbers) -> Polar:
-        matrix, code, where = self.matrix(k, numbers), self.code[k], self.polar_at.get(k)
+        matrix, states, where = self.matrix(k, numbers), self.states[k], self.polar_at.get(k)
         offset = (matrix @ z[:, : self.n, None])[:, :, 0] - numbers.gap[:, self._columns(k)]
         radius = np.sqrt((offset * offset).sum(axis=1))
         along = offset / np.where(radius > 0.0, radius, 1.0)[:, None]
         size, slope = np.zeros_like(radius), np.zeros_like(radius)
         beyond: Array | None = None
-        if code == at.STICK:
+        if states == at.STICK:
             size, slope = law.first * radius, law.first
-        elif code == at.SLIP:
+        elif states == at.SLIP:
             size = law.bound
-        elif code == at.STOP:
+        elif states == at.STOP:
             size, slope = law.bound + law.last * (radius - law.reach), law.last
-        elif code in (at.WALL, at.CORNER):
+        elif states in (at.WALL, at.CORNER):
             assert where is not None
             size = z[:, where]
-            beyond = radius - (law.stick if code == at.CORNER else law.reach)
+            beyond = radius - (law.stick if states == at.CORNER else law.reach)
         return Polar(
-            matrix, offset, radius, along, size, slope, beyond, spring=bool(code == at.STICK)
+            matrix, offset, radius, along, size, slope, beyond, spring=bool(states == at.STICK)
         )
 
-    def residual(self, z: Array, numbers: Numbers, state: State | None = None) -> Array:
+    def residual(self, z: Array, numbers: Numbers, state: Evaluation | None = None) -> Array:
         """Return G, shape (S, size)."""
         state = state or self.state(z, numbers)
         n = self.n
@@ -252,7 +252,7 @@ class Equations:
         for k, where in self.polar_at.items():
             polar = state.polars[k]
             force = polar.force
-            if self.code[k] == at.PINNED:
+            if self.states[k] == at.PINNED:
                 assert where is not None
                 force = z[:, where : where + 2]
                 found[:, where : where + 2] = polar.offset
@@ -261,7 +261,7 @@ class Equations:
             found[:, :n] += (force[:, None, :] @ polar.matrix)[:, 0]
         return found
 
-    def jacobian(self, z: Array, numbers: Numbers, state: State | None = None) -> Array:
+    def jacobian(self, z: Array, numbers: Numbers, state: Evaluation | None = None) -> Array:
         """Return the derivative of G, shape (S, size, size)."""
         state = state or self.state(z, numbers)
         n, count = self.n, len(z)
@@ -273,7 +273,7 @@ class Equations:
         for k, where in self.polar_at.items():
             polar = state.polars[k]
             turned = polar.matrix.transpose(0, 2, 1)
-            if self.code[k] == at.PINNED:
+            if self.states[k] == at.PINNED:
                 assert where is not None
                 both = slice(where, where + 2)
                 found[:, :n, both], found[:, both, :n] = turned, polar.matrix
@@ -282,11 +282,11 @@ class Equations:
             pull = polar.sense * (polar.along[:, None, :] @ polar.matrix)[:, 0]
             if where is not None:
                 found[:, :n, where] = found[:, where, :n] = pull
-            elif k in self.radials and self.code[k] in (at.SLIP, at.STOP):
+            elif k in self.radials and self.states[k] in (at.SLIP, at.STOP):
                 found[:, :n] += pull[:, :, None] * self._follow(k, state, numbers)[:, None, :]
         return found
 
-    def _follow(self, k: int, state: State, numbers: Numbers) -> Array:
+    def _follow(self, k: int, state: Evaluation, numbers: Numbers) -> Array:
         """Derivative (S, size) of a friction bound that follows the torque; zero for others."""
         j, count = k - self.radials.start, len(state.transmitted)
         number = np.broadcast_to(numbers.radial[:, j], (count, 6))
@@ -297,7 +297,7 @@ class Equations:
         arms = numbers.carried[:, [j], : self.scalars]
         return np.asarray(per[:, None] * self.along_forces(arms, state, numbers)[:, 0])
 
-    def along_forces(self, weights: Array, state: State, numbers: Numbers) -> Array:
+    def along_forces(self, weights: Array, state: Evaluation, numbers: Numbers) -> Array:
         """Derivative (S, k, size) of sums of forces, weighted by (S or 1, k, scalars)."""
         count = len(state.slope)
         rate = np.zeros((count, weights.shape[1], self.size))
@@ -305,7 +305,7 @@ class Equations:
         rate[:, :, self.rigid_at] += weights[:, :, self.rigid]
         return rate
 
-    def sizes(self, z: Array, numbers: Numbers, state: State) -> Array:
+    def sizes(self, z: Array, numbers: Numbers, state: Evaluation) -> Array:
         """Sum of the sizes of the terms of every equation, shape (S, size)."""
         vectors = np.abs(numbers.vectors[:, : self.scalars])
         x = np.abs(z[:, : self.n])
@@ -322,7 +322,7 @@ class Equations:
             found[:, : self.n] += (np.broadcast_to(push, moved.shape)[:, None, :] @ matrix)[:, 0]
             where = self.polar_at.get(k)
             if where is not None:
-                width = 2 if self.code[k] == at.PINNED else 1
+                width = 2 if self.states[k] == at.PINNED else 1
                 found[:, where : where + width] += moved.max(axis=1)[:, None]
         return found
 

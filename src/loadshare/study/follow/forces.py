@@ -9,7 +9,7 @@ import numpy as np
 
 from loadshare.scene.scene import Array
 from loadshare.settings import FOLLOW
-from loadshare.solver.hot import places as at
+from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.equations import pressed
 from loadshare.study.follow.ranges import Range, sampled
 from loadshare.study.follow.stretches import Stretches
@@ -94,7 +94,7 @@ def forces(s: Stretches, dev: Array) -> Iterator[Force]:
         yield from _turning_force(s, k, where, dev, slopes)
     for k in e.radials:
         stiff = s.sampled(s.state.laws[k].first)
-        if e.code[k] == at.STICK and stiff.off.any():
+        if e.states[k] == at.STICK and stiff.off.any():
             matrix, still = s.own(e.matrix(k, s.at_middle)), np.zeros(s.count)
             for i in (0, 1):
                 slack = _slack(s, s.columns[k].start + i, stiff.off)
@@ -127,7 +127,7 @@ def varying_slopes(s: Stretches, dev: Array) -> dict[int, Slope]:
             found[k] = Slope(*(part[:, i] for part in every))
     bending, still = s.numbers.bending, np.zeros(s.count)
     varies = (bending != bending[:1]).any(axis=0)
-    acting = {*range(e.elements.springs), *e.linear.tolist()}
+    acting = {*range(e.structure.springs), *e.linear.tolist()}
     for k in sorted(k for k in acting if varies[k]):
         b = s.sampled(bending[:, k])
         off = np.where(b.low > 0.0, 1.0 / b.low - 1.0 / b.high, np.inf)
@@ -258,7 +258,7 @@ def _limit(s: Stretches, k: int) -> Range:
         apart = np.sqrt((nominal * nominal).sum(axis=-1))
         return sampled(s.split(s.numbers.clearance[:, a]) - apart)
     law = s.state.laws[k]
-    return s.sampled(law.stick if e.code[k] == at.CORNER else law.reach)
+    return s.sampled(law.stick if e.states[k] == at.CORNER else law.reach)
 
 
 def _push(s: Stretches, k: int, where: int | None, dev: Array, bound: Bound | None) -> Push:
@@ -282,7 +282,7 @@ def _push(s: Stretches, k: int, where: int | None, dev: Array, bound: Bound | No
         extra = give.most * s.felt(k, dev) + give.most * sagitta
         return Push(value, rate, spread, extra, give.most, give.off)
     follows = (bound.felt * dev).sum(axis=1)
-    if e.code[k] == at.SLIP:
+    if e.states[k] == at.SLIP:
         value = bound.value
         return Push(value, value.rate, value.spread, follows, still, still)
     reach = s.sampled(s.state.laws[k].reach)

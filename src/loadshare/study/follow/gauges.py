@@ -9,7 +9,7 @@ import numpy as np
 
 from loadshare.scene.scene import Array
 from loadshare.settings import FOLLOW
-from loadshare.solver.hot import places as at
+from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.forces import friction_bound, varying_slopes
 from loadshare.study.follow.ranges import Enclosure, Flags, Range, sampled
 from loadshare.study.follow.stretches import Stretches
@@ -21,7 +21,7 @@ class Gauge(NamedTuple):
     Attributes
     ----------
     switch : int
-        The element, by its number in a code.
+        The element, by its number in an active set.
     to : int
         Code of the state to which it then goes.
     value : Enclosure
@@ -80,9 +80,9 @@ def gauges(s: Stretches, dev: Array, bend: Array) -> Iterator[Gauge]:
 
 def _contact_gauges(s: Stretches, k: int, dev: Array, bend: Array) -> Iterator[Gauge]:
     e = s.equations
-    column = e.elements.springs + k
+    column = e.structure.springs + k
     approach = Enclosure(s.approach[column], dev[:, column], bend[:, column])
-    if e.code[k] != at.CLOSED:
+    if e.states[k] != at.CLOSED:
         if np.isfinite(approach.chord.nodes).all():
             yield Gauge(k, at.CLOSED, -approach)
     elif column in e.rigid:
@@ -101,34 +101,34 @@ def _contact_gauges(s: Stretches, k: int, dev: Array, bend: Array) -> Iterator[G
 
 def _radial_gauges(s: Stretches, k: int, dev: Array, bend: Array) -> Iterator[tuple]:  # type: ignore[type-arg]
     """Yield gauges of a radial element towards the states before and after its own."""
-    e, law, code = s.equations, s.state.laws[k], int(s.equations.code[k])
+    e, law, states = s.equations, s.state.laws[k], int(s.equations.states[k])
     where = e.polar_at.get(k)
     given = s.split(s.numbers.radial[:, k - e.radials.start])
     radius, bound = _radius(s, k, dev, bend), _bound(s, k, dev, bend)
     stick, reach = _stick(s, k, bound), _known(given[:, :, 2])
     ends = bool(np.isfinite(reach.chord.nodes).all())
-    if code == at.OPEN:
+    if states == at.OPEN:
         if ends:
             yield at.STOP, reach - radius
         # Without friction it moves freely; any friction ends that. A ring has none.
         if given[:, :, 3:5].any():
             yield at.SLIP, -bound
-    elif code == at.STICK and np.isnan(given[:, 0, 1]).all():
+    elif states == at.STICK and np.isnan(given[:, 0, 1]).all():
         # It bends throughout as long as its clearance closes before it slips.
         yield at.SLIP, stick - radius, stick - reach
-    elif code == at.STICK:
+    elif states == at.STICK:
         yield at.SLIP, stick - radius
-    elif code == at.SLIP:
+    elif states == at.SLIP:
         if bound.chord.nodes.any():
             yield at.STICK, radius - stick
         if ends:
             yield at.STOP, reach - radius
-    elif code == at.STOP:
+    elif states == at.STOP:
         yield at.SLIP, radius - reach
         yield at.STICK, reach - stick
-    elif code == at.WALL and where is not None:
+    elif states == at.WALL and where is not None:
         yield at.OPEN, s.unknown(where, dev, bend)
-    elif code == at.CORNER and where is not None:
+    elif states == at.CORNER and where is not None:
         force = s.unknown(where, dev, bend)
         yield at.STICK, force - _known(s.split(law.first * law.stick))
         yield at.SLIP, bound - force

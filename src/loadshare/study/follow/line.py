@@ -13,13 +13,13 @@ from loadshare.case import Case
 from loadshare.case.keys import parse
 from loadshare.errors import CaseError, Refused
 from loadshare.job.machine import Answers, Machine
-from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
+from loadshare.scene.structure import Structure
 from loadshare.settings import CERTIFY
 from loadshare.solver.hot import vectorised
 from loadshare.study.answers import certified
-from loadshare.study.follow.active import Codes, coordinates, read_code
-from loadshare.study.follow.numbers import Numbers, elements_like
+from loadshare.study.follow.active import States, coordinates, read_code
+from loadshare.study.follow.numbers import Numbers, structure_like
 from loadshare.study.parameter import Parameter, Value, applied
 from loadshare.train import Train, build_train
 from loadshare.train.columns import Column
@@ -34,7 +34,7 @@ class Solved:
     Attributes
     ----------
     value : float
-    code : ndarray of int8, shape (switches,)
+    states : ndarray of int8, shape (switches,)
         Which elements act, and where radial elements stand.
     x : ndarray, shape (n,)
         Coordinates.
@@ -43,7 +43,7 @@ class Solved:
     """
 
     value: float
-    code: Codes
+    states: States
     x: Array
     worst: float
 
@@ -76,7 +76,7 @@ class Line:
         self.case, self.parameter = case, parameter
         self.first, self.last = self.train(start), self.train(stop)
         self._samples = self._array_like(start, stop)
-        self._known: dict[float, tuple[Train, Elements]] = {}
+        self._known: dict[float, tuple[Train, Structure]] = {}
 
     def train(self, value: float) -> Train:
         """Build the train at a value."""
@@ -109,26 +109,26 @@ class Line:
         return Machine(self._samples.train if self._samples is not None else self.first)
 
     @property
-    def elements(self) -> Elements:
+    def structure(self) -> Structure:
         """Its elements, in whose units everything is told."""
-        return self.machine.elements
+        return self.machine.structure
 
-    def _own(self, value: float) -> tuple[Train, Elements]:
+    def _own(self, value: float) -> tuple[Train, Structure]:
         """Train and elements at a value that makes a machine of its own."""
         if value not in self._known:
             train = self.train(value)
-            self._known[value] = train, elements_like(self.elements, train)
+            self._known[value] = train, structure_like(self.structure, train)
         return self._known[value]
 
     def numbers(self, position: int, values: Array) -> Numbers:
         """Return the numbers of a position at values (S,)."""
         if self._samples is not None:
             situations = self._at(values).situations(position)
-            return Numbers.of(self.elements, situations)
+            return Numbers.of(self.structure, situations)
         parts = []
         for value in values.tolist():
-            train, elements = self._own(value)
-            parts.append(Numbers.of(elements, situation_of(train, position)))
+            train, structure = self._own(value)
+            parts.append(Numbers.of(structure, situation_of(train, position)))
         return Numbers.stacked(parts)
 
     def solved(self, position: int, values: Array) -> list[Solved | Missing]:
@@ -137,7 +137,7 @@ class Line:
             situations = self._at(values).situations(position)
             found = self.machine.answer(situations, CERTIFY.tolerance, vectorised.settle)
             return [
-                self._from_batch(self.elements, found, k, value)
+                self._from_batch(self.structure, found, k, value)
                 if found.passed[k]
                 else self._from_ladder(position, value)
                 for k, value in enumerate(values.tolist())
@@ -146,20 +146,20 @@ class Line:
 
     def _one(self, position: int, value: float) -> Solved | Missing:
         try:
-            train, elements = self._own(value)
+            train, structure = self._own(value)
         except (CaseError, ValueError) as problem:
             return Missing(value, str(problem))
         machine = Machine(train)
-        machine.__dict__["elements"] = elements
+        machine.__dict__["structure"] = structure
         situations: Situations = situation_of(train, position)
         found = machine.answer(situations, CERTIFY.tolerance, vectorised.settle)
         if not found.passed[0]:
             return self._from_ladder(position, value)
-        return self._from_batch(elements, found, 0, value)
+        return self._from_batch(structure, found, 0, value)
 
-    def _from_batch(self, elements: Elements, found: Answers, k: int, value: float) -> Solved:
-        x = coordinates(elements, found.equilibria.one(k, 1))
-        return Solved(value, found.code[k].copy(), x, float(found.verdicts.worst[k]))
+    def _from_batch(self, structure: Structure, found: Answers, k: int, value: float) -> Solved:
+        x = coordinates(structure, found.equilibria.one(k, 1))
+        return Solved(value, found.states[k].copy(), x, float(found.verdicts.worst[k]))
 
     def _from_ladder(self, position: int, value: float) -> Solved | Missing:
         """Answer of the slower ways, its set read from forces and radii."""
@@ -168,8 +168,8 @@ class Line:
             answer = certified(train, position)
         except (CaseError, Refused) as refusal:
             return Missing(value, str(refusal))
-        elements, found = elements_like(self.elements, train), answer.equilibrium
-        x = coordinates(elements, found)
-        numbers = Numbers.of(elements, situation_of(train, position))
-        code = read_code(elements, numbers, found, x)
-        return Solved(value, code, x, answer.certificate.worst)
+        structure, found = structure_like(self.structure, train), answer.equilibrium
+        x = coordinates(structure, found)
+        numbers = Numbers.of(structure, situation_of(train, position))
+        states = read_code(structure, numbers, found, x)
+        return Solved(value, states, x, answer.certificate.worst)

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.data import data_of
-from loadshare.scene.elements import Elements, elements_of
+from loadshare.scene.loading import loading_of
 from loadshare.scene.scene import Array
+from loadshare.scene.structure import Structure, structure_of
 from loadshare.train import Train
 from loadshare.train.situations import Situations
 
@@ -25,7 +25,7 @@ class Numbers:
     vectors : ndarray, shape (S or 1, m, n)
         A.
     load, gap, bending, hertz : ndarray, shape (S or 1, n), (S or 1, m) ...
-        f, g, b, c; see `loadshare.scene.data.Data`.
+        f, g, b, c; see `loadshare.scene.loading.Loading`.
     tabulated : ndarray of int, shape (S or 1, m)
         Number of the table of every element, −1 without.
     tables : ndarray, shape (S or 1, tables, 2, points)
@@ -50,22 +50,22 @@ class Numbers:
     carried: Array
 
     @classmethod
-    def of(cls, elements: Elements, situations: Situations) -> Numbers:
+    def of(cls, structure: Structure, situations: Situations) -> Numbers:
         """Collect the numbers of a machine."""
-        data = data_of(elements, situations)
-        carried = data.carried.copy()
-        carried[_idle(elements, situations)] = 0.0
+        loading = loading_of(structure, situations)
+        carried = loading.carried.copy()
+        carried[_idle(structure, situations)] = 0.0
         constant: dict[str, Any] = {
-            "vectors": elements.vectors,
-            "tabulated": data.tabulated,
-            "nominal": data.nominal,
-            "relative": data.relative,
+            "vectors": structure.vectors,
+            "tabulated": loading.tabulated,
+            "nominal": loading.nominal,
+            "relative": loading.relative,
             "carried": carried,
         }
         names = [f.name for f in fields(cls) if f.name not in constant]
         return cls(
             **{name: value[None] for name, value in constant.items()},
-            **{name: getattr(data, name) for name in names},
+            **{name: getattr(loading, name) for name in names},
         )
 
     @classmethod
@@ -80,7 +80,7 @@ class Numbers:
         return Numbers(**{k: v[rows] if len(v) > 1 else v for k, v in every.items()})
 
 
-def _idle(elements: Elements, situations: Situations) -> list[int]:
+def _idle(structure: Structure, situations: Situations) -> list[int]:
     """Radial elements of gears that no shaft and no load turns: no torque passes over them.
 
     The torques of such a gear's meshes balance; their sum is round-off, whose sign says nothing.
@@ -89,10 +89,10 @@ def _idle(elements: Elements, situations: Situations) -> list[int]:
     turned = {gear for s in train.shafts.values() for gear in (s.first, s.second)} | {train.output}
     gears = list(train.gears)
     turned |= {gears[k] for k in np.flatnonzero(np.any(situations.torque, axis=0))}
-    return [j for j, radial in enumerate(elements.radials) if radial.gear not in turned]
+    return [j for j, radial in enumerate(structure.radials) if radial.gear not in turned]
 
 
-def elements_like(base: Elements, train: Train) -> Elements:
+def structure_like(base: Structure, train: Train) -> Structure:
     """Return the elements of a train that differs from another in an input, in its units.
 
     Raises
@@ -100,7 +100,7 @@ def elements_like(base: Elements, train: Train) -> Elements:
     ValueError
         If it has other elements.
     """
-    mine = elements_of(train)
+    mine = structure_of(train)
     if mine.kinds != base.kinds or mine.coordinates.names != base.coordinates.names:
         raise ValueError("the parameter changes which elements there are")
     return replace(mine, force=base.force, length=base.length)

@@ -17,8 +17,8 @@ import numpy as np
 from loadshare.errors import Refused
 from loadshare.scene.scene import Array
 from loadshare.settings import FOLLOW
-from loadshare.solver.hot import places as at
-from loadshare.study.follow.active import ActiveSet, Codes, read_pieces
+from loadshare.solver.hot import contact_states as at
+from loadshare.study.follow.active import States, WorkingSet, read_pieces
 from loadshare.study.follow.centre import centred
 from loadshare.study.follow.equations import Equations
 from loadshare.study.follow.gauges import gauges_at
@@ -47,7 +47,7 @@ class Point:
     """
 
     value: float
-    active: ActiveSet
+    active: WorkingSet
     z: Array
     worst: float
 
@@ -69,8 +69,8 @@ class Change:
     """
 
     value: float
-    before: ActiveSet
-    after: ActiveSet
+    before: WorkingSet
+    after: WorkingSet
     confirmed: bool
     worst: float
     apart: float
@@ -106,7 +106,7 @@ class Search:
         self.least = FOLLOW.least * max(abs(low), abs(high))
         self.changes: list[Change] = []
         self.gaps: list[Gap] = []
-        self._equations: dict[ActiveSet, Equations] = {}
+        self._equations: dict[WorkingSet, Equations] = {}
         self._hints: dict[tuple[float, float], float] = {}
         self._sharp: dict[float, bool] = {}
 
@@ -150,12 +150,12 @@ class Search:
             if isinstance(answer, Solved):
                 solved[k] = answer
             found.append(Missing(answer.value, UNREAD) if k in solved else answer)  # type: ignore[arg-type]
-        waiting = [(k, tuple(s.code.tolist()), s.x) for k, s in solved.items()]
+        waiting = [(k, tuple(s.states.tolist()), s.x) for k, s in solved.items()]
         for _ in range(3):
-            groups: dict[ActiveSet, list[tuple[int, Array]]] = {}
-            for k, code, x in waiting:
+            groups: dict[WorkingSet, list[tuple[int, Array]]] = {}
+            for k, states, x in waiting:
                 numbers = self.line.numbers(self.position, values[[k]])
-                groups.setdefault(self._set(code, x, numbers), []).append((k, x))
+                groups.setdefault(self._set(states, x, numbers), []).append((k, x))
             waiting = []
             for active, members in groups.items():
                 rows = [k for k, _ in members]
@@ -166,44 +166,44 @@ class Search:
                 carries = self._carrying(equations, z, numbers)
                 z = centred(equations, z, numbers)
                 for i in np.flatnonzero(good).tolist():
-                    k, x, code = rows[i], z[i, : equations.n], tuple(carries[i].tolist())
-                    if self._set(code, x, numbers.take(slice(i, i + 1))) == active:
+                    k, x, states = rows[i], z[i, : equations.n], tuple(carries[i].tolist())
+                    if self._set(states, x, numbers.take(slice(i, i + 1))) == active:
                         found[k] = Point(solved[k].value, active, z[i], solved[k].worst)
                     else:
-                        waiting.append((k, code, x))
+                        waiting.append((k, states, x))
         return found
 
-    def _set(self, code: tuple[int, ...], x: Array, numbers: Numbers) -> ActiveSet:
-        """Active set of a code at one value."""
-        pieces = read_pieces(self.line.elements, numbers, code, x)
-        return ActiveSet(code, pieces)
+    def _set(self, states: tuple[int, ...], x: Array, numbers: Numbers) -> WorkingSet:
+        """Active set of contact states at one value."""
+        pieces = read_pieces(self.line.structure, numbers, states, x)
+        return WorkingSet(states, pieces)
 
-    def _carrying(self, equations: Equations, z: Array, numbers: Numbers) -> Codes:
-        """Codes (S, switches) of the elements that carry something at points z."""
-        code = np.repeat(equations.code[None], len(z), axis=0)
+    def _carrying(self, equations: Equations, z: Array, numbers: Numbers) -> States:
+        """Contact states (S, switches) of the elements that carry something at points z."""
+        states = np.repeat(equations.states[None], len(z), axis=0)
         state = equations.state(z, numbers)
         push = np.abs(numbers.load).max(axis=1, initial=0.0)
         band = FOLLOW.idle * np.where(push > 0.0, push, 1.0)
-        springs = equations.elements.springs
+        springs = equations.structure.springs
         columns = np.arange(springs, equations.scalars)
         moved = np.abs(state.approach[:, columns])
         moved[:, np.isin(columns, equations.rigid)] = 0.0
         idle = (np.abs(state.force[:, columns]) <= band[:, None]) & (moved <= FOLLOW.idle)
-        code[:, : len(columns)][idle] = at.OPEN
+        states[:, : len(columns)][idle] = at.OPEN
         for k, where in equations.polar_at.items():
             loose = np.abs(state.polars[k].size) <= band
             if k in equations.arcs and where is None:
                 loose &= np.abs(state.margin[k]) <= FOLLOW.idle
-            elif k in equations.radials and equations.code[k] != at.WALL:
+            elif k in equations.radials and equations.states[k] != at.WALL:
                 # Whether it slips or sticks hangs on rounding once its friction is gone.
                 loose &= np.abs(state.laws[k].bound) <= band
-            code[loose, k] = at.OPEN
-        return code
+            states[loose, k] = at.OPEN
+        return states
 
-    def equations(self, active: ActiveSet) -> Equations:
+    def equations(self, active: WorkingSet) -> Equations:
         """Return the equations of a set, set up once."""
         if active not in self._equations:
-            self._equations[active] = Equations(self.line.elements, active, self._anywhere)
+            self._equations[active] = Equations(self.line.structure, active, self._anywhere)
         return self._equations[active]
 
     # --- Proofs ---------------------------------------------------------------------------------
@@ -224,7 +224,7 @@ class Search:
         first, last = gap.first, gap.last
         if not (isinstance(first, Point) and isinstance(last, Point)):
             return None
-        if first.active.code == last.active.code:
+        if first.active.states == last.active.states:
             return None
         # What was found last was found from nearest.
         value = 0.5 * (first.value + last.value)
@@ -242,7 +242,7 @@ class Search:
 
     def _proved_alike(self, stretches: list[Stretch]) -> list[Stretch]:
         """Prove those whose ends stand on one set, and return the others."""
-        groups: dict[ActiveSet, list[tuple[Point, Point]]] = {}
+        groups: dict[WorkingSet, list[tuple[Point, Point]]] = {}
         left: list[Stretch] = []
         for first, last in stretches:
             if isinstance(first, Point) and isinstance(last, Point) and first.active == last.active:
@@ -256,14 +256,14 @@ class Search:
             left += [s for s in failed if not self._hidden(active, s)]
         return left
 
-    def _hidden(self, active: ActiveSet, stretch: tuple[Point, Point]) -> bool:
+    def _hidden(self, active: WorkingSet, stretch: tuple[Point, Point]) -> bool:
         """Give up a stretch at both ends of which round-off alone leaves no enclosure."""
         if any(self._is_sharp(active, point) for point in stretch):
             return False
         self.gaps.append(Gap(*stretch, "round-off hides what holds its bodies"))
         return True
 
-    def _is_sharp(self, active: ActiveSet, point: Point) -> bool:
+    def _is_sharp(self, active: WorkingSet, point: Point) -> bool:
         """Whether a point is enclosed by itself."""
         if point.value not in self._sharp:
             ends = [(point.value, point.value, point.z, point.z)]
@@ -289,7 +289,7 @@ class Search:
             return False
         apart = float(max(value - first.value, last.value - value))
         worst = max(first.worst, last.worst)
-        if first.active.code != last.active.code:
+        if first.active.states != last.active.states:
             self.changes.append(Change(value, first.active, last.active, True, worst, apart))
         return True
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from loadshare.scene.scene import Array
 from loadshare.settings import FOLLOW
-from loadshare.solver.hot import places as at
+from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.equations import Equations
 from loadshare.study.follow.numbers import Numbers
 from loadshare.study.follow.ranges import Enclosure, Range, sampled
@@ -85,7 +85,7 @@ class Stretches:
         e = self.equations
         turning = (at.SLIP, at.STOP, at.WALL, at.CORNER)
         acting = e.polar_at.items()
-        return [(k, w) for k, w in acting if k in e.arcs or int(e.code[k]) in turning]
+        return [(k, w) for k, w in acting if k in e.arcs or int(e.states[k]) in turning]
 
     def around(self, k: int, dev: Array) -> tuple[Array, Array, Array]:
         """Distance of an offset from its middle, its radius there, and how far its way turns."""

@@ -8,14 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from loadshare.scene.elements import Elements, elements_of
 from loadshare.scene.scene import Array
+from loadshare.scene.structure import Structure, structure_of
 from loadshare.settings import SENSITIVITY
-from loadshare.solver.hot import places as at
-from loadshare.study.follow.active import ActiveSet, coordinates, read_code, read_pieces
+from loadshare.solver.hot import contact_states as at
+from loadshare.study.follow.active import WorkingSet, coordinates, read_code, read_pieces
 from loadshare.study.follow.equations import Equations
 from loadshare.study.follow.gauges import gauges_at
-from loadshare.study.follow.numbers import Numbers, elements_like
+from loadshare.study.follow.numbers import Numbers, structure_like
 from loadshare.study.follow.stretches import Stretches
 from loadshare.train import Train
 from loadshare.train.equilibrium import Equilibrium
@@ -35,17 +35,17 @@ class Setting:
     Attributes
     ----------
     train : Train
-    elements : Elements
+    structure : Structure
         Of the train at the input's own value: coordinates and units are the same at all values.
     numbers : Numbers
     """
 
     train: Train
-    elements: Elements
+    structure: Structure
     numbers: Numbers
 
     @classmethod
-    def at(cls, train: Train, position: int, base: Elements | None = None) -> Setting:
+    def at(cls, train: Train, position: int, base: Structure | None = None) -> Setting:
         """Return a train at a position (1-based).
 
         Parameters
@@ -60,21 +60,21 @@ class Setting:
         ValueError
             If it has other elements than these.
         """
-        own = elements_of(train) if base is None else elements_like(base, train)
+        own = structure_of(train) if base is None else structure_like(base, train)
         return cls(train, base or own, Numbers.of(own, situation_of(train, position)))
 
     @cached_property
     def levers(self) -> Array:
         """Torques of the meshes [N·m] per unit of every flank's force, shape (meshes, scalars)."""
-        meshes, columns = self.train.meshes.values(), self.elements.columns
+        meshes, columns = self.train.meshes.values(), self.structure.columns
         found = np.zeros((len(meshes), columns.flat.stop))
         flanks = {
             name: k
-            for k, name in enumerate(self.elements.names[columns.flanks], columns.flanks.start)
+            for k, name in enumerate(self.structure.names[columns.flanks], columns.flanks.start)
         }
         for row, mesh in zip(found, meshes, strict=True):
             for drive in mesh.flanks:
-                row[flanks[mesh.flank_name(drive)]] = mesh.lever(drive) * self.elements.force
+                row[flanks[mesh.flank_name(drive)]] = mesh.lever(drive) * self.structure.force
         return found
 
     def branch_of(self, found: Equilibrium) -> tuple[Branch, Array]:
@@ -88,14 +88,14 @@ class Setting:
         branch = Branch(self, self.active_set(found))
         return branch, branch.solve(self._x(found))
 
-    def active_set(self, found: Equilibrium) -> ActiveSet:
+    def active_set(self, found: Equilibrium) -> WorkingSet:
         """Read the active set of a certified equilibrium."""
-        elements, numbers, x = self.elements, self.numbers, self._x(found)
-        code = tuple(read_code(elements, numbers, found, x).tolist())
-        return ActiveSet(code, read_pieces(elements, numbers, code, x))
+        structure, numbers, x = self.structure, self.numbers, self._x(found)
+        states = tuple(read_code(structure, numbers, found, x).tolist())
+        return WorkingSet(states, read_pieces(structure, numbers, states, x))
 
     def _x(self, found: Equilibrium) -> Array:
-        return coordinates(self.elements, found)
+        return coordinates(self.structure, found)
 
 
 class Gauge(NamedTuple):
@@ -135,16 +135,16 @@ class Branch:
         If a radial law lacks the step on which the set stands.
     """
 
-    def __init__(self, setting: Setting, active: ActiveSet) -> None:
+    def __init__(self, setting: Setting, active: WorkingSet) -> None:
         self.setting, self.active, self.numbers = setting, active, setting.numbers
-        e = self.equations = Equations(setting.elements, active, setting.numbers)
+        e = self.equations = Equations(setting.structure, active, setting.numbers)
         self.size, self.n = e.size, e.n
         for j, k in enumerate(e.radials):
             law = at.graph(self.numbers.radial[:, j], np.zeros(1))
             rigid = bool(np.isinf(law.last[0]))
             play = float((law.reach if rigid else law.stick)[0])
             on_step = {at.PINNED: play == 0.0, at.WALL: play > 0.0}
-            if not on_step.get(int(e.code[k]), True):
+            if not on_step.get(int(e.states[k]), True):
                 raise BranchLost("a limit without play is another element than one with some")
 
     def figures(self, z: Array) -> Array:
@@ -206,8 +206,8 @@ class Branch:
             k, gradient = gauge.switch, None
             if k in e.arcs and k not in e.polar_at:
                 gradient = -here.along[k][0] @ e.matrix(k, self.numbers)[0]
-            elif k < e.arcs.start and e.code[k] == at.OPEN:
-                gradient = here.vectors[0, e.elements.springs + k]
+            elif k < e.arcs.start and e.states[k] == at.OPEN:
+                gradient = here.vectors[0, e.structure.springs + k]
             # What the coordinates cannot close is none.
             if gradient is None or gradient.any():
                 gauges[k, gauge.to] = Gauge(k, float(gauge.first[0]), gradient)

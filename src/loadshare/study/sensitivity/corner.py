@@ -68,7 +68,7 @@ class Corner:
         self.train, self.position = train, position
         self._answer = certified(train, position).equilibrium
         setting = Setting.at(train, position)
-        self.elements = setting.elements
+        self.structure = setting.structure
         self.neighbourhood = Neighbourhood(setting, self._answer)
         self.torque = torques_of(train, self._answer)
         self.remarks: list[Remark] = []
@@ -87,7 +87,7 @@ class Corner:
         CaseError
             If the input can be varied to neither side.
         """
-        varied = Variation(trains, value, self.position, self.elements)
+        varied = Variation(trains, value, self.position, self.structure)
         found: dict[str, Rates] = {}
         both: Rates | None = None
         for side, sign in zip(SIDES, (-1.0, 1.0), strict=True):
@@ -155,7 +155,7 @@ class Corner:
         branch, size = motion.branch, motion.branch.size
         gradients = branch.torque_gradients(motion.z)
         direct_error = motion.change.error[size:]
-        torque, length = motion.torque, self.elements.length
+        torque, length = motion.torque, self.structure.length
         off = [other.torque - torque for other in motion.beside]
 
         def bound(weights: Array) -> Array:
@@ -165,7 +165,7 @@ class Corner:
         loose = self._loose(floating)
         moved = {g: np.zeros(2) for g in self.train.gears}
         error = {g: np.zeros(2) for g in self.train.gears}
-        for gear, where in self.elements.coordinates.displacement.items():
+        for gear, where in self.structure.coordinates.displacement.items():
             pick = np.eye(size)[where]
             moved[gear] = np.where(loose[gear], np.nan, pick @ motion.rate * length)
             apart = _largest([other.rate[where] - motion.rate[where] for other in motion.beside])
@@ -216,7 +216,7 @@ class Corner:
         place = self.neighbourhood.own
         if place is not None:
             moves = np.abs(place.tangent.loose).max(axis=1, initial=0.0) > SENSITIVITY.loose
-            for gear, where in self.elements.coordinates.displacement.items():
+            for gear, where in self.structure.coordinates.displacement.items():
                 loose[gear] = loose[gear] | moves[where]
         return loose
 

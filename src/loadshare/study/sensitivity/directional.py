@@ -23,8 +23,8 @@ import numpy as np
 from loadshare.errors import CaseError, Refused
 from loadshare.scene.scene import Array
 from loadshare.settings import SENSITIVITY
-from loadshare.solver.hot import places as at
-from loadshare.study.follow.active import ActiveSet, read_pieces, switch_names
+from loadshare.solver.hot import contact_states as at
+from loadshare.study.follow.active import WorkingSet, read_pieces, switch_names
 from loadshare.study.sensitivity.branch import Branch, BranchLost, Gauge, Setting
 from loadshare.study.sensitivity.differences import Derivative, Slope
 from loadshare.train.equilibrium import Equilibrium
@@ -212,7 +212,7 @@ class Neighbourhood:
             self.own = Point(*setting.branch_of(found))
         except BranchLost:
             return
-        names = switch_names(setting.elements)
+        names = switch_names(setting.structure)
         near = [g for g in self.own.gauges().values() if abs(g.value) <= SENSITIVITY.verge]
         loose = self.own.tangent.loose
         self.verge = tuple(dict.fromkeys(names[g.switch] for g in near if g.closing(loose) is None))
@@ -268,7 +268,7 @@ class Neighbourhood:
             return None
         elements: tuple[str, ...] = ()
         if self.own is not None:
-            elements = self.own.branch.active.changes(branch.active, self._setting.elements)
+            elements = self.own.branch.active.changes(branch.active, self._setting.structure)
         one_sided = bool(verge or elements)
         beside = tuple(self._with(point, still, sign, varied))
         return Motion(branch, z, tangent, rate, error, slope, elements, one_sided, beside)
@@ -285,15 +285,15 @@ class Neighbourhood:
         self, point: Point, still: tuple[tuple[int, int], ...], sign: float, varied: Varied
     ) -> Iterator[Motion]:
         """Yield motions with elements in their other states, together and alone, if these hold."""
-        elements, numbers = self._setting.elements, self._setting.numbers
+        elements, numbers = self._setting.structure, self._setting.numbers
         x = point.z[: point.branch.n]
         for changes in (still, *((one,) for one in still if len(still) > 1)) if still else ():
-            code = list(point.branch.active.code)
+            states = list(point.branch.active.states)
             for switch, to in changes:
-                code[switch] = to
-            pieces = read_pieces(elements, numbers, tuple(code), x)
+                states[switch] = to
+            pieces = read_pieces(elements, numbers, tuple(states), x)
             try:
-                active = ActiveSet(tuple(code), pieces, point.branch.active.tied)
+                active = WorkingSet(tuple(states), pieces, point.branch.active.tied)
                 branch = Branch(self._setting, active)
                 other = Point(branch, branch.solve(x), point.idle)
                 change = varied.change(branch, other.z)
@@ -390,9 +390,9 @@ class Neighbourhood:
     def _soft(self, branch: Branch) -> frozenset[int]:
         """Closed contacts that carry nothing at the value itself under a law soft at first."""
         assert self.own is not None
-        springs, own = branch.equations.elements.springs, self.own.branch.equations
+        springs, own = branch.equations.structure.springs, self.own.branch.equations
         curved = (branch.equations.curved - springs).tolist()
-        return frozenset(k for k in curved if k >= 0 and own.code[k] == at.OPEN)
+        return frozenset(k for k in curved if k >= 0 and own.states[k] == at.OPEN)
 
     def _back(
         self,
@@ -405,8 +405,8 @@ class Neighbourhood:
     ) -> Point:
         """Follow a set back to the value: three points on its branch, and Newton's method."""
         idle = soft - tied
-        code = tuple(at.OPEN if k in idle else c for k, c in enumerate(branch.active.code))
-        active = replace(branch.active, code=code, tied=tied)
+        states = tuple(at.OPEN if k in idle else c for k, c in enumerate(branch.active.states))
+        active = replace(branch.active, states=states, tied=tied)
         here = Branch(self._setting, active)
         branch_points = []
         for share in (1.0, 0.5, 0.25):

@@ -10,11 +10,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import lru_cache
 
-from loadshare.scene.elements import Elements
 from loadshare.scene.scene import Array
+from loadshare.scene.structure import Structure
 from loadshare.settings import SENSITIVITY
 from loadshare.study.answers import certified
-from loadshare.study.follow.active import ActiveSet
+from loadshare.study.follow.active import WorkingSet
 from loadshare.study.parameter import Value
 from loadshare.study.sensitivity.branch import Branch, BranchLost, Setting
 from loadshare.study.sensitivity.differences import Derivative, differentiate
@@ -32,25 +32,25 @@ class Variation:
     value : Value
     position : int
         1-based.
-    elements : Elements
+    structure : Structure
         At the value itself.
     """
 
     def __init__(
-        self, trains: Callable[[float], Train], value: Value, position: int, elements: Elements
+        self, trains: Callable[[float], Train], value: Value, position: int, structure: Structure
     ) -> None:
         self._trains, self.value, self.position = trains, value, position
-        self._elements = elements
+        self._structure = structure
         self.cycle = trains(value.number).mesh_positions(position)
         self._setting = lru_cache(maxsize=None)(self._at)
-        self._changes: dict[tuple[ActiveSet, bytes], Derivative] = {}
+        self._changes: dict[tuple[WorkingSet, bytes], Derivative] = {}
 
     def _number(self, amount: float) -> float:
         return self.value.number + amount / self.value.factor
 
     def _at(self, number: float) -> Setting:
         train = held(self._trains(number), self.cycle)
-        return Setting.at(train, self.position, self._elements)
+        return Setting.at(train, self.position, self._structure)
 
     def setting(self, amount: float) -> Setting:
         """Return the train with the input moved by an amount [SI]."""

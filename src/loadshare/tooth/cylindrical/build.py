@@ -17,9 +17,9 @@ from loadshare.tooth.geometry.involute import inv
 from loadshare.tooth.problems import (
     Check,
     degrees,
+    digits,
     failed,
     millimetres,
-    plain,
     problem,
     refuse,
     same,
@@ -120,7 +120,7 @@ def _no_working_angle(driver: HelicoidGear, driven: HelicoidGear) -> Problem:
         "driven.profile_shift",
         driven.profile_shift,
         "the base circles would have to overlap for the gears to mesh without backlash",
-        f"{'more' if teeth > 0 else 'less'} than {plain(least)} with the driver's profile shift",
+        f"{'more' if teeth > 0 else 'less'} than {digits(least)} with the driver's profile shift",
         "Or give the centre distance.",
     )
 
@@ -161,13 +161,13 @@ def _tip_problems(
     if other.kind * (other.tip_roll - limit) > 1e-9:
         largest = other.addendum_to(other.base_radius * math.hypot(1.0, limit))
         cuts = f"the tip of this gear cuts into the root fillet of the {name}"
-        yield problem(key, other.addendum, cuts, f"at most {plain(largest)}")
+        yield problem(key, other.addendum, cuts, f"at most {digits(largest)}")
     # Inside an internal gear the centres are nearer one another than the circles.
     clearance = gear.kind * (pair.actual_distance - gear.root) - other.tip
     if other.internal:
         clearance = other.tip - pair.actual_distance - gear.root
     if clearance <= 0.0:
-        allowed = f"less than {plain(other.addendum + clearance / other.module)}"
+        allowed = f"less than {digits(other.addendum + clearance / other.module)}"
         runs = f"the tip of this gear runs into the root of the {name}"
         yield problem(key, other.addendum, runs, allowed)
 

@@ -9,7 +9,7 @@ from loadshare.errors import Problem
 from loadshare.tooth.cylindrical.body import fillet_angle, rack_tip_half_width
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.geometry.involute import inverse_inv
-from loadshare.tooth.problems import Check, failed, millimetres, plain, problem
+from loadshare.tooth.problems import Check, digits, failed, millimetres, problem
 
 
 def gear_problems(gear: HelicoidGear, key: str) -> list[Problem]:
@@ -82,7 +82,7 @@ def _external_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
             f"{key}.tip_radius",
             gear.tip_radius,
             "the tip of the generating rack has no room for this radius",
-            f"at most {plain(largest)} with this dedendum",
+            f"at most {digits(largest)} with this dedendum",
         )
     if gear.profile_shift < gear.least_profile_shift - 1e-12:
         yield problem(
@@ -93,7 +93,7 @@ def _external_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
             "A smaller dedendum, a larger tip radius or more teeth help too.",
         )
     if gear.tip <= gear.base_radius:
-        least = plain(gear.addendum_to(gear.base_radius))
+        least = digits(gear.addendum_to(gear.base_radius))
         inside = "the tip lies inside the base circle"
         yield problem(addendum, gear.addendum, inside, f"more than {least}")
     elif gear.base_half_angle <= 0.0 or gear.half_angle(gear.tip) <= 0.0:
@@ -105,7 +105,7 @@ def _external_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
             addendum,
             gear.addendum,
             "the teeth are pointed below this tip",
-            f"less than {plain(largest)} with this profile shift",
+            f"less than {digits(largest)} with this profile shift",
             "A smaller profile shift helps too.",
         )
 
@@ -113,7 +113,7 @@ def _external_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
 def _internal_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
     addendum = f"{key}.addendum"
     if gear.tip < gear.base_radius:
-        largest = plain(gear.addendum_to(gear.base_radius))
+        largest = digits(gear.addendum_to(gear.base_radius))
         inside = "the tips reach inside the base circle, where there is no involute"
         yield problem(addendum, gear.addendum, inside, f"at most {largest}")
     elif gear.half_angle(gear.tip) <= 0.0:

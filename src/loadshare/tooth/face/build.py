@@ -19,9 +19,9 @@ from loadshare.tooth.geometry.involute import inv
 from loadshare.tooth.problems import (
     Check,
     degrees,
+    digits,
     failed,
     millimetres,
-    plain,
     problem,
     refuse,
     same,
@@ -120,7 +120,7 @@ def _shift_problems(pinion: HelicoidGear, shaper: Shaper) -> Iterator[Problem]:
     excess = pinion.profile_shift - shaper.profile_shift
     room = 0.5 * teeth * inv(shaper.pressure_angle) / math.tan(shaper.pressure_angle)
     if not (excess <= 1e-12 if teeth == 0 else excess < room):
-        largest = plain(shaper.profile_shift + room)
+        largest = digits(shaper.profile_shift + room)
         yield problem(
             "driver.profile_shift",
             pinion.profile_shift,
@@ -188,7 +188,7 @@ def _contact_problems(pair: FaceGearPair) -> Iterator[Problem]:
             "driver.addendum",
             pinion.addendum,
             "the tip of the pinion cuts into the root of the face gear",
-            f"less than {plain(pinion.addendum_to(tip))} with the shaper's addendum",
+            f"less than {digits(pinion.addendum_to(tip))} with the shaper's addendum",
             "A larger addendum of the shaper makes room.",
         )
     if pair.roll_range[0] < pinion.form_roll - 1e-9:
@@ -198,5 +198,5 @@ def _contact_problems(pair: FaceGearPair) -> Iterator[Problem]:
             "driven.addendum",
             gear.addendum,
             "the tip of the face gear cuts into the root fillet of the pinion",
-            f"less than about {plain((shaper.radius - depth) / shaper.module)}",
+            f"less than about {digits((shaper.radius - depth) / shaper.module)}",
         )

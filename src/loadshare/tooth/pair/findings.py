@@ -11,13 +11,13 @@ from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.cylindrical.pair import HelicoidPair
 from loadshare.tooth.face.flank import tip_half_angle
 from loadshare.tooth.face.pair import FaceGearPair
-from loadshare.tooth.problems import millimetres, plain, problem
+from loadshare.tooth.problems import digits, millimetres, problem
 from loadshare.tooth.unloaded.touch import contact_points
 
 # Tips thinner than this, in modules, are commonly avoided for case-hardened teeth.
 THIN_TIP = 0.2
 # Pairs that touch within this of the first [rad] count as touching.
-TOGETHER = 1e-9
+ROUND_OFF = 1e-9
 
 REMEDY = {
     "face": "Crown the flank along the lead, relieve its ends, or make the misalignment smaller.",
@@ -90,14 +90,14 @@ def edge_contacts(pair: HelicoidPair | FaceGearPair, positions: int = 16) -> tup
         points = contact_points(pair, float(phase))
         first = min(point.lead for point in points)
         for point in points:
-            if point.edge and point.lead <= first + TOGETHER:
+            if point.edge and point.lead <= first + ROUND_OFF:
                 phases.setdefault(point.edge, []).append(float(phase))
     return tuple(
         problem(
             edge.replace(" ", ".", 1).replace(" ", "_"),
             "",
             f"the unloaded flanks touch first at the {edge}, at "
-            f"{len(where)} of {positions} positions (phase {plain(where[0])} first)",
+            f"{len(where)} of {positions} positions (phase {digits(where[0])} first)",
             "contact within both active flanks",
             REMEDY[edge.split(" ", 1)[1]],
         )

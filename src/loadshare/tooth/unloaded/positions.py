@@ -15,7 +15,7 @@ from loadshare.errors import Problem
 from loadshare.tooth.geometry.body import Array, ToothBody
 from loadshare.tooth.geometry.flank import Patch, cross, dot, relative_curvature, unit
 from loadshare.tooth.geometry.gap import FEWEST, Extents, NoContactError, Trace, least_gap
-from loadshare.tooth.problems import plain, problem
+from loadshare.tooth.problems import digits, problem
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -347,7 +347,7 @@ def meeting_problems(pair: GearPair) -> list[Problem]:
     except NoContactError as error:
         name, value = next(iter(off.items()))
         alone = len(off) == 1
-        key, given = (f"misalignment.{name}", plain(value)) if alone else ("misalignment", "")
+        key, given = (f"misalignment.{name}", digits(value)) if alone else ("misalignment", "")
         return [problem(key, given, str(error), "less; wider faces or longer teeth help too")]
     return []
 

@@ -22,7 +22,7 @@ from loadshare.settings import BOUND, CERTIFY
 
 
 @compiled
-def find_all(of, here, claim, sheet, found, sets):  # type: ignore[no-untyped-def]
+def find_all(of, here, claim, work, found, sets):  # type: ignore[no-untyped-def]
     """Put all claims into figures; returns how many sets of elements act in them.
 
     Products with A and its transpose are those of some claims side by side; the rest goes claim by
@@ -32,33 +32,33 @@ def find_all(of, here, claim, sheet, found, sets):  # type: ignore[no-untyped-de
     for first in range(0, claims, BOUND.abreast):
         width = min(BOUND.abreast, claims - first)
         for v in range(width):
-            put_places(of, here, claim, first + v, sheet, v, found)
-        put_lengths(of, sheet, width)
+            put_places(of, here, claim, first + v, work, v, found)
+        put_lengths(of, work, width)
         for v in range(width):
             s = first + v
             top = _loads(of, here, claim, s, found)
-            limits, approach = put_limits(of, here, s, sheet, v)
-            widest, behind = put_gaps(of, here, s, sheet, v)
-            _acts(of, here, claim, s, sheet, found, top, approach, widest)
-            longest, lawful, covered = put_pulls(of, here, claim, s, sheet, v, found, top, widest)
+            limits, approach = put_limits(of, here, s, work, v)
+            widest, behind = put_gaps(of, here, s, work, v)
+            _acts(of, here, claim, s, work, found, top, approach, widest)
+            longest, lawful, covered = put_pulls(of, here, claim, s, work, v, found, top, widest)
             count, last = _numbered(s, found.acts, sets, count, last)
             found.number[s] = last
-            yielded, bent, seen = put_contacts(of, here, claim, s, sheet, v, found, sets)
-            further = put_springs(of, here, claim, s, sheet, v, found, sets)
+            yielded, bent, seen = put_contacts(of, here, claim, s, work, v, found, sets)
+            further = put_springs(of, here, claim, s, work, v, found, sets)
             for q in range(len(of.pull_gear)):
-                at, soft = len(of.twin) + len(of.spring) + q, sheet.stiffest[q]
+                at, soft = len(of.twin) + len(of.spring) + q, work.stiffest[q]
                 spread(sets, found.number[s], at, soft, soft)
             found.residual[s] = 0.0 if lawful and covered else np.inf
             found.width[s] = EPS * (found.width[s] + limits + longest + max(yielded, further))
             deflection = max(bent, found.deflection[s])
             deflection = deflection if deflection > 0.0 else CERTIFY.least_deflection
-            worst = worst_residual(of, here, claim, s, sheet, v, found, deflection, seen)
+            worst = worst_residual(of, here, claim, s, work, v, found, deflection, seen)
             found.worst[s] = worst if lawful and not behind else np.inf
             found.deflection[s] = deflection
-            found.displaced[s] = displaced(of, claim, s, sheet, v, deflection)
-        put_pushes(of, sheet, width)
+            found.displaced[s] = displaced(of, claim, s, work, v, deflection)
+        put_pushes(of, work, width)
         for v in range(width):
-            put_balance(of, here, first + v, sheet, v, found)
+            put_balance(of, here, first + v, work, v, found)
     return count
 
 
@@ -79,9 +79,9 @@ def _loads(of, here, claim, s, found):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _acts(of, here, claim, s, sheet, found, top, deflection, widest):  # type: ignore[no-untyped-def]
+def _acts(of, here, claim, s, work, found, top, deflection, widest):  # type: ignore[no-untyped-def]
     """Tell which contacts act, as `quick` does, and by how much the others are apart."""
-    flanks, acts, gap = len(of.arm), found.acts, sheet.gap
+    flanks, acts, gap = len(of.arm), found.acts, work.gap
     for c in range(len(of.twin)):
         force = abs(contact_force(of, claim, s, c))
         faint = force <= BOUND.noise * top and gap[c] > BOUND.apart * deflection

@@ -21,7 +21,7 @@ from loadshare.settings import BOUND, CERTIFY
 
 
 @inlined
-def put_contacts(of, here, claim, s, sheet, v, found, sets):  # type: ignore[no-untyped-def]
+def put_contacts(of, here, claim, s, work, v, found, sets):  # type: ignore[no-untyped-def]
     """Forces and misfits of contacts.
 
     Returns their largest compression [m], that of loaded flanks or what remains of their approach
@@ -30,22 +30,22 @@ def put_contacts(of, here, claim, s, sheet, v, found, sets):  # type: ignore[no-
     flanks, contacts, number = len(of.arm), len(of.twin), found.number[s]
     arcs, rw, band = contacts - len(of.apart), row_of(here.wall, s), CERTIFY.band * found.scale[s]
     yielded, bent, weakest, reach, turned, bow = 0.0, 0.0, np.inf, np.inf, 0.0, 0.0
-    length, work, pull, total = 0.0, 0.0, 0.0, 0.0
+    length, energy, pull, total = 0.0, 0.0, 0.0, 0.0
     for c in range(contacts):
         acts = found.acts[s, c] != OPEN
         claimed = contact_force(of, claim, s, c)
         force = claimed if acts else 0.0
         pull, total, misfit = max(pull, -claimed), total + claimed, 0.0
         if c < flanks:
-            sheet.force[c, v] = force
+            work.force[c, v] = force
             if claimed > 0.0:
-                bent = max(bent, abs(sheet.at_rest[c, v]))
+                bent = max(bent, abs(work.at_rest[c, v]))
         elif c < arcs:
-            sheet.force[of.first_stop + c - flanks, v] = force
+            work.force[of.first_stop + c - flanks, v] = force
         else:
             k = c - arcs
             for a in range(2):
-                sheet.force[of.first_arc + 2 * k + a, v] = -force * sheet.line[k, a]
+                work.force[of.first_arc + 2 * k + a, v] = -force * work.line[k, a]
         if acts:
             if c < flanks:
                 law = flank_law(of, here, s, c, force, found.scale[s])
@@ -55,33 +55,33 @@ def put_contacts(of, here, claim, s, sheet, v, found, sets):  # type: ignore[no-
                 least = most = here.wall[rw, of.drum[c - flanks]]
                 compression = least * force
                 if c >= arcs:
-                    turned = max(turned, sheet.turn[c - arcs])
+                    turned = max(turned, work.turn[c - arcs])
                     bow = max(bow, abs(force) / of.apart[c - arcs])
             # What opens may move by any length; of two that touch, one takes what the other cannot.
-            if of.twin[c] < 0 or sheet.gap[of.twin[c]] < np.inf:
+            if of.twin[c] < 0 or work.gap[of.twin[c]] < np.inf:
                 reach = min(reach, force if found.acts[s, c] == CLOSED else np.inf)
             # What yields without end carries no load.
             spread(sets, number, c, least, least if found.acts[s, c] == ENDLESS else most)
             weakest, yielded = min(weakest, force), max(yielded, abs(compression))
-            misfit = -sheet.gap[c] - compression
+            misfit = -work.gap[c] - compression
             # With less force than the band it counts as open, as in `residuals`.
             length = max(length, abs(misfit) if force > band else misfit)
-            work, total = max(work, -force * misfit), total + misfit
+            energy, total = max(energy, -force * misfit), total + misfit
             if force == 0.0:
                 misfit = max(misfit, 0.0)
-        elif sheet.gap[c] < np.inf:
-            length, work = max(length, -sheet.gap[c]), max(work, claimed * sheet.gap[c])
+        elif work.gap[c] < np.inf:
+            length, energy = max(length, -work.gap[c]), max(energy, claimed * work.gap[c])
         elif claimed != 0.0:
             # Two opposed contacts carry.
             total = np.nan
         found.misfit[s, c] = misfit
     found.turned[s], found.bow[s], found.reach[s] = turned, bow, reach
     # A contact that pulls is none.
-    return yielded if weakest >= 0.0 else np.inf, bent, (length, work, pull, total)
+    return yielded if weakest >= 0.0 else np.inf, bent, (length, energy, pull, total)
 
 
 @inlined
-def put_springs(of, here, claim, s, sheet, v, found, sets):  # type: ignore[no-untyped-def]
+def put_springs(of, here, claim, s, work, v, found, sets):  # type: ignore[no-untyped-def]
     """Forces and misfits of elastic shafts and bearings; returns their largest deflection [m]."""
     yielded, first = 0.0, len(of.twin)
     for k in range(len(of.spring)):
@@ -93,14 +93,14 @@ def put_springs(of, here, claim, s, sheet, v, found, sets):  # type: ignore[no-u
             soft = 1.0 / here.support[row_of(here.support, s), number, axis]
             force = claim.support_force[s, number, axis]
         spread(sets, found.number[s], first + k, soft, soft)
-        sheet.force[j, v] = force
-        found.misfit[s, first + k] = sheet.length[j, v] - soft * force
+        work.force[j, v] = force
+        found.misfit[s, first + k] = work.length[j, v] - soft * force
         yielded = max(yielded, abs(soft * force))
     return yielded
 
 
 @inlined
-def put_pulls(of, here, claim, s, sheet, v, found, top, widest):  # type: ignore[no-untyped-def]
+def put_pulls(of, here, claim, s, work, v, found, top, widest):  # type: ignore[no-untyped-def]
     """Forces and misfits of radial elements: the point of their graph next to what is claimed.
 
     Returns the largest of their lengths [m], whether their laws have a meaning, and whether they
@@ -112,7 +112,7 @@ def put_pulls(of, here, claim, s, sheet, v, found, top, widest):  # type: ignore
         g, j, rate = of.pull_gear[q], of.first_pull + 2 * q, 0.0
         law = law_of(of, here, claim, s, q)
         stick, level, reach = law[1], law[2], law[3]
-        x, y = sheet.length[j, v] - of.centre[q, 0], sheet.length[j + 1, v] - of.centre[q, 1]
+        x, y = work.length[j, v] - of.centre[q, 0], work.length[j + 1, v] - of.centre[q, 1]
         fx, fy, lifting = 0.0, 0.0, 0.0
         for i in range(3):
             fx -= of.frame[g, 0, i] * claim.radial_reaction[s, q, i]
@@ -144,13 +144,13 @@ def put_pulls(of, here, claim, s, sheet, v, found, top, widest):  # type: ignore
             fx, fy = 0.0, 0.0
             found.room[s] = min(found.room[s], reach - distance)
         longest = max(longest, abs(of.centre[q, 0]) + abs(of.centre[q, 1]) + distance)
-        sheet.force[j, v], sheet.force[j + 1, v] = fx, fy
-        sheet.excess[2 * q, v], sheet.excess[2 * q + 1, v] = claimed_x - fx, claimed_y - fy
+        work.force[j, v], work.force[j + 1, v] = fx, fy
+        work.excess[2 * q, v], work.excess[2 * q + 1, v] = claimed_x - fx, claimed_y - fy
         for k in range(len(law)):
-            sheet.law[q, k] = law[k]
-        sheet.offset[q, 0], sheet.offset[q, 1] = away_x, away_y
-        sheet.pull[q, 0], sheet.pull[q, 1], sheet.pull[q, 2] = claimed_x, claimed_y, lifting
-        sheet.stiffest[q] = stiffest(law)
+            work.law[q, k] = law[k]
+        work.offset[q, 0], work.offset[q, 1] = away_x, away_y
+        work.pull[q, 0], work.pull[q, 1], work.pull[q, 2] = claimed_x, claimed_y, lifting
+        work.stiffest[q] = stiffest(law)
         found.misfit[s, at + 2 * q], found.misfit[s, at + 2 * q + 1] = misfit_x, misfit_y
         found.held[s, q] = np.inf
         if rate > 0.0 and near <= 0.0 and sticks(law, force):
@@ -170,9 +170,9 @@ def spread(sets, number, at, least, most):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def put_pushes(of, sheet, width):  # type: ignore[no-untyped-def]
+def put_pushes(of, work, width):  # type: ignore[no-untyped-def]
     """What forces carry of the load at every coordinate [N], and the sizes of its terms."""
-    left, sizes, force = sheet.left, sheet.sizes, sheet.force
+    left, sizes, force = work.left, work.sizes, work.force
     for c in range(len(left)):
         for v in range(width):
             left[c, v] = sizes[c, v] = 0.0
@@ -186,15 +186,15 @@ def put_pushes(of, sheet, width):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def put_balance(of, here, s, sheet, v, found):  # type: ignore[no-untyped-def]
+def put_balance(of, here, s, work, v, found):  # type: ignore[no-untyped-def]
     """Load that is left over [N]: the largest, with its rounding; and over the load of the case."""
-    left, sizes, largest, r = sheet.left, sheet.sizes, 0.0, row_of(here.torque, s)
+    left, sizes, largest, r = work.left, work.sizes, 0.0, row_of(here.torque, s)
     for k in range(len(of.load)):
         due, c = here.torque[r, of.load[k, 1]] / of.load_radius[k], of.load[k, 0]
         left[c, v] += due
         sizes[c, v] += abs(due)
-    for j in range(len(sheet.force)):
-        largest = max(largest, abs(sheet.force[j, v]))
+    for j in range(len(work.force)):
+        largest = max(largest, abs(work.force[j, v]))
     residual, rounding, total = 0.0, 0.0, 0.0
     for c in range(len(left)):
         found.left[s, c] = left[c, v]
@@ -204,7 +204,7 @@ def put_balance(of, here, s, sheet, v, found):  # type: ignore[no-untyped-def]
     found.push[s], found.rounding[s] = largest, rounding + EPS * residual
     for j in range(2 * len(of.pull_gear)):
         # What is claimed leaves it over, not the point of the graph next to it.
-        left[of.at[of.start[of.first_pull + j]], v] -= sheet.excess[j, v]
+        left[of.at[of.start[of.first_pull + j]], v] -= work.excess[j, v]
     unbalanced = 0.0
     for c in range(len(left)):
         unbalanced, total = max(unbalanced, abs(left[c, v])), total + abs(left[c, v])

@@ -9,13 +9,13 @@ from loadshare.certify.bound.kernel.options import inlined
 
 
 @inlined
-def put_places(of, here, claim, s, sheet, v, found):  # type: ignore[no-untyped-def]
+def put_places(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-def]
     """Coordinates, clockings and offsets of a claim [m], and where its gears are.
 
     Writes the sum of the largest sizes of both as its width, and the largest offset of a centre as
     its deflection.
     """
-    x, varying, shift = sheet.x, sheet.varying, sheet.shift
+    x, varying, shift = work.x, work.varying, work.shift
     widest, offsets, furthest, moving = 0.0, 0.0, 0.0, claim.displacement
     for k in range(len(of.turn)):
         x[of.turn[k, 0], v] = of.turn_radius[k] * claim.rotation[s, of.turn[k, 1]]
@@ -43,14 +43,14 @@ def put_places(of, here, claim, s, sheet, v, found):  # type: ignore[no-untyped-
 
 
 @inlined
-def put_lengths(of, sheet, width):  # type: ignore[no-untyped-def]
+def put_lengths(of, work, width):  # type: ignore[no-untyped-def]
     """Lengths A X [m] with clockings and offsets, what of them remains at rest, turns of lines."""
     x, varying, length, at_rest, across = (
-        sheet.x,
-        sheet.varying,
-        sheet.length,
-        sheet.at_rest,
-        sheet.across,
+        work.x,
+        work.varying,
+        work.length,
+        work.at_rest,
+        work.across,
     )
     for j in range(len(length)):
         for v in range(width):
@@ -73,19 +73,19 @@ def put_lengths(of, sheet, width):  # type: ignore[no-untyped-def]
         for k in range(3):
             value, i, j = of.across[e, k], 3 * of.ends[e, 0] + k, 3 * of.ends[e, 1] + k
             for v in range(width):
-                across[e, v] += value * (sheet.shift[i, v] - sheet.shift[j, v])
+                across[e, v] += value * (work.shift[i, v] - work.shift[j, v])
 
 
 @inlined
-def put_limits(of, here, s, sheet, v):  # type: ignore[no-untyped-def]
+def put_limits(of, here, s, work, v):  # type: ignore[no-untyped-def]
     """Take gaps and floats from the lengths [m]; returns the largest, and the largest approach."""
-    limits, approach, length = 0.0, 0.0, sheet.length
+    limits, approach, length = 0.0, 0.0, work.length
     rg, rj, rs = row_of(here.gap, s), row_of(here.backlash, s), row_of(here.stop, s)
     for e in range(len(of.arm)):
         m = of.mesh[e]
         gap = here.gap[rg, m] if of.is_drive[e] else here.backlash[rj, m]
         length[e, v] -= gap
-        sheet.at_rest[e, v] -= gap
+        work.at_rest[e, v] -= gap
         limits, approach = max(limits, abs(gap)), max(approach, length[e, v])
     for d in range(len(of.drum_gear)):
         for side in range(2):
@@ -96,7 +96,7 @@ def put_limits(of, here, s, sheet, v):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def put_gaps(of, here, s, sheet, v):  # type: ignore[no-untyped-def]
+def put_gaps(of, here, s, work, v):  # type: ignore[no-untyped-def]
     """Gaps of flanks, stops and arcs, and unit vectors of the latter.
 
     Returns the widest gap, and whether a gear stands beyond a neighbour on whose ring its own
@@ -104,30 +104,30 @@ def put_gaps(of, here, s, sheet, v):  # type: ignore[no-untyped-def]
     """
     flanks, drums, behind = len(of.arm), len(of.drum_gear), False
     for e in range(flanks):
-        sheet.gap[e] = -sheet.length[e, v]
+        work.gap[e] = -work.length[e, v]
     for k in range(2 * drums):
-        sheet.gap[flanks + k] = -sheet.length[of.first_stop + k, v]
+        work.gap[flanks + k] = -work.length[of.first_stop + k, v]
     ra, rc = row_of(here.arc_shift, s), row_of(here.arc_clearance, s)
     for k in range(2 * drums):
         d, side = k // 2, k % 2
         apart, along, square = of.apart[k], 0.0, 0.0
         for a in range(2):
-            moved = sheet.length[of.first_arc + 2 * k + a, v]
+            moved = work.length[of.first_arc + 2 * k + a, v]
             for i in range(3):
                 moved += of.frame[of.drum_gear[d], a, i] * here.arc_shift[ra, d, side, i]
-            sheet.line[k, a] = moved
+            work.line[k, a] = moved
             along += of.nominal[k, a] * moved
             square += moved * moved
         behind |= not apart * apart + along > 0.0
         length = np.sqrt(apart * apart + 2.0 * along + square)
         longer = (2.0 * along + square) / (length + apart)
-        sheet.turn[k] = 0.0
+        work.turn[k] = 0.0
         for a in range(2):
-            turned = (sheet.line[k, a] - longer * of.nominal[k, a] / apart) / length
-            sheet.turn[k] = max(sheet.turn[k], abs(turned))
-            sheet.line[k, a] = of.nominal[k, a] / apart + turned
-        sheet.gap[flanks + 2 * drums + k] = longer + here.arc_clearance[rc, d, side]
+            turned = (work.line[k, a] - longer * of.nominal[k, a] / apart) / length
+            work.turn[k] = max(work.turn[k], abs(turned))
+            work.line[k, a] = of.nominal[k, a] / apart + turned
+        work.gap[flanks + 2 * drums + k] = longer + here.arc_clearance[rc, d, side]
     widest = 0.0
-    for c in range(len(sheet.gap)):
-        widest = max(widest, abs(sheet.gap[c]))
+    for c in range(len(work.gap)):
+        widest = max(widest, abs(work.gap[c]))
     return widest, behind

@@ -10,13 +10,13 @@ from loadshare.settings import CERTIFY
 
 
 @inlined
-def worst_residual(of, here, claim, s, sheet, v, found, deflection, seen):  # type: ignore[no-untyped-def]
+def worst_residual(of, here, claim, s, work, v, found, deflection, seen):  # type: ignore[no-untyped-def]
     """Largest scaled residual of a claim but of balance: of laws, signs, and what is no column.
 
     Not a number where something claimed is none, and where two opposed contacts carry: these are
     for `residuals`.
     """
-    load, (length, work, pull, total) = found.scale[s], seen
+    load, (length, energy, pull, total) = found.scale[s], seen
     for k in range(found.misfit.shape[1]):
         total += found.misfit[s, k]
     for k in range(len(of.twin), len(of.twin) + len(of.spring)):
@@ -24,16 +24,16 @@ def worst_residual(of, here, claim, s, sheet, v, found, deflection, seen):  # ty
     strayed, free = _strayed(of, here, claim, s), _free(of, here, claim, s)
     length, force, band = max(length, strayed), max(pull, free), CERTIFY.band * deflection
     for q in range(len(of.pull_gear)):
-        force = max(force, _excess(sheet.law[q], sheet.offset[q], sheet.pull[q], band))
-        total += sheet.pull[q, 2]
-        if np.isinf(sheet.law[q, 4]):
-            x, y = sheet.offset[q, 0], sheet.offset[q, 1]
-            length = max(length, np.sqrt(x * x + y * y) - sheet.law[q, 3])
+        force = max(force, _excess(work.law[q], work.offset[q], work.pull[q], band))
+        total += work.pull[q, 2]
+        if np.isinf(work.law[q, 4]):
+            x, y = work.offset[q, 0], work.offset[q, 1]
+            length = max(length, np.sqrt(x * x + y * y) - work.law[q, 3])
     for d in of.squeezed:
-        force = max(force, _squeeze(of, here, claim, s, sheet, d, band))
-    worst = max(max(force / load, length / deflection), work / (load * deflection))
-    for c in range(len(sheet.x)):
-        total += sheet.x[c, v]
+        force = max(force, _squeeze(of, here, claim, s, work, d, band))
+    worst = max(max(force / load, length / deflection), energy / (load * deflection))
+    for c in range(len(work.x)):
+        total += work.x[c, v]
     return worst + 0.0 * (total + strayed + free)
 
 
@@ -110,7 +110,7 @@ def _free(of, here, claim, s):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _squeeze(of, here, claim, s, sheet, d, band):  # type: ignore[no-untyped-def]
+def _squeeze(of, here, claim, s, work, d, band):  # type: ignore[no-untyped-def]
     """What the squeeze of a drum's opposed arcs leaves open [N] (see `residuals`)."""
     first = 2 * len(of.drum_gear) + 2 * d
     squeeze = min(claim.ring_force[s, first], claim.ring_force[s, first + 1])
@@ -131,21 +131,21 @@ def _squeeze(of, here, claim, s, sheet, d, band):  # type: ignore[no-untyped-def
     known = band
     if wedge * distance > 8.0 * band:
         gap = len(of.arm) + first
-        known = max(abs(sheet.gap[gap]), abs(sheet.gap[gap + 1]))
+        known = max(abs(work.gap[gap]), abs(work.gap[gap + 1]))
         known += np.finfo(np.float64).eps * np.sqrt(moved)
     across = 2.0 * known / distance
     return squeeze * across / (np.sqrt(wedge) + np.sqrt(wedge + across))
 
 
 @inlined
-def displaced(of, claim, s, sheet, v, deflection):  # type: ignore[no-untyped-def]
+def displaced(of, claim, s, work, v, deflection):  # type: ignore[no-untyped-def]
     """How far displacements go to a warning (see `Measuring.worst`).
 
     Not a number where an approach is neglected that only gears without force may take up.
     """
     worst, most, furthest = 0.0, 0.0, 0.0
     for e in range(len(of.arm)):
-        approach, across = sheet.length[e, v], sheet.across[e, v]
+        approach, across = work.length[e, v], work.across[e, v]
         most = max(most, 0.5 * of.line[e] * across * across - max(-approach, 0.0))
         worst, furthest = max(worst, approach * of.yields[e]), max(furthest, abs(across))
     worst = max(max(worst, furthest / of.turnable), most / (deflection * CERTIFY.neglected))

@@ -11,7 +11,7 @@ _how: dict[str, Any] = {
     "error_model": "numpy",
     "fastmath": {"reassoc", "contract", "nsz", "arcp"},
 }
-kept = jit(**_how)
+cached = jit(**_how)
 """What is called from outside; its compiled code is kept on disk."""
 allocating = within(**_how)
 # Without counted references, which would cost more than the sums: nothing is allocated in these.

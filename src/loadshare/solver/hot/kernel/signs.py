@@ -5,12 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from loadshare.settings import HOT
-from loadshare.solver.hot.lanes.arcs import arc
-from loadshare.solver.hot.lanes.options import bare
-from loadshare.solver.hot.lanes.radials import graph, torque_of
-from loadshare.solver.hot.lanes.sums import approach
-from loadshare.solver.hot.lanes.work import BAND, BEYONDS
-from loadshare.solver.hot.places import (
+from loadshare.solver.hot.contact_states import (
     CLOSED,
     CORNER,
     FAILED,
@@ -22,60 +17,65 @@ from loadshare.solver.hot.places import (
     STOP,
     WALL,
 )
+from loadshare.solver.hot.kernel.arcs import arc
+from loadshare.solver.hot.kernel.options import bare
+from loadshare.solver.hot.kernel.radials import graph, torque_of
+from loadshare.solver.hot.kernel.sums import approach
+from loadshare.solver.hot.kernel.work import BAND, BEYONDS
 
 
 @bare
-def look_at_rows(s, work, lanes):  # type: ignore[no-untyped-def]
-    """Mark rows with the wrong sign, (rows, lanes), and count them.
+def look_at_rows(s, work, width):  # type: ignore[no-untyped-def]
+    """Mark rows with the wrong sign, (rows, width), and count them.
 
-    `strongest` and `weakest` become the largest force and length of a lane, to which its signs are
-    compared.
+    `strongest` and `weakest` become the largest force and length of a sample, to which its signs
+    are compared.
     """
     samples, x, force, wrong, count = work.samples, work.x, work.force, work.wrong, work.mistakes
     strongest, longest, nearer = work.strongest, work.weakest, work.waits
     force_band, length_band = work.two, work.three
-    for m in range(lanes):
+    for m in range(width):
         strongest[m] = work.push[m]
         longest[m] = 0.0
         count[m] = 0
     for e in range(force.shape[0]):
-        for m in range(lanes):
+        for m in range(width):
             f = abs(force[e, m])
             strongest[m] = f if f > strongest[m] else strongest[m]
     for d in range(x.shape[0]):
-        for m in range(lanes):
+        for m in range(width):
             y = abs(x[d, m])
             longest[m] = y if y > longest[m] else longest[m]
-    for m in range(lanes):
+    for m in range(width):
         y = 1e-3 * longest[m]
         longest[m] = y if y > work.largest[m] else work.largest[m]
-        force_band[m] = work.lane[BAND, m] * strongest[m]
-        length_band[m] = work.lane[BAND, m] * longest[m]
+        force_band[m] = work.each[BAND, m] * strongest[m]
+        length_band[m] = work.each[BAND, m] * longest[m]
     for e in range(s.first_row, s.end_row):
         row = s.switches[e - s.first_row]
-        for m in range(lanes):
+        for m in range(width):
             off = force[e, m] < -force_band[m]
             wrong[row, m] = off
             count[m] += off
     for o in range(s.open_rows.shape[0]):
         row = s.open_rows[o]
-        approach(s, samples, s.first_column + row, x, lanes, nearer)
-        for m in range(lanes):
+        approach(s, samples, s.first_column + row, x, width, nearer)
+        for m in range(width):
             off = nearer[m] > length_band[m]
             wrong[row, m] = off
             count[m] += off
     for o in range(s.open_arcs.shape[0]):
         a = s.open_arcs[o]
         row = s.flanks + a
-        arc(s, samples, a, x, lanes, work.normal, nearer, work.one)
-        for m in range(lanes):
+        arc(s, samples, a, x, width, work.normal, nearer, work.one)
+        for m in range(width):
             off = -nearer[m] > length_band[m]
             wrong[row, m] = off
             count[m] += off
 
 
 @bare
-def misplaced(place, law, u, v, p, q, force_band, length_band, faint):  # type: ignore[no-untyped-def]
+def misplaced(status, law, u, v, p, q, force_band, length_band, faint):  # type: ignore[no-untyped-def]
     """Where a radial element should stand; its own place if that is right. See `misplaced`."""
     first, stick, bound, reach, last, _ = law
     radius, size = np.sqrt(u * u + v * v), np.sqrt(p * p + q * q)
@@ -91,59 +91,59 @@ def misplaced(place, law, u, v, p, q, force_band, length_band, faint):  # type: 
     elif stick > 0.0:
         back = CORNER if jump else STICK
     inward = u * p + v * q < 0.0
-    if place == OPEN:
+    if status == OPEN:
         if radius > reach + length_band:
             return beyond
         if rubs and radius > length_band:
             return STICK if radius < stick else level
         return OPEN
-    if place == STICK:
+    if status == STICK:
         if size <= first * stick + force_band:
             return STICK
         gone = beyond if radius > reach + length_band else level
         return CORNER if jump else gone
-    if place == CORNER:
+    if status == CORNER:
         if inward or size < first * stick - force_band:
             return STICK
         return level if size > bound + force_band else CORNER
-    if place == PINNED:
+    if status == PINNED:
         yields = bound > 0.0 or reach > 0.0 or np.isfinite(last)
         return level if size > bound + force_band and yields else PINNED
-    if place == SLIP:
+    if status == SLIP:
         if not rubs:
             return level
         if radius < stick - length_band or inward:
             return back
         return beyond if radius > reach + length_band else SLIP
-    if place == STOP:
+    if status == STOP:
         if (radius < reach - length_band or inward) and reach > 0.0:
             # A stop that carries next to nothing sticks: it does not use up its friction.
-            slips = reach > stick and radius >= stick and size > HOT.hurry * bound
+            slips = reach > stick and radius >= stick and size > HOT.gross * bound
             return level if slips else back
         return STOP
     return OPEN if inward or size <= force_band else WALL
 
 
 @bare
-def look_at_radials(s, work, lanes):  # type: ignore[no-untyped-def]
+def look_at_radials(s, work, width):  # type: ignore[no-untyped-def]
     """Find out where radial elements should stand, and count those that stand elsewhere.
 
     `strongest` and `weakest` hold the largest force and length, as `_signs` leaves them.
     """
     u, v, torque = work.two, work.three, work.one
     for j in range(s.radial_at.shape[0]):
-        e, place = s.radial_at[j], s.code[s.first_radial - s.first_column + j]
+        e, status = s.radial_at[j], s.states[s.first_radial - s.first_column + j]
         column = s.first_radial + 2 * j
-        approach(s, work.samples, column, work.x, lanes, u)
-        approach(s, work.samples, column + 1, work.x, lanes, v)
-        torque_of(s.follows[j], s.carried[j], work.force, lanes, torque)
+        approach(s, work.samples, column, work.x, width, u)
+        approach(s, work.samples, column + 1, work.x, width, v)
+        torque_of(s.follows[j], s.carried[j], work.force, width, torque)
         turns = 0 <= e < s.first_row
-        for m in range(lanes):
-            work.better[j, m] = place
-            sign = work.lane[BAND, m]
+        for m in range(width):
+            work.better[j, m] = status
+            sign = work.each[BAND, m]
             law = graph(s, work.samples[m], j, torque[m])
             if e >= 0 and not law[5]:
-                work.lane[BAND, m] = 0.0
+                work.each[BAND, m] = 0.0
             if sign == 0.0:
                 continue
             if sign > 1.0:
@@ -155,24 +155,24 @@ def look_at_radials(s, work, lanes):  # type: ignore[no-untyped-def]
             faint = HOT.sign * work.strongest[m]
             p = work.force[e, m] if e >= 0 else 0.0
             q = work.force[e + 1, m] if e >= 0 else 0.0
-            better = misplaced(place, law, u[m], v[m], p, q, force_band, length_band, faint)
+            better = misplaced(status, law, u[m], v[m], p, q, force_band, length_band, faint)
             work.better[j, m] = better
-            work.mistakes[m] += better != place
+            work.mistakes[m] += better != status
 
 
 @bare
-def propose(code, wrong, better, m, one_only, proposal):  # type: ignore[no-untyped-def]
-    """Write the set that mends what is wrong in a lane."""
+def propose(states, wrong, better, m, one_only, proposal):  # type: ignore[no-untyped-def]
+    """Write the set that mends what is wrong in a sample."""
     rows = wrong.shape[0]
-    for row in range(code.shape[0]):
-        proposal[row] = code[row]
-    for row in range(code.shape[0]):
+    for row in range(states.shape[0]):
+        proposal[row] = states[row]
+    for row in range(states.shape[0]):
         if row < rows:
             if not wrong[row, m]:
                 continue
-            proposal[row] = OPEN if code[row] != OPEN else CLOSED
+            proposal[row] = OPEN if states[row] != OPEN else CLOSED
         else:
-            if better[row - rows, m] == code[row]:
+            if better[row - rows, m] == states[row]:
                 continue
             proposal[row] = better[row - rows, m]
         if one_only:
@@ -180,8 +180,8 @@ def propose(code, wrong, better, m, one_only, proposal):  # type: ignore[no-unty
 
 
 @bare
-def stopped(s, work, m, lanes, proposal, place_of):  # type: ignore[no-untyped-def]
-    """Propose what is first in the way of the drift of a lane, and go there.
+def stopped(s, work, m, width, proposal, place_of):  # type: ignore[no-untyped-def]
+    """Propose what is first in the way of the drift of a sample, and go there.
 
     From elsewhere the passes may end at the far side of a ring, held inward.
     """
@@ -199,10 +199,10 @@ def stopped(s, work, m, lanes, proposal, place_of):  # type: ignore[no-untyped-d
             drift[d] += along * s.loose[d, c]
     for d in range(n):
         fast = max(fast, HOT.drift * abs(drift[d]))
-    nearest, first, place = np.inf, -1, CLOSED
+    nearest, first, status = np.inf, -1, CLOSED
     rows, open_rows = work.wrong.shape[0], s.open_rows.shape[0]
-    for row in range(s.code.shape[0]):
-        proposal[row] = s.code[row]
+    for row in range(s.states.shape[0]):
+        proposal[row] = s.states[row]
     for o in range(open_rows + s.open_arcs.shape[0]):
         row = s.open_rows[o] if o < open_rows else s.flanks + s.open_arcs[o - open_rows]
         column = s.first_column + row
@@ -212,18 +212,18 @@ def stopped(s, work, m, lanes, proposal, place_of):  # type: ignore[no-untyped-d
             left -= s.entries[c] * x[s.coordinates[c], m]
         if o >= open_rows:
             a = s.open_arcs[o - open_rows]
-            arc(s, work.samples, a, x, lanes, work.normal, work.one, work.two)
+            arc(s, work.samples, a, x, width, work.normal, work.one, work.two)
             left = work.one[m]
         if speed > fast:
             way = max(left, 0.0) / speed
             if way < nearest:
                 nearest, first = way, row
     for j in range(s.radial_at.shape[0]):
-        if s.code[rows + j] != OPEN:
+        if s.states[rows + j] != OPEN:
             continue
         column = s.first_radial + 2 * j
-        approach(s, work.samples, column, x, lanes, work.one)
-        approach(s, work.samples, column + 1, x, lanes, work.two)
+        approach(s, work.samples, column, x, width, work.one)
+        approach(s, work.samples, column + 1, x, width, work.two)
         u, v, du, dv = work.one[m], work.two[m], 0.0, 0.0
         for c in range(s.starts[column], s.starts[column + 1]):
             du += s.entries[c] * drift[s.coordinates[c]]
@@ -231,18 +231,18 @@ def stopped(s, work, m, lanes, proposal, place_of):  # type: ignore[no-untyped-d
             dv += s.entries[c] * drift[s.coordinates[c]]
         square, along = du * du + dv * dv, u * du + v * dv
         if square > fast * fast:
-            torque_of(s.follows[j], s.carried[j], work.force, lanes, work.one)
+            torque_of(s.follows[j], s.carried[j], work.force, width, work.one)
             law = graph(s, i, j, work.one[m])
             inside = max(law[3] * law[3] - u * u - v * v, 0.0)
             way = max((np.sqrt(along * along + square * inside) - along) / square, 0.0)
             if way < nearest:
                 nearest, first = way, rows + j
-                place = STOP
+                status = STOP
                 if np.isinf(law[4]):
-                    place = WALL if law[3] > 0.0 else PINNED
+                    status = WALL if law[3] > 0.0 else PINNED
     if first < 0:
         return FAILED
-    proposal[first] = place if first >= rows else CLOSED
+    proposal[first] = status if first >= rows else CLOSED
     for d in range(n):
         place_of[d] += nearest * drift[d]
     return OTHER

@@ -1,15 +1,16 @@
-"""Samples on their way into lanes: statics, and laws where the samples stand."""
+"""Samples are taken up: statics, and laws where the samples stand."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from loadshare.settings import HOT, LANES
-from loadshare.solver.hot.lanes.laws import piece
-from loadshare.solver.hot.lanes.options import bare
-from loadshare.solver.hot.lanes.radials import renew_bound
-from loadshare.solver.hot.lanes.sums import add_product, approach, clear
-from loadshare.solver.hot.lanes.work import (
+from loadshare.settings import ABREAST, HOT
+from loadshare.solver.hot.contact_states import STICK
+from loadshare.solver.hot.kernel.laws import piece
+from loadshare.solver.hot.kernel.options import bare
+from loadshare.solver.hot.kernel.radials import renew_bound
+from loadshare.solver.hot.kernel.sums import add_product, approach, clear
+from loadshare.solver.hot.kernel.work import (
     BAND,
     BEYONDS,
     DRIFTS,
@@ -22,90 +23,89 @@ from loadshare.solver.hot.lanes.work import (
     U,
     V,
 )
-from loadshare.solver.hot.places import STICK
 
 
 @bare
-def fill(s, work, rows, waiting, first, count, lanes, xs, forces, roots, floors, one_only):  # type: ignore[no-untyped-def]
-    """Put samples into the lanes; lanes that are left over repeat the last of them."""
+def fill(s, work, rows, waiting, first, count, width, xs, forces, roots, floors, one_only):  # type: ignore[no-untyped-def]
+    """Take samples up, side by side; what is left of the width repeats the last of them."""
     samples = work.samples
-    for m in range(lanes):
+    for m in range(width):
         row = waiting[first + min(m, count - 1)]
         work.at_row[m], samples[m] = row, rows[row]
-    for m in range(lanes):
+    for m in range(width):
         i = samples[m]
         work.floor[m] = floors[i]
-        work.lane[PATIENT, m] = HOT.patience if one_only[i] else LANES.haste
+        work.each[PATIENT, m] = HOT.patience if one_only[i] else ABREAST.patience
         work.live[m], work.go[m] = 1.0 if m < count else 0.0, 1.0
-        work.lane[BAND, m], work.lane[DRIFTS, m], work.singular[m] = 0.0, 0.0, 0.0
-        work.lane[PREVIOUS, m], work.lane[TURN, m] = np.inf, 0.0
-    _load(s, work, lanes)
-    _statics(s, work, lanes)
-    _laws(s, work, lanes, xs, forces, roots)
-    _radials(s, work, lanes, xs, forces)
-    _linear(s, work, lanes)
+        work.each[BAND, m], work.each[DRIFTS, m], work.singular[m] = 0.0, 0.0, 0.0
+        work.each[PREVIOUS, m], work.each[TURN, m] = np.inf, 0.0
+    _load(s, work, width)
+    _statics(s, work, width)
+    _laws(s, work, width, xs, forces, roots)
+    _radials(s, work, width, xs, forces)
+    _linear(s, work, width)
 
 
 @bare
-def _load(s, work, lanes):  # type: ignore[no-untyped-def]
+def _load(s, work, width):  # type: ignore[no-untyped-def]
     """Loads, the largest of them, and whether they push along what nothing resists."""
     samples, weight, push = work.samples, work.weight, work.push
     varying = s.load.shape[0] > 1
-    for m in range(lanes):
+    for m in range(width):
         push[m] = 0.0
     for k in range(s.loaded.shape[0]):
         d = s.loaded[k]
-        for m in range(lanes):
+        for m in range(width):
             f = s.load[samples[m] if varying else 0, d]
             weight[k, m] = f
             push[m] = max(push[m], abs(f))
     for c in range(s.loose.shape[1]):
-        for m in range(lanes):
+        for m in range(width):
             drift = 0.0
             for k in range(s.loaded.shape[0]):
                 drift += s.loose[s.loaded[k], c] * weight[k, m]
             if abs(drift) > HOT.drift * push[m]:
-                work.lane[DRIFTS, m] = 1.0
+                work.each[DRIFTS, m] = 1.0
 
 
 @bare
-def _statics(s, work, lanes):  # type: ignore[no-untyped-def]
+def _statics(s, work, width):  # type: ignore[no-untyped-def]
     """Forces without redundants, gaps, and what is linear of the laws."""
     samples, weight, statics = work.samples, work.weight, work.spring[STATICS]
     one_gap, one_bending = s.gap.shape[0] == 1, s.bending.shape[0] == 1
     for e in range(s.springs.shape[0]):
-        for m in range(lanes):
+        for m in range(width):
             statics[e, m] = 0.0
         for k in range(s.loaded.shape[0]):
             per_load = s.particular_springs[s.loaded[k], e]
-            for m in range(lanes):
+            for m in range(width):
                 statics[e, m] += per_load * weight[k, m]
         compliance, column = s.compliances[e], s.springs[e]
-        for m in range(lanes):
+        for m in range(width):
             gap = s.gap[0 if one_gap else samples[m], column]
             work.spring[STILL, e, m] = gap + compliance * statics[e, m]
     for e in range(s.contacts.shape[0]):
         column = s.contacts[e]
-        for m in range(lanes):
+        for m in range(width):
             work.fixed[e, m] = 0.0
             work.shift[e, m] = 0.0
             work.gap[e, m] = s.gap[0 if one_gap else samples[m], column]
             work.tangent[e, m] = s.bending[0 if one_bending else samples[m], column]
         for k in range(s.loaded.shape[0]):
             per_load = s.particular[s.loaded[k], e]
-            for m in range(lanes):
+            for m in range(width):
                 work.fixed[e, m] += per_load * weight[k, m]
 
 
 @bare
-def _laws(s, work, lanes, xs, forces, roots):  # type: ignore[no-untyped-def]
+def _laws(s, work, width, xs, forces, roots):  # type: ignore[no-untyped-def]
     """Begin with the laws and the arcs where the samples stand."""
     samples, first_row = work.samples, s.first_row
     one_hertz = s.hertz.shape[0] == 1
     for p in range(s.powers):
         e = first_row + p
         column = s.contacts[e]
-        for m in range(lanes):
+        for m in range(width):
             b, c_hertz = work.tangent[e, m], s.hertz[0 if one_hertz else samples[m], column]
             y = roots[samples[m], column]
             work.bending[p, m], work.hertz[p, m] = b, c_hertz
@@ -114,7 +114,7 @@ def _laws(s, work, lanes, xs, forces, roots):  # type: ignore[no-untyped-def]
             work.shift[e, m] = c_hertz * y * y / 3.0
     for p in range(s.tables_of.shape[0]):
         e = first_row + s.powers + p
-        for m in range(lanes):
+        for m in range(width):
             i = samples[m]
             force = roots[i, s.contacts[e]] ** 3
             table = s.tables[i if s.tables.shape[0] > 1 else 0, s.tables_of[p]]
@@ -123,56 +123,56 @@ def _laws(s, work, lanes, xs, forces, roots):  # type: ignore[no-untyped-def]
             work.tangent[e, m], work.shift[e, m] = slope, at_start - slope * at_force
     for w in range(s.arcs.shape[0]):
         contact = s.arc_contacts[w]
-        for m in range(lanes):
+        for m in range(width):
             work.force[contact, m] = forces[samples[m], s.contacts[contact]]
     for d in s.turning:
-        for m in range(lanes):
+        for m in range(width):
             work.x[d, m] = xs[samples[m], d]
 
 
 @bare
-def _radials(s, work, lanes, xs, forces):  # type: ignore[no-untyped-def]
+def _radials(s, work, width, xs, forces):  # type: ignore[no-untyped-def]
     """Begin with the radial elements where the samples stand."""
     samples = work.samples
     for j in range(s.radial_at.shape[0]):
         e = s.radial_at[j]
-        if e >= s.end_row and s.code[s.first_radial - s.first_column + j] == STICK:
-            for m in range(lanes):
+        if e >= s.end_row and s.states[s.first_radial - s.first_column + j] == STICK:
+            for m in range(width):
                 first = s.radial[samples[m] if s.radial.shape[0] > 1 else 0, j, 0]
                 work.tangent[e, m] = work.tangent[e + 1, m] = 1.0 / first
     pairs = s.turning_radials.shape[0]
     if pairs > 0:
         for e in range(s.contacts.shape[0]):
-            for m in range(lanes):
+            for m in range(width):
                 work.force[e, m] = forces[samples[m], s.contacts[e]]
         for d in s.coordinates[s.starts[s.first_radial] :]:
-            for m in range(lanes):
+            for m in range(width):
                 work.x[d, m] = xs[samples[m], d]
     for t in range(pairs):
         j = s.turning_radials[t]
         column = s.first_radial + 2 * j
-        approach(s, samples, column, work.x, lanes, work.radial[t, U])
-        approach(s, samples, column + 1, work.x, lanes, work.radial[t, V])
-        for m in range(lanes):
+        approach(s, samples, column, work.x, width, work.radial[t, U])
+        approach(s, samples, column + 1, work.x, width, work.radial[t, V])
+        for m in range(width):
             work.radial[t, EXTRA, m] = 0.0
             work.radial[t, BEYONDS, m] = 0.0
-        renew_bound(s, work, t, lanes)
+        renew_bound(s, work, t, width)
 
 
 @bare
-def _linear(s, work, lanes):  # type: ignore[no-untyped-def]
+def _linear(s, work, width):  # type: ignore[no-untyped-def]
     """Redundants of none, and what linear elements add to their matrix and to their gaps."""
     r, renewed = s.redundant.shape[1], s.products.shape[1]
-    clear(work.z, lanes)
-    clear(work.base, lanes)
-    add_product(work.base, s.across_springs, work.spring[STILL], lanes)
-    clear(work.still, lanes)
-    add_product(work.still, s.moved_springs, work.spring[STILL], lanes)
+    clear(work.z, width)
+    clear(work.base, width)
+    add_product(work.base, s.across_springs, work.spring[STILL], width)
+    clear(work.still, width)
+    add_product(work.still, s.moved_springs, work.spring[STILL], width)
     if s.inverse.shape[0] > 0:
         return
     for c in range(r):
         for d in range(c + 1):
-            for m in range(lanes):
+            for m in range(width):
                 work.linear[c, d, m] = s.springs_matrix[c, d]
         weights = s.products_still[c * r : c * r + c + 1]
-        add_product(work.linear[c, : c + 1], weights, work.tangent[renewed:], lanes)
+        add_product(work.linear[c, : c + 1], weights, work.tangent[renewed:], width)

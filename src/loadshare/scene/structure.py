@@ -133,7 +133,7 @@ class RadialElement:
 
 
 @dataclass(frozen=True, eq=False)
-class Elements:
+class Structure:
     """All elements of a train, each with its direction.
 
     Attributes
@@ -268,34 +268,34 @@ class Elements:
 
     @property
     def switches(self) -> int:
-        """Length of a set's code: one number per row, one per radial element."""
+        """Length of an active set: one number per row, one per radial element."""
         return self.rows + len(self.radials)
 
     @cached_property
-    def kept(self) -> dict[tuple[Any, ...], Any]:
-        """Room for what an engine keeps of a set."""
+    def cache(self) -> dict[tuple[Any, ...], Any]:
+        """What an engine remembers of a set."""
         return {}
 
-    def keep(self, key: tuple[Any, ...], value: Any) -> Any:
-        """Keep what an engine needs of a set, and return it."""
-        if len(self.kept) >= STATICS.sets:
-            self.kept.clear()
-        self.kept[key] = value
+    def remember(self, key: tuple[Any, ...], value: Any) -> Any:
+        """Remember what an engine needs of a set, and return it."""
+        if len(self.cache) >= STATICS.sets:
+            self.cache.clear()
+        self.cache[key] = value
         return value
 
     @cached_property
     def _bases(self) -> dict[bytes, Basis]:
         return {}
 
-    def basis(self, code: NDArray[np.int8]) -> Basis:
+    def basis(self, states: NDArray[np.int8]) -> Basis:
         """Return the statics of a set, computed once.
 
         Parameters
         ----------
-        code : ndarray of int8, shape (switches,)
+        states : ndarray of int8, shape (switches,)
             0 for an element that does not act, anything else for one that does.
         """
-        acts = np.ascontiguousarray(code != 0)
+        acts = np.ascontiguousarray(states != 0)
         key = acts.tobytes()
         known = self._bases.get(key)
         if known is None:
@@ -313,7 +313,7 @@ class Elements:
 
 
 @lru_cache(maxsize=STATICS.trains)
-def elements_of(train: Train) -> Elements:
+def structure_of(train: Train) -> Structure:
     """Set up the force method for a train."""
     at, here, order = coordinates_of(train), situation_of(train, 1), train.order
     unit = np.eye(at.size)
@@ -368,7 +368,7 @@ def elements_of(train: Train) -> Elements:
         if np.linalg.norm(normals[k] + normals[k + 1]) < STATICS.opposed
         and not any(train.gears[n].moves for n in arcs[k].ring.neighbours)
     )
-    elements = Elements(
+    structure = Structure(
         train,
         at,
         Columns.of(map(len, groups)),
@@ -384,9 +384,9 @@ def elements_of(train: Train) -> Elements:
         1.0,
         1.0,
     )
-    force, length = _units(elements, here)
+    force, length = _units(structure, here)
     return replace(
-        elements, force=8.0 ** round(math.log(force, 8.0)), length=2.0 ** round(math.log2(length))
+        structure, force=8.0 ** round(math.log(force, 8.0)), length=2.0 ** round(math.log2(length))
     )
 
 
@@ -416,13 +416,13 @@ def _radials(train: Train, at: Coordinates) -> Iterator[RadialElement]:
         yield RadialElement(spline.stop_name, gear, "clearance", k, slipped, origin)
 
 
-def _units(elements: Elements, here: Situations) -> tuple[float, float]:
+def _units(structure: Structure, here: Situations) -> tuple[float, float]:
     """Force and length that a scene is measured by (see `Scene`)."""
-    train, flanks = elements.train, elements.flanks
+    train, flanks = structure.train, structure.flanks
     radius = [g.base_radius for g in train.gears.values()]
     force = float((np.abs(here.torque[0]) / radius).max(initial=0.0)) or 1.0
     positions = train.mesh_positions(here.position)
-    gaps = elements.gaps_of_flanks(here)[0]
+    gaps = structure.gaps_of_flanks(here)[0]
     drive = [(e, mesh) for e, (_, mesh, drives) in enumerate(flanks) if drives]
     if not drive:
         return force, 1e-6

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.settings import HOT, LANES
-from loadshare.solver.hot.lanes.options import bare
+from loadshare.settings import ABREAST, HOT
+from loadshare.solver.hot.kernel.options import bare
 
 
 @bare
@@ -18,15 +18,15 @@ def piece(axis, values, where):  # type: ignore[no-untyped-def]
 
 
 @bare
-def renew_laws(s, work, misfit, lanes):  # type: ignore[no-untyped-def]
-    """Take the next tangents at the forces; write the laws' misfit, relative, (lanes,)."""
-    for m in range(lanes):
+def renew_laws(s, work, misfit, width):  # type: ignore[no-untyped-def]
+    """Take the next tangents at the forces; write the laws' misfit, relative, (width,)."""
+    for m in range(width):
         misfit[m] = 0.0
         work.waits[m] = 0.0
         work.longest[m] = 0.0
     for p in range(s.powers):
         e = s.first_row + p
-        for m in range(lanes):
+        for m in range(width):
             f = work.force[e, m]
             moved = work.shift[e, m] + work.tangent[e, m] * f
             b, c_hertz, now = work.bending[p, m], work.hertz[p, m], work.root[p, m]
@@ -41,7 +41,7 @@ def renew_laws(s, work, misfit, lanes):  # type: ignore[no-untyped-def]
             more = abs(more - y)
             # What the tangent leaves of the law.
             gone = abs((b * y + c_hertz) * y * y - moved)
-            gone += 0.0 if more <= LANES.close * y else 2.0 * c_hertz * y * more
+            gone += 0.0 if more <= ABREAST.close * y else 2.0 * c_hertz * y * more
             gone = gone if touching else 0.0
             misfit[m] = gone if gone > misfit[m] else misfit[m]
             waiting = 0.0 if touching | (now <= work.floor[m]) else 1.0
@@ -56,16 +56,16 @@ def renew_laws(s, work, misfit, lanes):  # type: ignore[no-untyped-def]
             work.root[p, m] = y
             work.tangent[e, m] = b + 2.0 / 3.0 * c_hertz / y
             work.shift[e, m] = c_hertz * y * y / 3.0
-    for m in range(lanes):
+    for m in range(width):
         misfit[m] /= work.largest[m] if work.largest[m] > 0.0 else 1.0
 
 
 @bare
-def renew_tables(s, work, misfit, lanes):  # type: ignore[no-untyped-def]
+def renew_tables(s, work, misfit, width):  # type: ignore[no-untyped-def]
     """Take the next pieces of tables at the compressions; add to the laws' misfit, relative."""
     for p in range(s.tables_of.shape[0]):
         e = s.first_row + s.powers + p
-        for m in range(lanes):
+        for m in range(width):
             moved = work.stretch[e, m] - work.gap[e, m]
             table = s.tables[work.samples[m] if s.tables.shape[0] > 1 else 0, s.tables_of[p]]
             at_start, at_force, slope = piece(table[1], table[0], moved)

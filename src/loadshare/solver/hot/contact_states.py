@@ -1,4 +1,6 @@
-"""Where rows and radial elements stand, as the numbers in the code of a set.
+"""Contact states: which rows are closed, on which piece of its graph each radial element is.
+
+An active set is one such number for every row and every radial element.
 
 A radial law is a chain of at most three pieces (:mod:`loadshare.contact.radial`), told by five
 numbers: it rises with `first` up to `stick`, jumps to `bound`, stays level up to `reach`, and rises
@@ -47,7 +49,7 @@ def graph(numbers: Array, torque: Array) -> Graph:
     Parameters
     ----------
     numbers : ndarray, shape (S or 1, 6)
-        See :class:`loadshare.scene.elements.Data`.
+        See :class:`loadshare.scene.loading.Loading`.
     torque : ndarray, shape (S,)
         Torque over force unit [m] that the element transmits.
 

@@ -1,7 +1,7 @@
 """What varies from sample to sample, in the order and the units of the force method.
 
 Errors, clearances, loads and compliances of many situations become loads f, gaps g and laws δ of
-the columns of :mod:`loadshare.scene.elements`. Source: formulation, section 11.
+the columns of :mod:`loadshare.scene.structure`. Source: formulation, section 11.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.scene.coordinates import Array
-from loadshare.scene.elements import Elements
+from loadshare.scene.structure import Structure
 from loadshare.train.situations import Situations
 
 
 @dataclass(frozen=True, eq=False)
-class Data:
+class Loading:
     """What varies, in the units of the force method; leading axes are S or 1.
 
     Attributes
@@ -61,7 +61,7 @@ class Data:
     radial: Array
     carried: Array
 
-    def one(self, row: int) -> Data:
+    def one(self, row: int) -> Loading:
         """Return a sample alone."""
         varying = {
             f.name: value[row : row + 1]
@@ -107,39 +107,39 @@ class Data:
         return np.asarray(np.isnan(self.radial[:, :, 3]).any(axis=0))
 
 
-def data_of(elements: Elements, situations: Situations) -> Data:
+def loading_of(structure: Structure, situations: Situations) -> Loading:
     """Write the numbers of many situations in the order and the units of the elements."""
-    at, columns, train = elements.coordinates, elements.columns, elements.train
-    force, length, arcs = elements.force, elements.length, elements.arcs
+    at, columns, train = structure.coordinates, structure.columns, structure.train
+    force, length, arcs = structure.force, structure.length, structure.arcs
     to_load = np.array([at.turned((gear, 1.0)) for gear in train.gears])
-    gaps: list[Block] = [(columns.flanks, elements.gaps_of_flanks(situations))]
+    gaps: list[Block] = [(columns.flanks, structure.gaps_of_flanks(situations))]
     bends: list[Block] = []
     shafts = list(train.shafts.values())
-    for column, (s, rate) in enumerate(elements.shafts, columns.shafts.start):
+    for column, (s, rate) in enumerate(structure.shafts, columns.shafts.start):
         a, b = (at.rotation[gear].constant for gear in (shafts[s].first, shafts[s].second))
         gaps.append((column, (situations.clocking[:, s] - a + b) / rate))
         bends.append((column, 1.0 / (situations.torsion[:, s] * rate**2)))
-    for column, (g, k) in enumerate(elements.supports, columns.supports.start):
+    for column, (g, k) in enumerate(structure.supports, columns.supports.start):
         bends.append((column, 1.0 / situations.support[:, g, k]))
     if train.slip is not None:
         bends.append((columns.bends, np.repeat(0.5 / situations.spline[:, :, 0], 2, axis=1)))
-    m = np.array([number for number, *_ in elements.flanks], dtype=np.intp)
+    m = np.array([number for number, *_ in structure.flanks], dtype=np.intp)
     bends.append((columns.flanks, situations.bending[:, m]))
     gaps.append((columns.stops, situations.stop.reshape(len(situations.stop), -1)))
     walls = np.repeat(situations.wall, 2, axis=1)
     bends += [(columns.stops, walls), (columns.arcs, walls)]
-    gaps.append((columns.radials, np.array([c for r in elements.radials for c in r.centre])[None]))
-    tabulated = np.full(len(elements.names), -1)
+    gaps.append((columns.radials, np.array([c for r in structure.radials for c in r.centre])[None]))
+    tabulated = np.full(len(structure.names), -1)
     if situations.table.shape[-1]:
         tabulated[columns.flanks] = np.where(situations.table[0, m, 0, 1] > 0.0, m, -1)
     nominal = [situations.arc(a.ring, a.side).nominal for a in arcs]
-    return Data(
+    return Loading(
         count=situations.count,
         load=situations.torque @ to_load / force,
-        gap=_side_by_side(elements, gaps, 1.0 / length),
-        bending=_side_by_side(elements, bends, force / length),
+        gap=_side_by_side(structure, gaps, 1.0 / length),
+        bending=_side_by_side(structure, bends, force / length),
         hertz=_side_by_side(
-            elements,
+            structure,
             [(columns.flanks, situations.hertz[:, m])],
             math.cbrt(force) ** 2 / length,
         ),
@@ -149,8 +149,8 @@ def data_of(elements: Elements, situations: Situations) -> Data:
         shift=situations.arc_shift.reshape(len(situations.arc_shift), -1, 3) / length,
         clearance=situations.arc_clearance.reshape(len(situations.arc_clearance), -1) / length,
         relative=np.array([a.relative for a in arcs]).reshape(-1, 3, at.size),
-        radial=_radials(elements, situations),
-        carried=elements.levers,
+        radial=_radials(structure, situations),
+        carried=structure.levers,
     )
 
 
@@ -158,17 +158,17 @@ Block = tuple[slice | int, Array]
 """Columns, and their values (S or 1, columns), or (S or 1,) for a single one."""
 
 
-def _side_by_side(elements: Elements, blocks: list[Block], factor: float) -> Array:
+def _side_by_side(structure: Structure, blocks: list[Block], factor: float) -> Array:
     """Put values in their columns, times a factor; zero elsewhere."""
-    table = np.zeros((max(len(values) for _, values in blocks), len(elements.names)))
+    table = np.zeros((max(len(values) for _, values in blocks), len(structure.names)))
     for columns, values in blocks:
         np.multiply(values, factor, out=table[:, columns])
     return table
 
 
-def _radials(elements: Elements, situations: Situations) -> Array:
+def _radials(structure: Structure, situations: Situations) -> Array:
     """Numbers of every radial law, in the units of the force method."""
-    here, radials = situations, elements.radials
+    here, radials = situations, structure.radials
     count = max(map(len, (here.spline, here.round_radius, here.round_stiffness)))
     table = np.zeros((count, len(radials), 6))
     stiffness, stick, reach, bound, per_torque = np.moveaxis(here.spline, 2, 0)
@@ -188,6 +188,6 @@ def _radials(elements: Elements, situations: Situations) -> Array:
                 # A rigid ring.
                 room = reach[:, k] - bound[:, k] / stiffness[:, k]
                 row[:, 2], row[:, 5] = np.maximum(room, 0.0), np.inf
-    stiff = elements.force / elements.length
-    table /= np.array([stiff, elements.length, elements.length, elements.force, 1.0, stiff])
+    stiff = structure.force / structure.length
+    table /= np.array([stiff, structure.length, structure.length, structure.force, 1.0, stiff])
     return table

@@ -1,4 +1,4 @@
-"""Where the samples of a batch stand between sets."""
+"""Iterates: coordinates and forces of a batch of samples, from set to set."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.data import Data
-from loadshare.scene.elements import Elements
+from loadshare.scene.loading import Loading
 from loadshare.scene.scene import Array
+from loadshare.scene.structure import Structure
 from loadshare.settings import HOT
 
 
 @dataclass(slots=True, eq=False)
-class State:
+class Iterate:
     """Coordinates and forces of every sample, renewed in place.
 
     Attributes
@@ -38,31 +38,31 @@ class State:
     floor: Array
     stays: NDArray[np.bool_]
 
-    def completed(self, other: State, rows: NDArray[np.bool_]) -> State:
-        """Return this state with some samples as they stand in the other."""
+    def completed(self, other: Iterate, rows: NDArray[np.bool_]) -> Iterate:
+        """Return this iterate with some samples as they are in the other."""
         for name in ("x", "force", "root", "floor", "stays"):
             getattr(self, name)[rows] = getattr(other, name)[rows]
         return self
 
-    def put(self, row: int, other: State) -> None:
-        """Let a sample stand as the only one of another state does."""
+    def put(self, row: int, other: Iterate) -> None:
+        """Let a sample be as the only one of another iterate is."""
         for name in ("x", "force", "root", "floor", "stays"):
             getattr(self, name)[row] = getattr(other, name)[0]
 
-    def begin(self, samples: slice, share: Array, data: Data) -> None:
+    def begin(self, samples: slice, share: Array, loading: Loading) -> None:
         """Take the laws of some samples first at forces in these shares (m,) of the load."""
-        roots = np.cbrt(pushes(data)[samples])
+        roots = np.cbrt(pushes(loading)[samples])
         np.multiply(roots[:, None], np.cbrt(np.maximum(share, 1e-6)), out=self.root[samples])
 
 
-def at_rest(elements: Elements, data: Data) -> State:
+def at_rest(structure: Structure, loading: Loading) -> Iterate:
     """Return the state before anything has moved; laws are first taken at half the load."""
-    push = pushes(data)
-    count, width = data.count, len(elements.kinds)
+    push = pushes(loading)
+    count, width = loading.count, len(structure.kinds)
     root = np.empty((count, width))
     root[:] = np.cbrt(0.5 * push)[:, None]
-    return State(
-        x=np.zeros((count, elements.size)),
+    return Iterate(
+        x=np.zeros((count, structure.size)),
         force=np.zeros((count, width)),
         root=root,
         floor=HOT.floor * np.cbrt(push),
@@ -70,6 +70,6 @@ def at_rest(elements: Elements, data: Data) -> State:
     )
 
 
-def pushes(data: Data) -> Array:
+def pushes(loading: Loading) -> Array:
     """Largest load of every sample, shape (S,); 1 where there is none."""
-    return np.broadcast_to(np.where(data.push > 0.0, data.push, 1.0), (data.count,))
+    return np.broadcast_to(np.where(loading.push > 0.0, loading.push, 1.0), (loading.count,))

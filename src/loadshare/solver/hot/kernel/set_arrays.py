@@ -14,15 +14,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.scene.data import Data
-from loadshare.scene.elements import Elements
+from loadshare.scene.loading import Loading
 from loadshare.scene.scene import Array
 from loadshare.scene.statics import Basis
-from loadshare.solver.hot.lanes.options import allocating
-from loadshare.solver.hot.places import OPEN, PINNED, SLIP, STICK
+from loadshare.scene.structure import Structure
+from loadshare.solver.hot.contact_states import OPEN, PINNED, SLIP, STICK
+from loadshare.solver.hot.kernel.options import allocating
 
 Rows = NDArray[np.intp]
-Codes = NDArray[np.int8]
+States = NDArray[np.int8]
 
 
 class Packed(NamedTuple):
@@ -34,7 +34,7 @@ class Packed(NamedTuple):
 
     floats: Array
     rows: Rows
-    code: Codes
+    states: States
     follows: NDArray[np.bool_]
     loaded: Rows
     load: Array
@@ -81,7 +81,7 @@ class SetArrays(NamedTuple):
     carried: Array  # (j, c): torque that each radial element carries per force of the contacts
     springs: Rows  # (s,): their columns
     contacts: Rows  # (c,): columns of all others
-    switches: Rows  # (rows that act,): their numbers in the code
+    switches: Rows  # (rows that act,): their numbers in the set
     arc_contacts: Rows  # (acting arcs,)
     arcs: Rows  # (acting arcs,): their numbers
     turning: Rows  # (u,): coordinates that acting arcs know of
@@ -101,7 +101,7 @@ class SetArrays(NamedTuple):
     first_column: int  # column of the first row, whether it acts or not
     first_radial: int  # column of the first radial element
     flanks: int  # rows before the first arc
-    code: Codes
+    states: States
     follows: NDArray[np.bool_]  # (j,): whether friction follows the torque in some sample
     loaded: Rows  # coordinates with a load
     load: Array
@@ -118,39 +118,41 @@ class SetArrays(NamedTuple):
 
 _TABLES = SetArrays._fields.index("springs")
 _LISTS = SetArrays._fields.index("powers") - _TABLES
-_NUMBERS = SetArrays._fields.index("code") - _TABLES - _LISTS
+_NUMBERS = SetArrays._fields.index("states") - _TABLES - _LISTS
 _FRONT = 3 * (_TABLES + _LISTS)
 """Where the numbers stand in `Packed.rows`; before them three numbers of every table and list."""
 
 
-def packed_set(elements: Elements, data: Data, basis: Basis, code: Codes) -> Packed:
+def packed_set(structure: Structure, loading: Loading, basis: Basis, states: States) -> Packed:
     """Pack a set and samples; what does not vary from sample to sample is kept for next time."""
-    key = ("lanes", code.tobytes(), data.laws)
-    known = elements.kept.get(key)
+    key = ("compiled", states.tobytes(), loading.laws)
+    known = structure.cache.get(key)
     if known is None:
-        known = elements.keep(key, _pack(*_structure(elements, data, basis, code), code))
+        known = structure.remember(
+            key, _pack(*_structure(structure, loading, basis, states), states)
+        )
     return Packed._make(
         (
             *known,
-            data.follows,
-            data.loaded,
-            data.load,
-            data.gap,
-            data.bending,
-            data.hertz,
-            data.tables,
-            data.nominal,
-            data.shift,
-            data.clearance,
-            data.relative,
-            data.radial,
+            loading.follows,
+            loading.loaded,
+            loading.load,
+            loading.gap,
+            loading.bending,
+            loading.hertz,
+            loading.tables,
+            loading.nominal,
+            loading.shift,
+            loading.clearance,
+            loading.relative,
+            loading.radial,
         )
     )
 
 
 def _pack(
-    tables: list[Array], lists: list[Rows], numbers: list[int], code: Codes
-) -> tuple[Array, Rows, Codes]:
+    tables: list[Array], lists: list[Rows], numbers: list[int], states: States
+) -> tuple[Array, Rows, States]:
     """The first fields of `Packed`."""
     front, start = [], 0
     for table in tables:
@@ -161,7 +163,7 @@ def _pack(
         front += [start, len(one), 1]
         start += len(one)
     rows = np.concatenate([np.array(front + numbers, dtype=np.intp), *lists])
-    return np.concatenate([np.ravel(table) for table in tables]), rows, np.array(code)
+    return np.concatenate([np.ravel(table) for table in tables]), rows, np.array(states)
 
 
 @allocating
@@ -225,7 +227,7 @@ def unpacked(p):  # type: ignore[no-untyped-def]
         rows[117],
         rows[118],
         rows[119],
-        p.code,
+        p.states,
         p.follows,
         p.loaded,
         p.load,
@@ -242,32 +244,32 @@ def unpacked(p):  # type: ignore[no-untyped-def]
 
 
 def _structure(
-    elements: Elements, data: Data, basis: Basis, code: Codes
+    structure: Structure, loading: Loading, basis: Basis, states: States
 ) -> tuple[list[Array], list[Rows], list[int]]:
     """The fields of `SetArrays` that are the same for all samples: tables, lists, numbers."""
-    first, flanks = elements.springs, elements.flat
-    first_arc, first_radial = first + flanks, first + elements.rows
-    order, (springs, turned, powers, tables, rows) = _order(elements, data, basis, code)
+    first, flanks = structure.springs, structure.flat
+    first_arc, first_radial = first + flanks, first + structure.rows
+    order, (springs, turned, powers, tables, rows) = _order(structure, loading, basis, states)
     columns, particular, n = basis.columns[order], basis.particular[order], basis.redundant[order]
     contacts = columns[springs:]
     renewed = turned + powers + tables
     row_end = renewed + rows
     acting = np.flatnonzero((contacts >= first_arc) & (contacts < first_radial))
     arcs = contacts[acting] - first_arc
-    idle = np.flatnonzero(code[: elements.rows] == OPEN)
+    idle = np.flatnonzero(states[: structure.rows] == OPEN)
     open_rows, open_arcs = idle[idle < flanks], idle[idle >= flanks] - flanks
-    known = (data.relative != 0.0).any(axis=1)
-    known |= elements.vectors[first_arc : first_arc + len(known)] != 0.0
+    known = (loading.relative != 0.0).any(axis=1)
+    known |= structure.vectors[first_arc : first_arc + len(known)] != 0.0
     arc_starts, arc_coordinates, _ = _sparse(known.astype(float))
     turning = np.flatnonzero(known[arcs].any(axis=0))
-    starts, coordinates, entries = _sparse(elements.vectors)
+    starts, coordinates, entries = _sparse(structure.vectors)
     at = {column: k for k, column in enumerate(contacts.tolist())}
     radial_at = [
-        at.get(elements.radial_column(j), -1) for j in range(elements.switches - elements.rows)
+        at.get(structure.radial_column(j), -1) for j in range(structure.switches - structure.rows)
     ]
     turning_radials = (contacts[0:turned:2] - first_radial) // 2
-    slips = code[elements.rows + turning_radials] == SLIP
-    compliances = np.array(data.bending[0, columns[:springs]])
+    slips = states[structure.rows + turning_radials] == SLIP
+    compliances = np.array(loading.bending[0, columns[:springs]])
     held, of_springs = particular[:springs], n[:springs]
     yields = held[:, turning].T * compliances
     touching = n[springs:]
@@ -281,7 +283,7 @@ def _structure(
         of_springs,
         touching.T,
         of_springs.T,
-        _inverse(elements, data, columns, n, code) if not renewed else np.zeros((0, 0)),
+        _inverse(structure, loading, columns, n, states) if not renewed else np.zeros((0, 0)),
         of_springs.T * compliances @ of_springs,
         products[:, :renewed],
         products[:, renewed:],
@@ -296,7 +298,7 @@ def _structure(
         basis.loose,
         entries[None],
         basis.directions[order][springs + acting],
-        data.carried[:, contacts],
+        loading.carried[:, contacts],
     ]
     lists = [
         columns[:springs],
@@ -314,29 +316,29 @@ def _structure(
         np.array(radial_at, dtype=np.intp),
         turning_radials,
         np.where(slips, np.cumsum(slips) - 1, -1),
-        data.tabulated[contacts[turned + powers : renewed]],
+        loading.tabulated[contacts[turned + powers : renewed]],
     ]
     return arrays, lists, [powers, turned, row_end, first, first_radial, flanks]
 
 
 def _order(
-    elements: Elements, data: Data, basis: Basis, code: Codes
+    structure: Structure, loading: Loading, basis: Basis, states: States
 ) -> tuple[Rows, tuple[int, ...]]:
     """Order of the acting columns, and how many there are of each sort but the last."""
     columns = basis.columns
-    is_spring = columns < elements.springs
-    is_radial = columns >= elements.springs + elements.rows
+    is_spring = columns < structure.springs
+    is_radial = columns >= structure.springs + structure.rows
     # Columns of radial elements come in pairs, all others before them one by one.
-    number = np.where(is_radial, (columns - elements.springs + elements.rows) // 2, 0)
-    place = np.where(is_radial, np.append(code, OPEN)[number], OPEN)
-    is_table = data.tabulated[columns] >= 0
+    number = np.where(is_radial, (columns - structure.springs + structure.rows) // 2, 0)
+    place = np.where(is_radial, np.append(states, OPEN)[number], OPEN)
+    is_table = loading.tabulated[columns] >= 0
     sort = np.select(
         [
-            is_spring & data.steady[columns],
+            is_spring & loading.steady[columns],
             is_radial & (place != STICK) & (place != PINNED),
             is_radial | is_spring,
             is_table,
-            data.curved[columns],
+            loading.curved[columns],
         ],
         [0, 1, 5, 3, 2],
         4,
@@ -344,12 +346,14 @@ def _order(
     return np.argsort(sort, kind="stable"), tuple(int((sort == k).sum()) for k in range(5))
 
 
-def _inverse(elements: Elements, data: Data, columns: Rows, n: Array, code: Codes) -> Array:
+def _inverse(
+    structure: Structure, loading: Loading, columns: Rows, n: Array, states: States
+) -> Array:
     """Inverse of the redundants' matrix of linear elements, if it is the same in all samples."""
-    compliance, steady = np.array(data.bending[0]), np.array(data.steady)
-    for j in np.flatnonzero(code[elements.rows :] == STICK).tolist():
-        pair = slice(elements.radial_column(j), elements.radial_column(j) + 2)
-        first = data.radial[:, j, 0]
+    compliance, steady = np.array(loading.bending[0]), np.array(loading.steady)
+    for j in np.flatnonzero(states[structure.rows :] == STICK).tolist():
+        pair = slice(structure.radial_column(j), structure.radial_column(j) + 2)
+        first = loading.radial[:, j, 0]
         compliance[pair], steady[pair] = 1.0 / first[0], (first == first[0]).all()
     if not steady[columns].all() or not n.shape[1]:
         return np.zeros((0, 0))

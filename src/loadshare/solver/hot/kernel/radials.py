@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.settings import HOT, LANES, LAWS
-from loadshare.solver.hot.lanes.options import bare
-from loadshare.solver.hot.lanes.work import (
+from loadshare.settings import ABREAST, HOT, LAWS
+from loadshare.solver.hot.contact_states import CORNER, SLIP, STOP, WALL
+from loadshare.solver.hot.kernel.options import bare
+from loadshare.solver.hot.kernel.work import (
     BEGIN,
     BEYONDS,
     BOUND,
@@ -21,12 +22,11 @@ from loadshare.solver.hot.lanes.work import (
     U,
     V,
 )
-from loadshare.solver.hot.places import CORNER, SLIP, STOP, WALL
 
 
 @bare
 def graph(s, i, j, torque):  # type: ignore[no-untyped-def]
-    """Five numbers of a radial law, and whether it has a meaning; see `places.graph`."""
+    """Five numbers of a radial law, and whether it has a meaning; see `contact_states.graph`."""
     here = i if s.radial.shape[0] > 1 else 0
     first, given, reach = s.radial[here, j, 0], s.radial[here, j, 1], s.radial[here, j, 2]
     bound = s.radial[here, j, 3]
@@ -43,39 +43,39 @@ def graph(s, i, j, torque):  # type: ignore[no-untyped-def]
 
 
 @bare
-def torque_of(follows, carried, force, lanes, torque):  # type: ignore[no-untyped-def]
-    """Torque (lanes,) over force unit that a radial element carries, if its friction follows it."""
-    for m in range(lanes):
+def torque_of(follows, carried, force, width, torque):  # type: ignore[no-untyped-def]
+    """Torque (width,) over force unit that a radial element carries, if its friction follows it."""
+    for m in range(width):
         torque[m] = 0.0
     if follows:
         for e in range(carried.shape[0]):
             arm = carried[e]
             if arm != 0.0:
-                for m in range(lanes):
+                for m in range(width):
                     torque[m] += arm * force[e, m]
 
 
 @bare
-def renew_bound(s, work, t, lanes):  # type: ignore[no-untyped-def]
+def renew_bound(s, work, t, width):  # type: ignore[no-untyped-def]
     """Law of a radial element that turns, with the friction that the forces allow."""
     j = s.turning_radials[t]
-    torque_of(s.follows[j], s.carried[j], work.force, lanes, work.one)
-    for m in range(lanes):
+    torque_of(s.follows[j], s.carried[j], work.force, width, work.one)
+    for m in range(width):
         _, stick, bound, reach, last, _ = graph(s, work.samples[m], j, work.one[m])
         work.radial[t, FIRST_END, m], work.radial[t, BOUND, m] = stick, bound
         work.radial[t, REACH, m], work.radial[t, LAST, m] = reach, last
 
 
 @bare
-def turn_radials(s, work, lanes):  # type: ignore[no-untyped-def]
+def turn_radials(s, work, width):  # type: ignore[no-untyped-def]
     """Directions and tangents of the radial elements where they are; see `vectorised.block`."""
     one, two = work.one, work.two
     for t in range(s.turning_radials.shape[0]):
-        place = s.code[s.first_radial - s.first_column + s.turning_radials[t]]
+        status = s.states[s.first_radial - s.first_column + s.turning_radials[t]]
         law = work.radial[t]
         p, q = work.force[2 * t], work.force[2 * t + 1]
-        by_force = place in (CORNER, WALL)
-        for m in range(lanes):
+        by_force = status in (CORNER, WALL)
+        for m in range(width):
             a, b = (p[m], q[m]) if by_force else (law[U, m], law[V, m])
             other_a, other_b = (law[U, m], law[V, m]) if by_force else (p[m], q[m])
             square = a * a + b * b
@@ -87,16 +87,16 @@ def turn_radials(s, work, lanes):  # type: ignore[no-untyped-def]
             law[DU, m] = a if work.go[m] > 0.0 else law[DU, m]
             law[DV, m] = b * inverse if work.go[m] > 0.0 else law[DV, m]
             two[m] = work.push[m] if work.push[m] > 1e-300 else 1e-300
-        for m in range(lanes):
+        for m in range(width):
             size, push, reach, bound = one[m], two[m], law[REACH, m], law[BOUND, m]
             if by_force:
-                begin = law[FIRST_END, m] if place == CORNER else reach
+                begin = law[FIRST_END, m] if status == CORNER else reach
                 inner, outer = 0.0, begin / (size if size > 0.0 else push)
-            elif place == SLIP:
+            elif status == SLIP:
                 begin = 0.0
                 outer = max(size, law[FIRST_END, m])
                 outer = min(outer, reach) / max(bound, HOT.faint * push)
-                inner = min(outer, LANES.yields)
+                inner = min(outer, ABREAST.yields)
             else:
                 inner, reached = 1.0 / law[LAST, m], max(size, reach)
                 begin = reach - bound * inner
@@ -111,17 +111,17 @@ def turn_radials(s, work, lanes):  # type: ignore[no-untyped-def]
         for c in range(s.redundant.shape[1]):
             here, there = s.redundant[2 * t, c], s.redundant[2 * t + 1, c]
             along = work.along[t, c]
-            for m in range(lanes):
+            for m in range(width):
                 along[m] = law[DU, m] * here + law[DV, m] * there
 
 
 @bare
-def lengthen(radial, force, stretch, lanes):  # type: ignore[no-untyped-def]
+def lengthen(radial, force, stretch, width):  # type: ignore[no-untyped-def]
     """Add to the stretch of turning radial elements what is not across their direction."""
     for t in range(radial.shape[0]):
         law = radial[t]
         p, q = force[2 * t], force[2 * t + 1]
-        for m in range(lanes):
+        for m in range(width):
             du, dv = law[DU, m], law[DV, m]
             size = law[BEGIN, m] + law[EXTRA, m]
             size += (law[INNER, m] - law[OUTER, m]) * (du * p[m] + dv * q[m])
@@ -130,19 +130,19 @@ def lengthen(radial, force, stretch, lanes):  # type: ignore[no-untyped-def]
 
 
 @bare
-def follow_radials(s, work, misfit, lanes):  # type: ignore[no-untyped-def]
+def follow_radials(s, work, misfit, width):  # type: ignore[no-untyped-def]
     """Offsets and friction that belong to the forces; add what the tangents leave to the misfit.
 
     As with power laws, what a tangent leaves of the law is of second order.
     """
     for t in range(s.turning_radials.shape[0]):
         j = s.turning_radials[t]
-        place = s.code[s.first_radial - s.first_column + j]
+        status = s.states[s.first_radial - s.first_column + j]
         law = work.radial[t]
         p, q = work.force[2 * t], work.force[2 * t + 1]
         if s.follows[j]:
-            renew_bound(s, work, t, lanes)
-        for m in range(lanes):
+            renew_bound(s, work, t, width)
+        for m in range(width):
             u = work.stretch[2 * t, m] - work.gap[2 * t, m]
             v = work.stretch[2 * t + 1, m] - work.gap[2 * t + 1, m]
             law[U, m], law[V, m] = u, v
@@ -154,17 +154,17 @@ def follow_radials(s, work, misfit, lanes):  # type: ignore[no-untyped-def]
             over_radius = 1.0 / radius if radius > 0.0 else 0.0
             over_size = 1.0 / size if size > 0.0 else 0.0
             bound = law[BOUND, m]
-            if place == SLIP:
+            if status == SLIP:
                 gone = abs(product * over_radius - bound) / strongest
                 more = across / (bound if bound > HOT.faint * strongest else strongest) / scale
                 left = radius > HOT.beyond * law[REACH, m] or bound <= HOT.sign * work.push[m]
                 law[BEYONDS, m] = law[BEYONDS, m] + 1.0 if left else 0.0
-            elif place == STOP:
+            elif status == STOP:
                 gone = law[REACH, m] + (product * over_radius - bound) / law[LAST, m] - radius
                 gone = abs(gone) / scale
                 more = across * over_radius * law[OUTER, m] / scale
             else:
-                limit = law[FIRST_END, m] if place == CORNER else law[REACH, m]
+                limit = law[FIRST_END, m] if status == CORNER else law[REACH, m]
                 gone = abs(product * over_size - limit) / scale
                 more = across * over_size / scale
             gone = (gone if gone > more else more) * (HOT.settled / HOT.law)

@@ -1,14 +1,14 @@
-"""Sums over rows of lanes, and systems of equations in every lane."""
+"""Sums over rows, and systems of equations, of samples side by side."""
 
 from __future__ import annotations
 
-from loadshare.settings import LANES
-from loadshare.solver.hot.lanes.options import bare
+from loadshare.settings import ABREAST
+from loadshare.solver.hot.kernel.options import bare
 
 
 @bare
-def add_product(total, weights, table, lanes):  # type: ignore[no-untyped-def]
-    """Add weights (p, q) times the first q rows of a table, (·, lanes), to total (p, lanes).
+def add_product(total, weights, table, width):  # type: ignore[no-untyped-def]
+    """Add weights (p, q) times the first q rows of a table, (·, width), to total (p, width).
 
     Two rows and four terms at a time, so that a term is fetched once for two rows.
     """
@@ -19,86 +19,86 @@ def add_product(total, weights, table, lanes):  # type: ignore[no-untyped-def]
             a0, a1, a2, a3 = weights[o, e], weights[o, e + 1], weights[o, e + 2], weights[o, e + 3]
             b0, b1 = weights[o + 1, e], weights[o + 1, e + 1]
             b2, b3 = weights[o + 1, e + 2], weights[o + 1, e + 3]
-            for m in range(lanes):
+            for m in range(width):
                 t0, t1, t2, t3 = table[e, m], table[e + 1, m], table[e + 2, m], table[e + 3, m]
                 total[o, m] += (a0 * t0 + a1 * t1) + (a2 * t2 + a3 * t3)
                 total[o + 1, m] += (b0 * t0 + b1 * t1) + (b2 * t2 + b3 * t3)
         for e in range(terms, q):
             a0, b0 = weights[o, e], weights[o + 1, e]
-            for m in range(lanes):
+            for m in range(width):
                 total[o, m] += a0 * table[e, m]
                 total[o + 1, m] += b0 * table[e, m]
     for o in range(rows, p):
         for e in range(0, terms, 4):
             a0, a1, a2, a3 = weights[o, e], weights[o, e + 1], weights[o, e + 2], weights[o, e + 3]
-            for m in range(lanes):
+            for m in range(width):
                 total[o, m] += (a0 * table[e, m] + a1 * table[e + 1, m]) + (
                     a2 * table[e + 2, m] + a3 * table[e + 3, m]
                 )
         for e in range(terms, q):
             a0 = weights[o, e]
-            for m in range(lanes):
+            for m in range(width):
                 total[o, m] += a0 * table[e, m]
 
 
 @bare
-def clear(table, lanes):  # type: ignore[no-untyped-def]
-    """Set a table (rows, lanes) to zero."""
+def clear(table, width):  # type: ignore[no-untyped-def]
+    """Set a table (rows, width) to zero."""
     for o in range(table.shape[0]):
-        for m in range(lanes):
+        for m in range(width):
             table[o, m] = 0.0
 
 
 @bare
-def approach(s, samples, column, x, lanes, total):  # type: ignore[no-untyped-def]
-    """Write A x − g (lanes,) of a column of a row or of a radial element."""
+def approach(s, samples, column, x, width, total):  # type: ignore[no-untyped-def]
+    """Write A x − g (width,) of a column of a row or of a radial element."""
     varying = s.gap.shape[0] > 1
-    for m in range(lanes):
+    for m in range(width):
         total[m] = -s.gap[samples[m] if varying else 0, column]
     first, end = s.starts[column], s.starts[column + 1]
     pairs = end - (end - first) % 2
     for c in range(first, pairs, 2):
         d, e, along, across = s.coordinates[c], s.coordinates[c + 1], s.entries[c], s.entries[c + 1]
-        for m in range(lanes):
+        for m in range(width):
             total[m] += along * x[d, m] + across * x[e, m]
     for c in range(pairs, end):
         d, along = s.coordinates[c], s.entries[c]
-        for m in range(lanes):
+        for m in range(width):
             total[m] += along * x[d, m]
 
 
 @bare
-def solve(matrix, right, definite, size, lanes, singular, largest, pivot):  # type: ignore[no-untyped-def]
-    """Solve symmetric systems (size, size, lanes) in place, lower triangles given.
+def solve(matrix, right, definite, size, width, singular, largest, pivot):  # type: ignore[no-untyped-def]
+    """Solve symmetric systems (size, size, width) in place, lower triangles given.
 
     The first `definite` rows are positive definite, the others borders.
     """
-    for m in range(lanes):
+    for m in range(width):
         largest[m] = 0.0
     for c in range(size):
         if c < definite:
-            for m in range(lanes):
+            for m in range(width):
                 p = matrix[c, c, m]
                 largest[m] = p if p > largest[m] else largest[m]
-                singular[m] = singular[m] if p > LANES.doubtful * largest[m] else 1.0
+                singular[m] = singular[m] if p > ABREAST.doubtful * largest[m] else 1.0
                 pivot[m] = 1.0 / p
         else:
-            for m in range(lanes):
+            for m in range(width):
                 p = matrix[c, c, m]
-                singular[m] = singular[m] if -p * largest[m] > LANES.doubtful else 1.0
+                singular[m] = singular[m] if -p * largest[m] > ABREAST.doubtful else 1.0
                 pivot[m] = 1.0 / p
         for d in range(c + 1, size):
-            for m in range(lanes):
+            for m in range(width):
                 matrix[c, d, m] = matrix[d, c, m] * pivot[m]
         for d in range(c + 1, size):
             for e in range(c + 1, d + 1):
-                for m in range(lanes):
+                for m in range(width):
                     matrix[d, e, m] -= matrix[d, c, m] * matrix[c, e, m]
-            for m in range(lanes):
+            for m in range(width):
                 right[d, m] -= matrix[c, d, m] * right[c, m]
-        for m in range(lanes):
+        for m in range(width):
             right[c, m] *= pivot[m]
     for c in range(size - 1, -1, -1):
         for d in range(c + 1, size):
-            for m in range(lanes):
+            for m in range(width):
                 right[c, m] -= matrix[c, d, m] * right[d, m]

@@ -12,12 +12,12 @@ from tests.support import SHIPPED, shipped
 from benchmarks import families
 from loadshare.job.machine import Machine
 from loadshare.scene import assemble
-from loadshare.scene.data import data_of
-from loadshare.scene.elements import Elements, elements_of
+from loadshare.scene.loading import loading_of
+from loadshare.scene.structure import Structure, structure_of
 from loadshare.solver.hot import vectorised
+from loadshare.solver.hot.contact_states import graph
 from loadshare.solver.hot.exchange import exchange, first_sets
-from loadshare.solver.hot.places import graph
-from loadshare.solver.hot.state import at_rest
+from loadshare.solver.hot.iterate import at_rest
 from loadshare.train import build_train
 from loadshare.train.samples import samples_of
 from loadshare.train.situations import situation_of
@@ -25,11 +25,11 @@ from loadshare.train.situations import situation_of
 DIGITS = 1e-12
 
 
-def sets(elements: Elements, index: int = 1) -> list[np.ndarray]:
+def sets(structure: Structure, index: int = 1) -> list[np.ndarray]:
     """The first set, everything, nothing, and some at random."""
-    first = first_sets(elements, data_of(elements, situation_of(elements.train, index)))[0]
-    rng = np.random.default_rng(elements.switches)
-    some = rng.integers(0, 2, (4, elements.switches)).astype(np.int8)
+    first = first_sets(structure, loading_of(structure, situation_of(structure.train, index)))[0]
+    rng = np.random.default_rng(structure.switches)
+    some = rng.integers(0, 2, (4, structure.switches)).astype(np.int8)
     return [first, np.ones_like(first), np.zeros_like(first), *some]
 
 
@@ -38,11 +38,11 @@ def test_the_statics_of_a_set(name):
     """P carries every load that the set can carry, N carries none; together they span all forces,
     and what no element resists is loose.
     """
-    elements = elements_of(build_train(shipped(name)))
-    for code in sets(elements):
-        basis = elements.basis(code)
+    structure = structure_of(build_train(shipped(name)))
+    for states in sets(structure):
+        basis = structure.basis(states)
         a, p, n, loose = basis.directions, basis.particular, basis.redundant, basis.loose
-        size = elements.size
+        size = structure.size
         resisted = np.eye(size) - loose @ loose.T
         np.testing.assert_allclose(a.T @ p, resisted, atol=DIGITS * np.abs(p).max(initial=1.0))
         np.testing.assert_allclose(a.T @ n, 0.0, atol=DIGITS)
@@ -60,26 +60,26 @@ def test_the_elements_are_the_scene(name):
     """Rows and radials by name and direction; springs give the scene's stiffness."""
     train = build_train(shipped(name))
     scene = assemble(train, 1)
-    elements = elements_of(train)
+    structure = structure_of(train)
     rows = scene.rows_at(np.zeros(scene.size))
-    assert elements.row_names == tuple(r.name for r in rows)
-    assert elements.vectors.shape == (len(elements.kinds), scene.size)
+    assert structure.row_names == tuple(r.name for r in rows)
+    assert structure.vectors.shape == (len(structure.kinds), scene.size)
     for k, row in enumerate(rows):
-        np.testing.assert_array_equal(elements.vectors[elements.springs + k], row.vector)
+        np.testing.assert_array_equal(structure.vectors[structure.springs + k], row.vector)
     for j, radial in enumerate(scene.radials):
-        k = elements.radial_column(j)
-        np.testing.assert_array_equal(elements.vectors[k : k + 2], radial.matrix)
-    data = data_of(elements, situation_of(train, 1))
-    springs = elements.vectors[: elements.springs]
-    stiffness = 1.0 / data.bending[0, : elements.springs] * elements.force / elements.length
+        k = structure.radial_column(j)
+        np.testing.assert_array_equal(structure.vectors[k : k + 2], radial.matrix)
+    loading = loading_of(structure, situation_of(train, 1))
+    springs = structure.vectors[: structure.springs]
+    stiffness = 1.0 / loading.bending[0, : structure.springs] * structure.force / structure.length
     whole = springs.T @ (stiffness[:, None] * springs)
     np.testing.assert_allclose(whole, scene.stiffness, rtol=1e-12, atol=1e-6)
 
 
 @pytest.mark.parametrize(("branches", "redundants"), [(2, 1), (4, 3), (6, 5), (8, 7)])
 def test_a_branched_train_has_a_redundant_per_branch_but_one(branches, redundants):
-    elements = elements_of(build_train(families.split_torque(branches)))
-    assert elements.basis(sets(elements)[0]).redundant.shape[1] == redundants
+    structure = structure_of(build_train(families.split_torque(branches)))
+    assert structure.basis(sets(structure)[0]).redundant.shape[1] == redundants
 
 
 def test_the_seed_has_three_redundants_and_a_floating_pinion_takes_one():
@@ -87,27 +87,27 @@ def test_the_seed_has_three_redundants_and_a_floating_pinion_takes_one():
     counts = {}
     for support in ("rigid", "free"):
         case = shipped("fgfbstts/base").replace({"gears.4.support": support})
-        elements = elements_of(build_train(case))
-        counts[support] = elements.basis(sets(elements)[0]).redundant.shape[1]
+        structure = structure_of(build_train(case))
+        counts[support] = structure.basis(sets(structure)[0]).redundant.shape[1]
     assert counts == {"rigid": 3, "free": 2}
 
 
 def test_a_set_is_reduced_once():
-    elements = elements_of(build_train(shipped("fgfbstts/all_elements")))
-    code = sets(elements)[0]
-    again = np.where(code != 0, 3, 0).astype(np.int8)
-    assert elements.basis(code) is elements.basis(again), "only what acts matters"
+    structure = structure_of(build_train(shipped("fgfbstts/all_elements")))
+    states = sets(structure)[0]
+    again = np.where(states != 0, 3, 0).astype(np.int8)
+    assert structure.basis(states) is structure.basis(again), "only what acts matters"
 
 
 def test_opposed_arcs_are_known_where_neighbours_stand_firm():
     """Ring 4 lies on the line between its idlers: a squeeze would be sham. Elastic idlers give."""
-    elements = elements_of(build_train(shipped("fgfbstts/limit_ring")))
-    pairs = [tuple(elements.row_names[k] for k in pair) for pair in elements.opposed]
+    structure = structure_of(build_train(shipped("fgfbstts/limit_ring")))
+    pairs = [tuple(structure.row_names[k] for k in pair) for pair in structure.opposed]
     assert pairs == [
         ("ring 4: arc 7", "ring 4: arc 6"),
         ("ring 5: arc 9", "ring 5: arc 8"),
     ]
-    elastic = elements_of(build_train(shipped("fgfbstts/all_elements")))
+    elastic = structure_of(build_train(shipped("fgfbstts/all_elements")))
     assert not elastic.opposed
 
 
@@ -119,30 +119,30 @@ def test_the_numbers_of_a_sample_are_those_of_its_scene(name):
     """Gaps, compliances, loads and radial laws of random samples, in the units of the elements."""
     case, samples = varied(name, 6, seed=7)
     ((_, group),) = samples_of(case, samples)
-    elements = Machine(group.train).elements
-    force, length = elements.force, elements.length
+    structure = Machine(group.train).structure
+    force, length = structure.force, structure.length
     for index in sorted({1, group.train.count}):
-        data = data_of(elements, group.situations(index))
-        assert data.count == 6
+        loading = loading_of(structure, group.situations(index))
+        assert loading.count == 6
         for sample in range(6):
             scene = assemble(build_train(group.one(sample)), index)
 
             def of(array: np.ndarray, sample: int = sample) -> np.ndarray:
                 return array[sample if len(array) > 1 else 0]
 
-            gap, bending, hertz = of(data.gap), of(data.bending), of(data.hertz)
-            springs = elements.vectors[: elements.springs]
-            preset = springs.T @ (gap[: elements.springs] / bending[: elements.springs])
-            load = (of(data.load) + preset) * force
+            gap, bending, hertz = of(loading.gap), of(loading.bending), of(loading.hertz)
+            springs = structure.vectors[: structure.springs]
+            preset = springs.T @ (gap[: structure.springs] / bending[: structure.springs])
+            load = (of(loading.load) + preset) * force
             push = np.abs(scene.load).max(initial=1.0)
             np.testing.assert_allclose(load, scene.load, atol=DIGITS * push)
             fixed = len(scene.rows)
             for k, row in enumerate(scene.rows_at(np.zeros(scene.size))):
-                column = elements.springs + k
+                column = structure.springs + k
                 probe = 0.7 * scene.force_unit()
                 scaled = probe / force
-                if data.tabulated[column] >= 0:
-                    forces, bends = of(data.tables)[data.tabulated[column]]
+                if loading.tabulated[column] >= 0:
+                    forces, bends = of(loading.tables)[loading.tabulated[column]]
                     compression = np.interp(scaled, forces, bends)
                     probe = min(probe, np.nanmax(forces) * force)
                 else:
@@ -152,21 +152,21 @@ def test_the_numbers_of_a_sample_are_those_of_its_scene(name):
                 if k < fixed:
                     assert gap[column] * length == pytest.approx(row.gap, rel=DIGITS, abs=1e-18)
             for a, arc in enumerate(scene.arcs):
-                start = (data.nominal[a] + of(data.shift)[a]) * length
+                start = (loading.nominal[a] + of(loading.shift)[a]) * length
                 np.testing.assert_allclose(start, arc.arc.start, rtol=DIGITS, atol=1e-15)
-                assert of(data.clearance)[a] * length == pytest.approx(arc.arc.clearance)
-                np.testing.assert_array_equal(data.relative[a], arc.relative)
+                assert of(loading.clearance)[a] * length == pytest.approx(arc.arc.clearance)
+                np.testing.assert_array_equal(loading.relative[a], arc.relative)
             for j, radial in enumerate(scene.radials):
                 torque = 123.0
                 law = radial.law(torque)
-                told = graph(of(data.radial)[None, j], np.array([torque / force]))
+                told = graph(of(loading.radial)[None, j], np.array([torque / force]))
                 ends = [p.length for p in law.pieces if np.isfinite(p.length)]
                 if law.pieces[-1].name == "stick":
                     assert np.isinf(told.stick[0])
                 else:
                     reach = float(told.reach[0]) * length
                     assert reach == pytest.approx(sum(ends), rel=DIGITS, abs=1e-18)
-                column = elements.radial_column(j)
+                column = structure.radial_column(j)
                 np.testing.assert_allclose(
                     gap[column : column + 2] * length, radial.centre, atol=1e-18
                 )
@@ -178,17 +178,17 @@ def test_the_numbers_of_a_sample_are_those_of_its_scene(name):
 def test_an_answer_is_in_balance_and_compatible(name):
     """A^T μ = f, N^T (g + δ) = 0 and x = P^T (g + δ), where all laws are linear."""
     train = build_train(shipped(name))
-    elements = elements_of(train)
-    data = data_of(elements, situation_of(train, 1))
-    state = at_rest(elements, data)
-    found = exchange(elements, data, state, vectorised.settle)
+    structure = structure_of(train)
+    loading = loading_of(structure, situation_of(train, 1))
+    state = at_rest(structure, loading)
+    found = exchange(structure, loading, state, vectorised.settle)
     assert found.solved.all()
-    basis = elements.basis(found.code[0])
+    basis = structure.basis(found.states[0])
     acting = basis.columns
     forces = state.force[0, acting]
-    closing = data.gap[0, acting] + data.bending[0, acting] * forces
+    closing = loading.gap[0, acting] + loading.bending[0, acting] * forces
     size = np.abs(closing).max()
-    push = np.abs(data.load).max()
-    np.testing.assert_allclose(basis.directions.T @ forces, data.load[0], atol=DIGITS * push)
+    push = np.abs(loading.load).max()
+    np.testing.assert_allclose(basis.directions.T @ forces, loading.load[0], atol=DIGITS * push)
     np.testing.assert_allclose(basis.redundant.T @ closing, 0.0, atol=DIGITS * size)
     np.testing.assert_allclose(state.x[0], basis.particular.T @ closing, atol=1e-10 * size)

@@ -1,16 +1,16 @@
-"""Newton passes of all lanes until they have settled or ask for another set."""
+"""Newton passes of samples side by side until they have settled or ask for another set."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from loadshare.settings import HOT, LANES
-from loadshare.solver.hot.lanes.arcs import follow_arcs, turn_arcs
-from loadshare.solver.hot.lanes.laws import renew_laws, renew_tables
-from loadshare.solver.hot.lanes.options import bare
-from loadshare.solver.hot.lanes.radials import follow_radials, lengthen, turn_radials
-from loadshare.solver.hot.lanes.sums import add_product, solve
-from loadshare.solver.hot.lanes.work import (
+from loadshare.settings import ABREAST, HOT
+from loadshare.solver.hot.kernel.arcs import follow_arcs, turn_arcs
+from loadshare.solver.hot.kernel.laws import renew_laws, renew_tables
+from loadshare.solver.hot.kernel.options import bare
+from loadshare.solver.hot.kernel.radials import follow_radials, lengthen, turn_radials
+from loadshare.solver.hot.kernel.sums import add_product, solve
+from loadshare.solver.hot.kernel.work import (
     BAND,
     BEYONDS,
     BOUND,
@@ -26,95 +26,95 @@ from loadshare.solver.hot.lanes.work import (
 
 
 @bare
-def _matrix(s, work, lanes):  # type: ignore[no-untyped-def]
+def _matrix(s, work, width):  # type: ignore[no-untyped-def]
     """Lower triangle of the redundants' matrix, with a border for every slip."""
     r, matrix, tangent = s.redundant.shape[1], work.matrix, work.tangent
     for c in range(r):
         for d in range(c + 1):
-            for m in range(lanes):
+            for m in range(width):
                 matrix[c, d, m] = work.linear[c, d, m]
-        add_product(matrix[c, : c + 1], s.products[c * r : c * r + c + 1], tangent, lanes)
+        add_product(matrix[c, : c + 1], s.products[c * r : c * r + c + 1], tangent, width)
     for t in range(s.turning_radials.shape[0]):
         law = work.radial[t]
         excess = work.one
-        for m in range(lanes):
+        for m in range(width):
             excess[m] = law[INNER, m] - law[OUTER, m]
         for c in range(r):
             for d in range(c + 1):
-                for m in range(lanes):
+                for m in range(width):
                     matrix[c, d, m] += excess[m] * work.along[t, c, m] * work.along[t, d, m]
         border = s.borders[t]
         if border >= 0:
             p, q = work.force[2 * t], work.force[2 * t + 1]
-            for m in range(lanes):
+            for m in range(width):
                 held = law[DU, m] * p[m] + law[DV, m] * q[m]
                 work.right[r + border, m] = work.go[m] * (law[BOUND, m] - held)
             for c in range(r):
-                for m in range(lanes):
+                for m in range(width):
                     matrix[r + border, c, m] = work.along[t, c, m]
             for d in range(border + 1):
-                for m in range(lanes):
+                for m in range(width):
                     matrix[r + border, r + d, m] = 0.0
 
 
 @bare
-def _pass(s, work, lanes):  # type: ignore[no-untyped-def]
+def _pass(s, work, width):  # type: ignore[no-untyped-def]
     """One Newton pass: redundants from compatibility, then forces and compressions."""
     r = s.redundant.shape[1]
     force, stretch, tangent, shift = work.force, work.stretch, work.tangent, work.shift
     z, right = work.z, work.right[:r]
     turning, pairs = s.turning.shape[0], s.turning_radials.shape[0]
     if turning > 0:
-        turn_arcs(s, work, lanes)
+        turn_arcs(s, work, width)
     if pairs > 0:
-        turn_radials(s, work, lanes)
+        turn_radials(s, work, width)
     for c in range(r):
-        for m in range(lanes):
+        for m in range(width):
             right[c, m] = work.base[c, m]
-    add_product(right, s.springs_matrix, z, lanes)
+    add_product(right, s.springs_matrix, z, width)
     for e in range(s.contacts.shape[0]):
-        for m in range(lanes):
+        for m in range(width):
             force[e, m] = work.fixed[e, m]
-    add_product(force, s.redundant, z, lanes)
+    add_product(force, s.redundant, z, width)
     if turning > 0:
-        add_product(right, s.turned_gap, work.load, lanes)
-        add_product(force, s.turned, work.load, lanes)
+        add_product(right, s.turned_gap, work.load, width)
+        add_product(force, s.turned, work.load, width)
     for e in range(s.contacts.shape[0]):
-        for m in range(lanes):
+        for m in range(width):
             stretch[e, m] = work.gap[e, m] + shift[e, m] + tangent[e, m] * force[e, m]
-    lengthen(work.radial, force, stretch, lanes)
-    add_product(right, s.across, stretch, lanes)
+    lengthen(work.radial, force, stretch, width)
+    add_product(right, s.across, stretch, width)
     for c in range(r):
-        for m in range(lanes):
+        for m in range(width):
             right[c, m] *= -work.go[m]
     if s.inverse.shape[0] > 0:
         for c in range(r):
-            for m in range(lanes):
+            for m in range(width):
                 work.matrix[0, c, m] = right[c, m]
         for c in range(r):
-            for m in range(lanes):
+            for m in range(width):
                 right[c, m] = 0.0
-        add_product(right, s.inverse, work.matrix[0], lanes)
+        add_product(right, s.inverse, work.matrix[0], width)
     else:
-        _matrix(s, work, lanes)
+        _matrix(s, work, width)
         size = work.right.shape[0]
-        solve(work.matrix, work.right, r, size, lanes, work.singular, work.one, work.two)
+        solve(work.matrix, work.right, r, size, width, work.singular, work.one, work.two)
         for t in range(pairs):
             if s.borders[t] >= 0:
-                for m in range(lanes):
+                for m in range(width):
                     work.radial[t, EXTRA, m] += work.right[r + s.borders[t], m]
-    for m in range(lanes):
+    for m in range(width):
         work.largest[m] = 0.0
         work.strongest[m] = 0.0
         work.weakest[m] = 0.0
     for c in range(r):
-        for m in range(lanes):
+        for m in range(width):
             z[c, m] += right[c, m]
-    add_product(force, s.redundant, right, lanes)
+    add_product(force, s.redundant, right, width)
     for e in range(s.contacts.shape[0]):
         # Of radial elements neither the signs nor the compressions are looked at here.
         row = 1.0 if s.first_row <= e < s.end_row else 0.0
-        for m in range(lanes):
+        for m in range(width):
             f = force[e, m]
             y = shift[e, m] + tangent[e, m] * f
             stretch[e, m] = work.gap[e, m] + y
@@ -124,41 +124,41 @@ def _pass(s, work, lanes):  # type: ignore[no-untyped-def]
             work.weakest[m] = y if y < work.weakest[m] else work.weakest[m]
             f = abs(f)
             work.strongest[m] = f if f > work.strongest[m] else work.strongest[m]
-    lengthen(work.radial, force, stretch, lanes)
+    lengthen(work.radial, force, stretch, width)
 
 
 @bare
-def _judge(s, work, law_misfit, number, one_only, lanes):  # type: ignore[no-untyped-def]
-    """Judge lanes that have settled or ask for another set; return how many."""
+def _judge(s, work, law_misfit, number, one_only, width):  # type: ignore[no-untyped-def]
+    """Judge samples that have settled or ask for another set; return how many."""
     misfit, judged = work.misfit, 0
-    for m in range(lanes):
+    for m in range(width):
         if work.live[m] == 0.0:
             continue
         stalled = number > 2 and misfit[m] <= HOT.stalled
-        stalled = stalled and misfit[m] >= 0.5 * work.lane[PREVIOUS, m]
+        stalled = stalled and misfit[m] >= 0.5 * work.each[PREVIOUS, m]
         settled = misfit[m] <= HOT.settled or stalled
-        work.lane[PREVIOUS, m] = misfit[m]
+        work.each[PREVIOUS, m] = misfit[m]
         # A set that is clearly wrong need not be settled.
         pulled = law_misfit[m] <= HOT.nearly and not one_only[work.samples[m]]
-        wrong = work.lane[DRIFTS, m] > 0.0 or work.weakest[m] < -HOT.hurry * work.strongest[m]
+        wrong = work.each[DRIFTS, m] > 0.0 or work.weakest[m] < -HOT.gross * work.strongest[m]
         pulled = pulled and wrong
         # Forces without bound and what is not a number are left undecided.
         burst = not work.strongest[m] <= HOT.burst * (work.push[m] if work.push[m] > 0.0 else 1.0)
         undecided = work.singular[m] > 0.0 or (burst and not settled)
-        hopeless = work.longest[m] >= work.lane[PATIENT, m]
+        hopeless = work.longest[m] >= work.each[PATIENT, m]
         for t in range(s.turning_radials.shape[0]):
             hopeless = hopeless or work.radial[t, BEYONDS, m] >= HOT.outside
         if settled or pulled or undecided or hopeless:
-            sign = HOT.sign if settled else (HOT.hurry if pulled else np.inf)
-            work.lane[BAND, m] = 0.0 if undecided else sign
+            sign = HOT.sign if settled else (HOT.gross if pulled else np.inf)
+            work.each[BAND, m] = 0.0 if undecided else sign
             work.live[m], work.go[m] = 0.0, 1.0 if settled and not undecided else 0.0
             judged += 1
     return judged
 
 
 @bare
-def run(s, work, one_only, enough, lanes):  # type: ignore[no-untyped-def]
-    """Pass until no more than `enough` lanes are live."""
+def run(s, work, one_only, enough, width):  # type: ignore[no-untyped-def]
+    """Pass until no more than `enough` samples are live."""
     distance = np.inf
     for w in range(s.arcs.shape[0]):
         square = 0.0
@@ -166,20 +166,20 @@ def run(s, work, one_only, enough, lanes):  # type: ignore[no-untyped-def]
             square += s.nominal[s.arcs[w], c] ** 2
         distance = min(distance, np.sqrt(square))
     lives = 0
-    for m in range(lanes):
+    for m in range(width):
         lives += work.live[m] > 0.0
     law_misfit, misfit = work.waits, work.misfit
-    for number in range(LANES.passes):
+    for number in range(ABREAST.passes):
         if lives <= enough:
             break
-        _pass(s, work, lanes)
-        renew_laws(s, work, misfit, lanes)
-        renew_tables(s, work, misfit, lanes)
-        for m in range(lanes):
+        _pass(s, work, width)
+        renew_laws(s, work, misfit, width)
+        renew_tables(s, work, misfit, width)
+        for m in range(width):
             # Where a flank waits for its law, no law fits.
             law_misfit[m], waits = misfit[m], work.waits[m] > 0.0
             misfit[m] = 1.0 if waits else misfit[m] * (HOT.settled / HOT.law)
-        follow_radials(s, work, misfit, lanes)
+        follow_radials(s, work, misfit, width)
         if s.turning.shape[0] > 0:
-            follow_arcs(s, work, distance, lanes)
-        lives -= _judge(s, work, law_misfit, number, one_only, lanes)
+            follow_arcs(s, work, distance, width)
+        lives -= _judge(s, work, law_misfit, number, one_only, width)

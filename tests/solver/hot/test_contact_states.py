@@ -19,9 +19,9 @@ from loadshare.contact.radial import RadialLaw, round_ring_law, spline_law
 from loadshare.job.hot import HOT
 from loadshare.job.machine import Machine
 from loadshare.scene import assemble
-from loadshare.scene.data import data_of
+from loadshare.scene.loading import loading_of
 from loadshare.settings import CERTIFY
-from loadshare.solver.hot import places as at
+from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot import vectorised
 from loadshare.train import build_train
 from loadshare.train.samples import samples_of
@@ -241,7 +241,7 @@ def test_a_solved_element_stands_on_its_law(name):
             low, high = law.interval(radius, 1e-13)
             load = max(equilibrium.flank_force.values())
             assert low - 1e-9 * load <= size <= high + 1e-9 * load
-            place = int(found.code[row, machine.elements.rows + j])
+            place = int(found.states[row, machine.structure.rows + j])
             seen.add(place)
             piece = {at.STICK: "stick", at.SLIP: "slip", at.STOP: "stop"}.get(place)
             names = [p.name for k, p in enumerate(law.pieces) if _on(law, k, radius)]
@@ -264,13 +264,13 @@ def test_torque_that_reaches_the_spline_bounds_its_friction():
     machine = Machine(group.train)
     situations = group.situations(2)
     found = machine.answer(situations, CERTIFY.tolerance, vectorised.settle)
-    elements = machine.elements
-    data = data_of(elements, situations)
-    flanks = slice(elements.springs, elements.springs + found.equilibria.flank_force.shape[1])
-    carried = found.equilibria.flank_force @ data.carried[:, flanks].T
+    structure = machine.structure
+    loading = loading_of(structure, situations)
+    flanks = slice(structure.springs, structure.springs + found.equilibria.flank_force.shape[1])
+    carried = found.equilibria.flank_force @ loading.carried[:, flanks].T
     for row in range(5):
         forces = found.equilibria.one(row, 2).flank_force
-        for j, radial in enumerate(elements.radials):
+        for j, radial in enumerate(structure.radials):
             torque = group.train.transmitted(radial.gear, forces)
             assert abs(carried[row, j]) == pytest.approx(abs(torque), rel=1e-12)
 

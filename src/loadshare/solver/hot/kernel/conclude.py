@@ -4,23 +4,23 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.settings import HOT, LANES
-from loadshare.solver.hot.lanes.options import bare
-from loadshare.solver.hot.lanes.signs import look_at_radials, look_at_rows, propose, stopped
-from loadshare.solver.hot.lanes.sums import add_product, clear
-from loadshare.solver.hot.lanes.work import BAND, DRIFTS, MOVED, STATICS, STILL, TOTAL
-from loadshare.solver.hot.places import DONE, OTHER
+from loadshare.settings import ABREAST, HOT
+from loadshare.solver.hot.contact_states import DONE, OTHER
+from loadshare.solver.hot.kernel.options import bare
+from loadshare.solver.hot.kernel.signs import look_at_radials, look_at_rows, propose, stopped
+from loadshare.solver.hot.kernel.sums import add_product, clear
+from loadshare.solver.hot.kernel.work import BAND, DRIFTS, MOVED, STATICS, STILL, TOTAL
 
 
 @bare
-def conclude(s, work, count, lanes, xs, forces, roots, one_only, verdict, proposal):  # type: ignore[no-untyped-def]
+def conclude(s, work, count, width, xs, forces, roots, one_only, verdict, proposal):  # type: ignore[no-untyped-def]
     """Judge the signs of samples that have settled, and store where every sample stands."""
     springs, force = s.springs.shape[0], work.force
-    _refine(s, work, lanes)
-    look_at_rows(s, work, lanes)
-    look_at_radials(s, work, lanes)
+    _refine(s, work, width)
+    look_at_rows(s, work, width)
+    look_at_radials(s, work, width)
     for m in range(count):
-        i, row, sign = work.samples[m], work.at_row[m], work.lane[BAND, m]
+        i, row, sign = work.samples[m], work.at_row[m], work.each[BAND, m]
         if sign == 0.0 and work.live[m] == 0.0:
             continue
         for d in range(work.x.shape[0]):
@@ -37,7 +37,7 @@ def conclude(s, work, count, lanes, xs, forces, roots, one_only, verdict, propos
             roots[i, s.contacts[s.first_row + s.powers + p]] = np.cbrt(work.reached[p, m])
         if work.live[m] > 0.0:
             continue
-        if sign == HOT.sign and work.mistakes[m] == 0 and work.lane[DRIFTS, m] == 0.0:
+        if sign == HOT.sign and work.mistakes[m] == 0 and work.each[DRIFTS, m] == 0.0:
             verdict[row] = DONE
             continue
         verdict[row] = OTHER
@@ -46,26 +46,26 @@ def conclude(s, work, count, lanes, xs, forces, roots, one_only, verdict, propos
             for p in range(s.powers):
                 if force[s.first_row + p, m] <= 0.0:
                     work.wrong[s.switches[p], m] = True
-        propose(s.code, work.wrong, work.better, m, one_only[i], proposal[row])
-        if work.lane[DRIFTS, m] > 0.0:
+        propose(s.states, work.wrong, work.better, m, one_only[i], proposal[row])
+        if work.each[DRIFTS, m] > 0.0:
             # Only what stops the drift is of interest.
-            verdict[row] = stopped(s, work, m, lanes, proposal[row], xs[i])
+            verdict[row] = stopped(s, work, m, width, proposal[row], xs[i])
 
 
 @bare
-def _refine(s, work, lanes):  # type: ignore[no-untyped-def]
+def _refine(s, work, width):  # type: ignore[no-untyped-def]
     """Forces of the springs and coordinates; sets that compatibility does not close are left."""
     springs, total, moved = s.springs.shape[0], work.spring[TOTAL], work.spring[MOVED]
     r, yielded, misfit = s.redundant.shape[1], work.one, work.two
-    for m in range(lanes):
+    for m in range(width):
         yielded[m] = work.largest[m]
         misfit[m] = 0.0
-    clear(total, lanes)
-    add_product(total, s.redundant_springs, work.z, lanes)
-    add_product(total, s.turned_springs, work.load, lanes)
+    clear(total, width)
+    add_product(total, s.redundant_springs, work.z, width)
+    add_product(total, s.turned_springs, work.load, width)
     for e in range(springs):
         held, compliance = work.spring[STATICS, e], s.compliances[e]
-        for m in range(lanes):
+        for m in range(width):
             moved[e, m] = work.spring[STILL, e, m] + compliance * total[e, m]
             held[m] += total[e, m]
             f = abs(held[m])
@@ -73,18 +73,18 @@ def _refine(s, work, lanes):  # type: ignore[no-untyped-def]
             work.largest[m] = y if y > work.largest[m] else work.largest[m]
             work.push[m] = f if f > work.push[m] else work.push[m]
     left = work.right[:r]
-    clear(left, lanes)
-    add_product(left, s.across_springs, moved, lanes)
-    add_product(left, s.across, work.stretch, lanes)
+    clear(left, width)
+    add_product(left, s.across_springs, moved, width)
+    add_product(left, s.across, work.stretch, width)
     for c in range(r):
-        for m in range(lanes):
+        for m in range(width):
             y = abs(left[c, m])
             misfit[m] = misfit[m] if y <= misfit[m] else y
-    for m in range(lanes):
-        closed = misfit[m] <= LANES.closed_by * yielded[m] or yielded[m] == 0.0
-        if work.lane[BAND, m] == HOT.sign and not closed:
+    for m in range(width):
+        closed = misfit[m] <= ABREAST.closed_by * yielded[m] or yielded[m] == 0.0
+        if work.each[BAND, m] == HOT.sign and not closed:
             # What the matrix of the redundants was too stiff or too flat for.
-            work.lane[BAND, m] = 0.0
-    clear(work.x, lanes)
-    add_product(work.x, s.particular_springs, moved, lanes)
-    add_product(work.x, s.particular, work.stretch, lanes)
+            work.each[BAND, m] = 0.0
+    clear(work.x, width)
+    add_product(work.x, s.particular_springs, moved, width)
+    add_product(work.x, s.particular, work.stretch, width)

@@ -4,74 +4,74 @@ from __future__ import annotations
 
 import numpy as np
 
-from loadshare.settings import LANES
-from loadshare.solver.hot.lanes.options import bare
-from loadshare.solver.hot.lanes.sums import add_product
-from loadshare.solver.hot.lanes.work import TURN
+from loadshare.settings import ABREAST
+from loadshare.solver.hot.kernel.options import bare
+from loadshare.solver.hot.kernel.sums import add_product
+from loadshare.solver.hot.kernel.work import TURN
 
 
 @bare
-def arc(s, samples, a, x, lanes, normal, margin, size):  # type: ignore[no-untyped-def]
-    """Margins (lanes,) of an arc at x, and its normals (3, lanes); see `train.ring.Arc`."""
+def arc(s, samples, a, x, width, normal, margin, size):  # type: ignore[no-untyped-def]
+    """Margins (width,) of an arc at x, and its normals (3, width); see `train.ring.Arc`."""
     varying = s.shift.shape[0] > 1
     varying_clearance = s.clearance.shape[0] > 1
     for c in range(3):
-        for m in range(lanes):
+        for m in range(width):
             normal[c, m] = s.shift[samples[m] if varying else 0, a, c]
         for at_coordinate in range(s.arc_starts[a], s.arc_starts[a + 1]):
             d = s.arc_coordinates[at_coordinate]
             along = s.relative[a, c, d]
-            for m in range(lanes):
+            for m in range(width):
                 normal[c, m] += along * x[d, m]
     distance = 0.0
     for c in range(3):
         distance += s.nominal[a, c] * s.nominal[a, c]
     distance = np.sqrt(distance)
-    for m in range(lanes):
+    for m in range(width):
         size[m] = 0.0
         margin[m] = 0.0
     for c in range(3):
         nominal = s.nominal[a, c]
-        for m in range(lanes):
+        for m in range(width):
             moved = normal[c, m]
             margin[m] += (2.0 * nominal + moved) * moved
             normal[c, m] = nominal + moved
             size[m] += normal[c, m] * normal[c, m]
-    for m in range(lanes):
+    for m in range(width):
         size[m] = np.sqrt(size[m])
         margin[m] /= size[m] + distance
         size[m] = 1.0 / size[m]
     for c in range(3):
-        for m in range(lanes):
+        for m in range(width):
             normal[c, m] *= size[m]
-    for m in range(lanes):
+    for m in range(width):
         ahead = s.nominal[a, 0] * normal[0, m]
         ahead += s.nominal[a, 1] * normal[1, m] + s.nominal[a, 2] * normal[2, m]
         if ahead <= 0.0:
             margin[m] = ahead / (size[m] * distance) - distance
             for c in range(3):
                 normal[c, m] = s.nominal[a, c] / distance
-    for m in range(lanes):
+    for m in range(width):
         margin[m] += s.clearance[samples[m] if varying_clearance else 0, a]
 
 
 @bare
-def turn_arcs(s, work, lanes):  # type: ignore[no-untyped-def]
+def turn_arcs(s, work, width):  # type: ignore[no-untyped-def]
     """Gaps of the arcs where the coordinates are, and the load of what their faces have turned."""
     load, x, gap, before, go = work.load, work.x, work.gap, work.before, work.go
     for t in range(s.turning.shape[0]):
-        for m in range(lanes):
+        for m in range(width):
             load[t, m] = 0.0 if go[m] > 0.0 else load[t, m]
     for w in range(s.arcs.shape[0]):
         contact, a = s.arc_contacts[w], s.arcs[w]
-        arc(s, work.samples, a, x, lanes, work.normal, work.one, work.two)
-        for m in range(lanes):
+        arc(s, work.samples, a, x, width, work.normal, work.one, work.two)
+        for m in range(width):
             before[w, m] = work.force[contact, m]
             gap[contact, m] += go[m] * (work.one[m] - gap[contact, m])
         for t in range(s.turning.shape[0]):
             d = s.turning[t]
             along = s.base[w, d]
-            for m in range(lanes):
+            for m in range(width):
                 gap[contact, m] += go[m] * along * x[d, m]
                 face = along
                 for c in range(3):
@@ -80,35 +80,35 @@ def turn_arcs(s, work, lanes):  # type: ignore[no-untyped-def]
 
 
 @bare
-def follow_arcs(s, work, distance, lanes):  # type: ignore[no-untyped-def]
+def follow_arcs(s, work, distance, width):  # type: ignore[no-untyped-def]
     """Move the coordinates that arcs know of; add what arcs still turn to the misfit."""
     step, moved, shrinks = work.one, work.moved, s.turning_radials.shape[0] == 0
-    for m in range(lanes):
+    for m in range(width):
         step[m] = 0.0
     for t in range(moved.shape[0]):
-        for m in range(lanes):
+        for m in range(width):
             moved[t, m] = work.still[t, m]
-    add_product(moved, s.moved, work.stretch, lanes)
-    add_product(moved, s.moved_redundant, work.z, lanes)
-    add_product(moved, s.moved_turned, work.load, lanes)
+    add_product(moved, s.moved, work.stretch, width)
+    add_product(moved, s.moved_redundant, work.z, width)
+    add_product(moved, s.moved_turned, work.load, width)
     for t in range(moved.shape[0]):
         d = s.turning[t]
-        for m in range(lanes):
+        for m in range(width):
             y = abs(moved[t, m] - work.x[d, m])
             step[m] = y if y > step[m] else step[m]
             work.x[d, m] = moved[t, m] if work.go[m] > 0.0 else work.x[d, m]
     for w in range(s.arcs.shape[0]):
         # The push of the pass before was turned.
-        for m in range(lanes):
+        for m in range(width):
             f = abs(work.force[s.arc_contacts[w], m] - work.before[w, m])
             strongest = work.strongest[m] if work.strongest[m] > 0.0 else 1.0
-            y = f / strongest * (LANES.steepest / LANES.turned * distance)
+            y = f / strongest * (ABREAST.steepest / ABREAST.turned * distance)
             step[m] = y if y > step[m] else step[m]
-    for m in range(lanes):
+    for m in range(width):
         # Every pass turns them by about the same share of what the pass before did. Splines feel
         # each turn more than springs do.
-        y = step[m] * (LANES.turned / distance)
-        before = work.lane[TURN, m]
-        rest = y * min(max(y / before, LANES.least), 1.0) if shrinks and before > 0.0 else y
-        work.lane[TURN, m] = y
+        y = step[m] * (ABREAST.turned / distance)
+        before = work.each[TURN, m]
+        rest = y * min(max(y / before, ABREAST.least), 1.0) if shrinks and before > 0.0 else y
+        work.each[TURN, m] = y
         work.misfit[m] = rest if rest > work.misfit[m] else work.misfit[m]

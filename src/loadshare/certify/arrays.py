@@ -23,12 +23,12 @@ Claim = namedtuple("Claim", CLAIMED)  # type: ignore[misc]
 """What is claimed: the arrays of `Equilibria`."""
 
 
-def plain(situations: Situations, answers: Equilibria) -> tuple[Any, Any]:
+def arrays_of(situations: Situations, answers: Equilibria) -> tuple[Any, Any]:
     """Return situations and claims as tuples."""
-    here = Here(*(_plain(getattr(situations, name)) for name in VARYING))
-    return here, Claim(*(_plain(array) for array in answers.arrays))
+    here = Here(*(_array(getattr(situations, name)) for name in VARYING))
+    return here, Claim(*(_array(array) for array in answers.arrays))
 
 
-def _plain(array: Array) -> Array:
+def _array(array: Array) -> Array:
     """Return an array of the one kind that code is compiled for."""
     return np.require(array, np.float64, ["C", "W"])
