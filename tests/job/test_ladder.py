@@ -25,7 +25,7 @@ from loadshare.scene import assemble
 from loadshare.settings import CERTIFY, JOB
 from loadshare.solver import Options
 from loadshare.solver.contradiction import contradiction
-from loadshare.solver.hot import places, vectorised
+from loadshare.solver.hot import contact_states, vectorised
 from loadshare.solver.hot.exchange import Found, exchange, first_sets
 from loadshare.solver.hot.iterate import at_rest
 from loadshare.train import Train, build_train
@@ -47,7 +47,9 @@ def by_numpy(monkeypatch):
 
 def failing(structure, loading, basis, states, rows, state, one_only):
     """An engine that finds no answer on any set."""
-    return np.full(len(rows), places.FAILED, np.int8), np.repeat(states[None, :], len(rows), 0)
+    return np.full(len(rows), contact_states.FAILED, np.int8), np.repeat(
+        states[None, :], len(rows), 0
+    )
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -128,7 +130,9 @@ def test_a_wrong_set_is_not_handed_out(monkeypatch):
 
     def content(structure, loading, basis, states, rows, state, one_only):
         settle(structure, loading, basis, states, rows, state, one_only)
-        return np.full(len(rows), places.DONE, np.int8), np.repeat(states[None, :], len(rows), 0)
+        return np.full(len(rows), contact_states.DONE, np.int8), np.repeat(
+            states[None, :], len(rows), 0
+        )
 
     monkeypatch.setattr(vectorised, "settle", content)
     monkeypatch.setattr("loadshare.job.machine.search", lost)

@@ -245,13 +245,15 @@ def test_values_that_do_not_go_together_are_refused_sample_by_sample():
 
 def test_what_the_hot_path_leaves_climbs_and_says_so(monkeypatch):
     """The engine declines every second sample: another rung answers those, all the same."""
-    from loadshare.solver.hot import places, vectorised
+    from loadshare.solver.hot import contact_states, vectorised
 
     settle = vectorised.settle
 
-    def moody(elements, data, basis, code, rows, state, one_only):
-        verdict, proposal = settle(elements, data, basis, code, rows, state, one_only)
-        return np.where((rows % 2 == 1) & (data.count > 1), places.FAILED, verdict), proposal
+    def moody(structure, loading, basis, code, rows, state, one_only):
+        verdict, proposal = settle(structure, loading, basis, code, rows, state, one_only)
+        return np.where(
+            (rows % 2 == 1) & (loading.count > 1), contact_states.FAILED, verdict
+        ), proposal
 
     expected = ls.solve_many(shipped(LIMIT_RING), RINGS, positions=[1])
     monkeypatch.setattr(vectorised, "settle", moody)
