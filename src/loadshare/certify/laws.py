@@ -9,6 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.settings import CERTIFY
+
 Array = NDArray[np.float64]
 
 
@@ -34,7 +36,7 @@ def strain_energy(b: Array, c: Array, approach: Array, root: Array) -> Array:
         step = (curve - pressed) / rise
         y = root - step
         powers = c > 0.0
-        far = powers & (pressed > 0.0) & ~(np.abs(step) <= 1e-8 * root)
+        far = powers & (pressed > 0.0) & ~(np.abs(step) <= CERTIFY.near_root * root)
         if far.any():
             wide = (np.broadcast_to(v, far.shape)[far] for v in (b, c, pressed))
             y[far] = _root(*wide)
@@ -48,10 +50,10 @@ def _root(b: Array, c: Array, compression: Array) -> Array:
     """F^(1/3) of the law b F + c F^(2/3), c > 0, by Newton's method from above."""
     y = np.sqrt(compression / c)
     y = np.where(b > 0.0, np.minimum(y, np.cbrt(compression / np.where(b > 0.0, b, 1.0))), y)
-    for _ in range(60):
+    for _ in range(CERTIFY.roots):
         step = ((b * y + c) * y * y - compression) / ((3.0 * b * y + 2.0 * c) * y)
         y = y - step
-        if (np.abs(step) <= 1e-15 * y).all():
+        if (np.abs(step) <= CERTIFY.root * y).all():
             break
     return np.asarray(y)
 

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.settings import CONTACT
+
 Array = NDArray[np.float64]
 
 
@@ -64,7 +66,7 @@ def condense(stiffness: Array, load: Array, touched: NDArray[np.bool_]) -> Conde
         return nothing_condensed(len(load))
     block = stiffness[np.ix_(loose, loose)]
     scale = np.sqrt(np.diag(block))
-    if not scale.all() or np.linalg.eigvalsh(block / np.outer(scale, scale))[0] < 1e-12:
+    if not scale.all() or np.linalg.eigvalsh(block / np.outer(scale, scale))[0] < CONTACT.condensed:
         return nothing_condensed(len(load))
     kept = np.flatnonzero(touched)
     expansion = np.zeros((len(load), len(kept)))

@@ -168,10 +168,11 @@ def _solve_fixed(
         step = max(step, float(np.abs(point.forces - forces).max(initial=0.0)))
         x, forces, cone_forces = point.x, point.forces, point.cone_forces
         size = 1.0 + float(np.abs(x).max(initial=0.0))
-        if not curved or step <= 1e-15 * size or (step <= 1e-11 * size and step >= 0.5 * previous):
+        slow = step <= CONTACT.settled * size and step >= 0.5 * previous
+        if not curved or step <= CONTACT.still * size or slow:
             return point, True
         previous = step
-    return point, previous <= 1e-10
+    return point, previous <= CONTACT.near
 
 
 def _newton_system(programme: Programme, active: ActiveSet, at: Point) -> Point | None:
@@ -224,7 +225,7 @@ def _row_tangents(programme: Programme, forces: Array) -> tuple[Array, Array]:
     """Tangent compliances and gaps of the rows at the current forces."""
     if not programme.hertz.any():
         return programme.linear, programme.gaps
-    root = np.cbrt(np.maximum(forces, 1e-12))
+    root = np.cbrt(np.maximum(forces, CONTACT.least_force))
     return (
         programme.linear + 2.0 / 3.0 * programme.hertz / root,
         programme.gaps + programme.hertz * root**2 / 3.0,
@@ -263,7 +264,8 @@ def _cone_tangent(
     if piece.force == piece.stiffness * begin:
         return piece.stiffness * _BOTH, piece.stiffness * offset, _NONE, np.zeros(0)
     if radius == 0.0:
-        offset, radius = _direction(force) * max(begin, 1e-9), max(begin, 1e-9)
+        radius = max(begin, CONTACT.least_offset)
+        offset = _direction(force) * radius
     along = offset / radius
     size = piece.force + piece.stiffness * (radius - begin)
     tangent = piece.stiffness * (along[:, None] * along)

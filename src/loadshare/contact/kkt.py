@@ -80,7 +80,7 @@ def _least_norm(
         return Solved(values, np.zeros((size, 0)))
     null /= np.linalg.norm(null, axis=0)
     outer, sizes, inner = np.linalg.svd(null[:size], full_matrices=True)
-    freedom = int((sizes > 1e-8).sum())
+    freedom = int((sizes > CONTACT.moves).sum())
     moves = null @ inner[:freedom].T / sizes[:freedom]
     values = values - moves @ (outer[:, :freedom].T @ values[:size])
     forces_only = null @ inner[freedom:].T

@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Protocol
 
+from loadshare.settings import CONTACT
+
 
 class Law(Protocol):
     """What every compliance law answers."""
@@ -93,10 +95,10 @@ class PowerLaw:
         y = math.sqrt(compression / c)
         if b > 0.0:
             y = min(y, math.cbrt(compression / b))
-            for _ in range(60):
+            for _ in range(CONTACT.roots):
                 step = (b * y**3 + c * y**2 - compression) / (3.0 * b * y**2 + 2.0 * c * y)
                 y -= step
-                if abs(step) <= 1e-16 * y:
+                if abs(step) <= CONTACT.root * y:
                     break
         return y**3
 
@@ -154,7 +156,7 @@ class TableLaw:
         """Whether all points lie on one straight line through the origin."""
         first = self.compressions[1] / self.forces[1]
         return all(
-            abs(d - first * f) <= 1e-14 * d
+            abs(d - first * f) <= CONTACT.straight * d
             for f, d in zip(self.forces[1:], self.compressions[1:], strict=True)
         )
 

@@ -219,7 +219,10 @@ def _step(
     """Halve the step until the true energy falls."""
     here = potential(problem, plan, laws, before)
     step = 1.0
-    while step > 1e-3 and potential(problem, plan, laws, before + step * (after - before)) > here:
+    while (
+        step > CONTACT.least_step
+        and potential(problem, plan, laws, before + step * (after - before)) > here
+    ):
         step *= 0.5
     return step
 
@@ -240,15 +243,15 @@ def _next_forces(
         if role is Role.OPEN or row.law.is_linear:
             continue
         if method == "picard":
-            forces[row.name] = max(abs(found[row.name]), 1e-18 * unit)
+            forces[row.name] = max(abs(found[row.name]), CONTACT.faint * unit)
             continue
         approach = float(row.vector @ x) - row.gap
         if role is Role.CLOSED:
             approach = abs(approach)
         if approach > 0.0:
-            forces[row.name] = max(row.law.force(approach), 1e-18 * unit)
+            forces[row.name] = max(row.law.force(approach), CONTACT.faint * unit)
         else:
-            forces[row.name] = max(CONTACT.shrink * before[row.name], 1e-18 * unit)
+            forces[row.name] = max(CONTACT.shrink * before[row.name], CONTACT.faint * unit)
     return forces
 
 

@@ -250,7 +250,7 @@ class ContactProblem:
         gaps = [abs(r.gap) for r in self.rows] + [a.arc.clearance for a in self.arcs]
         gaps += [length for r in self.radials for length in r.lengths]
         soft = float(np.median([v for v in yielded if v > 0.0] or [0.0]))
-        return max(soft, 1e-3 * max(gaps, default=0.0)) or 1.0
+        return max(soft, CONTACT.of_gaps * max(gaps, default=0.0)) or 1.0
 
     def first_torques(self) -> dict[str, float]:
         """Torques over radial elements that follow them, to begin with."""

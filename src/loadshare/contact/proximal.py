@@ -23,12 +23,6 @@ from loadshare.contact.findings import Unsolved, Work
 from loadshare.contact.programme import Array, Point, Programme
 from loadshare.settings import CONTACT
 
-PULLS = (*[1e-5] * 8, *(10.0**-k for k in range(6, 12)), *[1e-11] * 6)
-"""ε of every pass, in the programme's units (where a flank's compliance is about 1).
-
-A pass moves a coordinate by load/ε at most, so a wide gap under a light load wants a weak pull.
-"""
-
 
 def solve_proximal(
     programme: Programme, start: Point | None = None, work: Work | None = None
@@ -52,7 +46,7 @@ def solve_proximal(
     at = at_rest(programme) if start is None else replace(at_rest(programme), x=start.x)
     active = first_guess(programme)
     drift, run, stretch = at, np.inf, 0.0
-    for pull in PULLS:
+    for pull in CONTACT.pulls:
         found = solve_exact(_pulled(programme, at, pull), active, at, work=work)
         if found is None and stretch:
             # The last stride went too far: take it back.

@@ -33,8 +33,6 @@ from loadshare.solver.runaway import runaway
 from loadshare.train.situations import situation_of
 from loadshare.train.train import Train
 
-LIGHTER = (0.7, 0.5, 0.1)
-"""Shares of the load that are looked at where arcs may have lost their hold under all of it."""
 AUTO = "auto"
 """Instead of a back-end's name: the hot path, and Clarabel for what it leaves."""
 
@@ -178,7 +176,7 @@ def _under_less(train: Train, index: int, tolerance: float) -> _Part | None:
 
     A gear may roll along them until nothing holds it; without arcs the problem is convex.
     """
-    for share in LIGHTER if train.drums and train.slip is None else ():
+    for share in JOB.lighter if train.drums and train.slip is None else ():
         torque = tuple(share * t for t in train.input_torque)
         external = {g: share * t for g, t in train.external.items()}
         lighter = Machine(replace(train, input_torque=torque, external=external))

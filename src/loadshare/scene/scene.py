@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from loadshare.contact.problem import ContactProblem, Radial
 from loadshare.scene.coordinates import Rotation
+from loadshare.settings import CONTACT
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
@@ -88,9 +89,9 @@ class Scene(ContactProblem):
         force = self.force_unit()
         flanks = [r for r in self.rows if r.kind == "drive flank"]
         if not flanks:
-            return 1e-6
+            return CONTACT.least_length
         yielded = median(r.law.compression(force) for r in flanks)
-        return max(yielded, 1e-3 * max(abs(r.gap) for r in flanks))
+        return max(yielded, CONTACT.of_gaps * max(abs(r.gap) for r in flanks))
 
     def first_torques(self) -> dict[str, float]:
         """Return the whole input torque over every spline [N·m], to begin with."""

@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 
 from loadshare.scene.coordinates import Array, Coordinates, coordinates_of
 from loadshare.scene.statics import Basis, basis_of
-from loadshare.settings import STATICS
+from loadshare.settings import CONTACT, STATICS
 from loadshare.train.mesh import Mesh
 from loadshare.train.ring import DrumRing
 from loadshare.train.situations import Situations, situation_of
@@ -425,6 +425,6 @@ def _units(structure: Structure, here: Situations) -> tuple[float, float]:
     gaps = structure.gaps_of_flanks(here)[0]
     drive = [(e, mesh) for e, (_, mesh, drives) in enumerate(flanks) if drives]
     if not drive:
-        return force, 1e-6
+        return force, CONTACT.least_length
     yielded = median(mesh.law(positions[mesh.name]).compression(force) for _, mesh in drive)
-    return force, max(yielded, 1e-3 * max(abs(gaps[e]) for e, _ in drive))
+    return force, max(yielded, CONTACT.of_gaps * max(abs(gaps[e]) for e, _ in drive))

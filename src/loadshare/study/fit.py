@@ -15,6 +15,7 @@ from loadshare.errors import CaseError, Problem, Refused
 from loadshare.job import solve
 from loadshare.results import Result
 from loadshare.scene.scene import Array
+from loadshare.settings import FIT
 from loadshare.study.compare import Comparison, Deviation, Target, computed, needed, slope, targets
 from loadshare.study.parameter import (
     RANGE,
@@ -29,12 +30,6 @@ from loadshare.study.parameter import (
 )
 from loadshare.study.positions import loaded
 from loadshare.study.sensitivity import Sensitivity, sensitivity
-
-TELL_APART = 1e-6
-"""Singular value of the scaled sensitivities, over the largest, below which inputs are not told
-apart; and part of an input in what is left open, below which it is round-off."""
-AT_BOUND = 1e-9
-"""Distance to a bound, over the range, that counts as none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -279,19 +274,19 @@ class _Problem:
         # The method keeps strictly inside; a start on a bound would be moved by it anyway.
         found = least_squares(
             self.residual,
-            np.clip(start, 1e-10, 1.0 - 1e-10),
+            np.clip(start, FIT.inside, 1.0 - FIT.inside),
             jac=self.jacobian,
             bounds=(0.0, 1.0),
-            xtol=1e-13,
-            ftol=1e-13,
-            gtol=1e-13,
+            xtol=FIT.last,
+            ftol=FIT.last,
+            gtol=FIT.last,
             max_nfev=200,
         )
         return 2.0 * float(found.cost), self._snapped(np.asarray(found.x))
 
     def _snapped(self, u: Array) -> Array:
         """Put what the method left a hair inside a bound onto it."""
-        return np.where(u < AT_BOUND, 0.0, np.where(u > 1.0 - AT_BOUND, 1.0, u))
+        return np.where(u < FIT.at_bound, 0.0, np.where(u > 1.0 - FIT.at_bound, 1.0, u))
 
     def fitted(self, u: Array, chis: tuple[float, ...]) -> Fit:
         """Return the fit at a point."""
@@ -300,7 +295,7 @@ class _Problem:
         _, sizes, right = np.linalg.svd(jacobian, full_matrices=True)
         full = np.zeros(len(self.parameters))
         full[: len(sizes)] = sizes
-        loose = full <= TELL_APART * max(float(full.max(initial=0.0)), 1e-300)
+        loose = full <= FIT.told_apart * max(float(full.max(initial=0.0)), 1e-300)
         known = right[~loose]
         covariance = known.T @ np.diag(full[~loose] ** -2.0) @ known
         names = [p.name for p in self.parameters]
@@ -361,8 +356,8 @@ def _groups(loose: Array) -> list[list[int]]:
 
     shared = np.abs(loose.T @ loose)
     # However small its part, an input that has one is not determined: another can move it.
-    left_open = np.flatnonzero(np.diag(shared) > TELL_APART**2)
+    left_open = np.flatnonzero(np.diag(shared) > FIT.told_apart**2)
     count, group = connected_components(
-        shared[np.ix_(left_open, left_open)] > TELL_APART, directed=False
+        shared[np.ix_(left_open, left_open)] > FIT.told_apart, directed=False
     )
     return sorted((left_open[group == g].tolist() for g in range(count)), key=max)

@@ -20,7 +20,7 @@ from loadshare.job import Progress
 from loadshare.job.answer import Answer
 from loadshare.job.positions import result_of
 from loadshare.results import Result
-from loadshare.settings import CERTIFY
+from loadshare.settings import CERTIFY, MARCH
 from loadshare.study.answers import BACKEND
 from loadshare.study.memory import stepped
 from loadshare.study.positions import loaded
@@ -31,9 +31,6 @@ from loadshare.train.train import Spline
 
 if TYPE_CHECKING:
     import xarray as xr
-
-UNCHANGED = 1e-11
-"""Change of a slip, over the deflection of the case, that is round-off of an answer."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -181,7 +178,7 @@ def _marched(case: Case, train: Train, progress: Progress | None) -> March:
 def _slipped(answer: Answer, spline: Spline, before: Vector) -> Vector:
     """Slip at the end of a step; what differs by round-off from the one before has not changed."""
     after = slip_of(spline, answer.equilibrium)
-    round_off = UNCHANGED * answer.certificate.deflection
+    round_off = MARCH.unchanged * answer.certificate.deflection
     return before if float(np.linalg.norm(after - before)) <= round_off else after
 
 

@@ -29,7 +29,7 @@ from loadshare.scene.assemble import scene_of
 from loadshare.scene.loading import loading_of
 from loadshare.scene.scene import Array, Scene
 from loadshare.scene.structure import structure_of
-from loadshare.settings import CERTIFY
+from loadshare.settings import CERTIFY, MARCH
 from loadshare.solver import Options, Record, solve_scene
 from loadshare.solver.hot.proximal import search
 from loadshare.solver.position import Known, equilibrium_of, of_least_norm
@@ -39,20 +39,6 @@ from loadshare.train.gear import Vector
 from loadshare.train.memory import SlipStop, slip_of
 from loadshare.train.situations import situation_of
 from loadshare.train.train import Spline, Train
-
-NEGLIGIBLE = 1e-10
-"""Friction, over the load, that an answer without it is in balance with, as far as certified."""
-QUICK = 200
-"""Newton steps in which a step with friction that follows the torque is mostly found at once."""
-PASSES, SETTLED, SINGULAR = 40, 1e-14, 1e-3
-"""Passes in which friction follows the torque, friction over its bound under all of the torque that
-may be missing at the end, and the part of a step that a step must explain."""
-TURNS, HALVINGS = 40, 60
-"""Turns between slips and displacements, and halvings of an angle, to round-off."""
-ROUND_OFF = 1e-15
-"""Change of a slip over the displacement, or of a force over its bound, that is none."""
-AT_END = 1e-6
-"""Room left in a clearance, over the clearance, below which its end is near."""
 
 
 def stepped(train: Train, index: int) -> Answer:
@@ -75,7 +61,7 @@ def stepped(train: Train, index: int) -> Answer:
     ends = [g for g, s in train.splines.items() if _at_end(s, train.slip[g])]
     follows = any(s.friction_force is None for s in train.splines.values())
     for gears in (*_subsets(ends), ()):
-        steps = QUICK if follows else math.inf
+        steps = MARCH.quick if follows else math.inf
         answer = _held(train, index, gears, islice(rungs(BACKEND), 1), steps)
         if answer is not None:
             return answer
@@ -107,7 +93,7 @@ def _followed(train: Train, index: int) -> Answer | None:
     drive = float(np.abs(situation_of(train, index).torque).max(initial=0.0))
     bounds, inverse = np.zeros(len(gears)), np.eye(len(gears))
     before: tuple[Array, Array] | None = None
-    for _ in range(PASSES):
+    for _ in range(MARCH.passes):
         try:
             answer = stepped(_bounded(train, dict(zip(gears, bounds.tolist(), strict=True))), index)
         except Refused:
@@ -115,7 +101,7 @@ def _followed(train: Train, index: int) -> Answer | None:
         found = answer.equilibrium
         torque = [train.transmitted(g, found.flank_force) for g in gears]
         off = rate * np.abs(torque) - bounds
-        if float(np.abs(off).max()) <= SETTLED * float(rate.max()) * drive:
+        if float(np.abs(off).max()) <= MARCH.settled * float(rate.max()) * drive:
             break
         if before is not None:
             inverse = _broyden(inverse, bounds - before[0], off - before[1])
@@ -140,7 +126,7 @@ def _broyden(inverse: Array, step: Array, change: Array) -> Array:
     """Inverse of −Jacobian that also turns a change of what is off into the step that made it."""
     moved = -inverse @ change
     along = float(step @ moved)
-    if abs(along) <= SINGULAR * float(step @ step):
+    if abs(along) <= MARCH.singular * float(step @ step):
         return inverse
     return np.asarray(inverse + np.outer(step - moved, step @ inverse) / along)
 
@@ -188,7 +174,7 @@ def _all_but_free(train: Train, index: int) -> Answer | None:
     """
     load = assemble(train, index).force_unit()
     bounds = {g: s.friction_force for g, s in train.splines.items()}
-    if any(b is None or not 0.0 < b <= NEGLIGIBLE * load for b in bounds.values()):
+    if any(b is None or not 0.0 < b <= MARCH.negligible * load for b in bounds.values()):
         return None
     free = {
         g: replace(s, friction_force=0.0, clearance=SlipStop(s).law(0.0).reach, stick_limit=None)
@@ -220,7 +206,7 @@ def _in_turn(train: Train, index: int) -> Answer | None:
     if any(spline.friction_force is None for spline in train.splines.values()):
         return None
     gears, slips = tuple(train.splines), dict(_before(train))
-    for _ in range(TURNS):
+    for _ in range(MARCH.turns):
         scene = _without_slip(assemble(train, index), gears, slips)
         try:
             found, record = solve_scene(scene, BACKEND)
@@ -232,7 +218,7 @@ def _in_turn(train: Train, index: int) -> Answer | None:
         }
         change = max(float(np.linalg.norm(other[g] - slips[g])) for g in gears)
         far = max(float(np.linalg.norm(found.displacement[g])) for g in gears)
-        if change <= ROUND_OFF * far:
+        if change <= MARCH.round_off * far:
             return _judged(train, _split(train, found, gears, slips), record, "slips in turn")
         slips = other
     return None
@@ -248,9 +234,9 @@ def _slip_at(spline: Spline, place: Vector, before: Vector) -> Vector:
     if float(np.linalg.norm(free)) <= room or room == 0.0:
         return free if room > 0.0 else np.zeros(3)
     start = np.asarray(before)
-    if float(np.linalg.norm(start)) >= room * (1.0 - AT_END):
+    if float(np.linalg.norm(start)) >= room * (1.0 - MARCH.at_end):
         left = force - _least(force, start, bound)
-        if float(np.linalg.norm(left)) <= bound * (1.0 + ROUND_OFF):
+        if float(np.linalg.norm(left)) <= bound * (1.0 + MARCH.round_off):
             return start
     # On the edge of the room, between the way to the slip before and the way to the displacement.
     out = place / float(np.linalg.norm(place))
@@ -260,7 +246,7 @@ def _slip_at(spline: Spline, place: Vector, before: Vector) -> Vector:
         return np.asarray(room * out)
     across /= width
     low, high = 0.0, float(np.arctan2(start @ across, start @ out))
-    for _ in range(HALVINGS):
+    for _ in range(MARCH.halvings):
         angle = 0.5 * (low + high)
         slip = room * (np.cos(angle) * out + np.sin(angle) * across)
         along = np.cos(angle) * across - np.sin(angle) * out
@@ -284,7 +270,7 @@ def _at_end(spline: Spline, slip: Vector) -> bool:
         # Its room changes with the torque, so that friction and stop hardly ever meet.
         return False
     room = SlipStop(spline).law(0.0).reach
-    return float(np.linalg.norm(slip)) >= room * (1.0 - AT_END)
+    return float(np.linalg.norm(slip)) >= room * (1.0 - MARCH.at_end)
 
 
 def _held(
@@ -366,7 +352,7 @@ def _split(
         stop = np.zeros(3)
         if way > 0.0:
             stop = force - bound / way * (slip - before)
-        elif float(np.linalg.norm(slip)) >= reach * (1.0 - AT_END):
+        elif float(np.linalg.norm(slip)) >= reach * (1.0 - MARCH.at_end):
             stop = _least(force, slip, bound)
         reactions[spline.name], reactions[spline.stop_name] = stop - force, -stop
     return replace(found, radial_reaction=reactions)

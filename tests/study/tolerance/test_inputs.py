@@ -9,9 +9,10 @@ from tests.support import shipped
 
 import loadshare as ls
 from loadshare.case.distributions import Spread
+from loadshare.settings import TOLERANCE
 from loadshare.study.tolerance.distribution import Distribution, read_distribution
 from loadshare.study.tolerance.inputs import Inputs, read_inputs
-from loadshare.study.tolerance.points import SEQUENCES, uniforms
+from loadshare.study.tolerance.points import uniforms
 
 NORMAL = {"distribution": "normal", "mean": "0 um", "deviation": "10 um"}
 COUNT = 40_000
@@ -246,8 +247,8 @@ def test_blocks_are_streams_of_their_own():
 def test_sobol_blocks_go_on_where_the_last_one_ended():
     """The first 512 points of each sequence, from two blocks, lie one in each 512th."""
     both = np.concatenate([uniforms("sobol", 1, (), block, 4) for block in (0, 1)])
-    for r in range(SEQUENCES):
-        cells = np.sort(np.floor(both[r::SEQUENCES] * 512.0), axis=0)
+    for r in range(TOLERANCE.sequences):
+        cells = np.sort(np.floor(both[r :: TOLERANCE.sequences] * 512.0), axis=0)
         assert np.array_equal(cells, np.repeat(np.arange(512.0)[:, None], 4, axis=1))
     assert len(np.unique(both[:, 0])) > 8000
     assert both.min() > 0.0

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy import special, stats
 
+from loadshare.settings import TOLERANCE
 from loadshare.study.tolerance.indices import shares
-from loadshare.study.tolerance.points import SEQUENCES
 from loadshare.study.tolerance.statistics import exceedance, quantile, summary, wilson
 
 
@@ -57,7 +57,7 @@ def test_intervals_of_replicates_cover_the_truth():
     rng = np.random.default_rng(6)
     inside = 0
     for _ in range(400):
-        shift = 0.1 * rng.standard_normal(SEQUENCES)
+        shift = 0.1 * rng.standard_normal(TOLERANCE.sequences)
         # Within a sequence nothing scatters but what adds up to nothing.
         ramp = np.linspace(-1.0, 1.0, 8)[:, None]
         told = summary((ramp + shift).reshape(-1), (0.5,), replicated=True)
@@ -66,12 +66,12 @@ def test_intervals_of_replicates_cover_the_truth():
 
 
 def test_what_no_sequence_tells_falls_back_on_wilson():
-    values = np.zeros(SEQUENCES * 4)
+    values = np.zeros(TOLERANCE.sequences * 4)
     assert exceedance(values, 1.0, replicated=True) == wilson(0, len(values))
-    values[:SEQUENCES] = 2.0
-    assert exceedance(values, 1.0, replicated=True) == wilson(SEQUENCES, len(values))
+    values[: TOLERANCE.sequences] = 2.0
+    assert exceedance(values, 1.0, replicated=True) == wilson(TOLERANCE.sequences, len(values))
     values[1] = 0.0
-    assert exceedance(values, 1.0, replicated=True) != wilson(SEQUENCES - 1, len(values))
+    assert exceedance(values, 1.0, replicated=True) != wilson(TOLERANCE.sequences - 1, len(values))
 
 
 def test_samples_without_a_figure_are_in_no_statistic():

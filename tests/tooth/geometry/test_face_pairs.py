@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from tests.tooth.geometry.samples import face_gear, face_pair
 
+from loadshare.settings import TEETH
 from loadshare.tooth.cylindrical.gear import Modification
 from loadshare.tooth.face.flank import (
     FaceFlank,
@@ -156,7 +157,9 @@ def test_transmission_error_is_within_its_tolerance(monkeypatch, tolerance):
         modification=Modification(profile_crowning=30e-6, lead_crowning=10e-6),
     )
     exact = min(point.lead for point in contact_points(mesh, 0.35))
-    monkeypatch.setattr("loadshare.tooth.unloaded.positions.TOUCHING", tolerance)
+    monkeypatch.setattr(
+        "loadshare.tooth.unloaded.positions.TEETH", TEETH._replace(touching=tolerance)
+    )
     assert abs(transmission_error(mesh, 0.35) - exact) < tolerance / mesh.arm + 1e-10
 
 

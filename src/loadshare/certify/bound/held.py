@@ -20,12 +20,6 @@ from loadshare.settings import BOUND
 
 Array = NDArray[np.float64]
 
-STILL = ((1e-10, 1e-4), (1e-10, 0.0), (2e-9, 1e-4))
-"""Force by which a spline may give way in what room it has, in loads of the claim, and change of a
-slip, over the slip, and still stand still, as they are tried in turn.
-
-What they leave of the law is bounded."""
-
 
 @dataclass(frozen=True, eq=False)
 class Held:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
-from loadshare.certify.bound.held import STILL, Held, with_held_slips
+from loadshare.certify.bound.held import Held, with_held_slips
 from loadshare.certify.bound.laws import Act, Acts, first_acts
 from loadshare.certify.bound.locked import locked, without
 from loadshare.certify.bound.open_slips import is_inside, open_slips, reaction_error
@@ -131,7 +131,7 @@ def _boxes(claim: Claim, rigorous: bool) -> Bounds:
     largest = (flanks * columns.arms).max(axis=1, initial=0.0)
     largest = np.maximum(largest, np.abs(torque).max(axis=1, initial=0.0))
     scale, largest = (np.where(v > 0.0, v, 1.0) for v in (scale, largest))
-    first, *others = STILL if columns.train.slip is not None else STILL[:1]
+    first, *others = BOUND.still if columns.train.slip is not None else BOUND.still[:1]
     box, relative = _proved(with_held_slips(claim, scale, first), scale, largest, rigorous)
     for still in others:
         rows = np.flatnonzero(~(relative <= BOUND.enough))

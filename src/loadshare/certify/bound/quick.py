@@ -34,9 +34,6 @@ from loadshare.settings import BOUND
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-DIGITS = 20
-"""Ways of acting that make one number below 2⁶³."""
-
 
 def quick_boxes(claim: Claim, act: Acts, scale: Array, rounded: bool = False) -> Box:
     """Bound the errors of S claims; infinite where nothing is shown.
@@ -119,8 +116,8 @@ def alike(codes: Acts) -> list[NDArray[np.intp]]:
     if (codes == codes[:1]).all():
         return [np.arange(len(codes))]
     group = np.zeros(len(codes), dtype=np.int64)
-    for at in range(0, codes.shape[1], DIGITS):
-        digits = codes[:, at : at + DIGITS].astype(np.int64)
+    for at in range(0, codes.shape[1], BOUND.digits):
+        digits = codes[:, at : at + BOUND.digits].astype(np.int64)
         number = digits @ Act.WAYS ** np.arange(digits.shape[1])
         _, number = np.unique(number, return_inverse=True)
         _, group = np.unique(group * (number.max() + 1) + number, return_inverse=True)

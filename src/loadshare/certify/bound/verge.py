@@ -172,7 +172,7 @@ def _ways(claim: Claim, e: int, act: int, above: bool) -> tuple[int, ...]:
     if act == Act.OPEN or (act == Act.STOP and _is_limit(claim, e)):
         return Act.OPEN, Act.STOP
     first, stick, level, reach, _ = claim.graphs[0, e - contacts - arcs].tolist()
-    steps = level > 0.0 and (stick == 0.0 or first * stick < level * (1.0 - 1e-12))
+    steps = level > 0.0 and (stick == 0.0 or first * stick < level * (1.0 - BOUND.step))
     slips = reach > stick
     bottom = Act.OPEN if level == 0.0 else Act.PINNED if stick == 0.0 else Act.STICK
     chain = [bottom]

@@ -52,7 +52,9 @@ class Iterate:
     def begin(self, samples: slice, share: Array, loading: Loading) -> None:
         """Take the laws of some samples first at forces in these shares (m,) of the load."""
         roots = np.cbrt(pushes(loading)[samples])
-        np.multiply(roots[:, None], np.cbrt(np.maximum(share, 1e-6)), out=self.root[samples])
+        np.multiply(
+            roots[:, None], np.cbrt(np.maximum(share, HOT.least_share)), out=self.root[samples]
+        )
 
 
 def at_rest(structure: Structure, loading: Loading) -> Iterate:

@@ -30,8 +30,7 @@ from loadshare.solver.hot.iterate import Iterate, at_rest
 from loadshare.solver.hot.softened import Laws
 from loadshare.solver.hot.vectorised import arc_at, beyond
 
-HALVES = 0.5 ** np.arange(48, -1, -1)
-"""Shares of the way between two kinks that are looked at together: a slope may rise by orders."""
+_HALVES = 0.5 ** np.arange(SEARCH.halvings, -1, -1)
 
 
 @dataclass(slots=True)
@@ -182,10 +181,10 @@ class Proximal:
             return np.asarray(force @ speed + given + stiff * shares)
 
         low, high, at_low, at_high = 0.0, 1.0, start, slope
-        for shares in self.laws.kinks(here.pressed, speed), HALVES:
+        for shares in self.laws.kinks(here.pressed, speed), _HALVES:
             if abs(at_high) <= enough:
                 break
-            between = np.asarray(low + (high - low) * shares if shares is HALVES else shares)
+            between = np.asarray(low + (high - low) * shares if shares is _HALVES else shares)
             self.looks += 1
             found = slopes(between)
             k = int(np.searchsorted(found > 0.0, True))

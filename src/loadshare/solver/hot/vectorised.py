@@ -415,16 +415,14 @@ class _Passes:
         furthest = np.abs(self.x).max(axis=1, initial=0.0)
         yielded = np.abs(self.compression[:, self.scalar]).max(axis=1, initial=0.0)
         force_band, faint = sign * largest_force, HOT.sign * largest_force
-        length_band = sign * np.maximum(yielded, 1e-3 * furthest)
+        length_band = sign * np.maximum(yielded, HOT.of_way * furthest)
         rows = structure.columns.contacts
         approach = self.x @ structure.vectors[rows].T - pick(loading.gap, self.rows)[:, rows]
         for a in range(len(structure.arcs)):
             approach[:, structure.flat + a] = -arc_at(loading, a, self.rows, self.x)[1]
         closed = self.states[: structure.rows] == at.CLOSED
         wrong[:, : structure.rows] = approach > length_band[:, None]
-        row = np.flatnonzero(
-            (self.basis.columns >= rows.start) & (self.basis.columns < rows.stop)
-        )
+        row = np.flatnonzero((self.basis.columns >= rows.start) & (self.basis.columns < rows.stop))
         switch = self.basis.columns[row] - rows.start
         wrong[:, switch] = self.force[:, row] < -force_band[:, None]
         moved[:, : structure.rows] = np.where(closed, at.OPEN, at.CLOSED)
@@ -627,7 +625,7 @@ def root_of(b: Array, c: Array, compression: Array) -> Array:
     for _ in range(60):
         step = ((b * y + c) * y**2 - compression) / ((3.0 * b * y + 2.0 * c) * y)
         y = y - step
-        if (np.abs(step) <= 1e-15 * y).all():
+        if (np.abs(step) <= HOT.root * y).all():
             break
     return y
 
@@ -738,7 +736,7 @@ def misplaced(
     A friction bound up to `faint` is none.
     """
     radius, size = (np.sqrt((v * v).sum(axis=1)) for v in (offset, force))
-    jump = law.bound > law.first * law.stick * (1.0 + 1e-9)
+    jump = law.bound > law.first * law.stick * (1.0 + HOT.rounded)
     past = beyond(law)
     rubs = law.bound > faint
     level = np.where(law.reach > law.stick, np.where(rubs, at.SLIP, at.OPEN), past)

@@ -86,7 +86,7 @@ class Region:
         settings = clarabel.DefaultSettings()
         settings.verbose = False
         settings.presolve_enable = False
-        settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-10
+        settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = PLACES.cone
         return csc_matrix(np.vstack(rows)), np.concatenate(bounds), cones, settings
 
     def beyond(self, u: Array) -> float:

@@ -360,14 +360,14 @@ class Equations:
             size = np.abs(step).max(axis=1, initial=0.0)
             scale = np.maximum(np.abs(z[rows]).max(axis=1, initial=0.0), 1.0)
             small = size <= FOLLOW.solved * scale
-            done[rows] = (size <= 1e-15 * scale) | (small & (size >= 0.5 * previous[rows]))
-            lost[rows] |= ~np.isfinite(size) | (size > 1e9)
+            done[rows] = (size <= FOLLOW.last * scale) | (small & (size >= 0.5 * previous[rows]))
+            lost[rows] |= ~np.isfinite(size) | (size > FOLLOW.lost)
             previous[rows] = size
         with np.errstate(all="ignore"):
             off = np.abs(self.residual(z, numbers)).max(axis=1, initial=0.0)
         unit = np.abs(numbers.load).max(axis=1, initial=0.0)
         return z, (done | (previous <= FOLLOW.solved)) & ~lost & (
-            off <= 1e-9 * np.maximum(unit, 1.0)
+            off <= FOLLOW.balanced * np.maximum(unit, 1.0)
         )
 
     @property
@@ -403,7 +403,7 @@ def pressed(b: Array, c: Array, approach: Array) -> tuple[Array, Array]:
         for _ in range(FOLLOW.roots):
             step = ((b * root + c) * root**2 - size) / ((3.0 * b * root + 2.0 * c) * root)
             root = np.where(size > 0.0, np.where(step > 0.0, root - step, root), 0.0)
-            if not (step > 4e-16 * root).any():
+            if not (step > FOLLOW.root * root).any():
                 break
         slope = 1.0 / (b + np.where(c > 0.0, 2.0 / 3.0 * c / root, 0.0))
     return np.copysign(root**3, approach), slope

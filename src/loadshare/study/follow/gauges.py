@@ -182,7 +182,7 @@ def _stick(s: Stretches, k: int, bound: Enclosure) -> Enclosure:
     nodes = friction.nodes / np.where(first.nodes > 0.0, first.nodes, 1.0)
     rate = friction.rate / stiff
     spread = friction.spread / np.maximum(first.low, 1e-300)
-    moving = first.rate.any() or first.spread.max() > 1e-12 * np.abs(first.middle).max()
+    moving = first.rate.any() or first.spread.max() > FOLLOW.constant * np.abs(first.middle).max()
     if moving and not known.all():
         own = sampled(nodes)
         rate, spread = own.rate, own.spread + spread

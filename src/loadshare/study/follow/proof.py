@@ -31,9 +31,6 @@ from loadshare.study.follow.gauges import gauges
 from loadshare.study.follow.ranges import Flags, sampled
 from loadshare.study.follow.stretches import Stretches
 
-ROUND_OFF = 64.0 * np.finfo(float).eps
-"""Round-off of a sum, relative to the size of its terms."""
-
 
 class Proof(NamedTuple):
     """What was proved on stretches.
@@ -105,10 +102,10 @@ def _enclosed(s: Stretches, inverse: Array) -> tuple[Flags, Array, Array]:
     across = reach.transpose(0, 2, 1)
     ends = np.abs(s.split(residual)[:, [0, -1]] @ across).max(axis=1)
     sizes = s.split(s.equations.sizes(s.flat, s.numbers, s.state)).max(axis=1)
-    noise = ROUND_OFF * (np.abs(reach) @ sizes[:, :, None])[:, :, 0]
+    noise = FOLLOW.round_off * (np.abs(reach) @ sizes[:, :, None])[:, :, 0]
     straight = sampled(_linear(s, residual) @ across)
     drift = _drift(s, reach)
-    dev = 1e-15 * np.ones((s.count, s.width))
+    dev = FOLLOW.least_deviation * np.ones((s.count, s.width))
     done = np.zeros(s.count, dtype=bool)
     found = bend = np.full((s.count, s.width), np.inf)
     for _ in range(FOLLOW.enclosures):
@@ -149,7 +146,9 @@ def _wider(matrix: Array, base: Array, fresh: Array) -> Array:
     )
     good = usable & (solved >= 0.0).all(axis=1)
     wider = np.where(good[:, None], solved, fresh)
-    return np.asarray(np.minimum(1.1 * np.nan_to_num(wider, nan=1e12) + 1e-300, 1e12))
+    return np.asarray(
+        np.minimum(FOLLOW.wider * np.nan_to_num(wider, nan=FOLLOW.widest) + 1e-300, FOLLOW.widest)
+    )
 
 
 def _contracted(matrix: Array, base: Array, these: Flags) -> Array:
@@ -159,7 +158,7 @@ def _contracted(matrix: Array, base: Array, these: Flags) -> Array:
     solved = _series(matrix[rows], base[rows])
     # A nonnegative solution proves that it bounds the series; round-off is given a part more.
     good = (solved >= 0.0).all(axis=1)
-    found[rows[good]] = (1.0 + 1e-9) * solved[good]
+    found[rows[good]] = (1.0 + FOLLOW.more) * solved[good]
     return found
 
 

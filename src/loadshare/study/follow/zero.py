@@ -14,7 +14,7 @@ import numpy as np
 from loadshare.scene.scene import Array
 from loadshare.settings import FOLLOW
 
-_AROUND = np.array([-1e-2, -1e-4, -1e-7, -1e-10, 0.0, 1e-10, 1e-7, 1e-4, 1e-2])
+_AROUND = np.array(FOLLOW.around)
 
 
 def first_zero(

@@ -42,7 +42,11 @@ def differenced(
         If there is no certified equilibrium to that side, however near.
     """
     start = _stacked(varied.setting(0.0).train, here)
-    first = 4.0 * step if step is not None else SENSITIVITY.first * (abs(varied.value.si) or 1e-3)
+    first = (
+        4.0 * step
+        if step is not None
+        else SENSITIVITY.first * (abs(varied.value.si) or SENSITIVITY.least_value)
+    )
     slopes: list[tuple[Array, Array]] = []
     why = ""
     for k in range(SENSITIVITY.most):

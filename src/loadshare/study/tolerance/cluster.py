@@ -7,6 +7,7 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from loadshare.errors import LoadshareError
+from loadshare.settings import TOLERANCE
 from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.job import Part, known_job
 
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
 
 WAIT = "30s"
 """How long an answer of the scheduler is awaited."""
-AHEAD = 2
-"""Parts in flight for each thread of the cluster; more would only fill memory."""
 
 
 def part_table(job: str, part: Part) -> pa.Table:
@@ -61,7 +60,7 @@ def solve_on_cluster(folder: Folder, parts: Sequence[Part], address: str) -> Ite
         def send(part: Part) -> Any:
             return client.submit(part_table, job, part, pure=False)
 
-        waiting = {send(part): part for part in islice(queue, AHEAD * max(threads, 1))}
+        waiting = {send(part): part for part in islice(queue, TOLERANCE.ahead * max(threads, 1))}
         found = as_completed(list(waiting))
         for future in found:
             part = waiting.pop(future)

@@ -10,6 +10,7 @@ import numpy as np
 from scipy import special
 
 from loadshare.scene.scene import Array
+from loadshare.settings import TOLERANCE
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +78,6 @@ def correlation_matrix(given: float | Sequence[Sequence[float]], size: int) -> A
         if not (np.diag(matrix) == 1.0).all():
             return "does not have ones on its diagonal"
     smallest = float(np.linalg.eigvalsh(matrix)[0])
-    if smallest < 1e-10:
+    if smallest < TOLERANCE.definite:
         return f"is not positive definite: its smallest eigenvalue is {smallest:.3g}"
     return matrix

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from loadshare.scene.scene import Array
-from loadshare.study.tolerance.statistics import BINS, Estimate
+from loadshare.settings import TOLERANCE
+from loadshare.study.tolerance.statistics import Estimate
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,7 +46,7 @@ def dataset(found: Tolerance) -> xr.Dataset:
         "deviation": (base, gathered(lambda o: o.summary.deviation)),
         "lowest": (base, gathered(lambda o: o.summary.lowest)),
         "highest": (base, gathered(lambda o: o.summary.highest)),
-        "count": ((*base, "bin"), gathered(lambda o: o.summary.counts, BINS)),
+        "count": ((*base, "bin"), gathered(lambda o: o.summary.counts, TOLERANCE.bins)),
     }
 
     def estimates(name: str, get: Callable[[OmegaStatistics], list[Estimate]], *axis: str) -> None:
@@ -63,7 +64,7 @@ def dataset(found: Tolerance) -> xr.Dataset:
     if any(o.shares for o in found.omega):
         for name, order in (("first_order", "first"), ("total_order", "total")):
             estimates(name, lambda o, order=order: _shares(o, order, len(units)), "input")  # type: ignore[misc]
-    edges = gathered(lambda o: o.summary.edges, BINS + 1)
+    edges = gathered(lambda o: o.summary.edges, TOLERANCE.bins + 1)
     attributes = {
         "case": found.case,
         "title": found.folder.job.solver.case.title,

@@ -11,13 +11,11 @@ import numpy as np
 
 from loadshare.case.distributions import NUMBERS, Spread
 from loadshare.scene.scene import Array
+from loadshare.settings import TOLERANCE
 from loadshare.study.parameter import Value, read_value
 
 PHASE = "uniform phase"
 TURN = Value(360.0, "deg")
-TAIL = 0.00135
-"""Probability beyond an end of the tolerance box where a distribution has no end: three standard
-deviations of a normal one."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +61,7 @@ class Distribution:
         """Whether its two ends are the same state of the machine."""
         return self.kind == PHASE
 
-    def ends(self, tail: float = TAIL) -> tuple[float, float]:
+    def ends(self, tail: float = TOLERANCE.tail) -> tuple[float, float]:
         """Return its two ends; where it has none, the quantile that leaves `tail` beyond."""
         low, high = (float(end) for end in self.frozen.support())
         inner = self.at(np.array([tail, 1.0 - tail]))

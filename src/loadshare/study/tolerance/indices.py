@@ -7,12 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from loadshare.scene.scene import Array
-from loadshare.study.tolerance.statistics import CONFIDENCE, Estimate
-
-RESAMPLES = 1000
-"""Bootstrap samples."""
-STILL = 1e-9
-"""Deviation, over the size of a figure, below which it does not vary: round-off has no share."""
+from loadshare.settings import TOLERANCE
+from loadshare.study.tolerance.statistics import Estimate
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +56,7 @@ def shares(figures: Array, units: tuple[str, ...], seed: int) -> tuple[Share, ..
     if whole.shape[1] < 8:
         return ()
     base = whole[:2]
-    if base.std() <= STILL * max(float(np.abs(base).max()), 1e-300):
+    if base.std() <= TOLERANCE.still * max(float(np.abs(base).max()), 1e-300):
         return ()
     a, b, mixed = whole[0], whole[1], whole[2:]
     middle = base.mean()
@@ -71,9 +67,9 @@ def shares(figures: Array, units: tuple[str, ...], seed: int) -> tuple[Share, ..
     first, total = _ratios(sums.mean(axis=1)[:, None], len(units))
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(0, 2)))
     even = np.full(rows, 1.0 / rows)
-    drawn = [sums @ rng.multinomial(rows, even) / rows for _ in range(RESAMPLES)]
+    drawn = [sums @ rng.multinomial(rows, even) / rows for _ in range(TOLERANCE.resamples)]
     again = _ratios(np.stack(drawn, axis=1), len(units))
-    tail = (1.0 - CONFIDENCE) / 2.0
+    tail = (1.0 - TOLERANCE.confidence) / 2.0
     found = []
     for k, unit in enumerate(units):
         estimates = []

@@ -14,12 +14,10 @@ from loadshare.case.distributions import Group
 from loadshare.case.keys import dotted
 from loadshare.errors import CaseError, Problem
 from loadshare.scene.scene import Array
+from loadshare.settings import TOLERANCE
 from loadshare.study.parameter import matches, split_outside
 from loadshare.study.tolerance.copula import Copula, correlation_matrix
 from loadshare.study.tolerance.distribution import Distribution, read_distribution
-
-FAR = 1e-9
-"""Probability beyond the values with which the case is tried before anything is drawn."""
 
 
 @dataclass(frozen=True)
@@ -210,7 +208,7 @@ class _Reader:
 
     def _fits(self, path: tuple[str | int, ...], one: Input) -> bool:
         """Tell whether the case can be used with the far ends of an input."""
-        for end in one.distribution.ends(FAR):
+        for end in one.distribution.ends(TOLERANCE.far):
             try:
                 self.case.replace(one.changes(end))
             except CaseError as error:

@@ -5,12 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from loadshare.scene.scene import Array
-from loadshare.settings import JOB
-
-SEQUENCES = 16
-"""Scrambled Sobol sequences that take turns; they differ by chance alone, and so tell the error."""
-SMALLEST = 2.0**-54
-"""Stands for a point at 0, of which most distributions make infinity."""
+from loadshare.settings import JOB, TOLERANCE
 
 
 def uniforms(sampling: str, seed: int, stream: tuple[int, ...], block: int, width: int) -> Array:
@@ -19,8 +14,8 @@ def uniforms(sampling: str, seed: int, stream: tuple[int, ...], block: int, widt
     Parameters
     ----------
     sampling : {"random", "sobol"}
-        Independent points; or points of `SEQUENCES` scrambled Sobol sequences in turn: row i of a
-        block belongs to sequence i mod `SEQUENCES`.
+        Independent points; or points of scrambled Sobol sequences in turn: row i of a block belongs
+        to sequence i mod `TOLERANCE.sequences`.
     seed : int
     stream : tuple of int
         Tells apart the points of one study that serve different ends.
@@ -37,15 +32,15 @@ def uniforms(sampling: str, seed: int, stream: tuple[int, ...], block: int, widt
         return _sobol(seed, stream, block, width)
     sequence = np.random.SeedSequence(seed, spawn_key=(block, *stream))
     points = np.random.default_rng(sequence).random((JOB.block, width))
-    return np.maximum(points, SMALLEST)
+    return np.maximum(points, TOLERANCE.smallest)
 
 
 def _sobol(seed: int, stream: tuple[int, ...], block: int, width: int) -> Array:
     from scipy.stats import qmc
 
-    each = JOB.block // SEQUENCES
-    points = np.empty((each, SEQUENCES, width))
-    for r in range(SEQUENCES):
+    each = JOB.block // TOLERANCE.sequences
+    points = np.empty((each, TOLERANCE.sequences, width))
+    for r in range(TOLERANCE.sequences):
         source = np.random.SeedSequence(seed, spawn_key=(r, *stream))
         engine = qmc.Sobol(width, scramble=True, seed=np.random.default_rng(source))
         if block:

@@ -13,17 +13,13 @@ import numpy as np
 
 from loadshare.case.words import as_given
 from loadshare.errors import Problem, ResultError
+from loadshare.settings import TOLERANCE
 from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.job import Part
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-SAMPLED = 2
-"""Samples of such a part that are solved again."""
-APART = 1e-6
-"""Relative difference of a figure that two certified answers of one sample cannot have: each is
-known to 1e-9, and a largest figure over branches is no less so."""
 AGAIN = "Remove this file and give the same command: the part is then solved again."
 
 
@@ -58,13 +54,13 @@ def check_part(folder: Folder, part: Part) -> None:
         if not np.array_equal(found, column):
             row = int(np.flatnonzero(found != column)[0])
             _refuse(file, name, int(numbers[row]), found[row], column[row])
-    rows = rng.choice(len(numbers), min(SAMPLED, len(numbers)), replace=False)
+    rows = rng.choice(len(numbers), min(TOLERANCE.sampled, len(numbers)), replace=False)
     again = job.solver.solve(values[rows])
     for name, expected in {**again.columns, "certified": ~np.isnan(again.residual)}.items():
         found = _column(there, name, file)[rows]
         if name.startswith("float."):
             continue
-        off = ~np.isclose(found, expected, rtol=APART, atol=0.0, equal_nan=True)
+        off = ~np.isclose(found, expected, rtol=TOLERANCE.apart, atol=0.0, equal_nan=True)
         if off.any():
             k = int(np.flatnonzero(off)[0])
             _refuse(file, name, int(numbers[rows[k]]), found[k], expected[k])

@@ -11,12 +11,7 @@ from numpy.typing import NDArray
 from scipy import special
 
 from loadshare.scene.scene import Array
-from loadshare.study.tolerance.points import SEQUENCES
-
-CONFIDENCE = 0.95
-"""Of every interval."""
-BINS = 60
-"""Of the histograms."""
+from loadshare.settings import TOLERANCE
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +41,7 @@ class Summary:
         Standard deviation.
     lowest, highest : float
     quantiles : mapping of level to Estimate
-    edges, counts : ndarray, shape (BINS + 1,), (BINS,)
+    edges, counts : ndarray, shape (TOLERANCE.bins + 1,), (TOLERANCE.bins,)
         Histogram.
     """
 
@@ -70,8 +65,8 @@ def summary(values: Array, levels: Sequence[float], replicated: bool) -> Summary
     levels : sequence of float
         Of the quantiles.
     replicated : bool
-        Whether the samples are of `SEQUENCES` sequences in turn, by whose scatter intervals are
-        then judged.
+        Whether the samples are of some sequences in turn, by whose scatter intervals are then
+        judged.
     """
     known = values[~np.isnan(values)]
     if not len(known):
@@ -79,7 +74,7 @@ def summary(values: Array, levels: Sequence[float], replicated: bool) -> Summary
     replicates = _replicates(values) if replicated else None
     ordered = np.sort(known)
     deviation = float(np.std(known, ddof=1)) if len(known) > 1 else math.nan
-    counts, edges = np.histogram(known, bins=BINS, range=_range(ordered))
+    counts, edges = np.histogram(known, bins=TOLERANCE.bins, range=_range(ordered))
     return Summary(
         count=len(known),
         mean=_mean(known, deviation, replicates),
@@ -95,7 +90,7 @@ def summary(values: Array, levels: Sequence[float], replicated: bool) -> Summary
 def _range(ordered: Array) -> tuple[float, float]:
     """Ends of a histogram: those of the values, with some room where these hardly differ."""
     low, high = float(ordered[0]), float(ordered[-1])
-    least = 1e-6 * max(abs(low), abs(high), 1e-300)
+    least = TOLERANCE.least_width * max(abs(low), abs(high), 1e-300)
     if high - low < least:
         low, high = low - least, high + least
     return low, high
@@ -103,7 +98,7 @@ def _range(ordered: Array) -> tuple[float, float]:
 
 def _replicates(values: Array) -> list[Array]:
     """Split samples into the sequences from which they come, those without a figure left out."""
-    parts = [values[r::SEQUENCES] for r in range(SEQUENCES)]
+    parts = [values[r :: TOLERANCE.sequences] for r in range(TOLERANCE.sequences)]
     return [known for part in parts if len(known := part[~np.isnan(part)])]
 
 
@@ -112,7 +107,7 @@ def _from_replicates(value: float, found: Sequence[float]) -> Estimate:
     count = len(found)
     if count < 2:
         return Estimate(value, math.nan, math.nan)
-    factor = float(special.stdtrit(count - 1, 0.5 + CONFIDENCE / 2.0))
+    factor = float(special.stdtrit(count - 1, 0.5 + TOLERANCE.confidence / 2.0))
     half = factor * float(np.std(found, ddof=1)) / math.sqrt(count)
     return Estimate(value, value - half, value + half)
 
@@ -121,7 +116,9 @@ def _mean(known: Array, deviation: float, replicates: list[Array] | None) -> Est
     value = float(known.mean())
     if replicates is not None:
         return _from_replicates(value, [float(part.mean()) for part in replicates])
-    half = float(special.ndtri(0.5 + CONFIDENCE / 2.0)) * deviation / math.sqrt(len(known))
+    half = (
+        float(special.ndtri(0.5 + TOLERANCE.confidence / 2.0)) * deviation / math.sqrt(len(known))
+    )
     return Estimate(value, value - half, value + half)
 
 
@@ -147,7 +144,7 @@ def quantile(ordered: Array, level: float, replicates: list[Array] | None) -> Es
     from scipy import stats
 
     # The number of samples below the true quantile is binomial.
-    tail = (1.0 - CONFIDENCE) / 2.0
+    tail = (1.0 - TOLERANCE.confidence) / 2.0
     count = len(ordered)
     below, above = (int(stats.binom.ppf(p, count, level)) for p in (tail, 1.0 - tail))
     low = float(ordered[below - 1]) if below >= 1 else -math.inf
@@ -155,7 +152,7 @@ def quantile(ordered: Array, level: float, replicates: list[Array] | None) -> Es
     return Estimate(value, low, high)
 
 
-def wilson(hits: int, count: int, confidence: float = CONFIDENCE) -> Estimate:
+def wilson(hits: int, count: int, confidence: float = TOLERANCE.confidence) -> Estimate:
     """Return a probability from independent trials with Wilson's score interval.
 
     Parameters

@@ -19,7 +19,7 @@ from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.machine import ENGINES
 from loadshare.job.positions import wanted_positions
-from loadshare.settings import CERTIFY, JOB
+from loadshare.settings import CERTIFY, JOB, TOLERANCE
 from loadshare.study.positions import loaded
 from loadshare.study.tolerance.figures import KINDS, SYSTEM
 from loadshare.study.tolerance.folder import WORST as WORST_FILE
@@ -27,7 +27,6 @@ from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.indices import Share, shares
 from loadshare.study.tolerance.inputs import read_inputs
 from loadshare.study.tolerance.job import CHUNK, INDICES, Job, Part, equilibria
-from loadshare.study.tolerance.points import SEQUENCES
 from loadshare.study.tolerance.result import (
     FloatStatistics,
     OmegaStatistics,
@@ -41,18 +40,6 @@ from loadshare.train import build_train
 
 NAME = "tolerance"
 """Of a study that is asked in Python alone."""
-SAMPLES, ROWS = 16384, 1024
-"""Samples, and rows of the design for the shares of variance, where none are given."""
-LEVELS = (0.5, 0.9, 0.95, 0.99, 0.999)
-"""Quantiles where none are given."""
-SMALL = 100_000
-"""Equilibria up to which starting worker processes costs more time than they save."""
-WORST = 4
-"""Worst samples from which the search for the worst case starts."""
-SAME = 1e-9
-"""Relative difference of Ω by stage and by group that counts as none."""
-PRESSED = 1e-9
-"""Force on a boundary, over the largest one in the study, that counts as one."""
 
 
 def tolerance(
@@ -173,9 +160,9 @@ def _asked(case: Case, name: str | None, given: Mapping[str, Any]) -> tuple[Case
 
 def _job(case: Case, name: str, chunk: int, engine: str) -> Job:
     block = case.study[name]
-    samples = block.samples or SAMPLES
+    samples = block.samples or TOLERANCE.samples
     sampling = block.sampling or "random"
-    rows = ROWS if block.indices is None else block.indices
+    rows = TOLERANCE.rows if block.indices is None else block.indices
     problems: list[Problem] = []
     try:
         read = read_inputs(case, name)
@@ -183,10 +170,10 @@ def _job(case: Case, name: str, chunk: int, engine: str) -> Job:
         problems += error.problems
     if sampling == "sobol":
         for key, count in (("samples", samples), ("indices", rows)):
-            if count % SEQUENCES:
+            if count % TOLERANCE.sequences:
                 place = f"study.{name}.{key}"
-                message = f"{count} does not share out among {SEQUENCES} Sobol sequences"
-                allowed = f"a multiple of {SEQUENCES}, best with a power of 2 for each"
+                message = f"{count} does not share out among {TOLERANCE.sequences} Sobol sequences"
+                allowed = f"a multiple of {TOLERANCE.sequences}, best with a power of 2 for each"
                 problems.append(case.problem(place, message, allowed))
     if problems:
         raise CaseError(problems)
@@ -241,7 +228,7 @@ def _solved(
 
     # By all parts and not by the missing ones: where a sample is solved shall not depend on when.
     settings = folder.job.settings
-    if sum(part.rows for part in folder.all) * len(settings["positions"]) <= SMALL:
+    if sum(part.rows for part in folder.all) * len(settings["positions"]) <= TOLERANCE.small:
         return solve_here(folder, missing)
     return solve_parts(folder, missing, max(workers, 1))
 
@@ -252,7 +239,7 @@ class _Reader:
     def __init__(self, folder: Folder, block: Study) -> None:
         self.folder, self.limit = folder, block.limit
         self.settings, self.train = folder.job.settings, folder.job.solver.train
-        self.levels = block.quantiles or LEVELS
+        self.levels = block.quantiles or TOLERANCE.levels
         self.replicated = self.settings["sampling"] == "sobol"
 
     def found(self, worst: bool) -> Tolerance:
@@ -313,7 +300,7 @@ class _Reader:
                 column = f"boundary_force.{gear} [N]"
                 force, values = self._summary(column), self.folder.column(column)
                 known = values[~np.isnan(values)]
-                pressed = float((known > PRESSED * max(known.max(), 1e-300)).mean())
+                pressed = float((known > TOLERANCE.pressed * max(known.max(), 1e-300)).mean())
             yield FloatStatistics(gear, way, force, pressed)
 
 
@@ -336,7 +323,7 @@ def _searched(folder: Folder, kinds: Sequence[str]) -> Iterator[WorstCase]:
     solver, seed = folder.job.solver, folder.job.settings["seed"]
     for kind in kinds:
         values = np.nan_to_num(folder.column(f"{kind}.{SYSTEM}"), nan=-np.inf)
-        worst = np.argsort(-values, kind="stable")[:WORST]
+        worst = np.argsort(-values, kind="stable")[: TOLERANCE.worst]
         known = _inputs_of(folder, [int(row) for row in worst if np.isfinite(values[row])])
         found = worst_case(solver, kind, known, seed)
         if found is not None:
@@ -346,7 +333,7 @@ def _searched(folder: Folder, kinds: Sequence[str]) -> Iterator[WorstCase]:
 def _apart(folder: Folder) -> list[str]:
     """Kinds of Ω that differ: where groups share alike, as without groups, both are one."""
     one, other = (folder.column(f"{kind}.{SYSTEM}") for kind in KINDS)
-    same = np.allclose(one, other, rtol=SAME, atol=0.0, equal_nan=True)
+    same = np.allclose(one, other, rtol=TOLERANCE.same, atol=0.0, equal_nan=True)
     return list(KINDS)[:1] if same else list(KINDS)
 
 

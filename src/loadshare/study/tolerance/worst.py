@@ -11,19 +11,9 @@ import numpy as np
 from loadshare.errors import CaseError, Problem, Refused, ResultError
 from loadshare.job import solve
 from loadshare.scene.scene import Array
-from loadshare.settings import JOB
+from loadshare.settings import JOB, TOLERANCE
 from loadshare.study.tolerance.figures import KINDS, SYSTEM, Solver
 from loadshare.study.tolerance.inputs import Inputs
-
-CORNERS, INNER = 6, 6
-"""Starting points at random vertices of the box, and at random inside."""
-STEP, LAST_STEP = 0.5, 1e-4
-"""First and last step along an input, over the width of its tolerance."""
-NARROWER = 0.25
-"""Factor of a step that gains nothing."""
-ROUNDS = 200
-GAIN = 1e-12
-"""Change of Ω that counts as one."""
 
 
 @dataclass(frozen=True)
@@ -108,15 +98,15 @@ def worst_case(solver: Solver, kind: str, known: Sequence[Array], seed: int) -> 
     search = _Search(solver, box, f"{kind}.{SYSTEM}")
     points = _starts(box, known, seed)
     best = search.omega(points)
-    step = np.full(len(points), STEP)
-    for _ in range(ROUNDS):
-        active = np.flatnonzero((step >= LAST_STEP) & np.isfinite(best))
+    step = np.full(len(points), TOLERANCE.step)
+    for _ in range(TOLERANCE.rounds):
+        active = np.flatnonzero((step >= TOLERANCE.last_step) & np.isfinite(best))
         if not len(active):
             break
         moved, omega = search.round(points[active], best[active], step[active])
-        gains = omega > best[active] + GAIN
+        gains = omega > best[active] + TOLERANCE.gain
         points[active[gains]], best[active[gains]] = moved[gains], omega[gains]
-        step[active[~gains]] *= NARROWER
+        step[active[~gains]] *= TOLERANCE.narrower
     for k in np.argsort(-best, kind="stable").tolist():
         if np.isfinite(best[k]):
             found = _confirmed(solver, box, kind, points[k], search.solved)
@@ -127,9 +117,9 @@ def worst_case(solver: Solver, kind: str, known: Sequence[Array], seed: int) -> 
 
 def _starts(box: Box, known: Sequence[Array], seed: int) -> Array:
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(0, 3)))
-    inner = rng.random((INNER, len(box)))
-    corners = np.where(box.periodic, rng.random((CORNERS, len(box))), 0.0)
-    corners = np.where(box.periodic, corners, rng.integers(0, 2, (CORNERS, len(box))))
+    inner = rng.random((TOLERANCE.inner, len(box)))
+    corners = np.where(box.periodic, rng.random((TOLERANCE.corners, len(box))), 0.0)
+    corners = np.where(box.periodic, corners, rng.integers(0, 2, (TOLERANCE.corners, len(box))))
     return np.array([*(box.scaled(k) for k in known), *corners, *inner], dtype=float)
 
 
@@ -162,11 +152,16 @@ class _Search:
         up, down = gain[:, :width], gain[:, width:]
         sign = np.where(up >= down, 1.0, -1.0)
         each = np.maximum(up, down)
-        middle = np.array([np.median(g[g > GAIN]) if (g > GAIN).any() else np.inf for g in each])
+        middle = np.array(
+            [
+                np.median(g[g > TOLERANCE.gain]) if (g > TOLERANCE.gain).any() else np.inf
+                for g in each
+            ]
+        )
         together = np.stack(
             [
                 self.box.within(points + step[:, None] * sign * (each > least[:, None]))
-                for least in (np.full(count, GAIN), middle)
+                for least in (np.full(count, TOLERANCE.gain), middle)
             ],
             axis=1,
         )
@@ -225,7 +220,11 @@ def check_worst(solver: Solver, known: WorstCase, file: str) -> None:
         found = _omega_with(solver, changes, kinds.get(known.over, "pair_omega"))
     except (TypeError, ValueError):
         changes, found = {}, None
-    if found is None or changes != known.changes or not abs(known.omega - found) <= GAIN * found:
+    if (
+        found is None
+        or changes != known.changes
+        or not abs(known.omega - found) <= TOLERANCE.gain * found
+    ):
         expected = "no certified answer" if found is None else repr(found)
         raise ResultError(
             [

@@ -7,11 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loadshare.settings import TEETH
 from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
 from loadshare.tooth.geometry.body import Array
-
-TOLERANCE = 1e-9
-"""Largest scaled residual of a certified contact."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +48,7 @@ def certify_contact(
     load: float,
     force: Array,
     approach: float,
-    tolerance: float = TOLERANCE,
+    tolerance: float = TEETH.tolerance,
 ) -> ContactCertificate:
     """Judge the forces (N,) [N] and the approach [m] claimed for a load [N].
 
@@ -66,7 +64,7 @@ def certify_contacts(
     load: Array,
     force: Array,
     approach: Array,
-    tolerance: float = TOLERANCE,
+    tolerance: float = TEETH.tolerance,
 ) -> tuple[ContactCertificate, ...]:
     """Judge forces (K, N) [N] and approaches (K,) [m] claimed for loads (K,) [N]."""
     with np.errstate(invalid="ignore"):

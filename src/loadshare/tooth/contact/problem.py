@@ -30,15 +30,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.tooth.contact.strips import FAINT, StripLine, StripTable, strip_table
+from loadshare.settings import TEETH
+from loadshare.tooth.contact.strips import StripLine, StripTable, strip_table
 from loadshare.tooth.geometry.body import Array
-
-FAR_OFF = 1.0
-"""Gap [m] of points that only fill up a batch: they never close."""
-TERMS = 5
-"""Powers of b² that are kept."""
-FAR = 4.0
-"""Distance, in half-widths, from which they are good to 4e-11."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +96,7 @@ class Strips(NamedTuple):
     half: Array  # (M, N): half of the length [m]
     scale: Array  # (M, N): displacement per force and unit of g [m/N]
     square: Array  # (M, N): b² per force [m²/N]
-    series: Array  # (M, TERMS + 1, N, N): coefficients of b²ᵏ [m/N]
+    series: Array  # (M, TEETH.terms + 1, N, N): coefficients of b²ᵏ [m/N]
     far: float
     table: StripTable
 
@@ -139,7 +133,7 @@ class ContactBatch:
         self.names = tuple(problem.name for problem in problems)
         self.which = np.arange(len(problems))
         positions, points = len(problems), int(self.count.max())
-        self.gap = np.full((positions, points), FAR_OFF)
+        self.gap = np.full((positions, points), TEETH.far_off)
         self.fixed = np.zeros((positions, points, points))
         strips = np.zeros((5, positions, points))
         strips[0] = -1.0
@@ -148,9 +142,9 @@ class ContactBatch:
             self.fixed[k, :count, :count] = problem.fixed
             for number, (line, part) in enumerate(zip(problem.lines, problem.parts, strict=True)):
                 strips[:, k, part] = _strips(number, line)
-        series = np.empty((positions, TERMS + 1, points, points))
+        series = np.empty((positions, TEETH.terms + 1, points, points))
         lines, place, half, scale, square = strips
-        self.strips = Strips(lines, place, half, scale, square, series, FAR, strip_table())
+        self.strips = Strips(lines, place, half, scale, square, series, TEETH.far, strip_table())
         expand(self.strips, COEFFICIENTS, series)
 
     def rows(self, chosen: NDArray[np.int64]) -> ContactBatch:
@@ -165,7 +159,7 @@ class ContactBatch:
         from loadshare.tooth.contact.compiled import surfaces
 
         force = np.array(force, float, order="C")
-        least = FAINT * np.sum(np.maximum(force, 0.0), axis=1)
+        least = TEETH.faint * np.sum(np.maximum(force, 0.0), axis=1)
         secant, tangent = np.empty((2, *force.shape, force.shape[1]))
         surfaces(self.strips, self.which, force, least, secant, tangent)
         fixed = self.fixed[self.which]
@@ -180,7 +174,7 @@ COEFFICIENTS = np.array(
     [1.0]
     + [
         -((-1.0) ** k) * (comb(2 * k, k) / 4.0**k) ** 2 / (2.0 * k * (k + 1.0))
-        for k in range(1, TERMS + 1)
+        for k in range(1, TEETH.terms + 1)
     ]
 )
 """Of the series above; the first is the logarithm's."""

@@ -30,23 +30,12 @@ from loadshare.contact.findings import Unsolved
 from loadshare.contact.inner import solve_programme
 from loadshare.contact.programme import Programme
 from loadshare.errors import Refused
+from loadshare.settings import TEETH
 from loadshare.tooth.contact.certificate import ContactCertificate, certify_contacts
 from loadshare.tooth.contact.problem import ContactBatch, ContactProblem, Strips
-from loadshare.tooth.contact.strips import FAINT
 from loadshare.tooth.geometry.body import Array
 
 Mask = NDArray[np.bool_]
-
-PASSES = 60
-"""Passes after which a contact that does not settle is given up."""
-SETTLED = 1e-12
-"""Distance of closed points, in deflections, at which a contact has settled."""
-ROUND_OFF = 16.0 * float(np.finfo(float).eps)
-"""Part of a gap that counts as nothing."""
-EXCHANGES = 40
-"""Exchanges in one pass before the solver interface is asked instead."""
-BAND = 1e-13
-"""Violation of a sign, in loads and deflections, that counts as round-off."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +121,7 @@ def solve_contacts(
     for k in np.flatnonzero(~found.settled)[:1]:
         raise Refused(
             f"{_called(batch.names[k])}the contact under {load[k]:.6g} N did not settle in "
-            f"{PASSES} passes; more points a line, or a smoother gap, may help",
+            f"{TEETH.passes} passes; more points a line, or a smoother gap, may help",
         )
     return _certified(batch, load, found)
 
@@ -162,7 +151,9 @@ class _Limits(NamedTuple):
 
 
 def _limits() -> _Limits:
-    return _Limits(PASSES, EXCHANGES, SETTLED, ROUND_OFF, BAND, FAINT)
+    return _Limits(
+        TEETH.passes, TEETH.exchanges, TEETH.settled, TEETH.round_off, TEETH.band, TEETH.faint
+    )
 
 
 class _Batch(NamedTuple):

@@ -30,14 +30,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from loadshare.settings import TEETH
 from loadshare.tooth.geometry.body import Array
-
-FAINT = 1e-12
-"""Part of a line's whole load below which a point's strip narrows no further: its effect is 0."""
-LONGEST = 1e-7
-"""Axis ratio below which an ellipse counts as a line."""
-FIRST, LAST = 1e-7, 1e9
-"""First and last knot τ of the table."""
 
 
 def contact_modulus(modulus: tuple[float, float], poisson: tuple[float, float]) -> float:
@@ -61,7 +55,7 @@ def axis_ratio(curvature_ratio: ArrayLike) -> Array:
     from scipy.special import ellipe, ellipkm1
 
     wanted = np.asarray(curvature_ratio, dtype=float)
-    beta = np.maximum(np.clip(wanted, 0.0, 1.0) ** (2.0 / pi), LONGEST)
+    beta = np.maximum(np.clip(wanted, 0.0, 1.0) ** (2.0 / pi), TEETH.longest)
     for _ in range(30):
         k, e = ellipkm1(beta**2), ellipe(1.0 - beta**2)
         near = beta > 1.0 - 1e-5
@@ -73,10 +67,10 @@ def axis_ratio(curvature_ratio: ArrayLike) -> Array:
             near, 1.5, (2.0 * e / beta**2 - k) / major - e / np.where(near, 1.0, minor)
         )
         step = (np.maximum(wanted, 1e-300) / found) ** (1.0 / slope)
-        beta = np.clip(beta * step, LONGEST, 1.0)
-        if np.all((np.abs(step - 1.0) < 1e-9) | (beta <= LONGEST) | (beta >= 1.0)):
+        beta = np.clip(beta * step, TEETH.longest, 1.0)
+        if np.all((np.abs(step - 1.0) < 1e-9) | (beta <= TEETH.longest) | (beta >= 1.0)):
             break
-    return np.where(beta <= LONGEST, 0.0, beta)
+    return np.where(beta <= TEETH.longest, 0.0, beta)
 
 
 def width_factor(along: ArrayLike, across: ArrayLike) -> Array:
@@ -144,7 +138,7 @@ class StripTable(NamedTuple):
 @cache
 def strip_table() -> StripTable:
     """The table of g."""
-    knots = np.linspace(np.log(FIRST), np.log(LAST), 1200)
+    knots = np.linspace(np.log(TEETH.first_knot), np.log(TEETH.last_knot), 1200)
     nodes, weights = np.polynomial.legendre.leggauss(6)
     middle, half = 0.5 * (knots[1:] + knots[:-1]), 0.5 * np.diff(knots)
     inner = np.exp(middle[:, None] + half[:, None] * nodes)
@@ -152,7 +146,7 @@ def strip_table() -> StripTable:
     tau = np.exp(knots)
     first = 4.0 / pi * tau[0] * np.log(4.0 / tau[0])  # leading order near 0
     values = first + np.concatenate([[0.0], np.cumsum(parts)])
-    return StripTable(FIRST, LAST, values, tau * _slope(tau))
+    return StripTable(TEETH.first_knot, TEETH.last_knot, values, tau * _slope(tau))
 
 
 @dataclass(frozen=True, eq=False)

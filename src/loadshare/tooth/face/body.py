@@ -10,10 +10,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from loadshare.settings import TEETH
 from loadshare.tooth.face.flank import FaceFlank
 from loadshare.tooth.face.gear import FaceGear
 from loadshare.tooth.geometry.body import Array, ToothBody, turned
-from loadshare.tooth.geometry.gap import LAST_STEP
 
 
 @dataclass(frozen=True)
@@ -134,7 +134,7 @@ class FaceBody(ToothBody):
             rise = point[..., 0] / np.hypot(point[..., 0], point[..., 1])
             step = (gear.blank(point)[0] - length) / (sine**2 * rise + cosine**2)
             axial = axial - step
-            if np.abs(step).max(initial=0.0) < LAST_STEP:
+            if np.abs(step).max(initial=0.0) < TEETH.last_step:
                 break
         point = axial[..., None] * axis + arm
         angle = gear.roll_ratio * (shaper.base_half_angle - shaper.tip_roll - phi)

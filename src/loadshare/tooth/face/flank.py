@@ -14,13 +14,10 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 from scipy.optimize import brentq
 
+from loadshare.settings import TEETH
 from loadshare.tooth.face.gear import FaceGear
 from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.geometry.flank import Patch, dot, patch, solve_2
-
-# A Newton step below this [rad] is the last: what is left is about its square, below round-off.
-LAST_TURN = 1e-8
-STEPS = 30
 
 Place: TypeAlias = tuple[Array, Array]
 
@@ -88,11 +85,11 @@ class FaceFlank:
             start = np.arccos(self.gear.axial_scale / length)
             roll = (depth / self.gear.shaper.base_radius - np.cos(start)) / np.sin(start)
         roll, phi = np.broadcast_arrays(roll, self.side * start)
-        for _ in range(STEPS):
+        for _ in range(TEETH.steps):
             at, slopes = self._blank(roll, phi)
             step = solve_2(*slopes, at[0] - length, at[1] - depth)
             roll, phi = roll - step[0], phi - step[1]
-            if not np.any(np.abs(step) > LAST_TURN):
+            if not np.any(np.abs(step) > TEETH.last_turn):
                 break
         return roll, phi
 
@@ -100,11 +97,11 @@ class FaceFlank:
         """Base-tangent angle Φ of the points with a given shaper roll at lengths of the blank."""
         with np.errstate(invalid="ignore"):
             phi = self.side * np.arccos(self.gear.axial_scale / length)
-        for _ in range(STEPS):
+        for _ in range(TEETH.steps):
             at, slopes = self._blank(roll, phi)
             step = (at[0] - length) / slopes[0][1]
             phi = phi - step
-            if not np.any(np.abs(step) > LAST_TURN):
+            if not np.any(np.abs(step) > TEETH.last_turn):
                 break
         return phi
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from loadshare.settings import TEETH
 from loadshare.tooth.cylindrical.body import HelicoidBody
 from loadshare.tooth.cylindrical.flank import HelicoidFlank
 from loadshare.tooth.cylindrical.gear import HelicoidGear
@@ -25,9 +26,6 @@ from loadshare.tooth.geometry.valley import Flanks, Known, Valleys, anchor, span
 from loadshare.tooth.unloaded.positions import GearPair, between
 
 Roll = TypeVar("Roll", float, Array)
-
-# Where a line leaves the flanks, a Newton step below this [m] is the last: picometres are left.
-NEAR_EDGE = 1e-7
 
 
 @dataclass(frozen=True)
@@ -196,7 +194,7 @@ class FaceGearPair(GearPair):
             here = valleys.rows(lines)
             found = here.guess(stations) if near else None
             if found is None:
-                found = here.find(stations, NEAR_EDGE)
+                found = here.find(stations, TEETH.near_edge)
             if not valleys.known.found.size:
                 valleys = valleys.knowing(stations, found)
             a, b, c, d, gap = found
@@ -210,7 +208,7 @@ class FaceGearPair(GearPair):
     def margins_about(self, driver: Array, driven: Array) -> Mapping[str, Array]:
         """Margins along the lines of pairs near contact, on both flanks or not."""
         _, _, valleys, reach = self._candidates(driver, driven)
-        a, b, c, d, _ = valleys.find(reach[:, None] * np.linspace(-1.0, 1.0, 33), NEAR_EDGE)
+        a, b, c, d, _ = valleys.find(reach[:, None] * np.linspace(-1.0, 1.0, 33), TEETH.near_edge)
         return self.margins((a, b), (c, d))
 
     def _candidates(

@@ -9,12 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.errors import Refused
+from loadshare.settings import TEETH
 from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.geometry.flank import Patch, dot, solve_3
 
-# A Newton step below this [m] is the last: convergence is quadratic, so that what is left is its
-# square over a radius of curvature, below round-off.
-LAST_STEP = 1e-9
 # Parts of a line in which the least gap is looked for, at least.
 FEWEST = 15
 # Stations of the second look, between those beside the least gap of the first.
@@ -192,6 +190,6 @@ def meet(
         a, b, gap = a + step[0], b + step[1], gap + step[2]
         other = other_at(a, b)
         moved = np.abs(apart).max(axis=-1)
-        if moved.max(initial=0.0) < LAST_STEP:
+        if moved.max(initial=0.0) < TEETH.last_step:
             break
-    return other, (a, b), np.where(moved < LAST_STEP, gap, np.nan)
+    return other, (a, b), np.where(moved < TEETH.last_step, gap, np.nan)

@@ -8,18 +8,12 @@ from typing import NamedTuple, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.settings import TEETH
 from loadshare.tooth.cylindrical.flank import HelicoidNumbers
 from loadshare.tooth.face.flank import FaceNumbers
 from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.geometry.flank import Patch, principal_directions
-from loadshare.tooth.geometry.gap import LAST_STEP, Trace
-
-# From the anchor, points on the flanks are found in three to six steps, from their neighbours in
-# two or three; what takes longer lies beyond the edge of regression of the driven flank or inside
-# the driver's base circle.
-NEWTON_STEPS = 10
-# After so many steps each is a quarter of the one before, or Newton's method gets nowhere in time.
-SURE = 3
+from loadshare.tooth.geometry.gap import Trace
 
 # Stations of the first grid, and of those that close in on either end.
 FIRST, FINER = 33, 9
@@ -132,7 +126,7 @@ class Valleys:
         interpolate(self.known, stations, near)
         return np.moveaxis(near, -1, 0) if np.isfinite(near).all() else None
 
-    def find(self, stations: Array, last: float = LAST_STEP) -> Array:
+    def find(self, stations: Array, last: float = TEETH.last_step) -> Array:
         """Surface parameters on both flanks and gap (5, m, n) at stations (m, n) [m].
 
         The gap is NaN where Newton's method finds no point. A step below `last` [m] is the last.
@@ -143,7 +137,7 @@ class Valleys:
         """Flanks and gap at stations (m, n) [m]."""
         from loadshare.tooth.geometry.compiled import trace
 
-        found, shape = self._find(stations, LAST_STEP), stations.shape
+        found, shape = self._find(stations, TEETH.last_step), stations.shape
         points, tangent = np.empty((2, 6, 3, stations.size)), np.empty((*shape, 3))
         trace(self.flanks, self.start, self.turns, found, points[0], points[1], tangent)
         own, other = (Patch(components) for components in points.reshape(2, 6, 3, *shape))
@@ -154,7 +148,7 @@ class Valleys:
         """Unknowns (m, n, 5)."""
         from loadshare.tooth.geometry.compiled import find
 
-        found, limits = np.empty((*stations.shape, 5)), _Limits(NEWTON_STEPS, SURE)
+        found, limits = np.empty((*stations.shape, 5)), _Limits(TEETH.from_anchor, TEETH.sure)
         find(self.flanks, self.start, self.turns, self.known, stations, last, limits, found)
         return found
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.errors import Problem
+from loadshare.settings import TEETH
 from loadshare.tooth.geometry.body import Array, ToothBody
 from loadshare.tooth.geometry.flank import Patch, cross, dot, relative_curvature, unit
 from loadshare.tooth.geometry.gap import FEWEST, Extents, NoContactError, Trace, least_gap
@@ -24,11 +25,6 @@ if TYPE_CHECKING:
     from loadshare.tooth.cylindrical.flank import HelicoidFlank
     from loadshare.tooth.face.flank import FaceFlank
 
-# The flanks touch when the least gap is below this [m]: a hundredth of the gap that a
-# transmission error of 1e-9 rad makes at a base radius of 0.1 m.
-TOUCHING = 1e-12
-# Positions of the mesh cycle at which the teeth of a misaligned pair must meet.
-LOOKED_AT = 16
 
 Place: TypeAlias = tuple[Array, Array]
 """Surface parameters of points on a flank."""
@@ -329,7 +325,7 @@ def touching(
         least = np.full(len(phases), np.inf)
         gap, _, trace = least_gap(found, points)
         np.minimum.at(least, found.position, gap)
-        apart = np.abs(least) >= TOUCHING
+        apart = np.abs(least) >= TEETH.touching
         if not apart.any():
             return error, found, trace
         error = error + np.where(apart, least / pair.arm, 0.0)
@@ -343,7 +339,7 @@ def meeting_problems(pair: GearPair) -> list[Problem]:
     if not off:
         return []
     try:
-        touching(pair, list(np.arange(LOOKED_AT) / LOOKED_AT))
+        touching(pair, list(np.arange(TEETH.looked_at) / TEETH.looked_at))
     except NoContactError as error:
         name, value = next(iter(off.items()))
         alone = len(off) == 1

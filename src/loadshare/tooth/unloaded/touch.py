@@ -6,19 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loadshare.settings import TEETH
 from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.geometry.flank import principal_directions, relative_curvature, unit
-from loadshare.tooth.geometry.gap import LAST_STEP, least_gap
+from loadshare.tooth.geometry.gap import least_gap
 from loadshare.tooth.unloaded.positions import GearPair, touching
-
-# A gap that grows by less than this per length of line [m/m] is level: an unmodified line contact.
-LEVEL = 1e-9
-# The least gap on a line and the one at the point of contact agree within this [m].
-NEAR = 1e-9
-# Ends of two gears closer than this [m] are one edge, named after the driver.
-SAME_EDGE = 50e-6
-# A station this near to an end of its line [m] is that end.
-AT_END = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,8 +76,8 @@ def contact_points(pair: GearPair, phase: float) -> tuple[ContactPoint, ...]:
     gap, station, _ = least_gap(lines)
     trace = lines.trace(station[:, None])
     pairs, driver, driven = (x[:, None] for x in (lines.pairs, lines.driver, lines.driven))
-    at_end = np.minimum(np.abs(station - lines.start), np.abs(station - lines.end)) < AT_END
-    at_edge = at_end & (np.abs(trace.slope[:, 0]) > LEVEL)
+    at_end = np.minimum(np.abs(station - lines.start), np.abs(station - lines.end)) < TEETH.at_end
+    at_edge = at_end & (np.abs(trace.slope[:, 0]) > TEETH.level)
 
     unknowns = np.stack([*trace.driver_at, *trace.driven_at, np.zeros_like(trace.gap)], axis=-1)
     unknowns[..., 4] = gap[:, None] / pair.arm
@@ -96,7 +88,7 @@ def contact_points(pair: GearPair, phase: float) -> tuple[ContactPoint, ...]:
         # Next to a line contact the equations are nearly singular and can lead off the line; the
         # place of the least gap then stands.
         lead = refined[..., 4] - unknowns[inner][..., 4]
-        near = np.abs(lead) * pair.arm < NEAR
+        near = np.abs(lead) * pair.arm < TEETH.near
         unknowns[inner] = np.where(near[..., None], refined, unknowns[inner])
     a, b, c, d, lead = np.moveaxis(unknowns, -1, 0)
     own = pair.driver_patch(pairs, (a, b), driver + lead)
@@ -109,7 +101,9 @@ def contact_points(pair: GearPair, phase: float) -> tuple[ContactPoint, ...]:
     edges = []
     for i in range(len(lines.pairs)):
         nearest = min(float(margin[i]) for margin in margins.values())
-        edge = next(name for name, margin in margins.items() if margin[i] <= nearest + SAME_EDGE)
+        edge = next(
+            name for name, margin in margins.items() if margin[i] <= nearest + TEETH.same_edge
+        )
         edges.append(edge if at_edge[i] else "")
     vectors = (part[:, 0] for part in (own.point, own.normal, major, minor))
     numbers = [part[:, 0].tolist() for part in (error[0] + lead, least, greatest)]
@@ -137,7 +131,7 @@ def _newton(pair: GearPair, pairs: Array, unknowns: Array, driver: Array, driven
         scale = np.sqrt((matrix**2).sum(axis=-2))
         step = np.linalg.pinv(matrix / scale[..., None, :], rcond=1e-9) @ right[..., None]
         unknowns = unknowns + step[..., 0] / scale
-        if np.abs(step).max() < LAST_STEP:
+        if np.abs(step).max() < TEETH.last_step:
             break
     return unknowns
 

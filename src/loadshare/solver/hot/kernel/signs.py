@@ -47,7 +47,7 @@ def look_at_rows(s, work, width):  # type: ignore[no-untyped-def]
             y = abs(x[d, m])
             longest[m] = y if y > longest[m] else longest[m]
     for m in range(width):
-        y = 1e-3 * longest[m]
+        y = HOT.of_way * longest[m]
         longest[m] = y if y > work.largest[m] else work.largest[m]
         force_band[m] = work.each[BAND, m] * strongest[m]
         length_band[m] = work.each[BAND, m] * longest[m]
@@ -79,7 +79,7 @@ def misplaced(status, law, u, v, p, q, force_band, length_band, faint):  # type:
     """Where a radial element should stand; its own place if that is right. See `misplaced`."""
     first, stick, bound, reach, last, _ = law
     radius, size = np.sqrt(u * u + v * v), np.sqrt(p * p + q * q)
-    jump = bound > first * stick * (1.0 + 1e-9)
+    jump = bound > first * stick * (1.0 + HOT.rounded)
     beyond = STOP
     if np.isinf(last):
         beyond = WALL if reach > 0.0 else PINNED

@@ -1,0 +1,38 @@
+"""The numbers by which solvers, studies and certificates decide: what is small, when to stop.
+
+One table for all rooms, a part for each. Every number stands with its meaning and, where it is
+known, the reason for its size; what is not a ratio says its unit. What is compiled with them is
+compiled anew when one changes (`kept_code.py`).
+"""
+
+from loadshare.settings.allowed import ALLOWED
+from loadshare.settings.certificate import BOUND, CERTIFY
+from loadshare.settings.contact import CONTACT, LAWS
+from loadshare.settings.hot import ABREAST, EXCHANGE, HOT, SEARCH, STATICS
+from loadshare.settings.job import JOB
+from loadshare.settings.precision import EPS
+from loadshare.settings.studies import FIT, FOLLOW, MARCH, SENSITIVITY, TOLERANCE
+from loadshare.settings.teeth import TEETH
+from loadshare.settings.undetermined import PLACES
+
+__all__ = [
+    "ABREAST",
+    "ALLOWED",
+    "BOUND",
+    "CERTIFY",
+    "CONTACT",
+    "EPS",
+    "EXCHANGE",
+    "FIT",
+    "FOLLOW",
+    "HOT",
+    "JOB",
+    "LAWS",
+    "MARCH",
+    "PLACES",
+    "SEARCH",
+    "SENSITIVITY",
+    "STATICS",
+    "TEETH",
+    "TOLERANCE",
+]

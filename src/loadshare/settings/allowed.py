@@ -1,0 +1,39 @@
+"""What a case file may hold."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Allowed(NamedTuple):
+    """What a case file may hold: far more than any machine needs, and no more than can be read."""
+
+    bytes: int = 16 * 2**20
+    """Size of a file."""
+    files: int = 20
+    """Files that extend one another."""
+    depth: int = 20
+    """Tables and lists within one another."""
+    entries: int = 10_000
+    """Elements of a section, and entries of a list."""
+    name: int = 200
+    """Characters of a name."""
+    unit: int = 60
+    """Characters of a unit."""
+    power: float = 12.0
+    """Exponent in a unit."""
+    smallest: float = 1e-40
+    """Number other than zero, in SI units: its cube is a number still."""
+    largest: float = 1e40
+    """Number in SI units: likewise."""
+    positions: int = 100_000
+    """Positions of a mesh cycle."""
+    steps: int = 1_000_000
+    """Steps of a march or a sweep."""
+    revolutions: float = 1e6
+    """Revolutions of a march: beyond, the angle itself is rounded too coarsely."""
+    samples: int = 1_000_000_000
+    """Samples of a study."""
+
+
+ALLOWED = Allowed()

@@ -1,0 +1,82 @@
+"""Programmes of contact: laws as they are given, exact active sets, cones, the outer loop."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Laws(NamedTuple):
+    """What is given of laws."""
+
+    written: float = 1e-6
+    """Relative excess of K_w S1 over F_m that the digits of a written S1 explain: six are usual."""
+
+
+class Contact(NamedTuple):
+    """Programmes of contact: exact active sets, the proximal method and the outer loop."""
+
+    tolerance: float = 1e-9
+    """Largest residual, in forces and lengths of the problem."""
+    directed: float = 1e-12
+    """Offset, in lengths of the problem, that has no direction."""
+    loose: float = 1e-9
+    """Part of a coordinate in a move that nothing resists from which on it is undetermined."""
+    sign: float = 1e-11
+    """Violation of a sign, in units of the programme, that counts as round-off."""
+    sign_of_size: float = 1e-14
+    """The same, relative to the largest quantity of its sort."""
+    newton_steps: int = 40
+    """Newton steps on one set; those that arrive mostly do in ten."""
+    definite: float = 1e-12
+    """Least eigenvalue of the stiffness, over its largest, with which it is inverted."""
+    rank: float = 1e-13
+    """Eigenvalues of the equilibrated matrix below this, relative to the largest, count as zero."""
+    consistent: float = 1e-11
+    """Relative residual above which a rank-deficient system has no solution. Rounding of a scene
+    leaves some 1e-12 along moves that only rounding resists."""
+    stalled: float = 1e-9
+    """A loop whose misfit no longer falls has arrived at round-off below this, and is stuck
+    above."""
+    stuck: int = 30
+    """Passes that do not halve the misfit, after which a loop goes around without end."""
+    shrink: float = 0.1
+    """An open flank's next tangent is taken at this fraction of its last force."""
+    singular: float = 1e-12
+    """Eigenvalue of a stiffness, over its largest entry, that is zero."""
+    arrived: float = 1e-13
+    """Residual of a pass, relative to the largest force or displacement, that is round-off."""
+    condensed: float = 1e-12
+    """Least eigenvalue of the scaled stiffness with which coordinates are condensed."""
+    still: float = 1e-15
+    """Newton step of a set, over the largest coordinate, that is the last."""
+    settled: float = 1e-11
+    """The same where steps no longer halve."""
+    near: float = 1e-10
+    """Last step with which a set counts as solved when the steps are used up."""
+    least_force: float = 1e-12
+    """Force, in units of the programme, at which the tangent of a Hertz law is taken at least."""
+    least_offset: float = 1e-9
+    """Offset at which a graph without stiffness at its centre is taken at least."""
+    moves: float = 1e-8
+    """Part of a unit move in coordinates from which on it is a move, not a self-stress."""
+    roots: int = 60
+    """Newton's steps for a force of b F + c F^(2/3); about six are taken."""
+    root: float = 1e-16
+    """Last of these steps, relative."""
+    straight: float = 1e-14
+    """Relative deviation of a table's points from a line that digits explain."""
+    least_step: float = 1e-3
+    """Part of a step below which it is taken though the energy rises."""
+    faint: float = 1e-18
+    """Force, over the unit of force, at which a law is linearised at least."""
+    of_gaps: float = 1e-3
+    """Part of the largest gap that the unit of length is at least, under light loads."""
+    least_length: float = 1e-6
+    """Unit of length [m] where no flank drives."""
+    pulls: tuple[float, ...] = (*[1e-5] * 8, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, *[1e-11] * 7)
+    """ε of every proximal pass, in units of the programme (a flank's compliance is about 1). A pass
+    moves a coordinate by load/ε at most, so a wide gap under a light load wants a weak pull."""
+
+
+LAWS = Laws()
+CONTACT = Contact()

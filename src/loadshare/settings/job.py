@@ -1,0 +1,50 @@
+"""The main job: how many samples at a time, which way, how long."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Job(NamedTuple):
+    """How cases and samples are taken through: rungs, engines, blocks."""
+
+    least: float = 1e-3
+    """Force, in loads, at which the law of a contact that carries less is taken as its tangent."""
+    plainly: float = 1e-6
+    """Overlap of rigid limits, over the lengths at hand, after which nothing else need be tried."""
+    steps: int = 20_000
+    """Newton steps in which the rungs after the hot path answer or give up: some ten seconds, and
+    twice what ever led to an answer that neither exchange nor search had found."""
+    few: int = 2000
+    """Equilibria up to which compiling, or reading what was compiled, costs more than it saves."""
+    loading: int = 100
+    """Equilibria, solved case by case, from which on reading what was compiled is worth while."""
+    trial_samples: int = 16
+    """Samples that show the others where to begin."""
+    worth: int = 32
+    """How many times as many samples it takes for that to be worth while."""
+    block: int = 4096
+    """Samples that are solved together, if every one has a few positions."""
+    together: int = 65536
+    """Equilibria that are solved together: half as many take a twentieth more time."""
+    workers: int = 2
+    """Threads; the compiled passes hold no lock."""
+    recent: int = 16
+    """Machines that are kept, for those who solve samples of one case again and again."""
+    starts: int = 64
+    """Starts: sets of contacts and places drawn at random."""
+    path: int = 12
+    """Steps of the path, each with half the extra clearance of the one before, and at last none."""
+    generous: float = 100.0
+    """Extra clearance at which the path begins, in deflections of the case: no arc carries
+    there."""
+    small: float = 0.9
+    """Part of what is refused below which displacements, measured of many answers at once, are not
+    measured one by one; the two ways differ by round-off."""
+    same: float = 1e-6
+    """Largest difference of flank forces, in loads, of answers that are the same."""
+    lighter: tuple[float, ...] = (0.7, 0.5, 0.1)
+    """Shares of the load that are looked at where arcs may have lost their hold under all of it."""
+
+
+JOB = Job()

@@ -1,0 +1,8 @@
+"""What a double resolves."""
+
+from __future__ import annotations
+
+import sys
+
+EPS = sys.float_info.epsilon
+"""Distance from 1 to the next double: two roundings."""

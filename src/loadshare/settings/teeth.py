@@ -1,0 +1,71 @@
+"""Teeth: unloaded contact, and contact under load."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from loadshare.settings.precision import EPS
+
+
+class Teeth(NamedTuple):
+    """Where flanks touch, and how they share a load."""
+
+    tolerance: float = 1e-9
+    """Largest scaled residual of a certified contact of flanks."""
+    passes: int = 60
+    """Passes after which a contact that does not settle is given up."""
+    settled: float = 1e-12
+    """Distance of closed points, in deflections, at which a contact has settled."""
+    round_off: float = 16.0 * EPS
+    """Part of a gap that counts as nothing."""
+    exchanges: int = 40
+    """Exchanges in one pass before the solver interface is asked instead."""
+    band: float = 1e-13
+    """Violation of a sign, in loads and deflections, that counts as round-off."""
+    faint: float = 1e-12
+    """Part of a line's whole load below which a point's strip narrows no further: its effect is
+    0."""
+    longest: float = 1e-7
+    """Axis ratio below which an ellipse counts as a line."""
+    first_knot: float = 1e-7
+    """First knot τ of the table of strips."""
+    last_knot: float = 1e9
+    """Last knot."""
+    terms: int = 5
+    """Powers of b² that are kept of a strip."""
+    far: float = 4.0
+    """Distance, in half-widths, from which they are good to 4e-11."""
+    far_off: float = 1.0
+    """Gap [m] of points that only fill up a batch: they never close."""
+    last_step: float = 1e-9
+    """Newton step [m] that is the last: what is left is its square over a radius of curvature,
+    below round-off."""
+    last_turn: float = 1e-8
+    """Newton step [rad] that is the last, likewise."""
+    near_edge: float = 1e-7
+    """Newton step [m] that is the last where a line leaves the flanks: picometres are left."""
+    steps: int = 30
+    """Newton's steps to a point of a face gear."""
+    from_anchor: int = 10
+    """Newton's steps from one point of a valley to the next: three to six are taken from the
+    anchor, two or three from a neighbour; what takes longer lies beyond the edge of regression of
+    the driven flank or inside the driver's base circle."""
+    sure: int = 3
+    """Steps after which each is a quarter of the one before, or Newton gets nowhere in time."""
+    touching: float = 1e-12
+    """Least gap [m] of flanks that touch: a hundredth of the gap that a transmission error of
+    1e-9 rad makes at a base radius of 0.1 m."""
+    looked_at: int = 16
+    """Positions of the mesh cycle at which the teeth of a misaligned pair must meet."""
+    level: float = 1e-9
+    """Rise of a gap along a line [m/m] below which it is level: an unmodified line contact."""
+    near: float = 1e-9
+    """Distance [m] within which the least gap on a line and the one at the point of contact
+    agree."""
+    same_edge: float = 50e-6
+    """Distance [m] within which ends of two gears are one edge, named after the driver."""
+    at_end: float = 1e-12
+    """Distance [m] within which a station is the end of its line."""
+
+
+TEETH = Teeth()

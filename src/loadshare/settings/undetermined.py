@@ -1,0 +1,55 @@
+"""What forces leave open."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Places(NamedTuple):
+    """Places that forces leave open, limits that contradict one another, loads that drive."""
+
+    carries: float = 1e-11
+    """Force, over the largest, from which on a contact holds: far above the round-off of forces,
+    far below what a certificate vouches for."""
+    loose: float = 1e-9
+    """Part of a coordinate in a move from which on it takes part: round-off of the moves is
+    smaller."""
+    play: float = 1e-9
+    """Range, in lengths of the case, below which a place counts as determined: what contacts that
+    carry nothing leave between them but for round-off."""
+    renewals: int = 12
+    """Passes that renew the faces of arcs."""
+    inside: float = 1e-12
+    """How far a point may lie outside, in sizes of the region: round-off of what bounds it."""
+    almost: float = 1e-6
+    """Distance to a bound, in sizes of the region, at which an interior-point answer reaches it."""
+    passes: int = 20
+    """Newton passes on the bounds that are reached."""
+    arrived: float = 1e-14
+    """Step, in sizes of the region, that ends them."""
+    balanced: float = 1e-9
+    """Part of a pull, in sizes of the region, that its bounds may leave unbalanced."""
+    noise: float = 1e-12
+    """Force, over what a gap would cost if it were pressed shut, that counts as round-off."""
+    verified: float = 1e-11
+    """Violation of a removed inequality that counts as round-off, in deflections and loads."""
+    work: float = 1e-3
+    """Work of the load along a move, over load and move, from which on the load drives it."""
+    yields: float = 1e-10
+    """Part of a move that elements may still seem to resist: forces that balance the load in spite
+    of it would be ten million times as large."""
+    overlap: float = 1e-12
+    """Overlap, over the lengths at hand, that counts as round-off."""
+    named: float = 1e-6
+    """Share in a contradiction, or in a move that nothing holds, from which on a limit or a
+    coordinate is named."""
+    programmes: int = 20
+    """Programmes in which tangents of round limits are added to those before."""
+    pushed: float = 1e-9
+    """Load along a move, over the load, from which on it counts: less, and flanks whose normals are
+    opposite up to the digits of a case file would seem to give way."""
+    cone: float = 1e-10
+    """Tolerance of the cone programme that tells which limits are reached."""
+
+
+PLACES = Places()
