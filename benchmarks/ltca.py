@@ -41,7 +41,7 @@ from loadshare.tooth.pair.file import load_pair
 from loadshare.tooth.unloaded.positions import GearPair
 
 T = TypeVar("T")
-PAIRS = Path(__file__).parents[1] / "cases/pairs"
+PAIRS = Path(__file__).parents[1] / "cases/fgfbstts/pairs"
 TORQUE = 2000.0
 POSITIONS = 5
 

@@ -10,9 +10,13 @@ from tests.reproducible import SAME
 
 from loadshare.job import hot
 from loadshare.job.machine import engine_named
+from loadshare.outside import OUTSIDE
 
 # Mesh laws that tests compute stay out of the user's cache.
 os.environ["LOADSHARE_CACHE"] = str(Path(__file__).parent.parent / ".pytest_cache" / "laws")
+
+# Tests write cases into folders of their own that inherit shipped ones.
+os.environ[OUTSIDE] = "1"
 
 settings.register_profile("same", SAME)
 settings.load_profile("same")

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.critical_paths.draw import Path
-from loadshare.certify import Judge
+from loadshare.certify import Judge, Verdicts
 from loadshare.certify.bound import Bounds
 from loadshare.job.machine import Machine, engine_named
 from loadshare.job.many import solve_blocks
@@ -97,11 +98,18 @@ def _spline_state(law: at.Graph, radius: Array, force: Array) -> Array:
 class Balance(Judge):
     """A judge of balance alone: states do not hang on bounds, which take ten times as long."""
 
-    def bounds(
-        self, situations: Situations, answers: Equilibria, wanted: Flags | None = None
-    ) -> Bounds:
-        """Bound nothing."""
-        return Bounds(self.columns, np.zeros(len(answers.rotation)), None, None, None)
+    def judge(
+        self,
+        situations: Situations,
+        answers: Equilibria,
+        tolerance: float = CERTIFY.tolerance,
+        compiled: bool = False,
+        bounded: bool = False,
+    ) -> Verdicts:
+        """Judge equilibria as if all torques were bounded."""
+        verdicts = super().judge(situations, answers, tolerance, compiled, bounded)
+        none = Bounds(self.columns, np.zeros(len(answers.rotation)), None, None, None)
+        return replace(verdicts, bounds=none)
 
 
 class Scan(Machine):

@@ -60,7 +60,7 @@ class Seed:
 
     def pair(self, name: str) -> PairFile | None:
         """A pair of gears with its teeth; None if the folder does not hold it."""
-        path = self.folder / "pairs" / f"{name}.toml"
+        path = self.folder / "fgfbstts" / "pairs" / f"{name}.toml"
         if name not in self._pairs and path.is_file():
             from loadshare.tooth.pair.file import load_pair
 
@@ -71,7 +71,7 @@ class Seed:
     def used(self) -> dict[str, str]:
         """Hash of the physical content of every file that was read so far, by its path."""
         cases = {f"fgfbstts/{name}.toml": case.hash for name, case in self._cases.items()}
-        pairs = {f"pairs/{name}.toml": pair.hash for name, pair in self._pairs.items()}
+        pairs = {f"fgfbstts/pairs/{name}.toml": pair.hash for name, pair in self._pairs.items()}
         return dict(sorted((cases | pairs).items()))
 
     @cached_property

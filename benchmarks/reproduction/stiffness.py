@@ -108,7 +108,7 @@ def over_cycle(case: Case, found: Stiffnesses) -> Result:
 def chapter(seed: Seed, found: Stiffnesses | None) -> Chapter:
     """What the page tells of Fig. 7."""
     if found is None:
-        told = "The pair files `cases/pairs/` are not there: not computed."
+        told = "The pair files `cases/fgfbstts/pairs/` are not there: not computed."
         return Chapter(TITLE, told, "–", (told,))
     entries = [
         Entry(f"{word} K of {mesh} [MN·m/rad]", end / 1e6, own / 1e6, 3, "chosen")
@@ -127,11 +127,11 @@ def chapter(seed: Seed, found: Stiffnesses | None) -> Chapter:
         f"all six ends of the printed ranges within {100 * worst:.1f} %, with teeth chosen for it",
         "chosen to agree",
         (
-            "The teeth of the three pairs (`cases/pairs/`) go through loaded tooth contact "
-            "analysis: finite-element compliance of the teeth, Hertz contact, and the contact "
-            "programme under T, 0.95 T and 0.9 T, as in the paper's three curves. K is the secant "
-            "stiffness T/(Δφ − a) at the driver. The table compares five positions of the mesh "
-            f"cycle, as in the paper; the picture has {POSITIONS}.",
+            "The teeth of the three pairs (`cases/fgfbstts/pairs/`) go through loaded tooth "
+            "contact analysis: finite-element compliance of the teeth, Hertz contact, and the "
+            "contact programme under T, 0.95 T and 0.9 T, as in the paper's three curves. K is the "
+            "secant stiffness T/(Δφ − a) at the driver. The table compares five positions of the "
+            f"mesh cycle, as in the paper; the picture has {POSITIONS}.",
             entries_table(entries),
             "{stiffness}",
             "**Chosen, not predicted.** The paper's Table 1 is missing: widths, reliefs and rims "

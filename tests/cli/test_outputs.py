@@ -141,7 +141,7 @@ def test_what_is_read_is_not_written_over(copied, words):
 
 
 def test_a_law_is_not_written_over_its_pair(tmp_path):
-    pair = CASES / "pairs" / "p12.toml"
+    pair = CASES / "fgfbstts" / "pairs" / "p12.toml"
     own = tmp_path / "law.toml"
     own.write_text(pair.read_text())
     told = call("ltca", own, "-o", tmp_path)

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path as FilePath
 from typing import Any
 
 from pydantic import Field, PrivateAttr
 
 from loadshare.case.element import Element
 from loadshare.case.gears import Errors, Gear
-from loadshare.case.keys import Path, parse
+from loadshare.case.keys import Path, look_up, parse
 from loadshare.case.links import Bearing, Ring, Shaft, Spline
 from loadshare.case.measured import Measurement
 from loadshare.case.meshes import Mesh
 from loadshare.case.operation import March, Operating, Stage
 from loadshare.case.origin import Origin
 from loadshare.case.study import Study
+from loadshare.case.words import as_given
 from loadshare.errors import Problem
 
 ABOUT = ("title", "source", "notes", "assumed", "measured", "study")
@@ -81,6 +83,12 @@ class Sections(Element):
     def floats(self, gear: str) -> bool:
         """Tell whether something lets a gear float that says nothing of its support."""
         return any(gear in getattr(self, section) for section in FLOATS)
+
+    def outside_problem(self, key: str, named: FilePath) -> Problem | None:
+        """Return a problem if the file that a key names must not be read, else None."""
+        path = parse(key)
+        given = as_given(look_up(self._data, path))
+        return self._origin.outside_problem(named, self._origin.of(path), key, given)
 
     def problem(self, key: str | Path, message: str, allowed: str = "", hint: str = "") -> Problem:
         """Return a problem with a key, with its file and what was given.

@@ -57,7 +57,7 @@ class Case(Content):
         **sections: Any,
     ) -> None:
         data = as_data({**(content or {}), **sections})
-        origin = origin or Origin(name or "case")
+        origin = origin or Origin(name or "case", outside=True)
         draft = read_draft(data, origin)
         problems = [*draft.problems, *check(draft)]
         if problems:

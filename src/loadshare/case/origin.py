@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from pathlib import Path as FilePath
 
 from loadshare.case.keys import Path, dotted, look_up
 from loadshare.case.words import as_given
 from loadshare.errors import Problem
+
+CHANGES = "changes"
+"""Stands for the file of what `Case.replace` changes."""
 
 
 @dataclass(frozen=True)
@@ -20,10 +24,38 @@ class Origin:
         File of every key that `files` does not name.
     files : mapping
         File of a key and of all below it, by key path.
+    outside : bool
+        Whether it may name files outside of the folder of `file`.
     """
 
     file: str = "case"
     files: Mapping[Path, str] = field(default_factory=dict)
+    outside: bool = False
+
+    def outside_problem(self, named: FilePath, file: str, key: str, given: str) -> Problem | None:
+        """Return a problem if a file named by a case must not be read, else None.
+
+        A case from elsewhere must not make its reader open other files; what its reader changes is
+        the reader's own word. Links are followed first.
+
+        Parameters
+        ----------
+        named : pathlib.Path
+            The file.
+        file : str
+            In which it is named.
+        key, given : str
+            Where, and how.
+        """
+        folder = FilePath(self.file).parent
+        if self.outside or file == CHANGES or named.resolve().is_relative_to(folder.resolve()):
+            return None
+        message = "leads out of the folder of the case"
+        allowed = f"a file beside {self.file}, or in a folder below"
+        hint = (
+            "To read it all the same: --allow-outside; in Python, load_case(…, allow_outside=True)."
+        )
+        return Problem(file, key, given, message, allowed, hint)
 
     def of(self, path: Path) -> str:
         """Return the file in which a key stands.

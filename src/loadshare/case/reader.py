@@ -7,6 +7,7 @@ import re
 import stat
 import tomllib
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -18,19 +19,23 @@ from loadshare.case.origin import Origin
 from loadshare.case.revise import change, revise
 from loadshare.case.words import as_given
 from loadshare.errors import CaseError, Problem
+from loadshare.outside import OUTSIDE
 from loadshare.settings import ALLOWED
 
 _PLACE = re.compile(r"(.*) \(at (.*)\)", re.DOTALL)
 _DEEP = f"is nested deeper than {ALLOWED.depth} tables and lists"
 
 
-def load_case(path: str | FilePath) -> Case:
+def load_case(path: str | FilePath, allow_outside: bool = False) -> Case:
     """Read a case file, with all that it inherits.
 
     Parameters
     ----------
     path : str or pathlib.Path
         The file.
+    allow_outside : bool
+        Whether the case may name files outside of its folder: what it extends, laws and teeth of
+        meshes. So may all cases where the environment variable ``LOADSHARE_ALLOW_OUTSIDE`` is set.
 
     Returns
     -------
@@ -43,9 +48,10 @@ def load_case(path: str | FilePath) -> Case:
         With all problems of the case at once.
     """
     path = FilePath(path)
-    data, files, problems = _read(path, ())
+    origin = _origin(path, allow_outside)
+    data, files, problems = _read(path, (), origin)
     try:
-        case = Case(data, name=path.stem, origin=Origin(str(path), files))
+        case = Case(data, name=path.stem, origin=replace(origin, files=files))
     except CaseError as error:
         raise CaseError((*problems, *error.problems)) from None
     if problems:
@@ -74,15 +80,20 @@ def load_draft(path: str | FilePath, changes: Mapping[str, Any] | None = None) -
         If the file, or one that it extends, cannot be read at all, or a change leads nowhere.
     """
     path = FilePath(path)
-    data, files, problems = _read(path, ())
-    data, origin = revise(as_data(data), Origin(str(path), files), changes or {})
+    origin = _origin(path)
+    data, files, problems = _read(path, (), origin)
+    data, origin = revise(as_data(data), replace(origin, files=files), changes or {})
     draft = read_draft(data, origin)
     draft.problems[:] = [*problems, *draft.problems, *check(draft)]
     return draft
 
 
+def _origin(path: FilePath, allow_outside: bool = False) -> Origin:
+    return Origin(str(path), outside=allow_outside or bool(os.environ.get(OUTSIDE)))
+
+
 def _read(
-    path: FilePath, chain: tuple[FilePath, ...]
+    path: FilePath, chain: tuple[FilePath, ...], origin: Origin
 ) -> tuple[dict[str, Any], dict[Path, str], list[Problem]]:
     """Return the merged data of a file, the file of each key, and problems that can be outlived."""
     own = read_toml(path)
@@ -91,7 +102,9 @@ def _read(
     files: dict[Path, str] = {}
     problems: list[Problem] = []
     if base is not None:
-        data, files, problems = _read(_base_of(path, base, (*chain, path)), (*chain, path))
+        data, files, problems = _read(
+            _base_of(path, base, (*chain, path), origin), (*chain, path), origin
+        )
     if not isinstance(removals, list):
         allowed = 'a list such as ["errors.6"]'
         problems.append(
@@ -138,7 +151,7 @@ def _merge(data: dict[str, Any], own: Mapping[str, Any]) -> None:
             data[key] = value
 
 
-def _base_of(path: FilePath, base: object, chain: tuple[FilePath, ...]) -> FilePath:
+def _base_of(path: FilePath, base: object, chain: tuple[FilePath, ...], origin: Origin) -> FilePath:
     """Return the file that `path` extends; `chain` is how it was reached itself."""
     given = as_given(base)
     if not isinstance(base, str):
@@ -148,6 +161,9 @@ def _base_of(path: FilePath, base: object, chain: tuple[FilePath, ...]) -> FileP
         why = f"is the last of a chain of {len(chain)} files: more are not read"
         raise CaseError([Problem(str(path), "extends", given, why)])
     target = path.parent / base
+    outside = origin.outside_problem(target, str(path), "extends", given)
+    if outside is not None:
+        raise CaseError([outside])
     if target.resolve() in [file.resolve() for file in chain]:
         circle = " → ".join(str(file) for file in (*chain, target))
         raise CaseError([Problem(str(path), "extends", given, f"closes a circle: {circle}")])

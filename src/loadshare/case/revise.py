@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from loadshare.case.content import Content
 from loadshare.case.draft import as_data
 from loadshare.case.keys import Path, dotted, look_up, parse
-from loadshare.case.origin import Origin
+from loadshare.case.origin import CHANGES, Origin
 from loadshare.case.words import as_given, did_you_mean
 from loadshare.errors import CaseError, Problem
-
-FILE = "changes"
 
 
 def revise(
@@ -47,13 +46,15 @@ def revise(
         try:
             path = parse(key)
         except ValueError:
-            problems.append(Problem(FILE, key, as_given(as_data(value)), "is not a key path"))
+            problems.append(Problem(CHANGES, key, as_given(as_data(value)), "is not a key path"))
             continue
         lost = change(changed, path, as_data(value))
         if lost is None:
             moved.add(path)
         else:
-            problems.append(Problem(FILE, key, as_given(as_data(value)), "leads nowhere", "", lost))
+            problems.append(
+                Problem(CHANGES, key, as_given(as_data(value)), "leads nowhere", "", lost)
+            )
     if problems:
         raise CaseError(problems)
     files = {
@@ -61,7 +62,7 @@ def revise(
         for known, file in origin.files.items()
         if not any(known[:length] in moved for length in range(1, len(known) + 1))
     }
-    return changed, Origin(origin.file, files | dict.fromkeys(moved, FILE))
+    return changed, replace(origin, files=files | dict.fromkeys(moved, CHANGES))
 
 
 def change(data: dict[str, Any], path: Path, value: Any) -> str | None:

@@ -66,14 +66,17 @@ class Judge:
             the energy gap, which follows from them, is left to single answers. Splines with memory
             are judged with NumPy all the same.
         bounded : bool
-            Whether errors are bounded; without a bound nothing passes.
+            Whether errors are bounded with every effort; without a bound nothing passes, and with
+            Numba nothing but what is bounded at once.
         """
         if compiled and is_covered(self.columns):
-            return self._compiled(situations, answers, tolerance)
+            return self._compiled(situations, answers, tolerance, bounded)
         limits = bounds(self.columns, situations, answers) if bounded else None
         return self._by_numpy(situations, answers, tolerance, limits)
 
-    def _compiled(self, situations: Situations, answers: Equilibria, tolerance: float) -> Verdicts:
+    def _compiled(
+        self, situations: Situations, answers: Equilibria, tolerance: float, bounded: bool
+    ) -> Verdicts:
         found = judged(self.columns, situations, answers)
         for figure, name in ((found.worst, "worst"), (found.displaced, "displaced")):
             left = np.flatnonzero(np.isnan(figure))
@@ -81,7 +84,7 @@ class Judge:
                 some = situations.take(left), answers.take(left)
                 figure[left] = getattr(self._by_numpy(*some, tolerance), name)
         # What is out of balance is refused in any case.
-        wanted, relative = found.worst <= tolerance, found.relative
+        wanted, relative = bounded & (found.worst <= tolerance), found.relative
         limits = completed(self.columns, situations, answers, relative, tolerance, wanted)
         load, deflection = found.load, found.deflection
         return Verdicts(found.worst, tolerance, load, deflection, found.displaced, limits)

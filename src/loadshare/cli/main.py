@@ -21,6 +21,7 @@ from loadshare.cli.command import Command
 from loadshare.cli.draw import draw
 from loadshare.cli.ltca import ltca
 from loadshare.cli.new import new
+from loadshare.cli.outside import reads_cases
 from loadshare.cli.page import report
 from loadshare.cli.run import run
 from loadshare.cli.schema import schema
@@ -43,8 +44,9 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 STUDIES = (sweep, critical, sensitivity, tolerance, march, compare, fit, study)
+CASES = (run, batch, report, draw, check, *STUDIES)
 for command in (run, batch, report, draw, check, schema, new, ltca, *STUDIES):
-    app.command(cls=Command)(command)
+    app.command(cls=Command)(reads_cases(command) if command in CASES else command)
 
 
 def _tell_version(wanted: bool) -> None:

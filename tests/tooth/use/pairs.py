@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-PAIRS = Path(__file__).parents[3] / "cases/pairs"
+PAIRS = Path(__file__).parents[3] / "cases/fgfbstts/pairs"
 
 SPUR = """
 kind = "helicoid"

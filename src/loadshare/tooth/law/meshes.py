@@ -84,8 +84,9 @@ def _read(
         key = dotted(("meshes", name, source))
         place = case.problem(key, "there is no such file")
         file = Path(place.file).parent / getattr(case.meshes[name], source)
-        if not file.is_file():
-            problems[place] = None
+        outside = case.outside_problem(key, file)
+        if outside is not None or not file.is_file():
+            problems[outside or place] = None
             continue
         try:
             if source == "law_file":
