@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -136,7 +136,9 @@ def claimed(train: Train, found: Equilibrium) -> tuple[dict[str, float], dict[st
 def measure(
     workload: Workload, methods: Iterable[str], tell: Tell, samples: Sequence[Sample] | None = None
 ) -> list[Measure]:
-    """Measure methods on a workload.
+    """Measure methods on a workload; ours before the peers and once more after them.
+
+    A machine's speed changes within the minutes that the peers take: the mean of both times counts.
 
     Parameters
     ----------
@@ -152,16 +154,26 @@ def measure(
     found: list[Measure] = []
     for name in methods:
         tell(f"{workload.title}: {name}")
-        if name in (OURS_BATCH, OURS_NUMPY):
-            found.append(_batch(workload, samples, name))
-        elif name == OURS_SOLVE:
-            found.append(_single(workload, samples))
+        if name in OURS:
+            found.append(_own(workload, samples, name))
         else:
             entry = PEERS[name]
             if entry.missing or workload.kind.split(",")[0] not in entry.kinds:
                 continue
             found += [_peer(workload, samples, entry, t) for t in entry.tolerances]
+    for k, first in enumerate(found):
+        if first.method in (OURS_BATCH, OURS_SOLVE) and len(found) > 1:
+            tell(f"{workload.title}: {first.method}, once more")
+            second = _own(workload, samples, first.method)
+            both = 0.5 * (first.microseconds + second.microseconds)
+            found[k] = replace(first, microseconds=both)
     return found
+
+
+def _own(workload: Workload, samples: Sequence[Sample], name: str) -> Measure:
+    if name == OURS_SOLVE:
+        return _single(workload, samples)
+    return _batch(workload, samples, name)
 
 
 def _summary(

@@ -136,6 +136,8 @@ _HOW = (
     "bound needs one, and stops at its own tolerance.",
     "- The error is the larger one of the relative errors of torques and of determined floats "
     "against a 50-digit reference that is written from the physics and checked by its signs.",
+    "- Ours is measured before the peers and once more after them; the mean counts, because a "
+    "machine's speed changes within minutes.",
     "- Times are medians over samples, after one run that is not counted; of a batch, the time "
     "over its samples. Preparation stands apart. One core.",
     "- Certified means that the answer passes the certificate at 1e-9.",
