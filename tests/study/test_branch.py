@@ -51,7 +51,7 @@ def test_the_jacobian_is_the_derivative_of_the_residual(standing):
 
 def test_a_branch_gives_back_its_equilibrium(standing):
     answer, branch, z = standing
-    elements = branch.setting.elements
+    elements = branch.setting.structure
     force = branch.equations.state(z[None], branch.numbers).force[0] * elements.force
     found = dict(zip(elements.row_names, force[elements.springs :], strict=False))
     for name, certain in answer.equilibrium.flank_force.items():

@@ -49,9 +49,9 @@ def unlimited(case: ls.Case, pinion: str) -> float:
     """
     train = build_train(case.replace({"rings.4.float": "1 mm", "rings.5.float": "1 mm"}))
     setting = Setting.at(train, 1)
-    at = setting.elements.coordinates
+    at = setting.structure.coordinates
     _, z = setting.branch_of(certified(train, 1).equilibrium)
-    x = z[: at.size] * setting.elements.length
+    x = z[: at.size] * setting.structure.length
     return abs(float(train.rings[pinion].across @ at.moved(pinion) @ x)) * 1e6
 
 
@@ -168,7 +168,7 @@ def sets_along(
         answer = ls.explain(case.replace({key: f"{float(value)!r} {unit}"}))
         setting = Setting.at(answer.train, 1)
         active = setting.active_set(answer.equilibrium)
-        moved = active.changes(last or active, setting.elements)
+        moved = active.changes(last or active, setting.structure)
         if moved:
             changes.append((float(value), set(moved)))
         last = active

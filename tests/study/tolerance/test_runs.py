@@ -18,6 +18,7 @@ from pyarrow import parquet
 from tests.support import CASES, shipped
 
 import loadshare as ls
+from loadshare.settings import TOLERANCE
 from loadshare.study.tolerance import local, study
 from loadshare.study.tolerance.folder import DIGEST, Folder, digest
 from loadshare.study.tolerance.job import Job
@@ -45,7 +46,7 @@ ASKED = {
 @pytest.fixture
 def processes(monkeypatch):
     """Worker processes: studies as small as these are else solved in this one."""
-    monkeypatch.setattr(study, "SMALL", 0)
+    monkeypatch.setattr(study, "TOLERANCE", TOLERANCE._replace(small=0))
 
 
 def run(out: Path, **settings):
@@ -90,7 +91,7 @@ SCRIPT = """
 import sys
 import loadshare as ls
 from loadshare.study.tolerance import study
-study.SMALL = 0
+study.TOLERANCE = study.TOLERANCE._replace(small=0)
 ls.tolerance(
     ls.load_case({case!r}), {inputs!r}, out={out!r}, workers=2, **{asked!r}
 )
@@ -359,7 +360,7 @@ def test_a_sample_that_makes_no_case_does_not_take_others_with_it(monkeypatch):
     """Far beyond what was tried a normal value can leave what a case allows: here without trial."""
     from loadshare.study.tolerance import inputs as room
 
-    monkeypatch.setattr(room, "FAR", 0.4)
+    monkeypatch.setattr(room, "TOLERANCE", TOLERANCE._replace(far=0.4))
     inputs = {"rings.4.float": {"distribution": "normal", "mean": "2 um", "deviation": "1 um"}}
     found = ls.tolerance(
         shipped("fgfbstts/limit_ring"), inputs, samples=100, indices=0, worst=False, positions=[1]

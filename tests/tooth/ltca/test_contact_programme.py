@@ -11,6 +11,7 @@ from tests.tooth.ltca.hertz import PointContact, compression
 
 from loadshare.contact.backends.backend import SOLVERS, backend
 from loadshare.errors import Refused
+from loadshare.settings import TEETH
 from loadshare.tooth.contact import programme as contact_programme
 from loadshare.tooth.contact.certificate import certify_contact
 from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
@@ -140,7 +141,7 @@ def test_a_refused_contact_of_several_is_named(monkeypatch):
     problems = [replace(uneven(k), name=f"phase {k}") for k in (1, 2)]
     with pytest.raises(ValueError, match="load = 0"):
         solve_contacts(ContactBatch(problems), np.array([900.0, 0.0]))
-    monkeypatch.setattr(contact_programme, "PASSES", 1)
+    monkeypatch.setattr(contact_programme, "TEETH", TEETH._replace(passes=1))
     with pytest.raises(Refused, match=r"^phase 1: the contact under 900 N did not settle"):
         solve_contacts(ContactBatch(problems), np.array([900.0, 800.0]))
 
@@ -200,7 +201,7 @@ def test_the_solver_interface_takes_over_from_the_exchange(monkeypatch, solver):
     """Every programme of the whole contact by a back-end: the same answer, as tightly settled."""
     problem = uneven(9)
     ours = solve_contact(problem, 700.0)
-    monkeypatch.setattr(contact_programme, "EXCHANGES", 0)
+    monkeypatch.setattr(contact_programme, "TEETH", TEETH._replace(exchanges=0))
     theirs = solve_contact(problem, 700.0, solver=solver)
     np.testing.assert_allclose(theirs.force, ours.force, atol=1e-10 * 700.0)
     assert theirs.approach == pytest.approx(ours.approach, rel=1e-11)
@@ -245,7 +246,8 @@ def test_wrong_answers_fail_the_certificate():
 
 def test_what_does_not_pass_is_refused(monkeypatch):
     problem = uneven(5)
-    monkeypatch.setattr(contact_programme, "SETTLED", 1.0)  # any forces count as settled
+    # Any forces count as settled.
+    monkeypatch.setattr(contact_programme, "TEETH", TEETH._replace(settled=1.0))
     with pytest.raises(Refused, match="does not pass its certificate") as refusal:
         solve_contact(problem, 500.0)
     assert "complementarity" in refusal.value.figures

@@ -7,7 +7,7 @@ from tests.tooth.use.pairs import PAIRS, written
 from loadshare.tooth import load_pair
 from loadshare.tooth.pair.model import CONTENTS
 
-PAGE = (PAIRS.parents[1] / "docs/ltca.md").read_text(encoding="utf-8")
+PAGE = (PAIRS.parents[2] / "docs/ltca.md").read_text(encoding="utf-8")
 
 
 def keys():

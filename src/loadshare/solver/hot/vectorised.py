@@ -75,8 +75,8 @@ def settle(
         moved[hurried] = passes.hurried_to[hurried]
         if drifting.any():
             # Only what stops the drift is of interest.
-            stopping, states = passes.stopped_by(drift)
-            wrong[drifting], moved[drifting] = stopping[drifting], states[drifting]
+            stopping, other = passes.stopped_by(drift)
+            wrong[drifting], moved[drifting] = stopping[drifting], other[drifting]
             passes.settled &= ~drifting
             passes.refused &= ~drifting
     single = one_only[rows]
