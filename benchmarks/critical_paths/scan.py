@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,6 @@ from loadshare.solver.hot.iterate import Iterate
 from loadshare.study.follow.line import Line
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.samples import samples_of
-from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
@@ -98,16 +98,10 @@ def _spline_state(law: at.Graph, radius: Array, force: Array) -> Array:
 class Balance(Judge):
     """A judge of balance alone: states do not hang on bounds, which take ten times as long."""
 
-    def judge(
-        self,
-        situations: Situations,
-        answers: Equilibria,
-        tolerance: float = CERTIFY.tolerance,
-        compiled: bool = False,
-        bounded: bool = False,
-    ) -> Verdicts:
+    def judge(self, *given: Any, **named: Any) -> Verdicts:
         """Judge equilibria as if all torques were bounded."""
-        verdicts = super().judge(situations, answers, tolerance, compiled, bounded)
+        answers: Equilibria = given[1]
+        verdicts = super().judge(*given, **named | {"bounded": False})
         none = Bounds(self.columns, np.zeros(len(answers.rotation)), None, None, None)
         return replace(verdicts, bounds=none)
 

@@ -347,11 +347,28 @@ class ClaimedState:
 
         Displacements do not count: a free one could be claimed as large as one likes.
         """
-        closed = [p for p in self._flanks() if p.force > 0.0]
+        closed = [p for p in self._flanks() if p.force > CERTIFY.band * self.force_scale]
         lengths = [p.law.compression(p.force) for p in closed]
         lengths += [abs(p.at_rest) for p in closed]
         lengths += np.linalg.norm(self.situation.offset[0], axis=1).tolist()
         return max(lengths, default=0.0) or 1e-6
+
+    @cached_property
+    def grain(self) -> float:
+        """Round-off of a length [m]: four times that of displacements, errors and gaps."""
+        gears, here = self.train.gears, self.situation
+        moved = [abs(f) * gears[g].base_radius for g, f in self.answer.rotation.items()]
+        moved += [float(np.abs(self.moved(g)).max()) for g in gears]
+        positions, still = self.train.mesh_positions(self.answer.index), np.zeros(3)
+        gaps = [
+            abs(mesh.approach(drive, positions[mesh.name], (0.0, 0.0), still))
+            for mesh in self.train.meshes.values()
+            for drive in mesh.flanks
+        ]
+        gaps += [limit for ring in self.train.drums for limit in (ring.up, ring.down)]
+        errors = float(np.abs(here.offset[0]).max(initial=0.0))
+        largest = max(moved, default=0.0) + errors + max(gaps, default=0.0)
+        return 4.0 * float(np.finfo(float).eps) * largest
 
 
 ROUNDED = 16.0 * float(np.finfo(float).eps)
@@ -386,16 +403,19 @@ def penetration(state: ClaimedState) -> dict[str, float]:
     """Overlap [m] of contacts that a force of the claimed size does not explain."""
     overlaps = {}
     for push in state.pushes:
-        overlaps[push.name] = push.approach - push.law.compression(max(push.force, 0.0))
+        overlap = push.approach - push.law.compression(max(push.force, 0.0))
+        overlaps[push.name] = overlap - state.grain
     for pull in state.pulls:
-        overlaps[pull.name] = float(np.linalg.norm(pull.offset)) - pull.law.reach
+        overlaps[pull.name] = float(np.linalg.norm(pull.offset)) - pull.law.reach - state.grain
     return overlaps
 
 
 def complementarity(state: ClaimedState) -> dict[str, float]:
     """Work [J] of a force over an open gap, by contact."""
     return {
-        p.name: p.force * (p.law.compression(max(p.force, 0.0)) - p.approach) for p in state.pushes
+        p.name: p.force * (p.law.compression(max(p.force, 0.0)) - p.approach)
+        - abs(p.force) * state.grain
+        for p in state.pushes
     }
 
 
@@ -427,7 +447,7 @@ def deformation_law(state: ClaimedState, band: float) -> dict[str, float]:
     output = state.train.output
     turned = state.answer.rotation[output] * state.train.gears[output].base_radius
     misfits[f"gear {output} rotation"] = abs(turned)
-    return misfits
+    return {name: misfit - state.grain for name, misfit in misfits.items()}
 
 
 def cone_membership(state: ClaimedState, band: float) -> dict[str, float]:
@@ -439,7 +459,7 @@ def cone_membership(state: ClaimedState, band: float) -> dict[str, float]:
     band : float
         Radius [m] within which a graph's corner admits its whole step.
     """
-    excess = {p.name: -p.force for p in state.pushes}
+    excess, band = {p.name: -p.force for p in state.pushes}, band + state.grain
     for name, _, stiffness, force in state.bearings():
         excess[f"bearing {name}"] = float(np.linalg.norm(force[stiffness == 0.0]))
     excess |= state.squeezes(band)
@@ -491,7 +511,9 @@ def energy_gap(state: ClaimedState) -> dict[str, float]:
         size = min(float(np.linalg.norm(pull.reaction)), pull.law.strength)
         primal.append(pull.law.energy(float(np.linalg.norm(pull.offset))))
         dual += [-pull.law.complementary(size), float(pull.reaction @ pull.centre)]
-    rounding = ROUNDED * math.fsum(map(abs, (*primal, *dual)))
+    forces = [abs(p.force) for p in state.pushes]
+    forces += [float(np.linalg.norm(p.reaction)) for p in state.pulls]
+    rounding = ROUNDED * math.fsum(map(abs, (*primal, *dual))) + state.grain * math.fsum(forces)
     gap = abs(math.fsum(primal) - math.fsum(dual))
     return {"the whole train": max(gap - rounding, 0.0)}
 

@@ -94,6 +94,21 @@ def test_a_slip_that_lets_another_path_carry_is_not_bounded(gap):
     assert ls.solve(used_up(gap=27.5)).positions[0].torque["in-wheelB"] == 0.0
 
 
+@pytest.mark.parametrize(("gap", "proved"), [(10.0, False), (26.0, False), (27.5, True)])
+def test_a_slip_that_pushes_what_is_loose(gap, proved):
+    """B stands 1 nm from the output; a slip of A turns the input, which closes that gap, too."""
+    case = used_up(1.0 - 1e-12, gap=gap)
+    machine = Machine(build_train(case))
+    stuck = machine.answer(machine.situations([1]), 1e-9, vectorised.settle).equilibria.one(0, 1)
+    assert stuck.flank_force["in-wheelB"] == 0.0
+    turned = -1e-9 / machine.train.gears["pinionB"].base_radius
+    claim = replace(stuck, rotation=stuck.rotation | {"wheelB": turned, "pinionB": turned})
+    assert certify(machine.train, claim).passed
+    found = certify(build_train(used_up(gap=gap)), claim)
+    assert (found.bound.relative < 1e-12) is proved
+    assert found.passed is proved
+
+
 def test_errors_of_forces_beyond_the_margin_prove_nothing():
     train = build_train(used_up())
     machine = Machine(train)

@@ -333,7 +333,7 @@ def test_more_random_paths_agree_with_a_scan(number):
 
 def test_a_scan_shows_what_events_leave_out():
     """The comparison itself: without one of the events, or with one too many, it complains."""
-    path = random_path(6)
+    path = random_path(3)
     found = followed(path, path.stop)
     assert found.events
     values, seen = shown(path, found, 400, "vectorised")

@@ -87,7 +87,7 @@ def float_states(
 
     Parameters
     ----------
-    state : State
+    state : ClaimedState
         Of a single claim that can be judged.
     undetermined : collection of str
         Coordinates that its forces do not determine.

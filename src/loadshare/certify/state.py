@@ -51,6 +51,8 @@ class ClaimedState:
         Of both arcs and both stops [N].
     load, deflection : ndarray, shape (S,)
         Scales [N], [m].
+    grain : ndarray, shape (S,)
+        Round-off of a length [m].
     beyond : ndarray of bool, shape (drums, 2, S)
         Whether a gear stands beyond the neighbour on whose ring its own rolls: there the arc's
         inequality holds, and no gear can be.
@@ -74,6 +76,7 @@ class ClaimedState:
         gap = np.where(of.is_drive[:, None], here.gap[of.mesh_of], here.backlash[of.mesh_of])
         offset, moved = (v.reshape(-1, v.shape[-1]) for v in (here.offset, claim.displacement))
         self.at_rest = of.pushing @ offset - gap
+        self._limits = np.abs(gap).max(axis=0, initial=0.0)
         self.approach = of.turning @ claim.rotation
         self.approach += of.pushing @ moved
         self.approach += self.at_rest
@@ -124,16 +127,27 @@ class ClaimedState:
         Deflection: the largest compression, gap taken up, or error; 1 µm when none. Reactions of
         rigid limits and displacements do not count: any preload of two opposite stops would be in
         balance and would hide what is not, and a free displacement could be claimed as large as one
-        likes.
+        likes. A contact with less force than the band counts as open.
+
+        Grain: what sums of displacements, errors and gaps leave of a length in double precision. In
+        a play of centimetres it is more than a billionth of a light load's deflection; bounds on
+        forces hold all the same.
         """
         pushed = (np.abs(self.here.torque) / self.of.radius[:, None]).max(axis=0, initial=0.0)
         load = np.maximum(np.abs(self.force).max(axis=0, initial=0.0), pushed)
         self.load = np.where(load == 0.0, 1.0, load)
         lengths = np.maximum(self.compression, np.abs(self.at_rest))
-        closed = np.where(self.force > 0.0, lengths, 0.0).max(axis=0, initial=0.0)
+        carries = self.force > CERTIFY.band * self.load
+        closed = np.where(carries, lengths, 0.0).max(axis=0, initial=0.0)
         shifts = size(self.here.offset).max(axis=0, initial=0.0)
         deflection = np.maximum(closed, shifts)
         self.deflection = np.where(deflection == 0.0, CERTIFY.least_deflection, deflection)
+        turned = np.abs(self.claim.rotation) * self.of.radius[:, None]
+        moved = np.abs(self.claim.displacement).max(axis=(0, 1), initial=0.0)
+        furthest = np.maximum(turned.max(axis=0, initial=0.0), moved)
+        limits = np.maximum(self._limits, np.abs(self.here.stop).max(axis=(0, 1), initial=0.0))
+        errors = np.abs(self.here.offset).max(axis=(0, 1), initial=0.0)
+        self.grain = CERTIFY.grain * (furthest + errors + limits)
 
     @cached_property
     def moment(self) -> Array:

@@ -33,6 +33,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify.mechanics import mechanics_of
+from loadshare.certify.residuals import first_of_largest
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
@@ -255,7 +256,7 @@ class Measuring:
         return {k: refusal_told(found) for k, found in beyond.items()}
 
     def _largest(self, name: str, values: Array) -> Measure:
-        at = _first(values)
+        at = first_of_largest(values)
         return Measure(max(float(values[at]), 0.0), self._where(name, at), *self.bounds[name])
 
     def _where(self, name: str, element: int) -> str:
@@ -271,8 +272,8 @@ class Measuring:
         moved = np.sqrt((answers.displacement[0] ** 2).sum(axis=1)) / self.of.radius
         turned = np.abs(answers.rotation[0])
         found = {
-            "centre": Measure(float(moved.max()), f"gear {names[_first(moved)]}"),
-            "rotation": Measure(float(turned.max()), f"gear {names[_first(turned)]}"),
+            "centre": Measure(float(moved.max()), f"gear {names[first_of_largest(moved)]}"),
+            "rotation": Measure(float(turned.max()), f"gear {names[first_of_largest(turned)]}"),
         }
         shifts = (answers.displacement + situation.offset).reshape(-1)
         size = np.hypot(self.of.pushing @ shifts, self.across @ shifts)
@@ -280,7 +281,7 @@ class Measuring:
         some = np.flatnonzero(np.isfinite(backlash) & (backlash > 0.0))
         if len(some):
             share = size[some] / backlash[some]
-            at = _first(share)
+            at = first_of_largest(share)
             found["backlash"] = Measure(float(share[at]), self._where("", int(some[at])))
         for name, values in self.bounded(situation, answers, np.array([deflection])).items():
             found[name] = self._largest(name, values[:, 0])
@@ -309,11 +310,6 @@ def validity(
 def measuring(train: Train) -> Measuring:
     """Return what is measured on a train, kept for its other positions."""
     return Measuring(train)
-
-
-def _first(values: Array) -> int:
-    """The first of the largest values: alike elements differ by round-off."""
-    return int(np.argmax(values >= (1.0 - CERTIFY.alike) * values.max()))
 
 
 def _axis(train: Train, mesh: Mesh) -> Array:

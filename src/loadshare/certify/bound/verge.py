@@ -54,6 +54,7 @@ def on_the_verge(claim: Claim, act: Acts, scale: Array, box: Box) -> Box:
                 for choice in product(*tried.values())
             ]
         )
+        touching = _touching(acts, idle)
         # What closes alone, and so can change no force, is as good as open.
         opened, of = np.unique(
             [_without_idle(claim, a, list(tried), scale) for a in acts],
@@ -73,14 +74,19 @@ def on_the_verge(claim: Claim, act: Acts, scale: Array, box: Box) -> Box:
         held = ~many.unbalanced
         if not held.any():
             break
-        new = np.flatnonzero((many.doubtful & ~verge & free)[held].any(axis=0))
+        doubtful, above = many.doubtful[held], many.above[held]
+        if not (doubtful & ~verge & free).any() and not np.array_equal(touching, opened):
+            # But it may push what is loose, until that touches elsewhere.
+            pushed = _each(claim, touching, scale, verge)
+            doubtful, above = pushed.doubtful, pushed.above
+        new = np.flatnonzero((doubtful & ~verge & free).any(axis=0))
         if not len(new):
             found = _largest(many, held)
             flanks = found.force[:, claim.columns.flanks]
             return found if np.isfinite(flanks).all() else quick_boxes(claim, act, scale)
         for e in new.tolist():
-            row = int(np.flatnonzero(many.doubtful[:, e] & held)[0])
-            ways[e] = _ways(claim, e, int(act[0, e]), bool(many.above[row, e]))
+            row = int(np.flatnonzero(doubtful[:, e])[0])
+            ways[e] = _ways(claim, e, int(act[0, e]), bool(above[row, e]))
     return quick_boxes(claim, act, scale)
 
 
@@ -88,6 +94,13 @@ def _each(claim: Claim, acts: Acts, scale: Array, verge: NDArray[np.bool_]) -> B
     """Boxes of one claim with its elements acting in several ways."""
     rows = np.zeros(len(acts), dtype=np.intp)
     return boxes(claim.take(rows), acts, scale[rows], np.broadcast_to(verge, acts.shape))
+
+
+def _touching(acts: Acts, idle: Iterable[int]) -> Acts:
+    """Ways of acting with all contacts closed that cannot change a force."""
+    touching = acts.copy()
+    touching[:, list(idle)] = Act.STOP
+    return np.asarray(np.unique(touching, axis=0))
 
 
 def _held_by_twins(claim: Claim, box: Box) -> NDArray[np.bool_]:

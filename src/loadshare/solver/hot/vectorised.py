@@ -70,9 +70,9 @@ def settle(
         staying = iterate.stays[rows] & wrong.any(axis=1)
         if staying.any():
             wrong, moved = passes.left_in_place(iterate.x[rows], staying, wrong, moved)
-        hurried = passes.hurried.any(axis=1)
-        wrong[hurried] = passes.hurried[hurried]
-        moved[hurried] = passes.hurried_to[hurried]
+        gross = passes.gross.any(axis=1)
+        wrong[gross] = passes.gross[gross]
+        moved[gross] = passes.gross_to[gross]
         if drifting.any():
             # Only what stops the drift is of interest.
             stopping, other = passes.stopped_by(drift)
@@ -115,7 +115,7 @@ class _Passes:
     settled, refused, burst : ndarray of bool, shape (k,)
         Whether the passes arrived; whether a law has no meaning or a number overflowed; whether
         rigid contacts contradict one another, so that their forces grow without bound.
-    hurried, hurried_to : ndarray, shape (k, switches)
+    gross, gross_to : ndarray, shape (k, switches)
         What was clearly wrong before the passes had settled, and the set that mends it.
     loose : ndarray of int, shape (k, flanks with a power law)
         How many passes in a row a flank was not compressed.
@@ -173,8 +173,8 @@ class _Passes:
         self.unit = np.where(self.push > 0.0, self.push, 1.0)
         self.settled, self.burst = np.zeros(count, dtype=bool), np.zeros(count, dtype=bool)
         self.refused = np.zeros(count, dtype=bool)
-        self.hurried = np.zeros((count, structure.switches), dtype=bool)
-        self.hurried_to = np.repeat(states[None, :], count, axis=0)
+        self.gross = np.zeros((count, structure.switches), dtype=bool)
+        self.gross_to = np.repeat(states[None, :], count, axis=0)
         self.loose = np.zeros((count, len(self.power)), dtype=int)
         self.outside = np.zeros((count, structure.switches - structure.rows), dtype=int)
         self.patience = np.where(states[structure.rows :] == at.WALL, HOT.inward, HOT.outside)
@@ -204,7 +204,7 @@ class _Passes:
                 self.lean = 0.5 * (x + self.x), 0.5 * (force + self.force)
                 self.root = 0.5 * (roots + self.root)
             if curved and number < 2:
-                self._hurry((laws <= HOT.nearly) & ~patient)
+                self._give_up_gross((laws <= HOT.nearly) & ~patient)
             yielded = np.abs(self.compression[:, self.contact]).max(axis=1, initial=0.0)
             closing = self.misfit / np.where(yielded > 0.0, yielded, np.inf)
             misfit = np.maximum(closing, laws * (HOT.settled / HOT.law))
@@ -221,7 +221,7 @@ class _Passes:
             previous = misfit
             self.burst = np.abs(self.force).max(axis=1, initial=0.0) > HOT.burst * self.unit
             hopeless = (self.loose >= HOT.patience).any(axis=1) | self._slipped_out() | self.burst
-            hopeless |= self.hurried.any(axis=1)
+            hopeless |= self.gross.any(axis=1)
             if (self.settled | self.refused | hopeless).all():
                 break
         # What creeps on without end is left to the certificate.
@@ -394,17 +394,17 @@ class _Passes:
         centre = pick(self.loading.gap, self.rows)[:, column : column + 2]
         return np.asarray((self.x if x is None else x) @ matrix.T - centre)
 
-    def _hurry(self, these: Flags) -> None:
+    def _give_up_gross(self, these: Flags) -> None:
         """Give up sets that are clearly wrong before they are settled."""
-        these = these & ~self.hurried.any(axis=1)
+        these = these & ~self.gross.any(axis=1)
         if not these.any():
             return
         before, self.settled = self.settled, these
         wrong, moved = self.wrong(HOT.gross)
         self.settled = before
         wrong &= these[:, None]
-        self.hurried |= wrong
-        self.hurried_to[these] = moved[these]
+        self.gross |= wrong
+        self.gross_to[these] = moved[these]
 
     def wrong(self, sign: float) -> tuple[Flags, States]:
         """Which elements have the wrong sign, and where they should stand instead."""

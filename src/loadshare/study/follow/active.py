@@ -65,7 +65,7 @@ def coordinates(structure: Structure, found: Equilibrium) -> Array:
     return x / structure.length
 
 
-def read_code(structure: Structure, numbers: Numbers, found: Equilibrium, x: Array) -> States:
+def read_states(structure: Structure, numbers: Numbers, found: Equilibrium, x: Array) -> States:
     """Read which elements act from the forces and radii of an equilibrium.
 
     Parameters

@@ -18,7 +18,7 @@ from loadshare.scene.structure import Structure
 from loadshare.settings import CERTIFY
 from loadshare.solver.hot import vectorised
 from loadshare.study.answers import certified
-from loadshare.study.follow.active import States, coordinates, read_code
+from loadshare.study.follow.active import States, coordinates, read_states
 from loadshare.study.follow.numbers import Numbers, structure_like
 from loadshare.study.parameter import Parameter, Value, applied
 from loadshare.train import Train, build_train
@@ -171,5 +171,5 @@ class Line:
         structure, found = structure_like(self.structure, train), answer.equilibrium
         x = coordinates(structure, found)
         numbers = Numbers.of(structure, situation_of(train, position))
-        states = read_code(structure, numbers, found, x)
+        states = read_states(structure, numbers, found, x)
         return Solved(value, states, x, answer.certificate.worst)

@@ -12,7 +12,7 @@ from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure, structure_of
 from loadshare.settings import SENSITIVITY
 from loadshare.solver.hot import contact_states as at
-from loadshare.study.follow.active import WorkingSet, coordinates, read_code, read_pieces
+from loadshare.study.follow.active import WorkingSet, coordinates, read_pieces, read_states
 from loadshare.study.follow.equations import Equations
 from loadshare.study.follow.gauges import gauges_at
 from loadshare.study.follow.numbers import Numbers, structure_like
@@ -91,7 +91,7 @@ class Setting:
     def active_set(self, found: Equilibrium) -> WorkingSet:
         """Read the active set of a certified equilibrium."""
         structure, numbers, x = self.structure, self.numbers, self._x(found)
-        states = tuple(read_code(structure, numbers, found, x).tolist())
+        states = tuple(read_states(structure, numbers, found, x).tolist())
         return WorkingSet(states, read_pieces(structure, numbers, states, x))
 
     def _x(self, found: Equilibrium) -> Array:

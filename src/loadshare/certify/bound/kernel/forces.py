@@ -21,7 +21,7 @@ from loadshare.settings import BOUND, CERTIFY
 
 
 @inlined
-def put_contacts(of, here, claim, s, work, v, found, sets):  # type: ignore[no-untyped-def]
+def put_contacts(of, here, claim, s, work, v, found, sets, grain):  # type: ignore[no-untyped-def]
     """Forces and misfits of contacts.
 
     Returns their largest compression [m], that of loaded flanks or what remains of their approach
@@ -38,7 +38,7 @@ def put_contacts(of, here, claim, s, work, v, found, sets):  # type: ignore[no-u
         pull, total, misfit = max(pull, -claimed), total + claimed, 0.0
         if c < flanks:
             work.force[c, v] = force
-            if claimed > 0.0:
+            if claimed > band:
                 bent = max(bent, abs(work.at_rest[c, v]))
         elif c < arcs:
             work.force[of.first_stop + c - flanks, v] = force
@@ -66,11 +66,12 @@ def put_contacts(of, here, claim, s, work, v, found, sets):  # type: ignore[no-u
             misfit = -work.gap[c] - compression
             # With less force than the band it counts as open, as in `residuals`.
             length = max(length, abs(misfit) if force > band else misfit)
-            energy, total = max(energy, -force * misfit), total + misfit
+            energy, total = max(energy, -force * misfit - abs(force) * grain), total + misfit
             if force == 0.0:
                 misfit = max(misfit, 0.0)
         elif work.gap[c] < np.inf:
-            length, energy = max(length, -work.gap[c]), max(energy, claimed * work.gap[c])
+            length = max(length, -work.gap[c])
+            energy = max(energy, claimed * work.gap[c] - abs(claimed) * grain)
         elif claimed != 0.0:
             # Two opposed contacts carry.
             total = np.nan

@@ -10,19 +10,20 @@ from loadshare.settings import CERTIFY
 
 
 @inlined
-def worst_residual(of, here, claim, s, work, v, found, deflection, seen):  # type: ignore[no-untyped-def]
+def worst_residual(of, here, claim, s, work, v, found, scale, seen):  # type: ignore[no-untyped-def]
     """Largest scaled residual of a claim but of balance: of laws, signs, and what is no column.
 
     Not a number where something claimed is none, and where two opposed contacts carry: these are
     for `residuals`.
     """
-    load, (length, energy, pull, total) = found.scale[s], seen
+    (load, deflection, grain), (length, energy, pull, total) = scale, seen
     for k in range(found.misfit.shape[1]):
         total += found.misfit[s, k]
     for k in range(len(of.twin), len(of.twin) + len(of.spring)):
         length = max(length, abs(found.misfit[s, k]))
     strayed, free = _strayed(of, here, claim, s), _free(of, here, claim, s)
-    length, force, band = max(length, strayed), max(pull, free), CERTIFY.band * deflection
+    length, force = max(length, strayed), max(pull, free)
+    band = CERTIFY.band * deflection + grain
     for q in range(len(of.pull_gear)):
         force = max(force, _excess(work.law[q], work.offset[q], work.pull[q], band))
         total += work.pull[q, 2]
@@ -31,6 +32,7 @@ def worst_residual(of, here, claim, s, work, v, found, deflection, seen):  # typ
             length = max(length, np.sqrt(x * x + y * y) - work.law[q, 3])
     for d in of.squeezed:
         force = max(force, _squeeze(of, here, claim, s, work, d, band))
+    length = max(length - grain, 0.0)
     worst = max(max(force / load, length / deflection), energy / (load * deflection))
     for c in range(len(work.x)):
         total += work.x[c, v]
