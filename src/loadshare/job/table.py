@@ -125,8 +125,8 @@ class Table:
         self.frames = np.zeros((3 * len(self.moving), 2 * len(self.moving)))
         for k, frame in enumerate(g.frame for g in gears.values() if g.moves):
             self.frames[3 * k : 3 * k + 3, 2 * k : 2 * k + 2] = frame.T
-        self.coords: dict[str, list[Any]] = {
-            "sample": list(range(count)),
+        self.coords: dict[str, Any] = {
+            "sample": np.arange(count),
             "position": list(first.positions),
             "mesh": list(self.names.train.meshes),
             "gear": [list(gears)[k] for k in self.moving],

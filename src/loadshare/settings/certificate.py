@@ -80,7 +80,7 @@ class Bound(NamedTuple):
     """Relative bound with which double precision is content."""
     together: int = 512
     """Claims that are looked at in twice the precision at a time."""
-    abreast: int = 16
+    abreast: int = 64
     """Claims whose products Numba finds side by side."""
     soft: float = 1e5
     """Largest compliance of a turn of a line, at first, in compliances of the claim: what is softer
