@@ -262,13 +262,14 @@ class Machine:
         found = found.completed(more) if found else more
         begun = bool(starts) or beside is not None
         left = ~found.solved
-        tries = np.full(loading.count, 0 if begun else 1)
+        quick = engine is not vectorised.settle
+        tries = np.full(loading.count, 0 if begun or quick else 1)
         searched = np.zeros(loading.count, dtype=bool)
         while True:
             found = found.without(left)
             for number, singly in enumerate((False, True)):
-                # A beginning that leads nowhere: once more from rest, with NumPy, at last by one
-                # element after another.
+                # A beginning or compiled code that leads nowhere: once more from rest, with NumPy,
+                # at last by one element after another.
                 fresh = ~found.solved & ~searched & (tries == number)
                 if fresh.any():
                     rest = at_rest(self.structure, loading)
@@ -293,7 +294,6 @@ class Machine:
             left = found.solved & ~verdicts.passed & ~searched
             if not left.any():
                 break
-        quick = engine is not vectorised.settle
         return Answers(
             loading,
             answers,
