@@ -3,7 +3,7 @@
 What is compiled is kept where Numba finds a folder to write in: beside the source, else in the
 user's cache folder (`NUMBA_CACHE_DIR` comes before both). Where there is none, where Numba cannot
 be imported, or where it does not compile, `why_not` says so once, in the log, and those who have
-another kernel use that. What is damaged on disk or out of date is compiled anew (`kept_code`).
+another kernel use that. What is damaged on disk or out of date is compiled anew (`code_cache`).
 """
 
 from __future__ import annotations
@@ -84,10 +84,10 @@ def jit(**how: Any) -> Callable[[Callable[..., Any]], Any]:
         if made is function:
             return function
         # Imports Numba, which is there by now.
-        from loadshare.kept_code import Kept, Lost
+        from loadshare.code_cache import CodeCache, Lost
 
         try:
-            made._cache = Kept(function, lambda e: _watch.not_kept(words_of(e)))
+            made._cache = CodeCache(function, lambda e: _watch.not_kept(words_of(e)))
         except Exception as error:  # noqa: BLE001 -- there is another way, whatever it is
             why = words_of(error)
             made._cache = Lost(lambda: _watch.not_kept(why))

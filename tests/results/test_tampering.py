@@ -20,6 +20,7 @@ import loadshare as ls
 from loadshare.certify import certify
 from loadshare.results.claim import claim_of
 from loadshare.results.derive import position_of, result_from
+from loadshare.results.digest import seal
 from loadshare.results.document import FORMAT, as_data
 from loadshare.results.reading import read_document
 from loadshare.results.writing import DOCUMENT
@@ -277,5 +278,51 @@ def test_arrays_that_do_not_agree_with_their_result_are_refused(small, tmp_path,
     assert ls.load_result(file) == small
     with xr.open_dataset(file, engine="h5netcdf") as arrays:
         change(arrays.load()).to_netcdf(spoilt, engine="h5netcdf")
+    seal(spoilt)
     with pytest.raises(ls.ResultError, match=r"spoilt\.nc"):
         ls.load_result(spoilt)
+
+
+@pytest.mark.parametrize("ending", ["json", "nc"])
+@pytest.mark.parametrize("seed", range(2))
+def test_every_flipped_bit_that_changes_data_is_found(small, tmp_path, ending, seed):
+    """One kind of error for all of them; a flip in blanks or in unused bytes changes no data."""
+    file, rng = tmp_path / f"result.{ending}", np.random.default_rng(seed)
+    (small.to_json if ending == "json" else small.to_netcdf)(file)
+    whole = file.read_bytes()
+    refused = 0
+    for _ in range(60):
+        spoilt = bytearray(whole)
+        spoilt[rng.integers(len(whole))] ^= 1 << int(rng.integers(8))
+        file.write_bytes(spoilt)
+        try:
+            found = ls.load_result(file)
+        except ls.ResultError:
+            refused += 1
+        else:
+            assert found == small
+            assert found.stamp == small.stamp
+            assert found.case.to_dict() == small.case.to_dict()
+    assert refused > 8
+
+
+def test_a_digest_is_of_what_a_file_holds_and_not_of_how_it_is_laid_out(small):
+    document = small.to_dict()
+    assert loads(document) == small
+    laid_out = json.dumps(document, indent=3, sort_keys=True)
+    assert read_document(laid_out, "file.json")[0] == small
+    for path in (("positions", 0, "effort", "rung"), ("input", "source"), ("digest",)):
+        assert "was changed after it was written" in told(changed(document, path, "another"))
+    last = np.nextafter(document["omega"]["I"], 2.0)
+    assert "was changed after it was written" in told(changed(document, ("omega", "I"), last))
+    assert "digest" in told(without(document, ("digest",)))
+
+
+def test_arrays_that_another_program_wrote_again_are_refused(small, tmp_path):
+    file = tmp_path / "result.nc"
+    small.to_netcdf(file)
+    with xr.open_dataset(file, engine="h5netcdf") as arrays:
+        arrays = arrays.load()
+    arrays.to_netcdf(file, engine="h5netcdf")
+    with pytest.raises(ls.ResultError, match="it lacks its digest"):
+        ls.load_result(file)

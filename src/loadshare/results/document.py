@@ -7,11 +7,13 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
 from typing import TYPE_CHECKING, Any
 
+from loadshare.results.digest import DIGEST, digest_of
+
 if TYPE_CHECKING:
     from loadshare.certify import Certificate
     from loadshare.results.result import Position, Result
 
-FORMAT = 2
+FORMAT = 3
 """Of the files that are written; it changes with what a file holds."""
 _TOLD = (
     "position",
@@ -30,8 +32,8 @@ _TOLD = (
 
 
 def to_document(result: Result) -> dict[str, Any]:
-    """Return the result as plain data: the documented JSON form, self-contained."""
-    return {
+    """Return the result as plain data: the documented JSON form, self-contained, with a digest."""
+    document = {
         "format": FORMAT,
         "case": result.stamp.case,
         "version": result.stamp.version,
@@ -43,6 +45,7 @@ def to_document(result: Result) -> dict[str, Any]:
         "omega": dict(result.omega),
         "pair_omega": dict(result.pair_omega),
     }
+    return document | {DIGEST: digest_of(document)}
 
 
 def as_data(given: Any) -> Any:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from loadshare.errors import Problem, ResultError
 from loadshare.results.dataset import array_differences
+from loadshare.results.digest import is_sealed
 from loadshare.results.reading import read_document
 from loadshare.results.writing import DOCUMENT
 
@@ -58,6 +59,9 @@ def _read_netcdf(path: Path) -> Result:
     """Load the result, and compare the arrays beside it with its own."""
     import xarray as xr
 
+    if not is_sealed(path):
+        why = "holds no result of loadshare, or one that was changed: it lacks its digest"
+        raise _unread(path, why)
     try:
         with xr.open_dataset(path, engine="h5netcdf") as file:
             arrays = file.load()

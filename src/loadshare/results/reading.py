@@ -25,6 +25,7 @@ from loadshare.later import known
 from loadshare.results.claim import Claim, misnamed
 from loadshare.results.derive import position_of, result_from
 from loadshare.results.differences import DIGITS, ROUND_OFF, differences
+from loadshare.results.digest import DIGEST, digest_of
 from loadshare.results.document import FORMAT, as_data, to_document
 from loadshare.results.result import Effort, Position, Result, Stamp
 from loadshare.scene import assemble
@@ -104,7 +105,10 @@ def read_document(text: str, file: str) -> tuple[Result, dict[str, Any]]:
     _raise(_loosened(positions, train), file)
     stamp = replace(given.stamp, title=case.title, case_hash=case.hash)
     result = result_from(case, train, positions, known(stamp))
-    _raise(differences(to_document(result), document, names=_elements(given, train)), file)
+    # The digest is of the very digits that stand there, whichever processor computed them.
+    told = to_document(result) | {DIGEST: document.get(DIGEST)}
+    _raise(differences(told, document, names=_elements(given, train)), file)
+    _raise(_altered(document), file)
     return result, document
 
 
@@ -123,6 +127,13 @@ def _raise(wrong: Iterable[Wrong], file: str, hint: str = AGAIN) -> None:
 
 def _fail(file: str, message: str, hint: str = AGAIN, key: Path = (), given: str = "") -> NoReturn:
     raise ResultError([Problem(file, dotted(key), given, message, "", hint)])
+
+
+def _altered(document: dict[str, Any]) -> Iterator[Wrong]:
+    """Yield that a digit or a word was changed of which no figure follows."""
+    if document.get(DIGEST) != digest_of(document):
+        told = "is not that of what this file holds: it was changed after it was written"
+        yield (DIGEST,), as_given(document.get(DIGEST)), told, ""
 
 
 def _parsed(text: str, file: str) -> dict[str, Any]:

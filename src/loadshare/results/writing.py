@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from loadshare.output import write_whole
+from loadshare.results.digest import seal
 from loadshare.results.document import to_document
 
 if TYPE_CHECKING:
@@ -27,4 +28,9 @@ def write_json(result: Result, path: str | Path | None = None) -> str:
 def write_netcdf(result: Result, path: str | Path) -> None:
     """Write labelled arrays for any reader of netCDF, and the whole result as an attribute."""
     arrays = result.dataset.assign_attrs({DOCUMENT: write_json(result)})
-    write_whole(Path(path), lambda file: arrays.to_netcdf(file, engine="h5netcdf"))
+
+    def write(file: Path) -> None:
+        arrays.to_netcdf(file, engine="h5netcdf")
+        seal(file)
+
+    write_whole(Path(path), write)

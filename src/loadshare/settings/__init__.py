@@ -2,7 +2,7 @@
 
 One table for all rooms, a part for each. Every number stands with its meaning and, where it is
 known, the reason for its size; what is not a ratio says its unit. What is compiled with them is
-compiled anew when one changes (`kept_code.py`).
+compiled anew when one changes (`code_cache.py`).
 """
 
 from loadshare.settings.allowed import ALLOWED

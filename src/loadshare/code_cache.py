@@ -82,7 +82,7 @@ class _Files(IndexDataCacheFile):
             file.write(hashlib.sha256(packed).digest() + packed)
 
 
-class Kept(FunctionCache):
+class CodeCache(FunctionCache):
     """Compiled code of a function on disk; what cannot be read or written is compiled anew."""
 
     def __init__(self, function: Callable[..., Any], not_kept: Callable[[Exception], None]) -> None:
