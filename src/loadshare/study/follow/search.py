@@ -151,7 +151,10 @@ class Search:
                 solved[k] = answer
             found.append(Missing(answer.value, UNREAD) if k in solved else answer)  # type: ignore[arg-type]
         waiting = [(k, tuple(s.states.tolist()), s.x) for k, s in solved.items()]
-        for _ in range(3):
+        # Of contacts that idle one may be let go at a time.
+        for _ in range(self.line.structure.switches + 1):
+            if not waiting:
+                break
             groups: dict[WorkingSet, list[tuple[int, Array]]] = {}
             for k, states, x in waiting:
                 numbers = self.line.numbers(self.position, values[[k]])
