@@ -354,7 +354,7 @@ class ClaimedState:
         return max(lengths, default=0.0) or 1e-6
 
     @cached_property
-    def grain(self) -> float:
+    def resolution(self) -> float:
         """Round-off of a length [m]: four times that of displacements, errors and gaps."""
         gears, here = self.train.gears, self.situation
         moved = [abs(f) * gears[g].base_radius for g, f in self.answer.rotation.items()]
@@ -404,9 +404,9 @@ def penetration(state: ClaimedState) -> dict[str, float]:
     overlaps = {}
     for push in state.pushes:
         overlap = push.approach - push.law.compression(max(push.force, 0.0))
-        overlaps[push.name] = overlap - state.grain
+        overlaps[push.name] = overlap - state.resolution
     for pull in state.pulls:
-        overlaps[pull.name] = float(np.linalg.norm(pull.offset)) - pull.law.reach - state.grain
+        overlaps[pull.name] = float(np.linalg.norm(pull.offset)) - pull.law.reach - state.resolution
     return overlaps
 
 
@@ -414,7 +414,7 @@ def complementarity(state: ClaimedState) -> dict[str, float]:
     """Work [J] of a force over an open gap, by contact."""
     return {
         p.name: p.force * (p.law.compression(max(p.force, 0.0)) - p.approach)
-        - abs(p.force) * state.grain
+        - abs(p.force) * state.resolution
         for p in state.pushes
     }
 
@@ -447,7 +447,7 @@ def deformation_law(state: ClaimedState, band: float) -> dict[str, float]:
     output = state.train.output
     turned = state.answer.rotation[output] * state.train.gears[output].base_radius
     misfits[f"gear {output} rotation"] = abs(turned)
-    return {name: misfit - state.grain for name, misfit in misfits.items()}
+    return {name: misfit - state.resolution for name, misfit in misfits.items()}
 
 
 def cone_membership(state: ClaimedState, band: float) -> dict[str, float]:
@@ -459,7 +459,7 @@ def cone_membership(state: ClaimedState, band: float) -> dict[str, float]:
     band : float
         Radius [m] within which a graph's corner admits its whole step.
     """
-    excess, band = {p.name: -p.force for p in state.pushes}, band + state.grain
+    excess, band = {p.name: -p.force for p in state.pushes}, band + state.resolution
     for name, _, stiffness, force in state.bearings():
         excess[f"bearing {name}"] = float(np.linalg.norm(force[stiffness == 0.0]))
     excess |= state.squeezes(band)
@@ -513,7 +513,9 @@ def energy_gap(state: ClaimedState) -> dict[str, float]:
         dual += [-pull.law.complementary(size), float(pull.reaction @ pull.centre)]
     forces = [abs(p.force) for p in state.pushes]
     forces += [float(np.linalg.norm(p.reaction)) for p in state.pulls]
-    rounding = ROUNDED * math.fsum(map(abs, (*primal, *dual))) + state.grain * math.fsum(forces)
+    rounding = ROUNDED * math.fsum(map(abs, (*primal, *dual))) + state.resolution * math.fsum(
+        forces
+    )
     gap = abs(math.fsum(primal) - math.fsum(dual))
     return {"the whole train": max(gap - rounding, 0.0)}
 

@@ -63,12 +63,12 @@ def penetration(state: ClaimedState) -> Blocks:
 
 def _less_rounding(state: ClaimedState, blocks: Blocks) -> Blocks:
     """Lengths less their round-off."""
-    return [(np.maximum(lengths - state.grain, 0.0), names) for lengths, names in blocks]
+    return [(np.maximum(lengths - state.resolution, 0.0), names) for lengths, names in blocks]
 
 
 def complementarity(state: ClaimedState) -> Blocks:
     """Work [J] of a force over an open gap."""
-    rounding = np.abs(state.force) * state.grain
+    rounding = np.abs(state.force) * state.resolution
     return [(-state.force * state.overlap - rounding, state.of.contacts)]
 
 
@@ -100,7 +100,7 @@ def cone_membership(state: ClaimedState) -> Blocks:
 
     Within a band about its radius, a graph's corner admits its whole step.
     """
-    of, band = state.of, CERTIFY.band * state.deflection + state.grain
+    of, band = state.of, CERTIFY.band * state.deflection + state.resolution
     blocks = [(-state.force, of.contacts)]
     if len(of.moving):
         stiffness, force = state.support
@@ -200,7 +200,7 @@ def energy_gap(state: ClaimedState) -> Blocks:
     forces = np.abs(state.force).sum(axis=0)
     if of.pulls:
         forces = forces + size(state.reaction).sum(axis=0)
-    rounding = CERTIFY.rounded * sizes + state.grain * forces
+    rounding = CERTIFY.rounded * sizes + state.resolution * forces
     return [(np.maximum(gap - rounding, 0.0)[None], ("the whole train",))]
 
 

@@ -51,7 +51,7 @@ class ClaimedState:
         Of both arcs and both stops [N].
     load, deflection : ndarray, shape (S,)
         Scales [N], [m].
-    grain : ndarray, shape (S,)
+    resolution : ndarray, shape (S,)
         Round-off of a length [m].
     beyond : ndarray of bool, shape (drums, 2, S)
         Whether a gear stands beyond the neighbour on whose ring its own rolls: there the arc's
@@ -129,9 +129,9 @@ class ClaimedState:
         balance and would hide what is not, and a free displacement could be claimed as large as one
         likes. A contact with less force than the band counts as open.
 
-        Grain: what sums of displacements, errors and gaps leave of a length in double precision. In
-        a play of centimetres it is more than a billionth of a light load's deflection; bounds on
-        forces hold all the same.
+        Resolution: what sums of displacements, errors and gaps leave of a length in double
+        precision. In a play of centimetres it is more than a billionth of a light load's
+        deflection; bounds on forces hold all the same.
         """
         pushed = (np.abs(self.here.torque) / self.of.radius[:, None]).max(axis=0, initial=0.0)
         load = np.maximum(np.abs(self.force).max(axis=0, initial=0.0), pushed)
@@ -147,7 +147,7 @@ class ClaimedState:
         furthest = np.maximum(turned.max(axis=0, initial=0.0), moved)
         limits = np.maximum(self._limits, np.abs(self.here.stop).max(axis=(0, 1), initial=0.0))
         errors = np.abs(self.here.offset).max(axis=(0, 1), initial=0.0)
-        self.grain = CERTIFY.grain * (furthest + errors + limits)
+        self.resolution = CERTIFY.resolution * (furthest + errors + limits)
 
     @cached_property
     def moment(self) -> Array:

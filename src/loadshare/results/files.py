@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from loadshare.errors import Problem, ResultError
 from loadshare.results.dataset import array_differences
 from loadshare.results.digest import is_sealed
-from loadshare.results.reading import read_document
+from loadshare.results.reading import AGAIN, read_document
 from loadshare.results.writing import DOCUMENT
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ def _read_netcdf(path: Path) -> Result:
 
     if not is_sealed(path):
         why = "holds no result of loadshare, or one that was changed: it lacks its digest"
-        raise _unread(path, why)
+        raise ResultError([Problem(str(path), "", "", why, hint=AGAIN)])
     try:
         with xr.open_dataset(path, engine="h5netcdf") as file:
             arrays = file.load()

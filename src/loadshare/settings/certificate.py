@@ -19,7 +19,7 @@ class Certify(NamedTuple):
     guessed, and Ω is read to three digits behind the point."""
     rounded: float = 16.0 * EPS
     """Rounding of energies, relative to the sum of their sizes."""
-    grain: float = 4.0 * EPS
+    resolution: float = 4.0 * EPS
     """Rounding of a length, relative to the largest displacement, error and gap together: some
     terms, each known to half of EPS."""
     together: int = 2048

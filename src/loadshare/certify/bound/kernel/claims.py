@@ -39,12 +39,12 @@ def find_all(of, here, claim, work, found, sets):  # type: ignore[no-untyped-def
             top = _loads(of, here, claim, s, found)
             limits, approach = put_limits(of, here, s, work, v)
             widest, behind = put_gaps(of, here, s, work, v)
-            grain = CERTIFY.grain * (found.width[s] + limits)
+            resolution = CERTIFY.resolution * (found.width[s] + limits)
             _acts(of, here, claim, s, work, found, top, approach, widest)
             longest, lawful, covered = put_pulls(of, here, claim, s, work, v, found, top, widest)
             count, last = _numbered(s, found.acts, sets, count, last)
             found.number[s] = last
-            yielded, bent, seen = put_contacts(of, here, claim, s, work, v, found, sets, grain)
+            yielded, bent, seen = put_contacts(of, here, claim, s, work, v, found, sets, resolution)
             further = put_springs(of, here, claim, s, work, v, found, sets)
             for q in range(len(of.pull_gear)):
                 at, soft = len(of.twin) + len(of.spring) + q, work.stiffest[q]
@@ -53,7 +53,7 @@ def find_all(of, here, claim, work, found, sets):  # type: ignore[no-untyped-def
             found.width[s] = EPS * (found.width[s] + limits + longest + max(yielded, further))
             deflection = max(bent, found.deflection[s])
             deflection = deflection if deflection > 0.0 else CERTIFY.least_deflection
-            scale = found.scale[s], deflection, grain
+            scale = found.scale[s], deflection, resolution
             worst = worst_residual(of, here, claim, s, work, v, found, scale, seen)
             found.worst[s] = worst if lawful and not behind else np.inf
             found.deflection[s] = deflection

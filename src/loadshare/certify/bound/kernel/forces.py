@@ -21,7 +21,7 @@ from loadshare.settings import BOUND, CERTIFY
 
 
 @inlined
-def put_contacts(of, here, claim, s, work, v, found, sets, grain):  # type: ignore[no-untyped-def]
+def put_contacts(of, here, claim, s, work, v, found, sets, resolution):  # type: ignore[no-untyped-def]
     """Forces and misfits of contacts.
 
     Returns their largest compression [m], that of loaded flanks or what remains of their approach
@@ -66,12 +66,12 @@ def put_contacts(of, here, claim, s, work, v, found, sets, grain):  # type: igno
             misfit = -work.gap[c] - compression
             # With less force than the band it counts as open, as in `residuals`.
             length = max(length, abs(misfit) if force > band else misfit)
-            energy, total = max(energy, -force * misfit - abs(force) * grain), total + misfit
+            energy, total = max(energy, -force * misfit - abs(force) * resolution), total + misfit
             if force == 0.0:
                 misfit = max(misfit, 0.0)
         elif work.gap[c] < np.inf:
             length = max(length, -work.gap[c])
-            energy = max(energy, claimed * work.gap[c] - abs(claimed) * grain)
+            energy = max(energy, claimed * work.gap[c] - abs(claimed) * resolution)
         elif claimed != 0.0:
             # Two opposed contacts carry.
             total = np.nan

@@ -16,14 +16,14 @@ def worst_residual(of, here, claim, s, work, v, found, scale, seen):  # type: ig
     Not a number where something claimed is none, and where two opposed contacts carry: these are
     for `residuals`.
     """
-    (load, deflection, grain), (length, energy, pull, total) = scale, seen
+    (load, deflection, resolution), (length, energy, pull, total) = scale, seen
     for k in range(found.misfit.shape[1]):
         total += found.misfit[s, k]
     for k in range(len(of.twin), len(of.twin) + len(of.spring)):
         length = max(length, abs(found.misfit[s, k]))
     strayed, free = _strayed(of, here, claim, s), _free(of, here, claim, s)
     length, force = max(length, strayed), max(pull, free)
-    band = CERTIFY.band * deflection + grain
+    band = CERTIFY.band * deflection + resolution
     for q in range(len(of.pull_gear)):
         force = max(force, _excess(work.law[q], work.offset[q], work.pull[q], band))
         total += work.pull[q, 2]
@@ -32,7 +32,7 @@ def worst_residual(of, here, claim, s, work, v, found, scale, seen):  # type: ig
             length = max(length, np.sqrt(x * x + y * y) - work.law[q, 3])
     for d in of.squeezed:
         force = max(force, _squeeze(of, here, claim, s, work, d, band))
-    length = max(length - grain, 0.0)
+    length = max(length - resolution, 0.0)
     worst = max(max(force / load, length / deflection), energy / (load * deflection))
     for c in range(len(work.x)):
         total += work.x[c, v]
