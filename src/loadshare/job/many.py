@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from loadshare.case import Case, load_case
 from loadshare.certify.tolerance import checked_tolerance
+from loadshare.job.allocation import keep_freed_memory
 from loadshare.job.block import Block, solve_block
 from loadshare.job.machine import Machine, engine_named
 from loadshare.job.positions import Progress, wanted_positions
@@ -55,6 +56,7 @@ def solve_blocks(
     tolerance = checked_tolerance(tolerance)
     if not isinstance(case, Case):
         case = load_case(case)
+    keep_freed_memory()
     groups = samples_of(case, samples)
     total = sum(len(rows) for rows, _ in groups)
     wanted = tuple(wanted_positions(groups[0][1].train, positions))

@@ -120,16 +120,17 @@ class Table:
     def __init__(self, first: Block, count: int, keep: tuple[str, ...]) -> None:
         self.names = first.equilibria[0].names
         gears = self.names.train.gears
-        self.moving = [k for k, gear in enumerate(gears.values()) if gear.moves]
-        # From displacements of the gears that can move to their transverse frames.
-        self.frames = np.zeros((3 * len(self.moving), 2 * len(self.moving)))
-        for k, frame in enumerate(g.frame for g in gears.values() if g.moves):
-            self.frames[3 * k : 3 * k + 3, 2 * k : 2 * k + 2] = frame.T
+        moving = [k for k, gear in enumerate(gears.values()) if gear.moves]
+        # From displacements of all gears to transverse frames of those that can move.
+        self.frames = np.zeros((3 * len(gears), 2 * len(moving)))
+        for column, k in enumerate(moving):
+            frame = gears[self.names.gears[k]].frame
+            self.frames[3 * k : 3 * k + 3, 2 * column : 2 * column + 2] = frame.T
         self.coords: dict[str, Any] = {
             "sample": np.arange(count),
             "position": list(first.positions),
             "mesh": list(self.names.train.meshes),
-            "gear": [list(gears)[k] for k in self.moving],
+            "gear": [self.names.gears[k] for k in moving],
             "component": list(COMPONENTS),
             "contact": list(self.names.contacts),
         }
@@ -175,9 +176,8 @@ class Table:
     def _read(self, name: str, answers: Equilibria, torque: Array) -> Array:
         """Return a variable of a block at one position."""
         if name == "displacement":
-            moved = answers.displacement[:, self.moving]
-            count, gears = moved.shape[:2]
-            return (moved.reshape(count, -1) @ self.frames).reshape(count, gears, 2)
+            flat = answers.displacement.reshape(len(answers.displacement), -1)
+            return (flat @ self.frames).reshape(len(flat), self.frames.shape[1] // 2, 2)
         if name in ("share", "pair_share"):
             train = self.names.train
             return shares(torque, tuple(train.meshes), train.stages, pairs=name == "pair_share")
@@ -187,13 +187,18 @@ class Table:
         """Return everything with labels."""
         import xarray as xr
 
-        data = {
-            name: KEPT[name].labelled(values, *EVERY) for name, values in self.variables.items()
-        }
+        found = [
+            (name, *KEPT[name].labelled(values, *EVERY)) for name, values in self.variables.items()
+        ]
         for name, each in EACH.items():
             attributes = {"units": each.units, "long_name": each.long_name}
-            data[name] = EVERY, self.each[name], attributes
-        used = {dim for dims, *_ in data.values() for dim in dims}
+            found.append((name, EVERY, self.each[name], attributes))
+        # As they are: words of objects would be looked through for dates.
+        data = {
+            name: xr.Variable(dims, values, attributes, fastpath=True)
+            for name, dims, values, attributes in found
+        }
+        used = {dim for variable in data.values() for dim in variable.dims}
         return xr.Dataset(
             data,
             coords={dim: labels for dim, labels in self.coords.items() if dim in used},

@@ -124,7 +124,7 @@ def loading_of(structure: Structure, situations: Situations) -> Loading:
     if train.slip is not None:
         bends.append((columns.bends, np.repeat(0.5 / situations.spline[:, :, 0], 2, axis=1)))
     m = np.array([number for number, *_ in structure.flanks], dtype=np.intp)
-    bends.append((columns.flanks, situations.bending[:, m]))
+    bends.append((columns.flanks, np.take(situations.bending, m, axis=1)))
     gaps.append((columns.stops, situations.stop.reshape(len(situations.stop), -1)))
     walls = np.repeat(situations.wall, 2, axis=1)
     bends += [(columns.stops, walls), (columns.arcs, walls)]
@@ -140,7 +140,7 @@ def loading_of(structure: Structure, situations: Situations) -> Loading:
         bending=_side_by_side(structure, bends, force / length),
         hertz=_side_by_side(
             structure,
-            [(columns.flanks, situations.hertz[:, m])],
+            [(columns.flanks, np.take(situations.hertz, m, axis=1))],
             math.cbrt(force) ** 2 / length,
         ),
         tabulated=tabulated,
@@ -160,8 +160,17 @@ Block = tuple[slice | int, Array]
 
 def _side_by_side(structure: Structure, blocks: list[Block], factor: float) -> Array:
     """Put values in their columns, times a factor; zero elsewhere."""
-    table = np.zeros((max(len(values) for _, values in blocks), len(structure.names)))
+    row = np.zeros((1, len(structure.names)))
+    varying = []
     for columns, values in blocks:
+        if len(values) > 1:
+            varying.append((columns, values))
+        else:
+            row[:, columns] = values * factor
+    # What is the same in all samples is written row by row at once.
+    table = np.empty((max((len(values) for _, values in varying), default=1), row.shape[1]))
+    table[:] = row
+    for columns, values in varying:
         np.multiply(values, factor, out=table[:, columns])
     return table
 

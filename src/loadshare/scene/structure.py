@@ -259,7 +259,7 @@ class Structure:
         """Gap of every flank with errors and clockings [m], shape (S or 1, flanks)."""
         m = np.array([number for number, *_ in self.flanks], dtype=np.intp)
         drive = np.array([drives for *_, drives in self.flanks], dtype=bool)
-        found = situations.backlash[:, m]
+        found = np.take(situations.backlash, m, axis=1)
         if len(found) < len(situations.gap):
             found = np.repeat(found, len(situations.gap), axis=0)
         found[:, drive] = situations.gap[:, m[drive]]

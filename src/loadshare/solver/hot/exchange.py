@@ -165,17 +165,17 @@ def exchange(
     rounds = _Rounds(structure)
     waiting = _Waiting()
     rows = np.arange(count) if only is None else np.flatnonzero(only)
-    waiting.add(states[rows], rows)
+    waiting.add(states[rows], rows, 1)
     while waiting:
-        here, rows = waiting.most()
-        visited = turns[rows] + 1
-        turns[rows] = visited
+        here, rows, turn = waiting.most()
+        turns[rows] += 1
         basis = structure.basis(here[:switches])
         verdict, proposal = engine(
             structure, loading, basis, here[:switches], rows, iterate, one_only
         )
         onward = verdict == at.OTHER
-        if singly or visited.max() >= min(limit, EXCHANGE.together + 1):
+        if singly or turn >= min(limit, EXCHANGE.together + 1):
+            visited = turns[rows]
             onward &= visited < limit
             judged = onward if singly else onward & (visited > EXCHANGE.together)
             for k in judged.nonzero()[0].tolist():
@@ -184,16 +184,19 @@ def exchange(
                 onward[k] = verdict[k] == at.OTHER
         goes = onward.nonzero()[0]
         if len(goes) < len(rows):
-            stay = rows[~onward]
-            done = verdict[~onward] == at.DONE
+            stays = ~onward
+            stay = rows[stays]
+            done = verdict[stays] == at.DONE
             states[stay], solved[stay] = here, done
-            held[stay] = False if basis.loose.shape[1] else done
+            if not basis.loose.shape[1]:
+                held[stay] = done
         if len(goes):
             rows = rows[goes]
-            one_only[rows] |= visited[goes] >= EXCHANGE.together
+            if turn >= EXCHANGE.together:
+                one_only[rows] |= turns[rows] >= EXCHANGE.together
             other = np.zeros((len(rows), states.shape[1]), dtype=np.int8)
             other[:, :switches] = proposal[goes]
-            waiting.add(_without_wedges(structure, loading, here, other), rows)
+            waiting.add(_without_wedges(structure, loading, here, other), rows, turn + 1)
     return Found(solved, states[:, :switches], turns, held)
 
 
@@ -241,40 +244,46 @@ class _Waiting:
         self.sets: dict[int, States] = {}
         self.parts: dict[int, list[NDArray[np.intp]]] = {}
         self.sizes: dict[int, int] = {}
+        # The turn that this will be for a sample of them, at most.
+        self.turns: dict[int, int] = {}
         # Sizes once more, the largest first; one that is out of date is passed over.
         self.largest: list[tuple[int, int]] = []
 
     def __bool__(self) -> bool:
         return bool(self.sizes)
 
-    def most(self) -> tuple[States, NDArray[np.intp]]:
-        """Take the set to which most samples go, and them."""
+    def most(self) -> tuple[States, NDArray[np.intp], int]:
+        """Take the set to which most samples go, them, and the most turns of any of them."""
         size, key = heappop(self.largest)
         while self.sizes.get(key) != -size:
             size, key = heappop(self.largest)
         del self.sizes[key]
-        parts = self.parts.pop(key)
-        return self.sets[key], parts[0] if len(parts) == 1 else np.concatenate(parts)
+        parts, turn = self.parts.pop(key), self.turns.pop(key)
+        return self.sets[key], parts[0] if len(parts) == 1 else np.concatenate(parts), turn
 
-    def add(self, states: States, rows: NDArray[np.intp]) -> None:
-        """Let samples wait for the sets in `states`, shape (len(rows), whole words)."""
+    def add(self, states: States, rows: NDArray[np.intp], turn: int) -> None:
+        """Let samples wait for the sets in `states`, shape (len(rows), whole words).
+
+        There they have at most so many turns.
+        """
         if not len(rows):
             return
         # Should two sets have one key, a sample is solved on the other one: what it finds there
         # is judged there.
         keys = states.view(np.int64) @ _KEYS[: states.shape[1] // WORD]
-        if (keys == keys[0]).all():
-            self._put(int(keys[0]), states[0], rows)
+        if len(rows) == 1 or (keys == keys[0]).all():
+            self._put(int(keys[0]), states[0], rows, turn)
             return
         order = keys.argsort()
         keys, rows = keys[order], rows[order]
         ends = (keys[1:] != keys[:-1]).nonzero()[0] + 1
         for first, end in pairwise([0, *ends.tolist(), len(rows)]):
-            self._put(int(keys[first]), states[order[first]], rows[first:end])
+            self._put(int(keys[first]), states[order[first]], rows[first:end], turn)
 
-    def _put(self, key: int, states: States, rows: NDArray[np.intp]) -> None:
+    def _put(self, key: int, states: States, rows: NDArray[np.intp], turn: int) -> None:
         self.sets.setdefault(key, states)
         self.parts.setdefault(key, []).append(rows)
+        self.turns[key] = max(turn, self.turns.get(key, 0))
         size = self.sizes[key] = self.sizes.get(key, 0) + len(rows)
         heappush(self.largest, (-size, key))
 

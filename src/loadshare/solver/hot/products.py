@@ -18,36 +18,33 @@ from loadshare.scene.scene import Array
 class Entries(NamedTuple):
     """Entries of a matrix (n, q) that are not zero, column by column."""
 
-    columns: NDArray[np.intp]  # those that are not empty
-    starts: NDArray[np.intp]
+    starts: NDArray[np.intp]  # (q + 1,)
     rows: NDArray[np.intp]
     values: Array
-    width: int  # q
 
 
 def entries(matrix: Array) -> Entries:
     """Return the entries of a matrix of shape (n, q)."""
     at_column, rows = np.nonzero(matrix.T)
-    columns, starts = np.unique(at_column, return_index=True)
-    starts = np.append(starts, len(rows))
-    return Entries(columns, starts, rows.copy(), matrix[rows, at_column], matrix.shape[1])
+    starts = np.searchsorted(at_column, np.arange(matrix.shape[1] + 1))
+    return Entries(starts, rows.copy(), matrix[rows, at_column])
 
 
 def times(table: Array, matrix: Entries) -> Array:
     """Return a table (S, n) times the matrix, shape (S, q)."""
-    product = np.zeros((len(table), matrix.width))
-    _times(table, matrix.columns, matrix.starts, matrix.rows, matrix.values, product)
+    product = np.empty((len(table), len(matrix.starts) - 1))
+    _times(table, matrix.starts, matrix.rows, matrix.values, product)
     return product
 
 
 @jit(nogil=True)
-def _times(table, columns, starts, rows, values, product):  # type: ignore[no-untyped-def]
+def _times(table, starts, rows, values, product):  # type: ignore[no-untyped-def]
     for s in range(product.shape[0]):
-        for c in range(columns.shape[0]):
+        for c in range(product.shape[1]):
             total = 0.0
             for k in range(starts[c], starts[c + 1]):
                 total += values[k] * table[s, rows[k]]
-            product[s, columns[c]] = total
+            product[s, c] = total
 
 
 def pushes(force: Array, first: int, last: int, unit: float) -> Array:
@@ -61,4 +58,5 @@ def pushes(force: Array, first: int, last: int, unit: float) -> Array:
 def _push(force, first, unit, found):  # type: ignore[no-untyped-def]
     for s in range(found.shape[0]):
         for k in range(found.shape[1]):
-            found[s, k] = max(force[s, first + k], 0.0) * unit
+            pushed = force[s, first + k]
+            found[s, k] = (0.0 if pushed < 0.0 else pushed) * unit
