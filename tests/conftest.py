@@ -9,7 +9,7 @@ from hypothesis import settings
 from tests.reproducible import SAME
 
 from loadshare.job import hot
-from loadshare.job.machine import engine_named
+from loadshare.job.engines import engine_named
 from loadshare.outside import OUTSIDE
 
 # Mesh laws that tests compute stay out of the user's cache.

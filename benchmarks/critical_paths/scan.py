@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from benchmarks.critical_paths.draw import Path
 from loadshare.certify import Judge, Verdicts
 from loadshare.certify.bound import Bounds
-from loadshare.job.machine import Machine, engine_named
+from loadshare.job.engines import engine_named
+from loadshare.job.machine import Machine
 from loadshare.job.many import solve_blocks
 from loadshare.scene.loading import Loading
 from loadshare.settings import CERTIFY

@@ -17,7 +17,8 @@ from loadshare.certify import certify
 from loadshare.certify.bound import Columns, bound_of, bounds
 from loadshare.certify.bound.statics import Statics
 from loadshare.certify.bound.twofold import power_two_thirds, product, two_product, two_sum
-from loadshare.job.machine import Machine, engine_named
+from loadshare.job.engines import engine_named
+from loadshare.job.machine import Machine
 from loadshare.train import build_train
 from loadshare.train.equilibrium import Equilibrium
 

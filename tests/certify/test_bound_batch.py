@@ -23,7 +23,8 @@ from loadshare import compilation
 from loadshare.certify import Judge
 from loadshare.certify.bound import Columns, bounds, kernel
 from loadshare.certify.bound.batch import is_covered, judged
-from loadshare.job.machine import Machine, engine_named
+from loadshare.job.engines import engine_named
+from loadshare.job.machine import Machine
 from loadshare.train import Train, build_train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations

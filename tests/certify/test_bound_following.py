@@ -9,7 +9,8 @@ import pytest
 import loadshare as ls
 from benchmarks.reference import reference
 from loadshare.certify.bound import bound_of
-from loadshare.job.machine import Machine, engine_named
+from loadshare.job.engines import engine_named
+from loadshare.job.machine import Machine
 from loadshare.study.memory import stepped
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium

@@ -12,12 +12,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numba.core.caching import IndexDataCacheFile
 from tests.support import CASES, shipped
 
 import loadshare as ls
 from loadshare import compilation
-from loadshare.job import machine as machines
-from loadshare.job.machine import Machine, engine_at_hand, engine_named
+from loadshare import compile_watch as told
+from loadshare.compile_watch import Watch, watch
+from loadshare.job import engines
+from loadshare.job.engines import engine_at_hand, engine_named
+from loadshare.job.machine import Machine
 from loadshare.settings import JOB
 from loadshare.solver.hot import vectorised
 from loadshare.train import build_train
@@ -36,8 +40,7 @@ print(found["torque"].values.ravel().tolist())
 
 @pytest.fixture(autouse=True)
 def fresh(monkeypatch):
-    monkeypatch.setattr(compilation, "_reason", None)
-    monkeypatch.setattr(compilation, "_told", False)
+    monkeypatch.setattr(compilation, "usable", compilation.Usable())
 
 
 @pytest.fixture(scope="module")
@@ -218,12 +221,12 @@ def test_what_cannot_be_written_any_more_is_told_once(tmp_path, monkeypatch, cap
     file = tmp_path / "kept.py"
     file.write_text(MODULE, encoding="utf-8")
     twice = loaded(file)
-    monkeypatch.setattr(compilation._watch, "_complained", False)
+    monkeypatch.setattr(watch, "complained", False)
 
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(twice._cache._cache_file, "save", full)
+    monkeypatch.setattr(IndexDataCacheFile, "save", full)
     with caplog.at_level(logging.WARNING, logger="loadshare"):
         assert (twice(2.0), twice(2)) == (4.0, 4.0)
     told = [r.message for r in caplog.records if "could not be kept" in r.message]
@@ -246,7 +249,7 @@ def test_at_hand_is_what_was_compiled_or_kept(tmp_path, monkeypatch):
     assert compilation.at_hand(again)
     assert again(2.0) == 4.0
     assert not again.stats.cache_misses
-    monkeypatch.setattr(compilation, "_reason", "of a test")
+    compilation.give_up("of a test")
     assert not compilation.at_hand(again)
 
 
@@ -288,14 +291,14 @@ def test_case_by_case_nothing_is_loaded_before_it_is_worth_while_nor_compiled(mo
     from loadshare.solver.hot import compiled
 
     needed: list[int] = []
-    monkeypatch.setattr(machines, "_one_by_one", 0)
+    monkeypatch.setattr(engines, "tally", engines.Tally())
     monkeypatch.setattr(compilation, "at_hand", lambda *functions: needed.append(len(functions)))
     with monkeypatch.context() as new:
-        new.delitem(sys.modules, machines.COMPILED[0])
+        new.delitem(sys.modules, engines.COMPILED[0])
         assert engine_at_hand("auto", JOB.loading) is vectorised.settle
     assert not needed
     assert engine_at_hand("auto", 1) is vectorised.settle
-    assert needed == [len(machines.KERNELS)]
+    assert needed == [len(engines.KERNELS)]
     monkeypatch.setattr(compilation, "at_hand", lambda *_: True)
     assert engine_at_hand("auto", 1) is compiled.settle
     assert engine_at_hand("vectorised", 1) is vectorised.settle
@@ -307,11 +310,11 @@ def test_what_is_at_hand_is_all_that_cases_call():
         ls.solve(CASES / "fgfbstts" / f"{name}.toml", engine="compiled")
     script = f"""
 import loadshare as ls
-from loadshare.job import machine
+from loadshare.job import engines
 from loadshare.solver.hot import compiled as engine
 from numba.core import event
-machine._one_by_one = {JOB.loading}
-assert machine.engine_at_hand("auto", 1) is engine.settle
+engines.tally.equilibria = {JOB.loading}
+assert engines.engine_at_hand("auto", 1) is engine.settle
 with event.install_recorder("numba:compile") as compiled:
     for name in {KINDS!r}:
         ls.solve({str(CASES)!r} + f"/fgfbstts/{{name}}.toml")
@@ -326,25 +329,21 @@ print([str(e.data["dispatcher"]) for _, e in compiled.buffer])
 @pytest.fixture
 def nothing_compiles():
     """Whoever tells of what was compiled before is done."""
-    teller = compilation._watch._teller
-    if teller is not None:
-        teller.join(60.0)
+    watch.wait(60.0)
 
 
 @pytest.mark.usefixtures("nothing_compiles")
 def test_compiling_is_told_while_it_lasts(monkeypatch, caplog):
-    monkeypatch.setattr(compilation, "PATIENCE", 0.05)
-    monkeypatch.setattr(compilation, "AGAIN", 0.1)
-    watch = compilation._Watch()
+    monkeypatch.setattr(told, "PATIENCE", 0.05)
+    monkeypatch.setattr(told, "AGAIN", 0.1)
+    mine = Watch()
     with caplog.at_level(logging.WARNING, logger="loadshare"):
-        watch.started()
-        watch.started()
+        mine.started()
+        mine.started()
         time.sleep(0.5)
-        watch.ended()
-        watch.ended()
-        teller = watch._teller
-        if teller is not None:
-            teller.join(10.0)
+        mine.ended()
+        mine.ended()
+        mine.wait(10.0)
     messages = [r.message for r in caplog.records]
     assert messages[0].startswith("Compiling: the first use of this version here")
     assert any(m.endswith("s so far") for m in messages[1:-1])
@@ -353,14 +352,12 @@ def test_compiling_is_told_while_it_lasts(monkeypatch, caplog):
 
 @pytest.mark.usefixtures("nothing_compiles")
 def test_what_takes_no_time_is_not_told(monkeypatch, caplog):
-    monkeypatch.setattr(compilation, "PATIENCE", 0.2)
-    watch = compilation._Watch()
+    monkeypatch.setattr(told, "PATIENCE", 0.2)
+    mine = Watch()
     with caplog.at_level(logging.WARNING, logger="loadshare"):
-        watch.started()
-        watch.ended()
-        teller = watch._teller
-        if teller is not None:
-            teller.join(10.0)
+        mine.started()
+        mine.ended()
+        mine.wait(10.0)
     assert caplog.records == []
 
 
@@ -369,8 +366,8 @@ def test_numba_tells_the_watch(tmp_path, monkeypatch):
     file.write_text(MODULE, encoding="utf-8")
     twice = loaded(file)
     begun: list[str] = []
-    monkeypatch.setattr(compilation._watch, "started", lambda: begun.append("started"))
-    monkeypatch.setattr(compilation._watch, "ended", lambda: begun.append("ended"))
+    monkeypatch.setattr(watch, "started", lambda: begun.append("started"))
+    monkeypatch.setattr(watch, "ended", lambda: begun.append("ended"))
     assert twice(2.0) == 4.0
     assert begun == ["started", "ended"]
     assert twice(3.0) == 6.0

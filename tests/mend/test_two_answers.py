@@ -11,7 +11,8 @@ import pytest
 
 import loadshare as ls
 from loadshare.certify import certify
-from loadshare.job.machine import Machine, engine_named
+from loadshare.job.engines import engine_named
+from loadshare.job.machine import Machine
 from loadshare.scene import assemble
 from loadshare.solver import Options, solve_scene
 from loadshare.train import build_train

@@ -265,7 +265,7 @@ def test_no_set_is_proved_to_hold_over_its_events():
     values = [61.1, 61.15, 68.9, 68.95]
     points = search.points(np.array(values))
     assert len({p.active for p in points}) == 1
-    left = search._proved_alike(list(pairwise(points)))
+    left = search.proved_alike(list(pairwise(points)))
     assert [first.value for first, _ in left] == [61.15]
 
 
@@ -275,7 +275,7 @@ def test_a_ring_without_play_pins_its_gear_only_there():
     search = searched(case, "rings.sun.radius", 0.0, 2.0, "um")
     first, last = search.points(np.array([0.0, 1.0]))
     assert first.active != last.active
-    assert search._exit(first, last) == 0.0
+    assert search.exit(first, last) == 0.0
 
 
 def drawn(number: int) -> Search:
@@ -303,7 +303,7 @@ def test_a_float_comes_to_its_round_limit_where_the_limit_lets_go_of_it():
         beyond.append(float(state.polars[spline].radius[0] - state.laws[spline].reach[0]))
     values = [p.value for p in pressed]
     zero = values[1] + beyond[1] * (values[1] - values[0]) / (beyond[0] - beyond[1])
-    assert search._exit(floating, pressed[1]) == pytest.approx(zero, rel=1e-9)
+    assert search.exit(floating, pressed[1]) == pytest.approx(zero, rel=1e-9)
 
 
 @pytest.mark.parametrize("number", [1, 6, 193])

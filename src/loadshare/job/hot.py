@@ -13,8 +13,9 @@ from loadshare.certify.bound import Bound, bound_of
 from loadshare.certify.certificate import certify_later
 from loadshare.contact.plan import Plan, Role
 from loadshare.job.answer import Answer
+from loadshare.job.engines import engine_at_hand
 from loadshare.job.least import least_places
-from loadshare.job.machine import Answers, Machine, engine_at_hand
+from loadshare.job.machine import Answers, Machine
 from loadshare.settings import JOB
 from loadshare.solver import Record
 from loadshare.solver.position import coordinates_of

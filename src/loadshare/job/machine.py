@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
-from importlib import import_module
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,87 +26,11 @@ from loadshare.train import Train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations, situation_of, stack
 
-ENGINES = ("auto", "compiled", "vectorised")
-COMPILED = (
-    "loadshare.solver.hot.compiled",
-    "loadshare.solver.hot.products",
-    "loadshare.solver.hot.touching",
-    "loadshare.certify.bound.kernel",
-)
-"""What a quick answer calls, all of which must be there."""
-KERNELS = (
-    ("loadshare.solver.hot.compiled", "_settle_all"),
-    ("loadshare.certify.bound.kernel", "find_all"),
-    ("loadshare.certify.bound.kernel", "bound_all"),
-)
-"""What takes long to compile of all that answers a case; the rest takes a moment."""
-
 
 def _parts(count: int, parts: int) -> list[slice]:
     """Equal parts of so many samples."""
     each = count // max(parts, 1)
     return [slice(k * each, k * each + each) for k in range(parts)]
-
-
-def engine_named(name: str, count: int) -> Engine:
-    """Return an engine by name.
-
-    Parameters
-    ----------
-    name : {"auto", "compiled", "vectorised"}
-        "auto" compiles from a few thousand equilibria on. Where nothing can be compiled, or kept,
-        the vectorised one comes in place of the compiled one.
-    count : int
-        Equilibria to solve.
-    """
-    if name not in ENGINES:
-        raise ValueError(f"unknown engine {name!r}; allowed: {', '.join(ENGINES)}")
-    if name == "vectorised" or (name == "auto" and count <= JOB.few):
-        return vectorised.settle
-    return _compiled() or vectorised.settle
-
-
-_one_by_one = 0
-
-
-def engine_at_hand(name: str, count: int) -> Engine:
-    """Return an engine by name, for those who solve case by case.
-
-    Parameters
-    ----------
-    name : {"auto", "compiled", "vectorised"}
-        "auto" is the compiled one where that takes no compiling: once it was used in this process,
-        or once so many equilibria were solved that loading it from disk is worth while.
-    count : int
-        Equilibria to solve.
-    """
-    global _one_by_one
-    if name != "auto":
-        return engine_named(name, count)
-    _one_by_one += count
-    if COMPILED[0] not in sys.modules and _one_by_one <= JOB.loading:
-        return vectorised.settle
-    try:
-        needed = [getattr(import_module(module), name) for module, name in KERNELS]
-        from loadshare.solver.hot import compiled
-    except Exception:  # noqa: BLE001 -- those who ask for the compiled one are told
-        return vectorised.settle
-    return compiled.settle if compilation.at_hand(*needed) else vectorised.settle
-
-
-def _compiled() -> Engine | None:
-    """Return the compiled engine; None, with a word in the log, where it cannot be used."""
-    try:
-        for name in COMPILED:
-            import_module(name)
-    except Exception as error:  # noqa: BLE001 -- whatever it is, there is another engine
-        compilation.give_up(compilation.words_of(error))
-    if compilation.why_not() is None:
-        from loadshare.solver.hot import compiled
-
-        return compiled.settle
-    compilation.tell_why_not()
-    return None
 
 
 @dataclass(frozen=True, eq=False)

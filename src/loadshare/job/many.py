@@ -20,7 +20,8 @@ from loadshare.case import Case, load_case
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.job.allocation import keep_freed_memory
 from loadshare.job.block import Block, solve_block
-from loadshare.job.machine import Machine, engine_named
+from loadshare.job.engines import engine_named
+from loadshare.job.machine import Machine
 from loadshare.job.positions import Progress, wanted_positions
 from loadshare.job.recent import Recent
 from loadshare.job.table import KEPT, Table, checked
@@ -117,7 +118,7 @@ def solve_many(
     Parameters
     ----------
     case : Case or path
-        A case, or the path of a case file; it gives whatever the samples do not.
+        Gives whatever the samples do not.
     samples : mapping of str to array_like
         Values by dotted key, all of one length. The unit stands in brackets after the key, as in
         ``{"rings.4.float [um]": [0, 4, 8]}``; texts with units may stand instead.
@@ -129,8 +130,7 @@ def solve_many(
         Largest scaled residual of a certified answer, up to 1e-3.
     engine : {"auto", "compiled", "vectorised"}
         Numba or NumPy; both give the same answers. "auto" compiles from a few thousand equilibria
-        on, which takes one to three minutes of processor time once in an installation. The log
-        ("loadshare") tells of it, and why NumPy answers where nothing can be compiled or kept.
+        on, once in an installation; the log ("loadshare") tells of it, and of why it cannot.
     workers : int
         Threads.
     least_norm : bool
@@ -146,11 +146,11 @@ def solve_many(
         [-] over mesh; ``displacement`` [m] over gear and component, for gears that can be
         displaced; ``contact_force`` [N] of ring contacts; ``residual`` (largest scaled one;
         with Numba without the energy gap, which follows from the others), ``torque_bound`` (largest
-        distance of a torque from the exact one, over the largest torque), ``certified``,
-        ``determined``, ``displaced`` (displacements over what their geometry allows without a
-        warning; ``warned`` counts those above 1), ``convex`` (nothing that is not convex carries),
-        ``arc_curvature`` [N/m] that arcs take elsewhere from the stiffness across them, ``rung``.
-        What is refused is NaN; the attribute ``refused`` says why.
+        distance of a torque from the exact one, over the largest), ``certified``, ``determined``,
+        ``displaced`` (displacements over what their geometry allows without a warning; ``warned``
+        counts those above 1), ``convex`` (nothing that is not convex carries), ``arc_curvature``
+        [N/m] that arcs take from the stiffness across them, ``rung``. What is refused is NaN; the
+        attribute ``refused`` says why.
 
     Raises
     ------
@@ -167,7 +167,6 @@ def solve_many(
     >>> bool(found.certified.all())
     True
     """
-    tolerance = checked_tolerance(tolerance)
     if not isinstance(case, Case):
         case = load_case(case)
     blocks = solve_blocks(
@@ -180,4 +179,5 @@ def solve_many(
         least_norm=least_norm,
     )
     count = len(np.atleast_1d(np.asarray(next(iter(samples.values()), []))))
-    return Table.of(blocks, count, checked(keep), progress).dataset(case, tolerance)
+    table = Table.of(blocks, count, checked(keep), progress)
+    return table.dataset(case, checked_tolerance(tolerance))

@@ -16,7 +16,8 @@ from tests.solver.hot.trains import VARIED, varied
 from tests.support import SHIPPED, shipped
 
 import loadshare as ls
-from loadshare.job.machine import Answers, Machine, engine_named
+from loadshare.job.engines import engine_named
+from loadshare.job.machine import Answers, Machine
 from loadshare.settings import ABREAST, CERTIFY, JOB
 from loadshare.solver.hot import compiled, vectorised
 from loadshare.solver.hot import contact_states as at

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import loadshare as ls
-from loadshare.job.machine import Machine, engine_named
+from loadshare.job.engines import engine_named
+from loadshare.job.machine import Machine
 from loadshare.train import build_train
 
 

@@ -109,11 +109,11 @@ def test_the_worst_case_is_not_sought_again(slope, tmp_path, monkeypatch):
     """It is kept with its study, and sought anew where the file is of no use."""
     asked = {"samples": 64, "worst": True, "out": tmp_path / "study"}
     first = study(**asked).worst
-    sought = []
-    search = room._searched
-    monkeypatch.setattr(room, "_searched", lambda *a: sought.append(a) or search(*a))
+    asked_for = []
+    search = room.sought
+    monkeypatch.setattr(room, "sought", lambda *a: asked_for.append(a) or search(*a))
     assert study(**asked).worst == first
-    assert sought == []
+    assert asked_for == []
     file = tmp_path / "study" / "worst.json"
     kept = file.read_text(encoding="utf-8")
     other = kept.replace(study(samples=64, out=tmp_path / "study").folder.job.hash, "another")
@@ -121,7 +121,7 @@ def test_the_worst_case_is_not_sought_again(slope, tmp_path, monkeypatch):
         file.write_text(useless, encoding="utf-8")
         assert study(**asked).worst == first
         assert file.read_text(encoding="utf-8") == kept
-    assert len(sought) == 3
+    assert len(asked_for) == 3
 
 
 def test_the_worst_phase_is_between(slope):

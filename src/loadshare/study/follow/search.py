@@ -130,7 +130,7 @@ class Search:
         while stretches:
             count += len(stretches)
             left = [s for s in stretches if not self._settled(s)]
-            left = self._proved_alike(left)
+            left = self.proved_alike(left)
             left = [s for s in left if not self._crossed(s)] if count <= FOLLOW.most else left
             if count > FOLLOW.most:
                 self.gaps += [Gap(*stretch, "too many stretches") for stretch in left]
@@ -243,8 +243,8 @@ class Search:
         numbers = self.line.numbers(self.position, values)
         return prove(Stretches(equations, np.array([[a, b] for _, _, a, b in ends]), numbers))
 
-    def _proved_alike(self, stretches: list[Stretch]) -> list[Stretch]:
-        """Prove those whose ends stand on one set, and return the others."""
+    def proved_alike(self, stretches: list[Stretch]) -> list[Stretch]:
+        """Prove stretches whose ends stand on one set, and return the others."""
         groups: dict[WorkingSet, list[tuple[Point, Point]]] = {}
         left: list[Stretch] = []
         for first, last in stretches:
@@ -282,9 +282,9 @@ class Search:
         # Where a body comes to float, room is exacter than forces that vanish all together.
         ways = [(first, last), (last, first)]
         ways.sort(key=lambda way: not self._equations[way[0].active].floats)
-        value = self._exit(*ways[0])
+        value = self.exit(*ways[0])
         if value is None:
-            value = self._exit(*ways[1])
+            value = self.exit(*ways[1])
         if value is None:
             return False
         self._hints[first.value, last.value] = value
@@ -335,8 +335,11 @@ class Search:
             found = gauges_at(Stretches.at_points(equations, z, numbers))
             return np.stack([gauge.first for gauge in found], axis=1), good
 
-    def _exit(self, near: Point, far: Point) -> float | None:
-        """Value at which the first gauge of one end's set vanishes on the way to the other."""
+    def exit(self, near: Point, far: Point) -> float | None:
+        """Return the value at which a set is left on the way to another, None if it is not found.
+
+        There the first gauge of the near end's set vanishes.
+        """
         equations = self._equations[near.active]
         values = np.linspace(near.value, far.value, FOLLOW.sections)
         found = self._sections(equations, values, near.z)

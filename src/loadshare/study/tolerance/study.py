@@ -17,7 +17,7 @@ import numpy as np
 from loadshare.case import Case, Study
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
-from loadshare.job.machine import ENGINES
+from loadshare.job.engines import ENGINES
 from loadshare.job.positions import wanted_positions
 from loadshare.settings import CERTIFY, JOB, TOLERANCE
 from loadshare.study.positions import loaded
@@ -314,12 +314,13 @@ def _worst(folder: Folder, kinds: Sequence[str]) -> tuple[WorstCase, ...]:
             for one in believed:
                 check_worst(folder.job.solver, one, str(folder.path / WORST_FILE))
             return believed
-    found = tuple(_searched(folder, kinds))
+    found = tuple(sought(folder, kinds))
     folder.keep_worst([asdict(one) for one in found])
     return found
 
 
-def _searched(folder: Folder, kinds: Sequence[str]) -> Iterator[WorstCase]:
+def sought(folder: Folder, kinds: Sequence[str]) -> Iterator[WorstCase]:
+    """Search the worst case of every kind of Ω, from the worst samples on."""
     solver, seed = folder.job.solver, folder.job.settings["seed"]
     for kind in kinds:
         values = np.nan_to_num(folder.column(f"{kind}.{SYSTEM}"), nan=-np.inf)

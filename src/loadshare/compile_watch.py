@@ -1,0 +1,119 @@
+"""What the log tells of compiling: that it goes on, for how long, and that it could not be kept."""
+
+from __future__ import annotations
+
+import logging
+import threading
+import time
+from typing import Any
+
+log = logging.getLogger("loadshare")
+
+PATIENCE = 1.0
+"""Seconds after which compiling is told; small functions are done by then."""
+AGAIN = 30.0
+"""Seconds after which it is told again that compiling goes on."""
+PREFIX = "Compiling"
+"""First word of every message that tells of compiling."""
+_FIRST = (
+    "the first use of this version here takes one to three minutes of processor time; later ones "
+    "find the compiled kernel on disk"
+)
+
+
+class Watch:
+    """Tells while something is compiled, after a moment and then again and again.
+
+    Attributes
+    ----------
+    complained : bool
+        Whether it was said that what is compiled is lost at the end.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._depth = 0
+        self._begun = 0.0
+        self._spent = 0.0
+        self._attached = False
+        self._teller: threading.Thread | None = None
+        self.complained = False
+
+    def attach(self) -> None:
+        """Listen to Numba; once."""
+        with self._lock:
+            if self._attached:
+                return
+            self._attached = True
+        from numba.core import event
+
+        outer = self
+
+        class Listener(event.Listener):
+            def on_start(self, event: Any) -> None:
+                outer.started()
+
+            def on_end(self, event: Any) -> None:
+                outer.ended()
+
+        event.register("numba:compile", Listener())
+
+    def started(self) -> None:
+        """One more function is being compiled."""
+        with self._lock:
+            self._depth += 1
+            if self._depth > 1:
+                return
+            self._begun = time.monotonic()
+            if self._teller is None:
+                self._teller = threading.Thread(target=self._tell, daemon=True)
+                self._teller.start()
+
+    def ended(self) -> None:
+        """One is done."""
+        with self._lock:
+            self._depth -= 1
+            if self._depth == 0:
+                self._spent += time.monotonic() - self._begun
+
+    def not_kept(self, why: str) -> None:
+        """Say once that what was compiled is lost at the end."""
+        with self._lock:
+            if self.complained:
+                return
+            self.complained = True
+        log.warning("%s: what was compiled could not be kept (%s).", PREFIX, why)
+
+    def wait(self, seconds: float) -> None:
+        """Wait until the last word on what was compiled is said, for so long at most."""
+        teller = self._teller
+        if teller is not None:
+            teller.join(seconds)
+
+    def _elapsed(self) -> float:
+        running = time.monotonic() - self._begun if self._depth else 0.0
+        return self._spent + running
+
+    def _tell(self) -> None:
+        """Run beside the compiler until nothing was compiled for a moment."""
+        told = False
+        idle = 0
+        following = PATIENCE
+        while idle < 2:
+            time.sleep(PATIENCE)
+            with self._lock:
+                elapsed, busy = self._elapsed(), self._depth > 0
+            idle = 0 if busy else idle + 1
+            if busy and elapsed >= following:
+                following = AGAIN if not told else following + AGAIN
+                text = f"{elapsed:.0f} s so far" if told else _FIRST
+                told = True
+                log.warning("%s: %s", PREFIX, text)
+        with self._lock:
+            self._teller = None
+            elapsed, self._spent = self._spent, 0.0
+        if told:
+            log.warning("%s: done after %.0f s", PREFIX, elapsed)
+
+
+watch = Watch()

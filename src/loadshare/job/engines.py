@@ -1,0 +1,99 @@
+"""Which engine solves: the compiled one, where that is worth while and can be, or NumPy's."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from importlib import import_module
+
+from loadshare import compilation
+from loadshare.settings import JOB
+from loadshare.solver.hot import vectorised
+from loadshare.solver.hot.exchange import Engine
+
+ENGINES = ("auto", "compiled", "vectorised")
+COMPILED = (
+    "loadshare.solver.hot.compiled",
+    "loadshare.solver.hot.products",
+    "loadshare.solver.hot.touching",
+    "loadshare.certify.bound.kernel",
+)
+"""What a quick answer calls, all of which must be there."""
+KERNELS = (
+    ("loadshare.solver.hot.compiled", "_settle_all"),
+    ("loadshare.certify.bound.kernel", "find_all"),
+    ("loadshare.certify.bound.kernel", "bound_all"),
+)
+"""What takes long to compile of all that answers a case; the rest takes a moment."""
+
+
+def engine_named(name: str, count: int) -> Engine:
+    """Return an engine by name.
+
+    Parameters
+    ----------
+    name : {"auto", "compiled", "vectorised"}
+        "auto" compiles from a few thousand equilibria on. Where nothing can be compiled, or kept,
+        the vectorised one comes in place of the compiled one.
+    count : int
+        Equilibria to solve.
+    """
+    if name not in ENGINES:
+        raise ValueError(f"unknown engine {name!r}; allowed: {', '.join(ENGINES)}")
+    if name == "vectorised" or (name == "auto" and count <= JOB.few):
+        return vectorised.settle
+    return _compiled() or vectorised.settle
+
+
+@dataclass(slots=True)
+class Tally:
+    """What was solved in this process by those who solve case by case.
+
+    Attributes
+    ----------
+    equilibria : int
+    """
+
+    equilibria: int = 0
+
+
+tally = Tally()
+
+
+def engine_at_hand(name: str, count: int) -> Engine:
+    """Return an engine by name, for those who solve case by case.
+
+    Parameters
+    ----------
+    name : {"auto", "compiled", "vectorised"}
+        "auto" is the compiled one where that takes no compiling: once it was used in this process,
+        or once so many equilibria were solved that loading it from disk is worth while.
+    count : int
+        Equilibria to solve.
+    """
+    if name != "auto":
+        return engine_named(name, count)
+    tally.equilibria += count
+    if COMPILED[0] not in sys.modules and tally.equilibria <= JOB.loading:
+        return vectorised.settle
+    try:
+        needed = [getattr(import_module(module), name) for module, name in KERNELS]
+        from loadshare.solver.hot import compiled
+    except Exception:  # noqa: BLE001 -- those who ask for the compiled one are told
+        return vectorised.settle
+    return compiled.settle if compilation.at_hand(*needed) else vectorised.settle
+
+
+def _compiled() -> Engine | None:
+    """Return the compiled engine; None, with a word in the log, where it cannot be used."""
+    try:
+        for name in COMPILED:
+            import_module(name)
+    except Exception as error:  # noqa: BLE001 -- whatever it is, there is another engine
+        compilation.give_up(compilation.words_of(error))
+    if compilation.why_not() is None:
+        from loadshare.solver.hot import compiled
+
+        return compiled.settle
+    compilation.tell_why_not()
+    return None
