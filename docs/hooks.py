@@ -54,6 +54,7 @@ TABLES = (
 LIMITS = "<!-- limits -->"
 ALLOWED = (
     ("size of a file", "{bytes} bytes; a regular file, no pipe and no device"),
+    ("size of a file of results", "{result_bytes} bytes"),
     ("files that extend one another", "{files}"),
     ("tables and lists within one another", "{depth}"),
     ("elements of a section, entries of a list", "{entries}"),
@@ -61,7 +62,8 @@ ALLOWED = (
     ("a number with its unit", "0, or {smallest:g} to {largest:g} in SI units"),
     ("a unit", "{unit} characters, exponents of up to {power:g}"),
     ("positions of a mesh cycle", "{positions}"),
-    ("steps of a march or a sweep", "{steps}"),
+    ("steps of a march", "{steps}"),
+    ("points of a sweep", "{points}"),
     ("revolutions of a march", "{revolutions:g}"),
 )
 """What a case file may hold, in words; the numbers are those of the settings."""

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import re
-import stat
 import tomllib
 from collections.abc import Mapping
 from dataclasses import replace
@@ -19,6 +17,7 @@ from loadshare.case.origin import Origin
 from loadshare.case.revise import change, revise
 from loadshare.case.words import as_given
 from loadshare.errors import CaseError, Problem
+from loadshare.input import Unreadable, read_file
 from loadshare.outside import OUTSIDE
 from loadshare.settings import ALLOWED
 
@@ -186,7 +185,8 @@ def read_toml(path: FilePath) -> dict[str, Any]:
         If it cannot be read or is not TOML.
     """
     try:
-        data = tomllib.loads(_text(path))
+        text = read_file(path, ALLOWED.bytes).decode("utf-8")
+        data = tomllib.loads(text.replace("\r\n", "\n"))
     except tomllib.TOMLDecodeError as error:
         match = _PLACE.fullmatch(str(error))
         what, where = match.groups() if match else (str(error), "an unknown place")
@@ -195,7 +195,7 @@ def read_toml(path: FilePath) -> dict[str, Any]:
         why = f"is not UTF-8 text at byte {error.start}"
     except OSError as error:
         why = (error.strerror or "cannot be read").lower()
-    except _CannotBe as error:
+    except Unreadable as error:
         why = str(error)
     except RecursionError:
         why = _DEEP
@@ -217,23 +217,3 @@ def _depth(data: object) -> int:
         layer = [v for part in inner for v in (part.values() if isinstance(part, dict) else part)]
         depth += bool(inner)
     return depth
-
-
-class _CannotBe(Exception):  # noqa: N818 -- told as a problem, never raised to a user
-    """Why a file cannot be a case file."""
-
-
-def _text(path: FilePath) -> str:
-    """Text of a regular file that is not too long."""
-    with open(path, "rb", opener=_without_waiting) as file:
-        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-            raise _CannotBe("is not a regular file")
-        content = file.read(ALLOWED.bytes + 1)
-    if len(content) > ALLOWED.bytes:
-        raise _CannotBe(f"is larger than {ALLOWED.bytes // 2**20} MiB")
-    return content.decode("utf-8").replace("\r\n", "\n")
-
-
-def _without_waiting(path: str, flags: int) -> int:
-    """Open a file at once, though it be a pipe that nobody writes."""
-    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))

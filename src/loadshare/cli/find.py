@@ -10,6 +10,8 @@ import typer
 
 from loadshare.cli.exits import UNUSABLE, fail
 from loadshare.cli.files import keep_inputs
+from loadshare.input import Unreadable, read_file
+from loadshare.settings import ALLOWED
 
 _KIND = re.compile(r"""^kind\s*=\s*["'](helicoid|face-gear|law)["']""", re.MULTILINE)
 
@@ -61,8 +63,8 @@ def _meant_by(path: Path) -> list[Path]:
 def _of_another_kind(file: Path) -> bool:
     """Whether a file says that it is a pair or a law, which cases name and which are no cases."""
     try:
-        return _KIND.search(file.read_text(encoding="utf-8")) is not None
-    except (OSError, UnicodeDecodeError):
+        return _KIND.search(read_file(file, ALLOWED.bytes).decode("utf-8")) is not None
+    except (OSError, Unreadable, UnicodeDecodeError):
         return False  # to be reported like any other bad case
 
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from loadshare.errors import Problem, ResultError
+from loadshare.input import Unreadable, read_file
 from loadshare.results.dataset import array_differences
 from loadshare.results.digest import is_sealed
 from loadshare.results.reading import AGAIN, read_document
 from loadshare.results.writing import DOCUMENT
+from loadshare.settings import ALLOWED
 
 if TYPE_CHECKING:
     from loadshare.results.result import Result
@@ -40,9 +43,12 @@ def load_result(path: str | Path) -> Result:
     """
     path = Path(path)
     try:
+        content = read_file(path, ALLOWED.result_bytes)
         if path.suffix == ".json":
-            return read_document(path.read_text(encoding="utf-8"), str(path))[0]
-        return _read_netcdf(path)
+            return read_document(content.decode("utf-8"), str(path))[0]
+        return _read_netcdf(path, content)
+    except Unreadable as error:
+        raise _unread(path, str(error)) from error
     except OSError as error:
         why = f"cannot be read: {(error.strerror or str(error)).lower()}"
         raise _unread(path, why) from error
@@ -55,18 +61,16 @@ def _unread(path: Path, why: str = "holds no result of loadshare") -> ResultErro
     return ResultError([Problem(str(path), "", "", why)])
 
 
-def _read_netcdf(path: Path) -> Result:
+def _read_netcdf(path: Path, content: bytes) -> Result:
     """Load the result, and compare the arrays beside it with its own."""
     import xarray as xr
 
-    if not is_sealed(path):
+    if not is_sealed(content):
         why = "holds no result of loadshare, or one that was changed: it lacks its digest"
         raise ResultError([Problem(str(path), "", "", why, hint=AGAIN)])
     try:
-        with xr.open_dataset(path, engine="h5netcdf") as file:
+        with xr.open_dataset(BytesIO(content), engine="h5netcdf") as file:
             arrays = file.load()
-    except FileNotFoundError:
-        raise
     except (OSError, ValueError, KeyError, TypeError, RuntimeError) as error:
         why = "holds no result of loadshare: it is not a netCDF file"
         raise _unread(path, why) from error

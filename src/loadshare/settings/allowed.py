@@ -10,6 +10,8 @@ class Allowed(NamedTuple):
 
     bytes: int = 16 * 2**20
     """Size of a file."""
+    result_bytes: int = 2**30
+    """Size of a file that holds a result."""
     files: int = 20
     """Files that extend one another."""
     depth: int = 20
@@ -29,7 +31,9 @@ class Allowed(NamedTuple):
     positions: int = 100_000
     """Positions of a mesh cycle."""
     steps: int = 1_000_000
-    """Steps of a march or a sweep."""
+    """Steps of a march."""
+    points: int = 20_000
+    """Points of a sweep, each of which keeps its result."""
     revolutions: float = 1e6
     """Revolutions of a march: beyond, the angle itself is rounded too coarsely."""
     samples: int = 1_000_000_000

@@ -15,6 +15,7 @@ from loadshare.case.quantity import NUMBER, Dimension, as_text
 from loadshare.case.units import si_factor
 from loadshare.case.words import did_you_mean
 from loadshare.errors import CaseError, Problem
+from loadshare.settings import ALLOWED
 
 STUDY = "study"
 GRID = 'a grid "0 um:12 um:61" (first, last, how many), or a list of values with units'
@@ -257,7 +258,10 @@ def grid(given: object, place: str, allowed: str = GRID) -> tuple[tuple[float, .
     if isinstance(given, str) and ":" in given:
         first, last, *rest = given.split(":")
         items: list[object] = [first, last]
-        count = int(rest[0]) if len(rest) == 1 and rest[0].strip().isdigit() else 0
+        points = rest[0].strip() if len(rest) == 1 else ""
+        if points.isdecimal() and len(points) > len(str(ALLOWED.points)):
+            raise too_many(place, points)
+        count = int(points) if points.isdecimal() else 0
         if count < 2:
             raise _unusable(place, "has no number of points from 2 on", allowed, given=given)
     elif isinstance(given, str):
@@ -288,6 +292,13 @@ def grid(given: object, place: str, allowed: str = GRID) -> tuple[tuple[float, .
         low, high = numbers
         numbers = [low + (high - low) * k / (count - 1) for k in range(count - 1)] + [high]
     return tuple(numbers), unit
+
+
+def too_many(place: str, points: object) -> CaseError:
+    """What is wrong with a grid of more points than a sweep may have."""
+    most = f"up to {ALLOWED.points:,} points in all"
+    hint = "solve_many and [study] of kind tolerance take any number of samples, and keep less"
+    return _unusable(place, "is too fine", most, hint, f"{points} points")
 
 
 def _plain(item: object) -> object:

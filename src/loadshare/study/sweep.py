@@ -15,7 +15,16 @@ from loadshare.errors import CaseError, Problem, Refused
 from loadshare.job import Progress, solve
 from loadshare.output import csv_of, write_whole
 from loadshare.pictures import picture
-from loadshare.study.parameter import STUDY, Parameter, applied, grid, named, read_parameter
+from loadshare.settings import ALLOWED
+from loadshare.study.parameter import (
+    STUDY,
+    Parameter,
+    applied,
+    grid,
+    named,
+    read_parameter,
+    too_many,
+)
 from loadshare.study.positions import loaded
 from loadshare.train import build_train
 
@@ -186,10 +195,12 @@ def sweep(
         chosen.append(read_parameter(case, key, unit))
         grids.append(values)
     _check_apart(chosen)
+    total = prod(len(values) for values in grids)
+    if total > ALLOWED.points:
+        raise too_many("sweep", total)
     points: list[Point] = []
     unusable: list[CaseError] = []
     near: Case | None = None
-    total = prod(len(values) for values in grids)
     for values in product(*grids):
         try:
             changed = applied(case, chosen, values)

@@ -1,0 +1,41 @@
+"""Files that are read: regular ones, up to a size, so that no pipe or device is waited for."""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+
+class Unreadable(Exception):  # noqa: N818 -- told as a problem, never raised to a user
+    """Why a file is none that can be read."""
+
+
+def read_file(path: Path, most: int) -> bytes:
+    """Return what a regular file holds.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+    most : int
+        Bytes that it may hold.
+
+    Raises
+    ------
+    OSError
+        If it cannot be opened or read.
+    Unreadable
+        If it is no regular file, or larger.
+    """
+    with open(path, "rb", opener=_without_waiting) as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise Unreadable("is not a regular file")
+        content = file.read(most + 1)
+    if len(content) > most:
+        raise Unreadable(f"is larger than {most // 2**20} MiB")
+    return content
+
+
+def _without_waiting(path: str, flags: int) -> int:
+    """Open a file at once, though it be a pipe that nobody writes."""
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
