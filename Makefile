@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS = 1
 export NO_MKDOCS_2_WARNING = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-all lint format types layers docs docs-serve cases bench stress reproduce clean
+.PHONY: help run test test-all lint format types layers docs docs-serve cases bench stress reproduce fuzz clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  %-12s %s\n", $$1, $$2}'
@@ -67,6 +67,10 @@ stress: $(VENV)/.bench ## try every method on every family (docs/evidence)
 
 reproduce: $(VENV)/.run ## compute the seed paper's figures (docs/reproduction.md)
 	$(BIN)/python -m benchmarks.reproduction
+
+N ?= 10000
+fuzz: $(VENV)/.dev ## try N inputs that nobody meant: no traceback, no hang, no wrong figure
+	$(BIN)/python -m tests.fuzz --count $(N) --processes $(WORKERS)
 
 clean: ## remove what was built
 	rm -rf $(VENV) site dist build .pytest_cache .mypy_cache .ruff_cache

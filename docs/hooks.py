@@ -61,6 +61,7 @@ ALLOWED = (
     ("a name", "1 to {name} printable characters"),
     ("a number with its unit", "0, or {smallest:g} to {largest:g} in SI units"),
     ("a unit", "{unit} characters, exponents of up to {power:g}"),
+    ("teeth of a gear", "{teeth}"),
     ("positions of a mesh cycle", "{positions}"),
     ("steps of a march", "{steps}"),
     ("points of a sweep", "{points}"),

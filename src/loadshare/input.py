@@ -28,9 +28,11 @@ def read_file(path: Path, most: int) -> bytes:
         If it is no regular file, or larger.
     """
     with open(path, "rb", opener=_without_waiting) as file:
-        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+        known = os.fstat(file.fileno())
+        if not stat.S_ISREG(known.st_mode):
             raise Unreadable("is not a regular file")
-        content = file.read(most + 1)
+        # It may grow meanwhile; room is made for what is there.
+        content = file.read(min(known.st_size, most) + 1)
     if len(content) > most:
         raise Unreadable(f"is larger than {most // 2**20} MiB")
     return content

@@ -12,6 +12,8 @@ from loadshare.errors import Problem
 
 CHANGES = "changes"
 """Stands for the file of what `Case.replace` changes."""
+LONGEST = 255
+"""Characters that a file system lets a name have."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +49,8 @@ class Origin:
         key, given : str
             Where, and how.
         """
+        if "\0" in str(named) or any(len(part) > LONGEST for part in named.parts):
+            return Problem(file, key, given, "is no name of a file", "the name of a file")
         folder = FilePath(self.file).parent
         if self.outside or file == CHANGES or named.resolve().is_relative_to(folder.resolve()):
             return None

@@ -229,7 +229,11 @@ class _Single:
         return Residual(value, unit, math.inf if math.isnan(ratio) else ratio, where)
 
     def floats(self) -> Mapping[str, FloatState]:
-        return {} if self.fault else float_states(self.state, self.undetermined, CERTIFY.band)
+        if self.fault:
+            return {}
+        # What is claimed may be of any size.
+        with np.errstate(all="ignore"):
+            return float_states(self.state, self.undetermined, CERTIFY.band)
 
     def bound(self, rigorous: bool) -> Bound:
         if self.fault:

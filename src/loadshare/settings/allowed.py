@@ -28,6 +28,8 @@ class Allowed(NamedTuple):
     """Number other than zero, in SI units: its cube is a number still."""
     largest: float = 1e40
     """Number in SI units: likewise."""
+    teeth: int = 100_000
+    """Teeth of a gear."""
     positions: int = 100_000
     """Positions of a mesh cycle."""
     steps: int = 1_000_000

@@ -172,6 +172,8 @@ def _largest(
 
 def _steepest(near: list[Slope], side: str) -> Slope:
     """Return the largest share, its derivative and its error; of equals, the largest beyond."""
+    # Where nothing is carried there are no shares.
+    near = [slope for slope in near if not np.isnan(slope.share)]
     if not near:
         return Slope(np.nan, np.nan, np.nan)
     top = max(share for share, _, _ in near)

@@ -12,7 +12,7 @@ from loadshare.tooth.cylindrical.checks import (
     pressure_angle_check,
 )
 from loadshare.tooth.cylindrical.gear import HelicoidGear
-from loadshare.tooth.face.flank import pointing_limit, undercut_limit
+from loadshare.tooth.face.flank import NoLimitError, pointing_limit, undercut_limit
 from loadshare.tooth.face.gear import FaceGear, Shaper
 from loadshare.tooth.face.pair import FaceGearPair, FaceMisalignment
 from loadshare.tooth.geometry.involute import inv
@@ -57,7 +57,11 @@ def face_gear_pair(
     refuse(gear_problems(pinion, "driver") + _value_problems(gear))
     refuse(_partner_problems(pinion, gear.shaper))
     pair = FaceGearPair(pinion, gear, misalignment or FaceMisalignment())
-    refuse((*_limit_problems(gear), *_mesh_problems(pair)))
+    try:
+        refuse((*_limit_problems(gear), *_mesh_problems(pair)))
+    except NoLimitError:
+        what = "is none with which the shaper cuts teeth"
+        refuse([problem("driven.addendum", gear.addendum, what, "a smaller one")])
     refuse(meeting_problems(pair))
     return pair
 

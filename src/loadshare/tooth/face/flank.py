@@ -143,7 +143,7 @@ def undercut_limit(gear: FaceGear) -> float:
         return float(regularity(flank, np.array(tip), np.array(flank.side * angle)))
 
     # Near Φ = 0 the margin is negative; it grows without bound towards 90°.
-    angle = _root(margin, 1e-6, 0.5 * math.pi - 1e-6)
+    angle = root_of(margin, 1e-6, 0.5 * math.pi - 1e-6)
     point = flank.patch(np.array(tip), np.array(flank.side * angle), 0.0).point
     return float(gear.blank(point)[0])
 
@@ -167,7 +167,7 @@ def pointing_limit(gear: FaceGear) -> float:
 
     # The plane section is within a percent or two of the answer.
     planar = planar_pointing_limit(gear)
-    return _root(margin, max(undercut_limit(gear), 0.9 * planar), 1.2 * planar)
+    return root_of(margin, max(undercut_limit(gear), 0.9 * planar), 1.2 * planar)
 
 
 def tip_half_angle(flank: FaceFlank, length: float) -> float:
@@ -192,8 +192,22 @@ def planar_pointing_limit(gear: FaceGear) -> float:
 
     # With depth > 1 the left side falls before it rises; the root sought is on the rising branch.
     lowest = math.acos(1.0 / depth) if depth > 1.0 else 0.0
-    return gear.axial_scale / math.cos(_root(margin, lowest, 0.5 * math.pi - 1e-6))
+    return gear.axial_scale / math.cos(root_of(margin, lowest, 0.5 * math.pi - 1e-6))
 
 
-def _root(function: Callable[[float], float], low: float, high: float) -> float:
+class NoLimitError(ValueError):
+    """Teeth of such proportions have no such limit."""
+
+
+def root_of(function: Callable[[float], float], low: float, high: float) -> float:
+    """Return the zero of a function between two values.
+
+    Raises
+    ------
+    NoLimitError
+        If there is none.
+    """
+    ends = function(low), function(high)
+    if not min(ends) <= 0.0 <= max(ends):
+        raise NoLimitError
     return float(brentq(function, low, high, xtol=1e-14, rtol=1e-14))

@@ -10,14 +10,13 @@ from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from loadshare.settings import TEETH
 from loadshare.tooth.cylindrical.body import HelicoidBody
 from loadshare.tooth.cylindrical.flank import HelicoidFlank
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.face.body import FaceBody
-from loadshare.tooth.face.flank import FaceFlank
+from loadshare.tooth.face.flank import FaceFlank, root_of
 from loadshare.tooth.face.gear import FaceGear
 from loadshare.tooth.geometry.body import Array, Placement, about_y
 from loadshare.tooth.geometry.gap import Extents
@@ -128,7 +127,7 @@ class FaceGearPair(GearPair):
             return float(gear.blank(point)[1]) - gear.tip_depth
 
         tip = gear.shaper.tip_roll
-        first = self.pinion_roll(float(brentq(depth, -2.0 * tip, tip, xtol=1e-14)))
+        first = self.pinion_roll(root_of(depth, -2.0 * tip, tip))
         return first, self.pinion.tip_roll
 
     @cached_property

@@ -9,6 +9,7 @@ from pydantic import Field, Strict
 
 from loadshare.case.element import Element, Rule
 from loadshare.case.quantity import ANGLE, LENGTH, TORQUE, Angle, Dimension, Length, Quantity
+from loadshare.settings import ALLOWED
 from loadshare.tooth.analysis.ltca import POINTS
 
 PRESSURE = Dimension("Pa", "a pressure", "206 GPa")
@@ -18,9 +19,9 @@ Amount = Annotated[Quantity, LENGTH.bounded(at_least=0)]
 Steep = Annotated[Quantity, ANGLE.bounded(above=0)]
 Modulus = Annotated[Quantity, PRESSURE.bounded(above=0)]
 Load = Annotated[Quantity, TORQUE.bounded(above=0)]
-Number = Annotated[float, Strict(), Field(allow_inf_nan=False)]
-Teeth = Annotated[int, Strict(), Field(ge=4)]
-Positions = Annotated[int, Strict(), Field(ge=1)]
+Number = Annotated[float, Strict(), Field(ge=-1e3, le=1e3, allow_inf_nan=False)]
+Teeth = Annotated[int, Strict(), Field(ge=4, le=ALLOWED.teeth)]
+Positions = Annotated[int, Strict(), Field(ge=1, le=ALLOWED.positions)]
 
 ABOUT = ("title", "source", "notes", "assumed")
 """The keys that say something about a pair and nothing about its teeth."""

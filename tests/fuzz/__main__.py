@@ -1,0 +1,72 @@
+"""Try inputs that nobody meant: ``python -m tests.fuzz --count 100000 --processes 2``.
+
+Prints what must not happen, with the command to try it again; leaves with 1 if anything did.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import resource
+import shutil
+import sys
+import time
+from collections import Counter
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import typer
+from tests.fuzz.trial import Trial, trial
+
+MEMORY = 2 << 30
+"""Bytes that no input may take."""
+
+
+def _alone(seed: int, number: int, keep: Path | None = None) -> Trial:
+    resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, resource.RLIM_INFINITY))
+    with TemporaryDirectory() as above:
+        # Not in the folder of temporary files itself: one may ask for what is above.
+        folder = Path(above) / "in"
+        folder.mkdir()
+        found = trial(seed, number, folder)
+        if keep is not None:
+            shutil.copytree(folder, keep, dirs_exist_ok=True)
+    return found
+
+
+def _run() -> int:
+    parser = argparse.ArgumentParser(prog="python -m tests.fuzz", description=__doc__)
+    parser.add_argument("--count", type=int, default=1000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--first", type=int, default=0, help="number of the first input")
+    parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--keep", type=Path, help="write the input of --first here, and try it")
+    asked = parser.parse_args()
+    if asked.keep is not None:
+        typer.echo(_alone(asked.seed, asked.first, asked.keep))
+        return 0
+    begun, told, faults, codes = time.monotonic(), time.monotonic(), 0, Counter[str]()
+    seen: set[str] = set()
+    with ProcessPoolExecutor(asked.processes) as pool:
+        numbers = range(asked.first, asked.first + asked.count)
+        every = pool.map(partial(_alone, asked.seed), numbers, chunksize=20)
+        for done, found in enumerate(every, 1):
+            codes[f"{found.kind} {found.code}"] += 1
+            if found.fault:
+                faults += 1
+                if found.fault not in seen:
+                    seen.add(found.fault)
+                    again = f"--seed {found.seed} --first {found.number} --keep FOLDER"
+                    typer.echo(f"{found.fault}\n    {' '.join(found.words)[:200]}\n    {again}")
+            if time.monotonic() - told > 10.0:
+                told = time.monotonic()
+                typer.echo(f"{done:,} tried, {faults} faults, {told - begun:.0f} s")
+    typer.echo(f"{asked.count:,} tried in {time.monotonic() - begun:.0f} s: {faults} faults")
+    typer.echo(", ".join(f"{kind}: {count}" for kind, count in sorted(codes.items())))
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(_run())

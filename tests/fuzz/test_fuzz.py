@@ -1,0 +1,64 @@
+"""A slice of the inputs that nobody meant; ``make fuzz N=100000`` tries as many as one likes."""
+
+import os
+import stat
+
+import pytest
+from tests.cli.conftest import on_a_screen_of
+from tests.fuzz.trial import trial
+
+import loadshare as ls
+from loadshare.outside import OUTSIDE
+
+
+@pytest.mark.parametrize("part", range(8))
+def test_no_input_ends_in_anything_but_words(tmp_path, part, monkeypatch):
+    """No traceback, no warning, no hang, no figure that is no number, no result that fails."""
+    # As for anybody else, who may not read files outside of the case's folder.
+    monkeypatch.delenv(OUTSIDE)
+    # Beside other tests, and where code is compiled anew, all takes longer.
+    monkeypatch.setattr("tests.fuzz.trial.SECONDS", 100.0)
+    faults = []
+    for number in range(40 * part, 40 * part + 40):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        found = trial(1, number, folder)
+        if found.fault:
+            faults.append(found)
+    assert faults == []
+
+
+def test_the_harness_finds_what_must_not_be(tmp_path, monkeypatch):
+    """A check that cannot fail would prove nothing."""
+    from loadshare.cli import run
+
+    def wrong(*_: object) -> None:
+        raise ZeroDivisionError("of a test")
+
+    monkeypatch.setattr(run, "_solved", wrong)
+    monkeypatch.setattr("tests.fuzz.trial.SHARES", ("words",))
+    faults = set()
+    for number in range(60):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        faults.add(trial(1, number, folder).fault.partition(" (")[0])
+    assert "ZeroDivisionError: of a test" in faults
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes on this system")
+def test_pipes_and_devices_are_not_waited_for(tmp_path):
+    for name in ("result.json", "result.nc"):
+        os.mkfifo(tmp_path / name)
+        assert stat.S_ISFIFO((tmp_path / name).stat().st_mode)
+        with pytest.raises(ls.ResultError, match="is not a regular file"):
+            ls.load_result(tmp_path / name)
+    os.mkfifo(tmp_path / "case.toml")
+    found = on_a_screen_of(80)("check", tmp_path)
+    assert found.exit_code == 2
+    assert "is not a regular file" in found.output
+
+
+def test_a_name_that_is_too_long_is_told():
+    found = on_a_screen_of(80)("check", "a" * 5000)
+    assert found.exit_code == 2
+    assert "file name too long" in found.output

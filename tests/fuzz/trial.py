@@ -1,0 +1,355 @@
+"""One input that nobody meant, given to the command: what must never happen, and what did."""
+
+from __future__ import annotations
+
+import json
+import math
+import shutil
+import signal
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
+from dataclasses import dataclass
+from functools import cache
+from io import StringIO
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+import numpy as np
+from tests.fuzz.mutations import (
+    NAMES,
+    NUMBERS,
+    UNITS,
+    Random,
+    garbled,
+    mutated,
+    pick,
+    rescaled,
+    seeds,
+    toml,
+)
+
+import loadshare as ls
+from loadshare.cli.main import main
+from loadshare.settings import ALLOWED
+from loadshare.tooth.pair.file import load_pair
+
+CASES = Path(__file__).parents[2] / "cases"
+SECONDS = 10.0
+"""Longer is a hang."""
+SETTINGS = (
+    "operating.torque",
+    "operating.power",
+    "rings.4.float",
+    "rings.*.float",
+    "meshes.4-6.backlash",
+    "errors.6.installation",
+    "gears.10.support",
+    "splines.4.bound",
+    "march.steps",
+    "title",
+    "x",
+)
+
+
+STUDIES: dict[str, dict[str, Any]] = {
+    "sweep": {"kind": "sweep", "over": {"rings.4.float": "0 um:12 um:3"}, "positions": [1]},
+    "critical": {
+        "kind": "critical",
+        "keys": ["rings.4.float", "rings.5.float"],
+        "start": "4 um",
+        "stop": "8 um",
+        "positions": [1],
+    },
+    "sensitivity": {"kind": "sensitivity", "keys": ["rings.4.float"], "positions": [2]},
+    "march": {"kind": "march", "gear": "4", "revolutions": 0.1, "steps": 3},
+    "compare": {"kind": "compare"},
+    "fit": {"kind": "fit", "unknowns": {"rings.4.float": ["0 um", "9 um"]}, "starts": 1},
+    "tolerance": {
+        "kind": "tolerance",
+        "samples": 16,
+        "seed": 1,
+        "limit": 1.2,
+        "inputs": {
+            "rings.4.float": {"distribution": "uniform", "low": "0 um", "high": "9 um"},
+            "rings.5.float": {
+                "distribution": "truncated normal",
+                "mean": "4 um",
+                "deviation": "2 um",
+                "low": "0 um",
+                "high": "9 um",
+            },
+        },
+        "positions": [1],
+    },
+}
+"""Small studies of every kind."""
+MEASURED = {"strain": {"position": 1, "share": {"6-10": 1.02, "7-10": 0.98}, "uncertainty": 0.01}}
+COUNTS = {"samples", "steps", "starts", "indices"}
+
+
+class Hang(BaseException):
+    """It takes longer than anybody waits."""
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """An input and what became of it.
+
+    Attributes
+    ----------
+    kind : str
+        Of input: a key of `KINDS`.
+    seed, number : int
+        By which it is drawn again.
+    words : tuple of str
+        The command.
+    code : int
+        Exit code; −1 where something escaped.
+    fault : str
+        What must not happen; empty where nothing did.
+    """
+
+    kind: str
+    seed: int
+    number: int
+    words: tuple[str, ...]
+    code: int
+    fault: str
+
+
+@contextmanager
+def limited(seconds: float) -> Iterator[None]:
+    """Raise `Hang` after some seconds."""
+
+    def stop(number: int, frame: FrameType | None) -> None:
+        raise Hang
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def _command(words: tuple[str, ...]) -> tuple[int, str]:
+    """Exit code and output of a command in this process."""
+    said = StringIO()
+    try:
+        with redirect_stdout(said), redirect_stderr(said):
+            main(words)
+    except SystemExit as left:
+        code = left.code
+    return (code if isinstance(code, int) else 0 if code is None else 1), said.getvalue()
+
+
+def _judged(words: tuple[str, ...], folder: Path) -> tuple[int, str]:
+    """Exit code of a command, and what is wrong about it."""
+    code, said = _command(words)
+    if code not in (0, 1, 2):
+        return code, f"left with {code}"
+    if "Traceback" in said:
+        return code, f"a traceback: {said.strip().splitlines()[-1]}"
+    if code and not said.strip():
+        return code, "left without a word"
+    file = folder / "found.json"
+    if code == 0 and file.exists():
+        document = json.loads(file.read_text(encoding="utf-8"))
+        if not all(math.isfinite(x) for x in _figures(document)):
+            return code, "figures that are no numbers"
+        if not ls.load_result(file).passed:
+            return code, "a result that does not pass"
+    return code, ""
+
+
+def _figures(data: Any) -> Iterator[float]:
+    if isinstance(data, dict | list):
+        for item in data.values() if isinstance(data, dict) else data:
+            yield from _figures(item)
+    elif isinstance(data, float):
+        yield data
+
+
+@cache
+def _cases() -> list[tuple[Path, dict[str, Any]]]:
+    """Shipped cases but that of teeth, whose analysis may take its time."""
+    return [s for s in seeds(CASES) if s[0].parent.name != "pairs" and "geometry" not in s[0].name]
+
+
+def _case(random: Random, folder: Path) -> tuple[str, ...]:
+    """Write a case with some values changed."""
+    file, data = pick(random, _cases())
+    (folder / "case.toml").write_text(toml(mutated(random, data)), encoding="utf-8")
+    _lay_beside(file, folder)
+    return _solved(random, folder)
+
+
+def _rescaled(random: Random, folder: Path) -> tuple[str, ...]:
+    """Write a case with other numbers, such as one might mean."""
+    file, data = pick(random, _cases())
+    (folder / "case.toml").write_text(toml(rescaled(random, data)), encoding="utf-8")
+    _lay_beside(file, folder)
+    return _solved(random, folder)
+
+
+def _study(random: Random, folder: Path) -> tuple[str, ...]:
+    """Write studies with some values changed, and run one."""
+    name = pick(random, tuple(STUDIES))
+    asked = {"study": {name: STUDIES[name]}, "measured": MEASURED}
+    made = (rescaled if random.integers(2) else mutated)(random, asked)
+    for table in _tables(made):
+        for key in COUNTS & set(table):
+            if isinstance(table[key], int) and 20 < table[key] <= ALLOWED.samples:
+                # What is asked for may take hours.
+                table[key] = 20
+    text = toml({"extends": "limit_ring.toml", **made})
+    (folder / "case.toml").write_text(text, encoding="utf-8")
+    _lay_beside(CASES / "fgfbstts" / "limit_ring.toml", folder)
+    return ("study", str(folder / "case.toml"), name)
+
+
+def _tables(data: Any) -> Iterator[dict[str, Any]]:
+    if isinstance(data, dict):
+        yield data
+    for item in data.values() if isinstance(data, dict) else data:
+        if isinstance(item, dict | list):
+            yield from _tables(item)
+
+
+def _bytes(random: Random, folder: Path) -> tuple[str, ...]:
+    """Write a case with some bytes changed."""
+    file, _ = pick(random, _cases())
+    (folder / "case.toml").write_bytes(garbled(random, file.read_bytes()))
+    _lay_beside(file, folder)
+    return _solved(random, folder)
+
+
+def _lay_beside(file: Path, folder: Path) -> None:
+    """Put what a case may extend where it looks for it."""
+    for known in file.parent.glob("*.toml"):
+        shutil.copyfile(known, folder / known.name)
+
+
+def _solved(random: Random, folder: Path) -> tuple[str, ...]:
+    case = str(folder / "case.toml")
+    if random.integers(4) == 0:
+        return ("check", case)
+    return ("run", case, "--position", "1", "--json", str(folder / "found.json"))
+
+
+def _words(random: Random, folder: Path) -> tuple[str, ...]:
+    """Ask for what is nothing, of a case that is good."""
+    case = str(pick(random, _cases())[0])
+    value = f"{pick(random, NUMBERS)} {pick(random, UNITS)}"
+    if random.integers(3) == 0:
+        value = pick(random, NAMES)
+    key = pick(random, SETTINGS)
+    grid = f"{value}:{pick(random, NUMBERS)} {pick(random, UNITS)}:{pick(random, NUMBERS)}"
+    which = (
+        ("run", case, "--position", pick(random, NUMBERS)),
+        ("run", case, "--position", "1", "--set", f"{key}={value}"),
+        ("run", case, "--position", "1", "--set", f"{value}={key}"),
+        ("run", case, "--position", "1", "--tolerance", pick(random, NUMBERS)),
+        ("sweep", case, "--position", "1", "--set", f"{key}={grid}"),
+        ("sweep", case, "--position", "1", "--set", f"rings.4.float={grid}"),
+        ("critical", case, key, "--position", "1", "--from", value, "--to", pick(random, NUMBERS)),
+        ("check", case, pick(random, NAMES)),
+        ("run", pick(random, NAMES)),
+        (pick(random, NAMES), case),
+        ("schema", pick(random, NAMES)),
+        ("sensitivity", case, key, "--position", "1", "--with", f"{key}={value}"),
+        ("march", case, "--gear", pick(random, NAMES), "--revolutions", pick(random, NUMBERS)),
+        ("march", case, "--steps", "2", "--revolutions", "0.1", "--with", f"{key}={value}"),
+    )
+    return tuple(str(word).replace("\x00", "") for word in pick(random, which))
+
+
+def _pair(random: Random, folder: Path) -> tuple[str, ...]:
+    """Write tooth data with some values changed, of which a case is checked."""
+    _, data = pick(random, seeds(CASES / "fgfbstts" / "pairs"))
+    (folder / "pair.toml").write_text(toml(mutated(random, data)), encoding="utf-8")
+    return ("pair", str(folder / "pair.toml"))
+
+
+def _read(words: tuple[str, ...], folder: Path) -> tuple[int, str]:
+    """Read tooth data: they make two bodies, or are refused by name."""
+    try:
+        load_pair(words[1])
+    except ls.CaseError as error:
+        return 2, "" if str(error).strip() else "refused without a word"
+    return 0, ""
+
+
+_RESULTS: list[dict[str, Any]] = []
+
+
+def _result(random: Random, folder: Path) -> tuple[str, ...]:
+    """Write a result with some values changed, and its digest made anew."""
+    from loadshare.results.digest import DIGEST, digest_of
+
+    if not _RESULTS:
+        for name in ("limit_ring", "all_elements", "spline_clearance"):
+            found = ls.solve(CASES / "fgfbstts" / f"{name}.toml", positions=[1])
+            _RESULTS.append(json.loads(found.to_json()))
+    document = mutated(random, pick(random, _RESULTS))
+    if random.integers(2):
+        document[DIGEST] = digest_of(document)
+    (folder / "result.json").write_text(json.dumps(document), encoding="utf-8")
+    return ("result", str(folder / "result.json"))
+
+
+def _loaded(words: tuple[str, ...], folder: Path) -> tuple[int, str]:
+    """Load a result: it passes, or is refused by name."""
+    try:
+        found = ls.load_result(words[1])
+    except ls.ResultError as error:
+        return 2, "" if str(error).strip() else "refused without a word"
+    return 0, "" if found.passed else "a result that does not pass"
+
+
+KINDS: dict[str, Callable[[Random, Path], tuple[str, ...]]] = {
+    "case": _case,
+    "numbers": _rescaled,
+    "bytes": _bytes,
+    "study": _study,
+    "words": _words,
+    "pair": _pair,
+    "result": _result,
+}
+JUDGES = {"pair": _read, "result": _loaded}
+SHARES = (
+    *(("case",) * 6 + ("numbers",) * 3 + ("bytes",) * 3 + ("words",) * 3 + ("study",) * 3),
+    *(("pair",) * 2 + ("result",) * 2),
+)
+"""How often each kind is drawn."""
+
+
+def trial(seed: int, number: int, folder: Path) -> Trial:
+    """Draw an input and try it.
+
+    Parameters
+    ----------
+    seed, number : int
+    folder : pathlib.Path
+        Empty; what is written stays there.
+    """
+    random = np.random.default_rng([seed, number])
+    kind = pick(random, SHARES)
+    words = KINDS[kind](random, folder)
+    code, fault = -1, ""
+    try:
+        with chdir(folder), limited(SECONDS), warnings.catch_warnings():
+            warnings.simplefilter("error")
+            code, fault = JUDGES.get(kind, _judged)(words, folder)
+    except Hang:
+        fault = f"takes longer than {SECONDS:.0f} s"
+    except BaseException as error:  # noqa: BLE001 -- whatever escapes is what is looked for
+        trace = error.__traceback__
+        while trace is not None and trace.tb_next is not None:
+            trace = trace.tb_next
+        where = f"{trace.tb_frame.f_code.co_filename}:{trace.tb_lineno}" if trace else ""
+        fault = f"{type(error).__name__}: {str(error)[:200]} ({where})"
+    return Trial(kind, seed, number, words, code, fault)
