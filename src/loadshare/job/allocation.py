@@ -1,22 +1,32 @@
 """Memory of a block is kept for the next one (glibc).
 
-Blocks fill and drop arrays of some MiB each. Above a threshold glibc hands what is given back to
-the system at once; to fetch it anew, page by page, took a tenth of a batch. The threshold rises to
-the largest array that was ever given back, up to 32 MiB, and it keeps twice as much (mallopt(3),
-M_MMAP_THRESHOLD).
+Blocks fill and drop a hundred MiB of arrays. glibc hands what is given back to the system at once;
+to fetch it anew, page by page, took up to a tenth of a batch. How much it keeps for itself is told
+it by mallopt(3), once in a process.
 """
 
 from __future__ import annotations
 
+import ctypes
+import os
 from functools import cache
 
-import numpy as np
+from loadshare.settings import JOB
 
-LARGEST = (32 << 20) - (64 << 10)
-"""Bytes just below the largest threshold."""
+M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3
+"""What is set, as <malloc.h> numbers it."""
+OWN = "MALLOC_TRIM_THRESHOLD_"
+"""Environment variable by which a user says it, who then has the last word."""
 
 
 @cache
 def keep_freed_memory() -> None:
-    """Raise glibc's threshold; the array is never written and so takes no memory."""
-    np.empty(LARGEST, dtype=np.int8)
+    """Let glibc keep what blocks give back; other C libraries do as they like."""
+    if OWN in os.environ:
+        return
+    try:
+        mallopt = ctypes.CDLL(None).mallopt
+    except (AttributeError, OSError, TypeError):
+        return
+    mallopt(M_MMAP_THRESHOLD, JOB.allocated)
+    mallopt(M_TRIM_THRESHOLD, JOB.kept)

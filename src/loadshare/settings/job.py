@@ -27,6 +27,10 @@ class Job(NamedTuple):
     """Samples that are solved together, if every one has a few positions."""
     together: int = 65536
     """Equilibria that are solved together: half as many take a twentieth more time."""
+    allocated: int = 32 * 2**20
+    """Bytes of an array up to which its memory is used again: the most that glibc allows."""
+    kept: int = 128 * 2**20
+    """Bytes that are kept from block to block: with less, pages are fetched anew."""
     workers: int = 2
     """Threads; the compiled passes hold no lock."""
     recent: int = 16

@@ -256,23 +256,24 @@ class Search:
             ends = [(a.value, b.value, a.z, b.z) for a, b in group]
             holds = self._prove(self._equations[active], ends).holds
             failed = [s for s, good in zip(group, holds, strict=True) if not good]
+            self._look_at_ends(active, failed)
             left += [s for s in failed if not self._hidden(active, s)]
         return left
 
     def _hidden(self, active: WorkingSet, stretch: tuple[Point, Point]) -> bool:
         """Give up a stretch at both ends of which round-off alone leaves no enclosure."""
-        if any(self._is_sharp(active, point) for point in stretch):
+        if any(self._sharp[point.value] for point in stretch):
             return False
         self.gaps.append(Gap(*stretch, "round-off hides what holds its bodies"))
         return True
 
-    def _is_sharp(self, active: WorkingSet, point: Point) -> bool:
-        """Whether a point is enclosed by itself."""
-        if point.value not in self._sharp:
-            ends = [(point.value, point.value, point.z, point.z)]
-            enclosed = self._prove(self._equations[active], ends).enclosed
-            self._sharp[point.value] = bool(enclosed[0])
-        return self._sharp[point.value]
+    def _look_at_ends(self, active: WorkingSet, stretches: list[tuple[Point, Point]]) -> None:
+        """Tell of the ends of stretches whether each is enclosed by itself."""
+        ends = {p.value: (p.value, p.value, p.z, p.z) for s in stretches for p in s}
+        new = {value: end for value, end in ends.items() if value not in self._sharp}
+        if new:
+            enclosed = self._prove(self._equations[active], list(new.values())).enclosed
+            self._sharp |= dict(zip(new, enclosed.tolist(), strict=True))
 
     def _crossed(self, stretch: Stretch) -> bool:
         """Find and prove the change between two ends; on failure note where it may stand."""
