@@ -25,11 +25,12 @@ class Job(NamedTuple):
     """How many times as many samples it takes for that to be worth while."""
     block: int = 4096
     """Samples that are solved together, if every one has a few positions."""
-    together: int = 65536
-    """Equilibria that are solved together: half as many take a twentieth more time."""
+    together: int = 84 * 1024
+    """Equilibria that are solved together: three quarters of them take a fiftieth more time, and
+    with more the arrays of a case like the seed's no longer fit in what is `allocated`."""
     allocated: int = 32 * 2**20
     """Bytes of an array up to which its memory is used again: the most that glibc allows."""
-    kept: int = 128 * 2**20
+    kept: int = 256 * 2**20
     """Bytes that are kept from block to block: with less, pages are fetched anew."""
     workers: int = 2
     """Threads; the compiled passes hold no lock."""
