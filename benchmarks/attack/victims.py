@@ -11,8 +11,8 @@ from typing import Any
 
 import loadshare as ls
 from benchmarks import families
+from benchmarks.limit import TooLong, limited
 from benchmarks.random_trains.draw import draw
-from benchmarks.random_trains.limit import TooLong, limited
 from benchmarks.reference import NoReference, reference
 from loadshare.case import Case
 from loadshare.results.claim import claim_of

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from benchmarks.random_trains.limit import TooLong, limited
+from benchmarks.limit import TooLong, limited
 from benchmarks.reference import NoReference, Reference, reference
 from loadshare.train import Train
 from loadshare.train.gear import Vector

@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 import loadshare as ls
+from benchmarks.limit import TooLong, limited
 from benchmarks.random_trains.bounded import below_error
 from benchmarks.random_trains.far import is_far, is_far_before
-from benchmarks.random_trains.limit import TooLong, limited
 from benchmarks.random_trains.play import play
 from benchmarks.reference import NoReference, Reference
 from benchmarks.reference.machine import Machine

@@ -18,7 +18,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import typer
-from tests.fuzz.trial import Trial, trial
+from tests.fuzz.trial import Trial, compile_first, trial
 
 MEMORY = 2 << 30
 """Bytes that no input may take."""
@@ -47,6 +47,7 @@ def _run() -> int:
     if asked.keep is not None:
         typer.echo(_alone(asked.seed, asked.first, asked.keep))
         return 0
+    compile_first()
     begun, told, faults, codes = time.monotonic(), time.monotonic(), 0, Counter[str]()
     seen: set[str] = set()
     with ProcessPoolExecutor(asked.processes) as pool:

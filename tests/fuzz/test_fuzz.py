@@ -5,19 +5,23 @@ import stat
 
 import pytest
 from tests.cli.conftest import on_a_screen_of
-from tests.fuzz.trial import trial
+from tests.fuzz.trial import compile_first, trial
 
 import loadshare as ls
 from loadshare.outside import OUTSIDE
 
 
+@pytest.fixture(scope="module")
+def compiled():
+    compile_first()
+
+
+@pytest.mark.usefixtures("compiled")
 @pytest.mark.parametrize("part", range(8))
 def test_no_input_ends_in_anything_but_words(tmp_path, part, monkeypatch):
     """No traceback, no warning, no hang, no figure that is no number, no result that fails."""
     # As for anybody else, who may not read files outside of the case's folder.
     monkeypatch.delenv(OUTSIDE)
-    # Beside other tests, and where code is compiled anew, all takes longer.
-    monkeypatch.setattr("tests.fuzz.trial.SECONDS", 100.0)
     faults = []
     for number in range(40 * part, 40 * part + 40):
         folder = tmp_path / str(number)

@@ -5,15 +5,13 @@ from __future__ import annotations
 import json
 import math
 import shutil
-import signal
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
+from contextlib import chdir, redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from functools import cache
 from io import StringIO
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -31,13 +29,14 @@ from tests.fuzz.mutations import (
 )
 
 import loadshare as ls
+from benchmarks.limit import TooLong, limited
 from loadshare.cli.main import main
 from loadshare.settings import ALLOWED
 from loadshare.tooth.pair.file import load_pair
 
 CASES = Path(__file__).parents[2] / "cases"
 SECONDS = 10.0
-"""Longer is a hang."""
+"""Processor time beyond which it is a hang."""
 SETTINGS = (
     "operating.torque",
     "operating.power",
@@ -89,10 +88,6 @@ MEASURED = {"strain": {"position": 1, "share": {"6-10": 1.02, "7-10": 0.98}, "un
 COUNTS = {"samples", "steps", "starts", "indices"}
 
 
-class Hang(BaseException):
-    """It takes longer than anybody waits."""
-
-
 @dataclass(frozen=True, slots=True)
 class Trial:
     """An input and what became of it.
@@ -117,22 +112,6 @@ class Trial:
     words: tuple[str, ...]
     code: int
     fault: str
-
-
-@contextmanager
-def limited(seconds: float) -> Iterator[None]:
-    """Raise `Hang` after some seconds."""
-
-    def stop(number: int, frame: FrameType | None) -> None:
-        raise Hang
-
-    before = signal.signal(signal.SIGALRM, stop)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
-        signal.signal(signal.SIGALRM, before)
 
 
 def _command(words: tuple[str, ...]) -> tuple[int, str]:
@@ -327,6 +306,12 @@ SHARES = (
 """How often each kind is drawn."""
 
 
+def compile_first() -> None:
+    """Compile all that an input may lead to: that takes its minutes, and is no hang."""
+    case = CASES / "fgfbstts" / "all_elements.toml"
+    ls.solve_many(case, {"rings.4.float [um]": [1.0, 2.0]}, engine="compiled")
+
+
 def trial(seed: int, number: int, folder: Path) -> Trial:
     """Draw an input and try it.
 
@@ -344,7 +329,7 @@ def trial(seed: int, number: int, folder: Path) -> Trial:
         with chdir(folder), limited(SECONDS), warnings.catch_warnings():
             warnings.simplefilter("error")
             code, fault = JUDGES.get(kind, _judged)(words, folder)
-    except Hang:
+    except TooLong:
         fault = f"takes longer than {SECONDS:.0f} s"
     except BaseException as error:  # noqa: BLE001 -- whatever escapes is what is looked for
         trace = error.__traceback__

@@ -9,11 +9,10 @@ from pathlib import Path as FilePath
 from loadshare.case.keys import Path, dotted, look_up
 from loadshare.case.words import as_given
 from loadshare.errors import Problem
+from loadshare.settings import ALLOWED
 
 CHANGES = "changes"
 """Stands for the file of what `Case.replace` changes."""
-LONGEST = 255
-"""Characters that a file system lets a name have."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +48,7 @@ class Origin:
         key, given : str
             Where, and how.
         """
-        if "\0" in str(named) or any(len(part) > LONGEST for part in named.parts):
+        if "\0" in str(named) or any(len(part) > ALLOWED.file_name for part in named.parts):
             return Problem(file, key, given, "is no name of a file", "the name of a file")
         folder = FilePath(self.file).parent
         if self.outside or file == CHANGES or named.resolve().is_relative_to(folder.resolve()):

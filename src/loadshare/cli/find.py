@@ -52,17 +52,14 @@ def find_cases(given: Iterable[Path]) -> list[Path]:
 
 def _meant_by(path: Path) -> list[Path]:
     try:
-        there, folder = path.exists(), path.is_dir()
+        if path.is_dir():
+            files = (file for file in sorted(path.rglob("*.toml")) if not _hidden(file, path))
+            return [file for file in files if not _of_another_kind(file)]
+        pattern = not path.exists() and any(sign in str(path) for sign in "*?[")
     except OSError:
-        return [path]  # such as a name that is too long: to be reported when it is read
-    if folder:
-        try:
-            every = sorted(path.rglob("*.toml"))
-        except OSError:
-            return [path]  # a folder in it went away, or cannot be read
-        files = (file for file in every if not _hidden(file, path))
-        return [file for file in files if not _of_another_kind(file)]
-    if not there and any(sign in str(path) for sign in "*?["):
+        # A name that is too long, a folder that went away: to be reported when it is read.
+        return [path]
+    if pattern:
         matches = sorted(Path(path.anchor).glob(str(path.relative_to(path.anchor))))
         return [file for match in matches for file in _meant_by(match)]
     return [path]

@@ -55,8 +55,7 @@ def solve_blocks(
     Block
     """
     tolerance = checked_tolerance(tolerance)
-    if not isinstance(case, Case):
-        case = load_case(case)
+    case = case if isinstance(case, Case) else load_case(case)
     keep_freed_memory()
     groups = samples_of(case, samples)
     total = sum(len(rows) for rows, _ in groups)
@@ -130,7 +129,8 @@ def solve_many(
         Largest scaled residual of a certified answer, up to 1e-3.
     engine : {"auto", "compiled", "vectorised"}
         Numba or NumPy; both give the same answers. "auto" compiles from a few thousand equilibria
-        on, once in an installation; the log ("loadshare") tells of it, and of why it cannot.
+        on, which takes one to three minutes of processor time, once in an installation. Where
+        nothing can be compiled, NumPy answers; the log ("loadshare") tells of both.
     workers : int
         Threads.
     least_norm : bool
@@ -167,8 +167,7 @@ def solve_many(
     >>> bool(found.certified.all())
     True
     """
-    if not isinstance(case, Case):
-        case = load_case(case)
+    case = case if isinstance(case, Case) else load_case(case)
     blocks = solve_blocks(
         case,
         samples,

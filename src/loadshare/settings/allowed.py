@@ -20,6 +20,8 @@ class Allowed(NamedTuple):
     """Elements of a section, and entries of a list."""
     name: int = 200
     """Characters of a name."""
+    file_name: int = 255
+    """Characters of the name of a file, as file systems allow."""
     unit: int = 60
     """Characters of a unit."""
     power: float = 12.0
@@ -30,6 +32,8 @@ class Allowed(NamedTuple):
     """Number in SI units: likewise."""
     teeth: int = 100_000
     """Teeth of a gear."""
+    shape: float = 1e3
+    """Size of a number without a unit that shapes teeth, such as a shift in modules."""
     positions: int = 100_000
     """Positions of a mesh cycle."""
     steps: int = 1_000_000

@@ -19,7 +19,7 @@ Amount = Annotated[Quantity, LENGTH.bounded(at_least=0)]
 Steep = Annotated[Quantity, ANGLE.bounded(above=0)]
 Modulus = Annotated[Quantity, PRESSURE.bounded(above=0)]
 Load = Annotated[Quantity, TORQUE.bounded(above=0)]
-Number = Annotated[float, Strict(), Field(ge=-1e3, le=1e3, allow_inf_nan=False)]
+Number = Annotated[float, Strict(), Field(ge=-ALLOWED.shape, le=ALLOWED.shape, allow_inf_nan=False)]
 Teeth = Annotated[int, Strict(), Field(ge=4, le=ALLOWED.teeth)]
 Positions = Annotated[int, Strict(), Field(ge=1, le=ALLOWED.positions)]
 
