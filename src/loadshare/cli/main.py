@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import cache
 from io import TextIOWrapper
 from typing import Annotated
 
 import typer
+from typer.main import get_command
 
 from loadshare._version import __version__
 from loadshare.cli.batch.command import batch
@@ -87,7 +89,13 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if isinstance(stream, TextIOWrapper):
             # A stream that cannot show Ω shall show a question mark and go on.
             stream.reconfigure(errors="replace")
-    app(arguments, prog_name="loadshare")
+    _built()(arguments, prog_name="loadshare")
+
+
+@cache
+def _built() -> Callable[..., object]:
+    """Put the commands together: once, for those who call `main` again and again."""
+    return get_command(app)
 
 
 if __name__ == "__main__":
