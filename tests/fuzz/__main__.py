@@ -47,7 +47,9 @@ def _run() -> int:
     if asked.keep is not None:
         typer.echo(_alone(asked.seed, asked.first, asked.keep))
         return 0
-    compile_first()
+    with ProcessPoolExecutor(1) as pool:
+        # In a process of its own: what compiling takes would count as an input's memory.
+        pool.submit(compile_first).result()
     begun, told, faults, codes = time.monotonic(), time.monotonic(), 0, Counter[str]()
     seen: set[str] = set()
     with ProcessPoolExecutor(asked.processes) as pool:

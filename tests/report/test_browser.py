@@ -171,3 +171,30 @@ def test_a_single_figure_opens_as_well(browser, picture, tmp_path):
     browser.get(file.as_uri())
     WebDriverWait(browser, 60).until(lambda b: b.execute_script(DRAWN) == 1)
     assert browser.get_log("browser") == []
+
+
+INTRUDER = """
+const script = document.createElement("script");
+script.textContent = "window.pwned = true";
+document.body.append(script);
+// Later, because what a test itself runs may compile.
+setTimeout(() => {
+  try { new Function("return true")(); window.compiling = "works"; }
+  catch (error) { window.compiling = "refused"; }
+}, 0);
+"""
+
+
+def test_no_script_runs_but_those_of_the_page(browser, page):
+    """Its policy names them by their hashes, and lets nothing be compiled. Leaves complaints."""
+    from selenium.webdriver.support.ui import WebDriverWait
+
+    browser.get(page.as_uri())
+    browser.execute_script(INTRUDER)
+    compiling = WebDriverWait(browser, 60).until(
+        lambda b: b.execute_script("return window.compiling")
+    )
+    assert compiling == "refused"
+    assert browser.execute_script("return window.pwned") is None
+    complaints = [entry["message"] for entry in browser.get_log("browser")]
+    assert any("Executing inline script violates" in message for message in complaints)

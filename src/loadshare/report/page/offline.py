@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
+from base64 import b64encode
 from functools import cache
+from hashlib import sha256
 from typing import TYPE_CHECKING, Any
 
 from loadshare.report.vega import vega_lite_version
@@ -11,6 +14,9 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 
+OWN_SCRIPTS = "OWN_SCRIPTS"
+"""Stands in the policy of a page for the hashes of its scripts."""
+SCRIPT = re.compile("<script>(.*?)</script>", re.DOTALL)
 EXPOSED = "window.vegaEmbed = vegaEmbed;"
 """What the page's own script needs of the bundle."""
 
@@ -43,8 +49,11 @@ def templates() -> Environment:
 
 
 def render(template: str, **values: Any) -> str:
-    """Fill in a template."""
-    return templates().get_template(template).render(scripts=scripts(), **values)
+    """Fill in a template; its policy lets no script run but those that stand in it."""
+    page = templates().get_template(template).render(scripts=scripts(), **values)
+    hashes = (sha256(script.encode()).digest() for script in SCRIPT.findall(page))
+    allowed = " ".join(f"'sha256-{b64encode(found).decode()}'" for found in hashes)
+    return page.replace(OWN_SCRIPTS, allowed, 1)
 
 
 def figure_page(spec: dict[str, Any], title: str) -> str:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from loadshare.errors import LoadshareError, Problem, ResultError
 from loadshare.output import write_whole
+from loadshare.results.digest import DIGEST, digest_of
 from loadshare.study.tolerance.job import SAMPLES, STAMP, Job, Part
 
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ log = logging.getLogger("loadshare")
 
 STUDY = "study.json"
 WORST = "worst.json"
-DIGEST = b"loadshare.sha256"
+PART_DIGEST = b"loadshare.sha256"
 """Key of a part's metadata under which the digest of its content stands."""
 
 
@@ -51,23 +52,28 @@ class Folder:
                     f"{path}: is not empty and holds no tolerance study. Allowed: a new or empty "
                     "folder, or the folder of the same study, which is then completed"
                 )
-            _write_json(path / STUDY, content)
+            _write_sealed(path / STUDY, content)
             return
         try:
-            known = json.loads((path / STUDY).read_text(encoding="utf-8"))["settings"]
-        except (OSError, ValueError, KeyError, TypeError) as error:
+            known = json.loads((path / STUDY).read_text(encoding="utf-8"))
+            whole = known.get(DIGEST) == digest_of(known)
+            apart = differing(known["settings"], json.loads(json.dumps(job.settings)))
+        except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
             raise LoadshareError(f"{path / STUDY}: cannot be read: {error}") from None
-        apart = differing(known, json.loads(json.dumps(job.settings)))
         if apart:
             raise LoadshareError(
                 "\n".join(
                     [
-                        f"{path}: holds a study with other settings:",
+                        f"{path}: holds a study with other settings"
+                        f"{'' if whole else ', or study.json was altered'}:",
                         *apart,
                         "Give another folder, or the same settings to complete it.",
                     ]
                 )
             )
+        if not whole:
+            log.warning("%s: is not what was written there; it is written again.", path / STUDY)
+            _write_sealed(path / STUDY, content)
 
     def file(self, part: Part) -> Path:
         """Return where a part stands."""
@@ -94,14 +100,16 @@ class Folder:
             table = parquet.read_table(file, page_checksum_verification=True)
         except (OSError, ValueError, pa.ArrowException):
             return False
-        return len(table) == part.rows and told.get(DIGEST) == digest(table)
+        return len(table) == part.rows and told.get(PART_DIGEST) == digest(table)
 
     def write(self, part: Part, table: pa.Table) -> None:
         """Put a part in its place, whole or not at all."""
         from pyarrow import parquet
 
         file = self.file(part)
-        sealed = table.replace_schema_metadata({**table.schema.metadata, DIGEST: digest(table)})
+        sealed = table.replace_schema_metadata(
+            {**table.schema.metadata, PART_DIGEST: digest(table)}
+        )
         how: dict[str, Any] = {"compression": "zstd", "write_page_checksum": True}
         write_whole(file, lambda to: parquet.write_table(sealed, to, **how))
         # What a killed process left of the same part.
@@ -110,16 +118,25 @@ class Folder:
                 left.unlink()
 
     def worst(self) -> list[dict[str, Any]] | None:
-        """Return the worst cases that were found for this study, or None if none are known."""
+        """Return the worst cases that were found for this study, or None if none are known.
+
+        Those in a file that is not what was written are none; the log names it.
+        """
+        file = self.path / WORST
         try:
-            content = json.loads((self.path / WORST).read_text(encoding="utf-8"))
-            return list(content["worst"]) if content["study"] == self.job.hash else None
-        except (OSError, ValueError, KeyError, TypeError):
+            content = json.loads(file.read_text(encoding="utf-8"))
+            if content[DIGEST] == digest_of(content):
+                return list(content["worst"]) if content["study"] == self.job.hash else None
+        except FileNotFoundError:
             return None
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
+            pass
+        log.warning("%s: is not what was written there; worst cases are sought again.", file)
+        return None
 
     def keep_worst(self, found: Sequence[dict[str, Any]]) -> None:
         """Write the worst cases, so that the search need not be made again."""
-        _write_json(self.path / WORST, {"study": self.job.hash, "worst": list(found)})
+        _write_sealed(self.path / WORST, {"study": self.job.hash, "worst": list(found)})
 
     def files(self, design: str = SAMPLES) -> list[Path]:
         """Return the parts' files in order."""
@@ -210,5 +227,7 @@ def _short(value: Any) -> str:
     return text if len(text) <= 60 else f"{text[:57]}…"
 
 
-def _write_json(file: Path, content: dict[str, Any]) -> None:
-    write_whole(file, json.dumps(content, indent=1, ensure_ascii=False) + "\n")
+def _write_sealed(file: Path, content: dict[str, Any]) -> None:
+    """Write a document with the digest of what it holds."""
+    sealed = {**content, DIGEST: digest_of(content)}
+    write_whole(file, json.dumps(sealed, indent=1, ensure_ascii=False) + "\n")
