@@ -142,8 +142,7 @@ def _read(draft: Draft, path: Path, value: Any, kind: Any) -> Any:
         return _adapter(kind).validate_python(value)
     except ValidationError as error:
         model = kind if isinstance(kind, type) and issubclass(kind, Element) else Content
-        for details in error.errors(include_url=False):
-            found = translate(details, model)
+        for found in translate(error, model):
             draft.tell((*path, *found.path), found.message, found.allowed, found.hint)
     return None
 

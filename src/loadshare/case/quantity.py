@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic_core import PydanticCustomError, core_schema
 
-from loadshare.case.units import COMMON, kind_of, si_factor
+from loadshare.case.units import COMMON, kind_of, si_factor, written_apart
 from loadshare.case.words import did_you_mean
 from loadshare.settings import ALLOWED
 
@@ -118,9 +118,9 @@ class Dimension:
         try:
             factor = si_factor(unit, self.unit)
         except ValueError as error:
-            unknown = str(error)
+            unknown, apart = str(error), written_apart(unit, self.unit)
             fitting = [unit for unit in COMMON if si_factor(unit, self.unit) is not None]
-            hint = did_you_mean(unknown, fitting) or did_you_mean(unknown, COMMON)
+            hint = f"Did you mean {apart}?" if apart else did_you_mean(unknown, fitting)
             raise self._problem(f"the unit {unknown} is not known", hint=hint) from None
         if factor is None:
             kind = kind_of(unit) or f"in {unit}"

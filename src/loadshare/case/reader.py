@@ -23,6 +23,15 @@ from loadshare.outside import OUTSIDE
 from loadshare.settings import ALLOWED
 
 _PLACE = re.compile(r"(.*) \(at (.*)\)", re.DOTALL)
+KINDS = {
+    "helicoid": "a pair of gears; `loadshare ltca` analyses it, and a mesh names it by geometry",
+    "face-gear": "a pair with a face gear; `loadshare ltca` analyses it, and a mesh names it by "
+    "geometry",
+    "law": "the law of a mesh, which names it by law_file",
+}
+"""Files that are no cases, by what they say of themselves."""
+STARTS = (b"{", b"\x89HDF")
+"""How files of results begin."""
 _DEEP = f"is nested deeper than {ALLOWED.depth} tables and lists"
 
 
@@ -97,6 +106,9 @@ def _read(
 ) -> tuple[dict[str, Any], dict[Path, str], list[Problem]]:
     """Return the merged data of a file, the file of each key, and problems that can be outlived."""
     own = read_toml(path)
+    kind = own.get("kind")
+    if isinstance(kind, str) and kind in KINDS:
+        raise CaseError([Problem(str(path), "kind", as_given(kind), f"is {KINDS[kind]}")])
     base, removals = own.pop("extends", None), own.pop("remove", [])
     data: dict[str, Any] = {}
     files: dict[Path, str] = {}
@@ -186,8 +198,11 @@ def read_toml(path: FilePath) -> dict[str, Any]:
         If it cannot be read or is not TOML.
     """
     try:
-        text = read_file(path, ALLOWED.bytes).decode("utf-8")
-        data = tomllib.loads(text.replace("\r\n", "\n"))
+        held = read_file(path, ALLOWED.bytes)
+        if held.startswith(STARTS):
+            why = "is a result and no case; `loadshare check` certifies it again"
+            raise CaseError([Problem(str(path), "", "", why)])
+        data = tomllib.loads(held.decode("utf-8").replace("\r\n", "\n"))
     except tomllib.TOMLDecodeError as error:
         match = _PLACE.fullmatch(str(error))
         what, where = match.groups() if match else (str(error), "an unknown place")

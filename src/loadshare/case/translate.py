@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
@@ -29,29 +30,52 @@ WANTED = {
     "too_long": "a list of at most {max_length}",
 }
 
+TEETH = ("module", "pressure_angle", "helix_angle", "face_width", "profile_shift", "tip_relief")
+"""Keys that one expects of a gear or a mesh, and that stand in a pair file."""
+OF_TEETH = 'Teeth stand in a pair file, which the mesh names: geometry = "pair.toml".'
 
-def translate(error: ErrorDetails, model: type[Element]) -> Rule:
-    """Return one of pydantic's findings in our own words.
+
+def translate(error: ValidationError, model: type[Element]) -> list[Rule]:
+    """Return pydantic's findings in our own words, each mistake once.
 
     Parameters
     ----------
-    error : pydantic_core.ErrorDetails
-        The finding.
+    error : pydantic.ValidationError
+        The findings.
     model : type
-        The element on which it was made.
+        The element on which they were made.
 
     Returns
     -------
-    Rule
+    list of Rule
         The same, for the user.
     """
+    found = error.errors(include_url=False)
+    return [_told(one, model) for one in found if not _follows(one, found)]
+
+
+def _follows(one: ErrorDetails, found: list[ErrorDetails]) -> bool:
+    """Whether a finding only follows from others.
+
+    A list is too short for an entry that is wrong, and a default that follows other keys cannot be
+    made while one of them is.
+    """
+    if one["type"] == "default_factory_not_called":
+        return True
+    above = one["loc"]
+    inner = any(o["loc"][: len(above)] == above for o in found if len(o["loc"]) > len(above))
+    return one["type"] == "too_short" and inner
+
+
+def _told(error: ErrorDetails, model: type[Element]) -> Rule:
     path = tuple(step for step in error["loc"] if not str(step).startswith(MARK))
     kind, context = error["type"], error.get("ctx", {})
     if kind == "said":
         return Rule(context["said"], path, context["allowed"], context["hint"])
     if kind == "extra_forbidden":
         keys = list(map(str, _fields(model, path[:-1])))
-        return Rule("unknown key", path, choices(sorted(keys)), did_you_mean(path[-1], keys))
+        hint = OF_TEETH if path[-1] in TEETH else did_you_mean(path[-1], keys)
+        return Rule("unknown key", path, choices(sorted(keys)), hint)
     if kind == "missing" and isinstance(path[-1], int):
         return Rule(f"has {count(path[-1])}, more are needed", path[:-1])
     if kind == "missing":

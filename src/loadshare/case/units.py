@@ -44,6 +44,8 @@ watt = newton * meter / second = W
 horsepower = 745.6998715822702 * watt = hp
 """
 
+_WORD = re.compile(r"[^\W\d_]+")
+
 # What a did-you-mean may propose: the spellings that engineers use.
 COMMON = (
     *("m", "mm", "um", "µm", "micron", "nm", "cm", "in", "ft", "g", "kg", "s", "ms", "min", "h"),
@@ -140,6 +142,29 @@ def kind_of(unit: str) -> str | None:
         Such as ``a length``.
     """
     return next((kind for kind, si in KINDS.items() if si_factor(unit, si) is not None), None)
+
+
+def written_apart(unit: str, target: str) -> str | None:
+    """Return a unit with a product sign where one is missing, as in ``Nm/rad``, or None.
+
+    Parameters
+    ----------
+    unit : str
+        A text that is no unit.
+    target : str
+        The SI unit of what it must measure.
+    """
+    for word in _WORD.finditer(unit):
+        for cut in range(1, len(word[0])):
+            product = f"{word[0][:cut]}*{word[0][cut:]}"
+            for put in (product, f"({product})"):
+                found = unit[: word.start()] + put + unit[word.end() :]
+                try:
+                    if si_factor(found, target) is not None:
+                        return found
+                except ValueError:
+                    continue
+    return None
 
 
 @lru_cache(maxsize=1024)

@@ -13,8 +13,6 @@ from loadshare.cli.files import keep_inputs
 from loadshare.input import Unreadable, read_file
 from loadshare.settings import ALLOWED
 
-_KIND = re.compile(r"""^kind\s*=\s*["'](helicoid|face-gear|law)["']""", re.MULTILINE)
-
 
 def find_cases(given: Iterable[Path]) -> list[Path]:
     """Return the case files that are meant, each once, in the order given.
@@ -67,8 +65,12 @@ def _meant_by(path: Path) -> list[Path]:
 
 def _of_another_kind(file: Path) -> bool:
     """Whether a file says that it is a pair or a law, which cases name and which are no cases."""
+    from loadshare.case.reader import KINDS
+
+    kind = rf"""^kind\s*=\s*["']({"|".join(KINDS)})["']"""
     try:
-        return _KIND.search(read_file(file, ALLOWED.bytes).decode("utf-8")) is not None
+        text = read_file(file, ALLOWED.bytes).decode("utf-8")
+        return re.search(kind, text, re.MULTILINE) is not None
     except (OSError, Unreadable, UnicodeDecodeError):
         return False  # to be reported like any other bad case
 

@@ -175,6 +175,6 @@ def _law(data: dict[str, Any], origin: Origin) -> MeshLaw:
     try:
         return MeshLaw.model_validate(data)
     except ValidationError as error:
-        found = [translate(details, MeshLaw) for details in error.errors(include_url=False)]
+        found = translate(error, MeshLaw)
         problems = [origin.problem(data, f.path, f.message, f.allowed, f.hint) for f in found]
         raise CaseError(problems) from None

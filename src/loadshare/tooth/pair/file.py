@@ -199,14 +199,9 @@ def _content(
     try:
         return TypeAdapter(model).validate_python(data), []
     except ValidationError as error:
-        # A default that follows other keys cannot be made while one of them is wrong.
-        found = [
-            translate(details, model)
-            for details in error.errors(include_url=False)
-            if details["type"] != "default_factory_not_called"
-        ]
         return None, [
-            origin.problem(data, one.path, one.message, one.allowed, one.hint) for one in found
+            origin.problem(data, one.path, one.message, one.allowed, one.hint)
+            for one in translate(error, model)
         ]
 
 
