@@ -79,6 +79,19 @@ def test_units_that_engineers_write(kind, text, si):
             'the unit Nm is not known. Allowed: a torque such as "2175 N*m". Did you mean N*m?',
         ),
         (
+            q.TorsionalStiffness,
+            "8e4 Nm/rad",
+            "the unit Nm is not known. Allowed: a torsional stiffness such as "
+            '"5e5 N*m/rad". Did you mean N*m/rad?',
+        ),
+        (
+            q.TorsionalCompliance,
+            "2 rad/kNm",
+            "the unit kNm is not known. Allowed: a torsional compliance such as "
+            '"2e-7 rad/(N*m)". Did you mean rad/(kN*m)?',
+        ),
+        (q.Length, "5 kNm", 'the unit kNm is not known. Allowed: a length such as "45.9 mm". '),
+        (
             q.Length,
             "5 MM",
             'the unit MM is not known. Allowed: a length such as "45.9 mm". Did you mean mm?',

@@ -125,6 +125,25 @@ def test_a_file_that_cannot_be_read_is_told(tmp_path, drive_text, text, message)
     assert said(write(tmp_path, base=drive_text, bad=text), tmp_path) == message
 
 
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("p12.toml", "is a pair with a face gear; `loadshare ltca` analyses it"),
+        ("p46.toml", "is a pair of gears; `loadshare ltca` analyses it"),
+        ("law.toml", "is the law of a mesh, which names it by law_file"),
+        ("result.json", "is a result and no case; `loadshare check` certifies it again"),
+        ("result.nc", "is a result and no case; `loadshare check` certifies it again"),
+    ],
+)
+def test_another_file_says_what_it_is(tmp_path, cases, name, message):
+    pairs = cases / "fgfbstts" / "pairs"
+    path = pairs / name if (pairs / name).exists() else tmp_path / name
+    starts = {"law.toml": b'kind = "law"\n', "result.json": b"{}", "result.nc": b"\x89HDF\r\n"}
+    if path.parent == tmp_path:
+        path.write_bytes(starts[name])
+    assert message in said(path, path.parent)
+
+
 def test_a_file_that_is_not_there_is_told(tmp_path):
     missing = said(tmp_path / "missing.toml", tmp_path)
     assert missing == "missing.toml: no such file or directory."
