@@ -138,7 +138,7 @@ FILES: dict[str, tuple[str, ...]] = {
     "drawing.svg": ("draw", "{}/in/case.toml", "-o", "{}/out/drawing.svg"),
     "page.html": ("report", "{}/in/star.toml", "-o", "{}/out/page.html"),
     "schema.json": ("schema", "-o", "{}/out/schema.json"),
-    "case.toml": ("new", "{}/out/case.toml"),
+    "case.toml": ("new", "fresh", "-o", "{}/out/case.toml", "--force"),
 }
 """Commands that write one file."""
 OLD = b"what was there before\n"
@@ -170,9 +170,7 @@ def file_scenes() -> list[Scene]:
             (folder / file).chmod(0o640)
 
         scenes.append(Scene(name, words, fresh))
-        # A case that is there is not written over.
-        if words[0] != "new":
-            scenes.append(Scene(f"{name} over another", words, over))
+        scenes.append(Scene(f"{name} over another", words, over))
     return scenes
 
 

@@ -107,8 +107,8 @@ static int64_t look(const char *name, const char *path, int room, int part) {
     int64_t number = __atomic_add_fetch(&control->count, 1, __ATOMIC_SEQ_CST);
     tell(number, name, path);
     int here = number == control->target;
-    if (!here && !(control->lasting && control->target && number > control->target && room))
-        return 0;
+    if (control->lasting) here = control->target && number >= control->target && room;
+    if (!here) return 0;
     if (control->error == SHORT && !part) return 0;
     if (__atomic_add_fetch(&control->hit, 1, __ATOMIC_SEQ_CST) == 1) {
         snprintf(control->name, sizeof control->name, "%s", name);

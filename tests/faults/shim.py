@@ -79,7 +79,9 @@ class Shim:
         """Return the variables with which a process loads it."""
         return {"LD_PRELOAD": str(self.library), "LOADSHARE_FAULTS": str(self.file)}
 
-    def arm(self, root: Path, target: int = 0, fault: str = "kill", log: Path | None = None) -> None:
+    def arm(
+        self, root: Path, target: int = 0, fault: str = "kill", log: Path | None = None
+    ) -> None:
         """Count calls below a folder, and let one fail.
 
         Parameters
