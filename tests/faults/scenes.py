@@ -40,12 +40,15 @@ class Scene:
     again: tuple[int, ...] = ()
 
 
+SUMMARY = "summary.json"
+
+
 def masked(name: str, content: bytes) -> bytes:
     """Return what of a file must be the same in every run.
 
     That of a batch's summary says how long each case took, and whether its result was kept.
     """
-    if Path(name).name != "summary.json":
+    if Path(name).name != SUMMARY:
         return content
     told = json.loads(content)
     del told["counts"]

@@ -135,7 +135,7 @@ def _run(words: Sequence[str], folder: Path) -> int:
 def _keep_answers() -> None:
     """Let what was solved once be looked up."""
     import loadshare.job
-    from loadshare.study.tolerance import figures, worst
+    from loadshare.study.tolerance import design, figures, study, worst
 
     def case_key(case: Any, **how: Any) -> str:
         told = {name: value for name, value in how.items() if name != "progress"}
@@ -147,7 +147,20 @@ def _keep_answers() -> None:
     def samples_key(solver: Any, values: Any) -> tuple[object, ...]:
         return solver.case.hash, solver.positions, solver.engine, values.tobytes()
 
+    def array_key(values: Any, *given: Any) -> tuple[object, ...]:
+        return values.tobytes(), values.shape, repr(given)
+
+    def inputs_key(case: Any, name: str) -> str:
+        return f"{case.hash} {name} {case.study[name]!r}"
+
     figures.Solver.solve = _keeping(figures.Solver.solve, samples_key)  # type: ignore[method-assign]
+    design.uniforms = _keeping(design.uniforms, lambda *given: repr(given))
+    study.read_inputs = _keeping(study.read_inputs, inputs_key)
+    # Large studies are solved in this process as well, which knows the answers.
+    study.TOLERANCE = study.TOLERANCE._replace(small=sys.maxsize)
+    # Statistics resample a thousand times.
+    for name in ("summary", "exceedance", "shares"):
+        setattr(study, name, _keeping(getattr(study, name), array_key))
 
 
 def _keeping(function: Callable[..., Any], key: Callable[..., Any]) -> Callable[..., Any]:

@@ -10,13 +10,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.faults.scenes import OLD, Scene, masked
+from tests.faults.scenes import OLD, SUMMARY, Scene, masked
 from tests.faults.server import Ended, Server
-from tests.faults.shim import Seen, Shim
+from tests.faults.shim import FAULTS, Seen, Shim
 
 Files = dict[str, bytes]
 LEFT = re.compile(r"^(.*/)?\.(.+)\.[0-9a-f]{16}$")
 """What a killed process may leave, until the command is given again."""
+CHANGING = ("mkdir", "rename", "unlink", "fsync", "flock", "chmod", "chown")
 KINDS = ("told", "lost", "corrupt", "unusable", "different", "left")
 """What may be wrong: how the error is told, files that are gone, files that are neither what was
 there nor what is asked for; a command that does not end well when it is given again, files that
@@ -96,19 +97,44 @@ class Stage:
         # Once in the server itself, which keeps the answers, and once as all that follow.
         first = server.run(self.words, fork=False)
         self.after, self.code = _files(self.root), first.code
-        self.calls = self.counted().calls
+        self.log = self._logged(folder / "log")
         assert _files(self.root).keys() == self.after.keys()
         # What is printed when all is there.
         self.out = server.run(self.words).out
 
-    def counted(self, log: Path | None = None) -> Seen:
-        """Return what an undisturbed run is seen to do."""
+    def _logged(self, log: Path) -> list[tuple[str, str]]:
+        """Return the calls of an undisturbed run: what each is named, and its path."""
         self._set()
         self.shim.arm(self.root, log=log)
         ended = self.server.run(self.words)
-        seen = self.shim.disarm()
+        self.shim.disarm()
         assert ended.code == self.code, ended.said
-        return seen
+        lines = log.read_text(encoding="utf-8").splitlines()
+        return [(name, path) for _, name, path in (line.split("\t") for line in lines)]
+
+    def plan(self, step: int = 1) -> Iterator[tuple[int, str]]:
+        """Yield the calls that are to fail, and how.
+
+        What writes meets every fault, what reads one of them in turn; of both, every `step`-th.
+        """
+        every = list(FAULTS)
+        both = (
+            [k for k in range(len(self.log)) if self._writes(k) is is_so] for is_so in (True, False)
+        )
+        writing, reading = both
+        of_writing = [(k, fault) for k in writing for fault in every]
+        of_reading = [(k, every[turn % len(every)]) for turn, k in enumerate(reading)]
+        # A step that the number of faults divides would always meet the same one.
+        for planned in (of_writing, of_reading):
+            yield from ((k + 1, fault) for k, fault in planned[::step])
+
+    def _writes(self, k: int) -> bool:
+        name, path = self.log[k]
+        if LEFT.match(path) or name in CHANGING:
+            return True
+        # The opening and closing of a folder that is brought to the disk.
+        around = self.log[max(k - 1, 0) : k + 2]
+        return any(n == "fsync" and p == path for n, p in around)
 
     def trial(self, number: int, fault: str) -> Trial:
         """Let a call fail, and give the command again."""
@@ -149,7 +175,9 @@ class Stage:
         now = _files(self.root)
         for name, content in now.items():
             allowed = [files[name] for files in (self.before, self.after) if name in files]
-            if not LEFT.match(name) and not any(_same(name, content, one) for one in allowed):
+            if LEFT.match(name) or _is_summary(name, content):
+                continue
+            if not any(_same(name, content, one) for one in allowed):
                 yield Wrong("corrupt", name)
         yield from (Wrong("lost", name) for name in self.before if name not in now)
         if ended.code == self.code == 0:
@@ -177,6 +205,14 @@ class Stage:
 def _files(folder: Path) -> Files:
     found = (file for file in sorted(folder.rglob("*")) if not file.is_dir())
     return {file.relative_to(folder).as_posix(): file.read_bytes() for file in found}
+
+
+def _is_summary(name: str, content: bytes) -> bool:
+    """Whether it is the whole summary of a batch, which tells also of what went wrong."""
+    try:
+        return Path(name).name == SUMMARY and "cases" in json.loads(content)
+    except json.JSONDecodeError:
+        return False
 
 
 def _same(name: str, one: bytes, other: bytes) -> bool:

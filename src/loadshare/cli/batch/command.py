@@ -75,9 +75,10 @@ def batch(
     ordered = [done[task.name] for task in tasks if task.name in done]
     waiting = [str(task.case) for task in tasks if task.name not in done]
     settings = {"solver": solver, "method": method, "tolerance": tolerance}
+    # First, so that it is told also where nothing can be written.
+    print_summary(ordered)
     with writing(summary):
         write_document(summary, summary_document(ordered, settings, waiting))
-    print_summary(ordered)
     if interrupted:
         told = f"Interrupted: {len(ordered)} of {len(tasks)} cases done."
         fail([told, "The same command goes on; what is certified is kept."], INTERRUPTED)
