@@ -11,11 +11,13 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
 
 STANDARD = Path("-")
 """Stands for standard output."""
@@ -173,6 +175,21 @@ def csv_of(frame: pd.DataFrame) -> str:
         if safe[name].dtype.kind not in "biuf":
             safe[name] = safe[name].map(_plain)
     return str(safe.to_csv(index=False, lineterminator="\n"))
+
+
+def netcdf_of(arrays: xr.Dataset) -> bytes:
+    """Return labelled arrays as the content of a netCDF file.
+
+    It is made in memory: where a disk is full, HDF5 leaves a file that it cannot close, and takes
+    the process with it.
+    """
+    import h5netcdf
+    from xarray.backends import H5NetCDFStore
+
+    held = BytesIO()
+    with h5netcdf.File(held, "w") as file:
+        arrays.dump_to_store(H5NetCDFStore(file))
+    return held.getvalue()
 
 
 _FORMULA = re.compile(r"[=@\t\r\n]|[+-](?![\d.])")

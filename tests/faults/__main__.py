@@ -26,7 +26,8 @@ def _tried(
     stage = Stage(scene, folder, server, shim)
     wrong, faults, bad, told = Counter[str](), Counter[str](), 0, time.monotonic()
     begun = told
-    for number, fault in stage.plan(asked.step):
+    planned = stage.plan(asked.step)
+    for number, fault in planned:
         found = stage.trial(number, fault)
         faults[fault if found.seen.hit else "none"] += 1
         wrong.update({one.kind for one in found.wrong})
@@ -41,9 +42,9 @@ def _tried(
             break
     met = ", ".join(f"{count} {name}" for name, count in sorted(faults.items()))
     kinds = ", ".join(f"{wrong[kind]} {kind}" for kind in KINDS)
-    seconds = time.monotonic() - begun
+    tried, seconds = sum(faults.values()), time.monotonic() - begun
     typer.echo(
-        f"{scene.name}: {len(stage.log):,} calls, {sum(faults.values()):,} faults tried in "
+        f"{scene.name}: {len(stage.log):,} calls; {tried:,} of {len(planned):,} faults tried in "
         f"{seconds:.0f} s ({met}): {kinds}"
     )
     return bad

@@ -16,6 +16,7 @@ import traceback
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -54,14 +55,16 @@ class Server:
         For what commands say.
     environment : dict
         More of its variables.
+    *modules : str
+        What it imports as well.
     """
 
-    def __init__(self, folder: Path, environment: dict[str, str]) -> None:
+    def __init__(self, folder: Path, environment: dict[str, str], *modules: str) -> None:
         self._folder = folder
         python = {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "PYTHONUTF8": "1"}
         plain = {k: v for k, v in os.environ.items() if k not in ("FORCE_COLOR", "COLUMNS")}
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "tests.faults.server", str(folder)],
+            [sys.executable, "-m", "tests.faults.server", str(folder), *modules],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
@@ -89,10 +92,10 @@ class Server:
         return Ended(code, out, err)
 
 
-def _serve(folder: Path) -> None:
+def _serve(folder: Path, modules: Sequence[str]) -> None:
     """Read commands from standard input until it ends."""
-    from loadshare.cli import main  # noqa: F401 -- so that forks have it
-
+    for module in ("loadshare.cli.main", *modules):
+        import_module(module)
     _keep_answers()
     answers = os.fdopen(os.dup(1), "w")
     for line in sys.stdin:
@@ -176,4 +179,4 @@ def _keeping(function: Callable[..., Any], key: Callable[..., Any]) -> Callable[
 
 
 if __name__ == "__main__":
-    _serve(Path(sys.argv[1]))
+    _serve(Path(sys.argv[1]), sys.argv[2:])

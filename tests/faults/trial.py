@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import random
 import re
 import shutil
 import signal
@@ -112,21 +113,18 @@ class Stage:
         lines = log.read_text(encoding="utf-8").splitlines()
         return [(name, path) for _, name, path in (line.split("\t") for line in lines)]
 
-    def plan(self, step: int = 1) -> Iterator[tuple[int, str]]:
-        """Yield the calls that are to fail, and how.
+    def plan(self, step: int = 1) -> list[tuple[int, str]]:
+        """Return the calls that are to fail, and how, in an order that is always the same.
 
-        What writes meets every fault, what reads one of them in turn; of both, every `step`-th.
+        What writes meets every fault, what reads one of them in turn; of all that every `step`-th.
         """
-        every = list(FAULTS)
-        both = (
-            [k for k in range(len(self.log)) if self._writes(k) is is_so] for is_so in (True, False)
-        )
-        writing, reading = both
-        of_writing = [(k, fault) for k in writing for fault in every]
-        of_reading = [(k, every[turn % len(every)]) for turn, k in enumerate(reading)]
-        # A step that the number of faults divides would always meet the same one.
-        for planned in (of_writing, of_reading):
-            yield from ((k + 1, fault) for k, fault in planned[::step])
+        every, numbers = list(FAULTS), range(len(self.log))
+        writing = [(k + 1, fault) for k in numbers if self._writes(k) for fault in every]
+        reading = [(k + 1, every[k % len(every)]) for k in numbers if not self._writes(k)]
+        planned = writing + reading
+        # However soon it is stopped, calls and faults of all kinds were tried.
+        random.Random(1).shuffle(planned)
+        return planned[::step]
 
     def _writes(self, k: int) -> bool:
         name, path = self.log[k]
