@@ -20,7 +20,7 @@ import loadshare as ls
 from loadshare.certify import certify
 from loadshare.results.claim import claim_of
 from loadshare.results.derive import position_of, result_from
-from loadshare.results.digest import seal
+from loadshare.results.digest import sealed
 from loadshare.results.document import FORMAT, as_data
 from loadshare.results.reading import read_document
 from loadshare.results.writing import DOCUMENT
