@@ -20,7 +20,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-SECONDS = 120
+SECONDS = 600
 """Longer is a hang."""
 
 
@@ -103,6 +103,7 @@ def _serve(folder: Path, modules: Sequence[str]) -> None:
         if fork:
             child = os.fork()
             if not child:
+                signal.alarm(SECONDS)
                 os._exit(_run(words, folder))
             _, status = os.waitpid(child, 0)
             code = os.waitstatus_to_exitcode(status)
@@ -116,7 +117,6 @@ def _run(words: Sequence[str], folder: Path) -> int:
     """Run a command with its output in files; return its exit code."""
     from loadshare.cli.main import main
 
-    signal.alarm(SECONDS)
     for number, name in ((1, "out"), (2, "err")):
         file = os.open(folder / name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         os.dup2(file, number)
@@ -131,13 +131,13 @@ def _run(words: Sequence[str], folder: Path) -> int:
     with suppress(OSError):
         sys.stdout.flush()
         sys.stderr.flush()
-    signal.alarm(0)
     return code
 
 
 def _keep_answers() -> None:
     """Let what was solved once be looked up."""
     import loadshare.job
+    from loadshare.results import files
     from loadshare.study.tolerance import design, figures, study, worst
 
     def case_key(case: Any, **how: Any) -> str:
@@ -146,6 +146,8 @@ def _keep_answers() -> None:
 
     kept = _keeping(loadshare.job.solve, case_key)
     loadshare.job.solve = worst.solve = kept  # type: ignore[attr-defined]
+
+    files.read_document = _keeping(files.read_document, lambda text, file: (text, file))
 
     def samples_key(solver: Any, values: Any) -> tuple[object, ...]:
         return solver.case.hash, solver.positions, solver.engine, values.tobytes()

@@ -101,7 +101,7 @@ class Stage:
         self.log = self._logged(folder / "log")
         assert _files(self.root).keys() == self.after.keys()
         # What is printed when all is there.
-        self.out = server.run(self.words).out
+        self.out = server.run(self.words, fork=False).out
 
     def _logged(self, log: Path) -> list[tuple[str, str]]:
         """Return the calls of an undisturbed run: what each is named, and its path."""
