@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import secrets
 import stat
 import sys
 import tempfile
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager, suppress
+from io import BytesIO
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
 
 STANDARD = Path("-")
 """Stands for standard output."""
@@ -50,6 +53,18 @@ def write_whole(path: Path, content: Content) -> None:
         sys.stdout.buffer.flush()
         return
     try:
+        _write(path, content)
+    except OSError as error:
+        if error.errno is None:
+            # Of libraries that tell in words alone.
+            raise OSError(errno.EIO, str(error), str(path)) from error
+        # It may be of the file beside it; what was asked for is known to who reads this.
+        error.filename, error.filename2 = str(path), None
+        raise
+
+
+def _write(path: Path, content: Content) -> None:
+    try:
         known = path.stat()
     except FileNotFoundError:
         known = None
@@ -59,19 +74,94 @@ def write_whole(path: Path, content: Content) -> None:
         return
     # Where a link leads; the link itself stays.
     place = Path(os.path.realpath(path))
-    place.parent.mkdir(parents=True, exist_ok=True)
-    temporary = place.with_name(f".{place.name[:LONG]}.{secrets.token_hex(8)}")
+    make_folder(place.parent)
+    with _at_work(place.parent, {place.name[:LONG]}):
+        temporary = place.with_name(f".{place.name[:LONG]}.{secrets.token_hex(8)}")
+        try:
+            _fill(temporary, content)
+            if known is not None:
+                temporary.chmod(stat.S_IMODE(known.st_mode))
+                _give(temporary, known)
+            _sync(temporary)
+            temporary.replace(place)
+        except BaseException:
+            with suppress(OSError):
+                temporary.unlink(missing_ok=True)
+            raise
+        _sync_folder(place.parent)
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder and those above it, and bring their names to the disk."""
+    above = [one for one in (folder, *folder.parents) if not one.exists()]
+    folder.mkdir(parents=True, exist_ok=True)
+    for made in reversed(above):
+        _sync_folder(made.parent)
+
+
+def clear(files: Iterable[Path]) -> None:
+    """Remove what killed processes left beside files that they were writing.
+
+    A folder in which somebody is writing is left as it is.
+
+    Parameters
+    ----------
+    files : iterable of Path
+        As they were asked for.
+    """
+    names: dict[Path, set[str]] = {}
+    for file in files:
+        names.setdefault(file.parent, set()).add(file.name[:LONG])
+    for folder, known in names.items():
+        if folder.is_dir():
+            with _at_work(folder, known):
+                pass
+
+
+_LEFT = re.compile(r"\.(.+)\.[0-9a-f]{16}", re.DOTALL)
+
+
+def is_left(name: str) -> bool:
+    """Tell whether a name is one that a file has only while it is being written."""
+    return _LEFT.fullmatch(name) is not None
+
+
+def _clear(folder: Path, names: set[str]) -> None:
+    # A folder that may be written to, and not be read, shows nothing.
+    with suppress(OSError):
+        for file in list(folder.iterdir()):
+            left = _LEFT.fullmatch(file.name)
+            if left is not None and left[1] in names:
+                with suppress(OSError):
+                    file.unlink()
+
+
+@contextmanager
+def _at_work(folder: Path, names: set[str]) -> Iterator[None]:
+    """Hold a folder as one who writes in it; what nobody is writing any more is removed first.
+
+    The lock ends with the process. Windows needs none: it removes no file that is open.
+    """
+    if os.name != "posix":
+        _clear(folder, names)
+        yield
+        return
+    import fcntl
+
+    handle = -1
+    # Where there are no locks, what others may be writing is left alone.
+    with suppress(OSError):
+        handle = os.open(folder, os.O_RDONLY)
+        with suppress(BlockingIOError):
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _clear(folder, names)
+        fcntl.flock(handle, fcntl.LOCK_SH)
     try:
-        _fill(temporary, content)
-        if known is not None:
-            temporary.chmod(stat.S_IMODE(known.st_mode))
-            _give(temporary, known)
-        _sync(temporary)
-        temporary.replace(place)
-        _sync(place.parent)
+        yield
     finally:
-        with suppress(OSError):
-            temporary.unlink(missing_ok=True)
+        if handle >= 0:
+            with suppress(OSError):
+                os.close(handle)
 
 
 def csv_of(frame: pd.DataFrame) -> str:
@@ -85,6 +175,21 @@ def csv_of(frame: pd.DataFrame) -> str:
         if safe[name].dtype.kind not in "biuf":
             safe[name] = safe[name].map(_plain)
     return str(safe.to_csv(index=False, lineterminator="\n"))
+
+
+def netcdf_of(arrays: xr.Dataset) -> bytes:
+    """Return labelled arrays as the content of a netCDF file.
+
+    It is made in memory: where a disk is full, HDF5 leaves a file that it cannot close, and takes
+    the process with it.
+    """
+    import h5netcdf
+    from xarray.backends import H5NetCDFStore
+
+    held = BytesIO()
+    with h5netcdf.File(held, "w") as file:
+        arrays.dump_to_store(H5NetCDFStore(file))
+    return held.getvalue()
 
 
 _FORMULA = re.compile(r"[=@\t\r\n]|[+-](?![\d.])")
@@ -119,15 +224,30 @@ def _give(path: Path, known: os.stat_result) -> None:
 
 
 def _sync(path: Path) -> None:
-    """Bring a file or the names in a folder to the disk."""
-    if os.name != "posix" and path.is_dir():
-        return
+    """Bring a file to the disk."""
     handle = os.open(path, os.O_RDONLY if os.name == "posix" else os.O_RDWR)
     try:
         os.fsync(handle)
-    except OSError:
-        # Some file systems have none for folders.
-        if not path.is_dir():
+    finally:
+        os.close(handle)
+
+
+NO_SYNC = (errno.EINVAL, errno.ENOTSUP)
+"""What file systems answer that have no such thing for folders."""
+
+
+def _sync_folder(path: Path) -> None:
+    """Bring the names in a folder to the disk."""
+    if os.name != "posix":
+        return
+    try:
+        handle = os.open(path, os.O_RDONLY)
+    except PermissionError:
+        return  # it may be written to, and not be read
+    try:
+        os.fsync(handle)
+    except OSError as error:
+        if error.errno not in NO_SYNC:
             raise
     finally:
         os.close(handle)

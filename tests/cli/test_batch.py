@@ -45,6 +45,23 @@ def test_a_folder_of_cases_gives_a_result_each(command, star, tmp_path):
     assert summary(out)["counts"] == {"certified": 4}
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device")
+def test_a_result_that_cannot_be_written_is_told_and_stops_no_other(command, star, tmp_path):
+    (tmp_path / "out").mkdir()
+    target = tmp_path / "out" / "floating_sun_4.json"
+    target.symlink_to("/dev/full")
+    result = command("batch", star, "-o", tmp_path / "out", "-j", "1")
+    assert result.exit_code == 2
+    assert f"{target}: cannot be written: No space left on device" in result.output
+    found = outcomes(tmp_path / "out")
+    assert found.pop("floating_sun_4") == "unwritten"
+    assert set(found.values()) == {"certified"}
+    target.unlink()
+    again = command("batch", star, "-o", tmp_path / "out", "-j", "1")
+    assert again.exit_code == 0
+    assert outcomes(tmp_path / "out")["floating_sun_4"] == "certified"
+
+
 def test_processes_give_the_same_results(process, command, star, tmp_path):
     one, two = tmp_path / "one", tmp_path / "two"
     assert command("batch", star, "-o", one, "--jobs", "1").exit_code == 0

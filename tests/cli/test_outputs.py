@@ -1,5 +1,6 @@
 """Where commands write: never in place of a device, a pipe, a link or what they read."""
 
+import errno
 import json
 import os
 import stat
@@ -10,8 +11,9 @@ import pytest
 from tests.support import CASES
 from typer.testing import CliRunner, Result
 
+from loadshare import output
 from loadshare.cli.main import app
-from loadshare.output import STANDARD, csv_of, write_whole
+from loadshare.output import STANDARD, clear, csv_of, make_folder, write_whole
 
 CASE = CASES / "star" / "floating_sun_3.toml"
 
@@ -32,6 +34,88 @@ def test_a_file_stands_whole_or_not_at_all(tmp_path):
         write_whole(file, breaks)
     assert file.read_text() == "one"
     assert [f.name for f in file.parent.iterdir()] == ["file.txt"]
+
+
+LEFT = ".file.txt.0123456789abcdef"
+
+
+def test_what_a_killed_process_left_goes_with_the_next_writing(tmp_path):
+    others = {".file.txt", ".other.txt.0123456789abcdef", ".file.txt.0123", "file.txt.~"}
+    for name in {LEFT, *others}:
+        (tmp_path / name).write_text("half")
+    write_whole(tmp_path / "file.txt", "whole")
+    assert {f.name for f in tmp_path.iterdir()} == {"file.txt", *others}
+    (tmp_path / LEFT).write_text("half")
+    clear([tmp_path / "file.txt", tmp_path / "none" / "file.txt"])
+    assert {f.name for f in tmp_path.iterdir()} == {"file.txt", *others}
+
+
+@pytest.mark.skipif(os.name != "posix", reason="no locks of folders on this system")
+def test_what_another_is_writing_is_left_alone(tmp_path):
+    """Both write the same file: each has its own beside it until it is whole."""
+    file = tmp_path / "file.txt"
+    begun, going = threading.Event(), threading.Event()
+
+    def slow(to: Path) -> None:
+        to.write_text("of one")
+        begun.set()
+        assert going.wait(60)
+
+    one = threading.Thread(target=write_whole, args=(file, slow))
+    one.start()
+    assert begun.wait(60)
+    write_whole(file, "of the other")
+    clear([file])
+    assert len(list(tmp_path.iterdir())) == 2
+    going.set()
+    one.join(60)
+    assert {f.name: f.read_text() for f in tmp_path.iterdir()} == {"file.txt": "of one"}
+
+
+def test_an_error_names_the_file_that_was_asked_for(tmp_path):
+    """Not the one beside it; also that of a library which has nothing but words."""
+
+    def worded(to: Path) -> None:
+        raise OSError("the file system is unwell")
+
+    def numbered(to: Path) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device", str(to))
+
+    for content, told in ((worded, "unwell"), (numbered, "No space")):
+        with pytest.raises(OSError, match=told) as caught:
+            write_whole(tmp_path / "file.txt", content)
+        assert caught.value.filename == str(tmp_path / "file.txt")
+        assert caught.value.filename2 is None
+
+
+@pytest.mark.skipif(os.name != "posix", reason="folders are not brought to the disk")
+@pytest.mark.parametrize(("code", "is_told"), [(errno.EIO, True), (errno.EINVAL, False)])
+def test_a_folder_that_cannot_be_brought_to_the_disk_is_told(tmp_path, monkeypatch, code, is_told):
+    """Unless its file system has no such thing."""
+    real = os.fsync
+
+    def failing(handle: int) -> None:
+        if stat.S_ISDIR(os.fstat(handle).st_mode):
+            raise OSError(code, os.strerror(code))
+        real(handle)
+
+    monkeypatch.setattr(output.os, "fsync", failing)
+    file = tmp_path / "file.txt"
+    if is_told:
+        with pytest.raises(OSError, match="Input/output"):
+            write_whole(file, "one")
+    else:
+        write_whole(file, "one")
+    assert file.read_text() == "one"
+
+
+def test_folders_that_are_made_are_brought_to_the_disk(tmp_path, monkeypatch):
+    brought = []
+    monkeypatch.setattr(output, "_sync_folder", brought.append)
+    make_folder(tmp_path / "a" / "b")
+    assert brought == [tmp_path, tmp_path / "a"]
+    make_folder(tmp_path / "a" / "b")
+    assert len(brought) == 2
 
 
 def test_a_link_is_followed(tmp_path):

@@ -492,6 +492,7 @@ GIVEN: dict[str, tuple[str, ...]] = {
         r"^A million samples of this case.*$",
         r"^disk\. A loop over CVXPY.*$",
         r"−6 to 62 µrad at 20 positions, 5 % of the loaded error",
+        r"^\| (?:batch|tolerance study|one file|netCDF).*$",
     ),
 }
 """Numbers that are no results of the library, or measured ones: patterns by kind."""
@@ -503,5 +504,6 @@ PAGES = (
     *("README.md", INDEX, TUTORIAL, "docs/studies.md", "docs/results.md", "docs/pictures.md"),
     *("docs/api.md", "docs/theory.md", "docs/design.md", VALIDATION, "docs/ltca.md"),
     *("docs/case-reference.md", "docs/command-line.md", "docs/decisions.md"),
+    "docs/reliability.md",
 )
 """Every page but those that a command writes as a whole (reproduction, evidence)."""

@@ -179,7 +179,11 @@ def _base_of(path: FilePath, base: object, chain: tuple[FilePath, ...], origin: 
     if target.resolve() in [file.resolve() for file in chain]:
         circle = " → ".join(str(file) for file in (*chain, target))
         raise CaseError([Problem(str(path), "extends", given, f"closes a circle: {circle}")])
-    if not target.is_file():
+    try:
+        there = target.is_file()
+    except OSError:
+        return target  # to be told when it is read
+    if not there:
         raise CaseError([Problem(str(path), "extends", given, "there is no such file")])
     return target
 

@@ -7,6 +7,7 @@ from typing import Any
 import typer
 from typer.core import TyperCommand
 
+from loadshare.cli.exits import UNUSABLE, fail
 from loadshare.cli.files import ask_for
 from loadshare.cli.options import OUTPUT
 
@@ -33,3 +34,13 @@ class Command(TyperCommand):
         named = [(p.opts[-1], ctx.params.get(p.name)) for p in self.params if p.metavar == OUTPUT]
         ask_for((option, file) for option, file in named if file is not None)
         return left
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command; a file that cannot be reached becomes a message."""
+        try:
+            return super().invoke(ctx)
+        except OSError as error:
+            if error.filename is None:
+                raise
+            why = (error.strerror or str(error)).lower()
+            fail([f"{error.filename}: cannot be read or written: {why}"], UNUSABLE)

@@ -14,7 +14,7 @@ from loadshare.errors import CaseError
 REFUSED = 1
 """An answer was refused, or one case of many failed."""
 UNUSABLE = 2
-"""The case is invalid, or the command was used wrongly."""
+"""The case is invalid, the command was used wrongly, or a file cannot be read or written."""
 INTERRUPTED = 130
 """Stopped from the keyboard, as shells count it."""
 

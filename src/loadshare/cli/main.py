@@ -80,8 +80,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     Raises
     ------
     SystemExit
-        Always: 0 for success, 1 for an answer that is refused, 2 for an invalid case or wrong
-        usage, 130 for an interruption.
+        Always: 0 for success, 1 for an answer that is refused, 2 for an invalid case, wrong usage
+        or a file that cannot be read or written, 130 for an interruption.
     """
     # The matrices are far too small to share among threads, and a batch has its own processes.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

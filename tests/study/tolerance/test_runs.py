@@ -129,7 +129,7 @@ def test_killed_and_resumed(reference, tmp_path):
     kept = {file: file.stat().st_mtime_ns for file in out.glob("part-*.parquet")}
     assert 2 <= len(kept) < BLOCKS
     # What a kill in the midst of writing leaves.
-    (out / ".part-000004.parquet.half").write_bytes(b"PAR1 half")
+    (out / ".part-000004.parquet.0123456789abcdef").write_bytes(b"PAR1 half")
     found = run(out, chunk=1)
     assert {file: file.stat().st_mtime_ns for file in kept} == kept
     assert found.samples == ASKED["samples"]
@@ -219,6 +219,47 @@ def test_a_doctored_part_is_refused_by_name(reference, tmp_path, column, change,
     file.unlink()
     run(out, chunk=1)
     assert bits(out) == bits(reference)
+
+
+@pytest.mark.parametrize(("added", "is_refused"), [(3e-8, False), (1.0, True)])
+def test_rounding_of_a_force_is_no_difference(tmp_path, added, is_refused):
+    """A stop that just touches carries 0 N in a block of thousands, and 3e-8 N among two samples.
+
+    Of forces of some 10 kN, known to 1e-9: a study of the shipped tolerances could not be resumed.
+    """
+    name = "boundary_force.4 [N]"
+    floats = {"rings.*.float": {"distribution": "uniform", "low": "90 um", "high": "99 um"}}
+    asked = {**ASKED, "samples": 2, "positions": [1], "out": tmp_path / "study"}
+    case = shipped("fgfbstts/limit_ring")
+    ls.tolerance(case, floats, **asked)
+    (file,) = (tmp_path / "study").glob("part-*.parquet")
+    table = parquet.read_table(file)
+    forces = table.column(name).to_numpy()
+    assert np.abs(forces).max() == 0.0
+    made = table.set_column(table.column_names.index(name), name, pa.array(forces + added))
+    about = {**table.schema.metadata, PART_DIGEST: digest(made)}
+    parquet.write_table(made.replace_schema_metadata(about), file)
+    if not is_refused:
+        assert ls.tolerance(case, floats, **asked).samples == 2
+        return
+    with pytest.raises(ls.ResultError, match="is not what sample") as caught:
+        ls.tolerance(case, floats, **asked)
+    assert caught.value.problems[0].key == name
+
+
+def test_a_study_that_was_killed_before_it_began_begins_anew(tmp_path):
+    """Its folder holds half of study.json, under another name."""
+    out = tmp_path / "study"
+    out.mkdir()
+    (out / ".study.json.0123456789abcdef").write_text('{"case"')
+    run(out, chunk=1, samples=8)
+    assert sorted(p.name for p in out.iterdir()) == ["part-000000.parquet", "study.json"]
+    # What is not its own stays a reason to refuse.
+    other = tmp_path / "other"
+    other.mkdir()
+    (other / ".notes.txt.0123456789abcdef").write_text("mine")
+    with pytest.raises(ls.LoadshareError, match="not empty and holds no tolerance study"):
+        run(other, chunk=1, samples=8)
 
 
 def test_a_worst_case_that_is_none_is_refused_by_name(tmp_path):

@@ -8,12 +8,21 @@ from typing import Annotated
 import typer
 
 from loadshare.cli.batch.summary import print_summary, summary_document
-from loadshare.cli.batch.work import GOOD, SUMMARY, Outcome, Task, outcomes, result_names
+from loadshare.cli.batch.work import (
+    GOOD,
+    SUMMARY,
+    UNWRITTEN,
+    Outcome,
+    Task,
+    outcomes,
+    result_names,
+)
 from loadshare.cli.console import progress
-from loadshare.cli.exits import INTERRUPTED, REFUSED, fail, writing
+from loadshare.cli.exits import INTERRUPTED, REFUSED, UNUSABLE, fail, writing
 from loadshare.cli.files import write_document
 from loadshare.cli.find import find_cases
 from loadshare.cli.options import CasePaths, Method, Solver, Tolerance
+from loadshare.output import clear, make_folder
 
 
 def batch(
@@ -50,7 +59,9 @@ def batch(
         for case, name in zip(found, result_names(found), strict=True)
     ]
     with writing(folder):
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
+        summary = folder / f"{SUMMARY}.json"
+        clear([summary, *(task.target for task in tasks)])
     done: dict[str, Outcome] = {}
     interrupted = False
     with progress("cases", len(tasks)) as tick:
@@ -64,12 +75,14 @@ def batch(
     ordered = [done[task.name] for task in tasks if task.name in done]
     waiting = [str(task.case) for task in tasks if task.name not in done]
     settings = {"solver": solver, "method": method, "tolerance": tolerance}
-    summary = folder / f"{SUMMARY}.json"
+    # First, so that it is told also where nothing can be written.
+    print_summary(ordered)
     with writing(summary):
         write_document(summary, summary_document(ordered, settings, waiting))
-    print_summary(ordered)
     if interrupted:
         told = f"Interrupted: {len(ordered)} of {len(tasks)} cases done."
         fail([told, "The same command goes on; what is certified is kept."], INTERRUPTED)
+    if any(outcome.outcome == UNWRITTEN for outcome in ordered):
+        raise typer.Exit(UNUSABLE)
     if any(outcome.outcome not in GOOD for outcome in ordered):
         raise typer.Exit(REFUSED)

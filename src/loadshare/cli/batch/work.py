@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 GOOD = ("certified", "kept")
 """Outcomes after which a certified result stands on disk."""
+
+UNWRITTEN = "unwritten"
+"""Outcome of a case whose file cannot be written, as on a full disk."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +61,7 @@ class Outcome:
     ----------
     name, case : str
     outcome : str
-        "certified", "kept", "refused", "invalid" or "crashed".
+        "certified", "kept", "refused", "invalid", "unwritten" or "crashed".
     seconds : float
     positions : int
         Certified ones.
@@ -122,10 +125,28 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
     except CaseError as error:
         return "invalid", None, tuple(map(str, error.problems))
     except Refused as refusal:
-        write_document(task.target, refused_document(refusal, task.case.stem))
-        return "refused", refusal.partial, tuple(told(refusal))
-    result.to_json(task.target)
-    return "certified", result, (*notes, *_warnings(result))
+        document = refused_document(refusal, task.case.stem)
+        lines = tuple(told(refusal))
+        return _written(
+            task, "refused", refusal.partial, lines, lambda to: write_document(to, document)
+        )
+    return _written(task, "certified", result, (*notes, *_warnings(result)), result.to_json)
+
+
+def _written(
+    task: Task,
+    outcome: str,
+    result: Result | None,
+    messages: tuple[str, ...],
+    write: Callable[[Path], object],
+) -> tuple[str, Result | None, tuple[str, ...]]:
+    """Write what was found; where that cannot be, it is the outcome."""
+    try:
+        write(task.target)
+    except OSError as error:
+        why = f"{task.target}: cannot be written: {error.strerror or error}"
+        return UNWRITTEN, result, (why, *messages)
+    return outcome, result, messages
 
 
 def _warnings(result: Result) -> tuple[str, ...]:
@@ -146,7 +167,9 @@ def _kept(task: Task, case: Case, count: int) -> tuple[Result | None, tuple[str,
     """
     from loadshare.results import load_result
 
-    if not task.target.exists():
+    try:
+        task.target.stat()
+    except OSError:
         return None, ()
     try:
         result = load_result(task.target)

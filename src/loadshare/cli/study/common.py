@@ -16,7 +16,7 @@ from loadshare.cli.files import tell_written
 from loadshare.cli.options import changes, ending, output
 from loadshare.cli.refusal import told
 from loadshare.errors import Refused
-from loadshare.output import csv_of, write_whole
+from loadshare.output import csv_of, netcdf_of, write_whole
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -98,12 +98,11 @@ def write_table(
     if file is None:
         return
 
-    def write(path: Path) -> None:
-        if file.suffix == ".nc" and dataset is not None:
-            dataset().to_netcdf(path, engine="h5netcdf")
-        else:
-            path.write_text(csv_of(frame()), encoding="utf-8", newline="")
-
+    content: str | bytes
+    if file.suffix == ".nc" and dataset is not None:
+        content = netcdf_of(dataset())
+    else:
+        content = csv_of(frame())
     with writing(file):
-        write_whole(file, write)
+        write_whole(file, content)
     tell_written(file, err=True)

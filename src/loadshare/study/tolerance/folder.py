@@ -5,13 +5,13 @@ from __future__ import annotations
 import hashlib
 import json
 import logging
+import os
 from collections.abc import Iterable, Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from loadshare.errors import LoadshareError, Problem, ResultError
-from loadshare.output import write_whole
+from loadshare.output import clear, is_left, write_whole
 from loadshare.results.digest import DIGEST, digest_of
 from loadshare.study.tolerance.job import SAMPLES, STAMP, Job, Part
 
@@ -45,9 +45,10 @@ class Folder:
     def __init__(self, path: Path, job: Job) -> None:
         self.path, self.job = path, job
         self.all = tuple(job.parts())
+        clear([path / STUDY, path / WORST, *map(self.file, self.all)])
         content = {"case": job.name, "text": job.text, "hash": job.hash, "settings": job.settings}
         if not (path / STUDY).exists():
-            if path.exists() and (not path.is_dir() or any(path.iterdir())):
+            if path.exists() and (not path.is_dir() or any(map(_is_foreign, path.iterdir()))):
                 raise LoadshareError(
                     f"{path}: is not empty and holds no tolerance study. Allowed: a new or empty "
                     "folder, or the folder of the same study, which is then completed"
@@ -112,10 +113,6 @@ class Folder:
         )
         how: dict[str, Any] = {"compression": "zstd", "write_page_checksum": True}
         write_whole(file, lambda to: parquet.write_table(sealed, to, **how))
-        # What a killed process left of the same part.
-        for left in file.parent.glob(f".{file.name}.*"):
-            with suppress(FileNotFoundError):
-                left.unlink()
 
     def worst(self) -> list[dict[str, Any]] | None:
         """Return the worst cases that were found for this study, or None if none are known.
@@ -146,7 +143,7 @@ class Folder:
         """Return one column of all parts, shape (samples,)."""
         import numpy as np
 
-        pieces = [_read(file, [name]).column(0).to_numpy() for file in self.files(design)]
+        pieces = [read_part(file, [name]).column(0).to_numpy() for file in self.files(design)]
         return np.concatenate(pieces)
 
     def frame(self, columns: Sequence[str] | None = None) -> pd.DataFrame:
@@ -154,9 +151,14 @@ class Folder:
         import pyarrow as pa
 
         chosen = None if columns is None else list(columns)
-        tables = [_read(file, chosen).replace_schema_metadata() for file in self.files()]
+        tables = [read_part(file, chosen).replace_schema_metadata() for file in self.files()]
         whole: pd.DataFrame = pa.concat_tables(tables, promote_options="none").to_pandas()
         return whole
+
+
+def _is_foreign(file: Path) -> bool:
+    """Whether a file is none that another process is about to begin this study with."""
+    return not (is_left(file.name) and file.name.startswith(f".{STUDY}."))
 
 
 def digest(table: pa.Table) -> bytes:
@@ -171,13 +173,13 @@ def digest(table: pa.Table) -> bytes:
     return found.hexdigest().encode()
 
 
-def _read(file: Path, columns: list[str] | None) -> pa.Table:
-    """Read columns of a part, each page against its checksum.
+def read_part(file: Path, columns: list[str] | None = None) -> pa.Table:
+    """Read columns of a part, all by default, each page against its checksum.
 
     Raises
     ------
     ResultError
-        If the part was altered since it was written.
+        If the part cannot be read, or was altered since it was written.
     """
     import pyarrow as pa
     from pyarrow import parquet
@@ -186,7 +188,12 @@ def _read(file: Path, columns: list[str] | None) -> pa.Table:
         return parquet.read_table(file, columns=columns, page_checksum_verification=True)
     except (OSError, ValueError, pa.ArrowException) as error:
         hint = "ask for the same study again: what is not whole is solved anew"
-        why = f"was altered since it was written ({str(error).splitlines()[0]})"
+        code = getattr(error, "errno", None)
+        why = (
+            f"was altered since it was written ({str(error).splitlines()[0]})"
+            if code is None
+            else f"cannot be read: {os.strerror(code).lower()}"
+        )
         raise ResultError([Problem(str(file), "", "", why, hint=hint)]) from None
 
 

@@ -1,0 +1,184 @@
+"""A process that has everything imported, and forks for every command it is asked to run.
+
+A command in a process of its own takes seconds, most of them for imports; a fork takes some
+thousandths. Answers of the solver are kept from the undisturbed run: what is tried here are files,
+and that a sample has the same answer whoever solves it is tested elsewhere.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import traceback
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+SECONDS = 600
+"""Longer is a hang."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ended:
+    """How a command ended.
+
+    Attributes
+    ----------
+    code : int
+        Exit code; negative for the signal that killed it.
+    out, err : str
+        What it said.
+    """
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def said(self) -> str:
+        """All of it."""
+        return self.out + self.err
+
+
+class Server:
+    """Runs commands of `loadshare`, each in a fork of one process.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        For what commands say.
+    environment : dict
+        More of its variables.
+    *modules : str
+        What it imports as well.
+    """
+
+    def __init__(self, folder: Path, environment: dict[str, str], *modules: str) -> None:
+        self._folder = folder
+        python = {"PYTHONPATH": os.pathsep.join(filter(None, sys.path)), "PYTHONUTF8": "1"}
+        plain = {k: v for k, v in os.environ.items() if k not in ("FORCE_COLOR", "COLUMNS")}
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", "tests.faults.server", str(folder), *modules],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            env={**plain, **python, "OPENBLAS_NUM_THREADS": "1", **environment},
+        )
+
+    def __enter__(self) -> Server:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._process.stdin.close()
+        self._process.wait()
+        self._process.stdout.close()
+
+    def run(self, words: Sequence[str], *, fork: bool = True) -> Ended:
+        """Run a command; without a fork, what it solves is kept for those to come."""
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._process.stdin.write(json.dumps([list(words), fork]) + "\n")
+        self._process.stdin.flush()
+        code = json.loads(self._process.stdout.readline())
+        out, err = ((self._folder / name).read_text(errors="replace") for name in ("out", "err"))
+        return Ended(code, out, err)
+
+
+def _serve(folder: Path, modules: Sequence[str]) -> None:
+    """Read commands from standard input until it ends."""
+    for module in ("loadshare.cli.main", *modules):
+        import_module(module)
+    _keep_answers()
+    answers = os.fdopen(os.dup(1), "w")
+    for line in sys.stdin:
+        words, fork = json.loads(line)
+        if fork:
+            child = os.fork()
+            if not child:
+                signal.alarm(SECONDS)
+                os._exit(_run(words, folder))
+            _, status = os.waitpid(child, 0)
+            code = os.waitstatus_to_exitcode(status)
+        else:
+            code = _run(words, folder)
+        answers.write(f"{code}\n")
+        answers.flush()
+
+
+def _run(words: Sequence[str], folder: Path) -> int:
+    """Run a command with its output in files; return its exit code."""
+    from loadshare.cli.main import main
+
+    for number, name in ((1, "out"), (2, "err")):
+        file = os.open(folder / name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+        os.dup2(file, number)
+        os.close(file)
+    code = 1
+    try:
+        main(words)
+    except SystemExit as left:
+        code = left.code if isinstance(left.code, int) else int(left.code is not None)
+    except BaseException:  # noqa: BLE001 -- as the interpreter does with whatever escapes
+        traceback.print_exc()
+    with suppress(OSError):
+        sys.stdout.flush()
+        sys.stderr.flush()
+    return code
+
+
+def _keep_answers() -> None:
+    """Let what was solved once be looked up."""
+    import loadshare.job
+    from loadshare.results import files
+    from loadshare.study.tolerance import design, figures, study, worst
+
+    def case_key(case: Any, **how: Any) -> str:
+        told = {name: value for name, value in how.items() if name != "progress"}
+        return f"{case.name} {case.hash} {sorted(told.items())}"
+
+    kept = _keeping(loadshare.job.solve, case_key)
+    loadshare.job.solve = worst.solve = kept  # type: ignore[attr-defined]
+
+    files.read_document = _keeping(files.read_document, lambda text, file: (text, file))
+
+    def samples_key(solver: Any, values: Any) -> tuple[object, ...]:
+        return solver.case.hash, solver.positions, solver.engine, values.tobytes()
+
+    def array_key(values: Any, *given: Any) -> tuple[object, ...]:
+        return values.tobytes(), values.shape, repr(given)
+
+    def inputs_key(case: Any, name: str) -> str:
+        return f"{case.hash} {name} {case.study[name]!r}"
+
+    figures.Solver.solve = _keeping(figures.Solver.solve, samples_key)  # type: ignore[method-assign]
+    design.uniforms = _keeping(design.uniforms, lambda *given: repr(given))
+    study.read_inputs = _keeping(study.read_inputs, inputs_key)
+    # Large studies are solved in this process as well, which knows the answers.
+    study.TOLERANCE = study.TOLERANCE._replace(small=sys.maxsize)
+    # Statistics resample a thousand times.
+    for name in ("summary", "exceedance", "shares"):
+        setattr(study, name, _keeping(getattr(study, name), array_key))
+
+
+def _keeping(function: Callable[..., Any], key: Callable[..., Any]) -> Callable[..., Any]:
+    known: dict[Any, Any] = {}
+
+    def kept(*given: Any, **named: Any) -> Any:
+        name = key(*given, **named)
+        if name not in known:
+            known[name] = function(*given, **named)
+        return known[name]
+
+    return kept
+
+
+if __name__ == "__main__":
+    _serve(Path(sys.argv[1]), sys.argv[2:])

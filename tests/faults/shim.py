@@ -1,0 +1,110 @@
+"""The C library that counts file-system calls and lets one fail: compiled, loaded, told, read."""
+
+from __future__ import annotations
+
+import errno
+import mmap
+import os
+import shutil
+import struct
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+SOURCE = Path(__file__).with_name("shim.c")
+ROOM = 1024
+FIELDS = struct.Struct(f"=6q{ROOM}s64s{ROOM}s{ROOM}s")
+"""As `struct control` has them."""
+SHORT, KILL = -1, -2
+FAULTS: dict[str, tuple[int, bool]] = {
+    "ENOSPC": (errno.ENOSPC, False),
+    "EIO": (errno.EIO, False),
+    "EACCES": (errno.EACCES, False),
+    "EINTR": (errno.EINTR, False),
+    "short": (SHORT, False),
+    "kill": (KILL, False),
+    "full": (errno.ENOSPC, True),
+}
+"""What becomes of the call; whether the disk stays full from there on."""
+
+
+def why_not() -> str:
+    """Return why calls cannot be made to fail here; nothing where they can."""
+    if sys.platform != "linux":
+        return "calls are made to fail by LD_PRELOAD, which is Linux's"
+    if shutil.which("cc") is None:
+        return "there is no C compiler (cc)"
+    return ""
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """What the library saw.
+
+    Attributes
+    ----------
+    calls : int
+        In the folder that is watched.
+    hit : int
+        Those that failed.
+    name, path : str
+        Of the first that failed.
+    """
+
+    calls: int
+    hit: int
+    name: str
+    path: str
+
+
+class Shim:
+    """The library and the file by which it is told what shall fail.
+
+    Parameters
+    ----------
+    folder : pathlib.Path
+        Where both are made.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.library, self.file = folder / "shim.so", folder / "control"
+        how = ("-shared", "-fPIC", "-O2", "-Wall", "-Wextra", "-Werror")
+        subprocess.run(["cc", *how, "-o", self.library, SOURCE, "-ldl"], check=True)
+        self.file.write_bytes(bytes(FIELDS.size))
+        with self.file.open("r+b") as file:
+            self._shared = mmap.mmap(file.fileno(), FIELDS.size)
+
+    def environment(self) -> dict[str, str]:
+        """Return the variables with which a process loads it."""
+        return {"LD_PRELOAD": str(self.library), "LOADSHARE_FAULTS": str(self.file)}
+
+    def arm(
+        self, root: Path, target: int = 0, fault: str = "kill", log: Path | None = None
+    ) -> None:
+        """Count calls below a folder, and let one fail.
+
+        Parameters
+        ----------
+        root : pathlib.Path
+        target : int
+            Which call, from 1; 0 for none.
+        fault : str
+            A key of `FAULTS`.
+        log : pathlib.Path, optional
+            File to which every call is told.
+        """
+        error, lasting = FAULTS[fault]
+        told = os.fsencode(log) if log is not None else b""
+        fields = (1, 0, target, error, lasting, 0, os.fsencode(root), b"", b"", told)
+        self._shared[:] = FIELDS.pack(*fields)
+
+    def disarm(self) -> Seen:
+        """Count no more; return what was seen."""
+        _, calls, _, _, _, hit, _, name, path, _ = FIELDS.unpack(self._shared[:])
+        self._shared[:] = bytes(FIELDS.size)
+        return Seen(calls, hit, _text(name), _text(path))
+
+
+def _text(field: bytes) -> str:
+    return os.fsdecode(field.partition(b"\0")[0])

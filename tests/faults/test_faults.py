@@ -1,0 +1,92 @@
+"""A slice of the faults; ``python -m tests.faults`` tries them all."""
+
+import os
+from collections import Counter
+
+import pytest
+from tests.faults.scenes import ENVIRONMENT, batch_scenes, file_scenes, study_scenes
+from tests.faults.server import Server
+from tests.faults.shim import FAULTS, Shim, why_not
+from tests.faults.trial import Stage
+
+pytestmark = pytest.mark.skipif(bool(why_not()), reason=why_not())
+SMALL = {scene.name: scene for scene in (*batch_scenes(2), *study_scenes(64, 1, 0), *file_scenes())}
+TRIED = 12
+"""Faults of a scene in `make test`."""
+QUICK = ("batch over others", "study", "result.nc over another", "sweep.csv", "refused.json")
+
+
+@pytest.fixture(scope="module")
+def served(tmp_path_factory):
+    """The library that lets calls fail, and what runs commands."""
+    folder = tmp_path_factory.mktemp("faults")
+    shim = Shim(folder)
+    with Server(folder, shim.environment() | ENVIRONMENT) as server:
+        yield server, shim
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_some_faults_leave_nothing_wrong(served, tmp_path, name):
+    stage = Stage(SMALL[name], tmp_path, *served)
+    planned = stage.plan()
+    found = [stage.trial(*one) for one in planned[:: -(-len(planned) // TRIED)]]
+    assert [str(one) for one in found if one.wrong] == []
+    assert sum(one.seen.hit > 0 for one in found) > len(found) // 2
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name in SMALL if not name.startswith("study")])
+def test_no_fault_leaves_anything_wrong(served, tmp_path, name):
+    stage = Stage(SMALL[name], tmp_path, *served)
+    assert [str(one) for k, f in stage.plan() if (one := stage.trial(k, f)).wrong] == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", [name for name in SMALL if name.startswith("study")])
+def test_no_fault_leaves_anything_wrong_in_a_study(served, tmp_path, name):
+    """Its thousands of calls read columns, one like the other: of these some."""
+    stage = Stage(SMALL[name], tmp_path, *served)
+    assert [str(one) for k, f in stage.plan(5) if (one := stage.trial(k, f)).wrong] == []
+
+
+def test_every_call_is_seen_and_every_fault_met(served, tmp_path):
+    """Of the writing of one file: each step, by its name, and a kill at each."""
+    stage = Stage(SMALL["result.json over another"], tmp_path, *served)
+    names = Counter(name for name, path in stage.log if "result.json" in path)
+    for step in ("write", "fsync", "rename", "chmod"):
+        assert names[step] == 1
+    writing = [k + 1 for k, (name, _) in enumerate(stage.log) if name == "write"]
+    for fault in FAULTS:
+        found = stage.trial(writing[0], fault)
+        assert found.seen.hit
+        assert found.seen.name == "write"
+        assert found.code == {"kill": -9, "short": 0, "EINTR": 0}.get(fault, 2)
+        assert found.wrong == ()
+
+
+def test_all_is_on_the_disk_before_it_has_its_name(served, tmp_path):
+    """No write after the file was brought to the disk, and its folder after it was put there."""
+    stage = Stage(SMALL["result.nc"], tmp_path, *served)
+    (temporary,) = {path for name, path in stage.log if name == "write" and "result.nc" in path}
+    events = [name for name, path in stage.log if path == temporary]
+    last = len(events) - 1 - events[::-1].index("fsync")
+    assert not {"write", "pwrite64", "ftruncate64"} & set(events[last:])
+    moved = [name for name, _ in stage.log].index("rename")
+    folder = os.path.dirname(temporary)  # noqa: PTH120 -- of a text
+    assert ("fsync", folder) in stage.log[moved:]
+    # The folder was made, and its name stands in the one above.
+    made = stage.log.index(("mkdir", folder))
+    assert ("fsync", os.path.dirname(folder)) in stage.log[made:moved]  # noqa: PTH120
+
+
+def test_the_harness_finds_what_must_not_be(tmp_path):
+    """A check that cannot fail would prove nothing: files are written in their place here."""
+    shim, stage = Shim(tmp_path), tmp_path / "stage"
+    stage.mkdir()
+    with Server(tmp_path, shim.environment() | ENVIRONMENT, "tests.faults.broken") as server:
+        made = Stage(SMALL["result.json over another"], stage, server, shim)
+        number = [name for name, _ in made.log].index("write") + 1
+        found = {fault: made.trial(number, fault) for fault in ("kill", "EIO", "short")}
+    for fault in ("kill", "EIO"):
+        assert {one.kind for one in found[fault].wrong} == {"corrupt"}
+    assert found["short"].wrong == ()

@@ -1,0 +1,224 @@
+"""One fault: a command whose k-th call fails, what is left of its files, and the command again."""
+
+from __future__ import annotations
+
+import json
+import random
+import re
+import shutil
+import signal
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from tests.faults.scenes import OLD, SUMMARY, Scene, masked
+from tests.faults.server import Ended, Server
+from tests.faults.shim import FAULTS, Seen, Shim
+
+Files = dict[str, bytes]
+LEFT = re.compile(r"^(.*/)?\.(.+)\.[0-9a-f]{16}$")
+"""What a killed process may leave, until the command is given again."""
+CHANGING = ("mkdir", "rename", "unlink", "fsync", "flock", "chmod", "chown")
+KINDS = ("told", "lost", "corrupt", "unusable", "different", "left")
+"""What may be wrong: how the error is told, files that are gone, files that are neither what was
+there nor what is asked for; a command that does not end well when it is given again, files that
+then are not those of an undisturbed run, and temporary ones that are still there."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wrong:
+    """What must not be.
+
+    Attributes
+    ----------
+    kind : str
+        One of `KINDS`.
+    what : str
+    """
+
+    kind: str
+    what: str
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """A fault and what became of it.
+
+    Attributes
+    ----------
+    scene : str
+    number : int
+        Of the call, from 1.
+    fault : str
+        Key of `FAULTS`.
+    seen : Seen
+    code : int
+        Exit code of the command whose call failed.
+    wrong : tuple of Wrong
+    """
+
+    scene: str
+    number: int
+    fault: str
+    seen: Seen
+    code: int
+    wrong: tuple[Wrong, ...]
+
+    def __str__(self) -> str:
+        call = f"{self.fault} in {self.seen.name} {Path(self.seen.path).name}"
+        told = "; ".join(f"{w.kind}: {w.what}" for w in self.wrong)
+        return f"{self.scene}, call {self.number} ({call}), code {self.code}: {told or 'well'}"
+
+
+class Stage:
+    """A scene, with what an undisturbed run of it leaves.
+
+    Parameters
+    ----------
+    scene : Scene
+    folder : pathlib.Path
+        Empty.
+    server : Server
+    shim : Shim
+    """
+
+    def __init__(self, scene: Scene, folder: Path, server: Server, shim: Shim) -> None:
+        self.scene, self.server, self.shim = scene, server, shim
+        self.root, self._start = folder / "now", folder / "before"
+        self.words = tuple(word.replace("{}", str(self.root)) for word in scene.words)
+
+        def run(words: tuple[str, ...]) -> None:
+            ended = server.run(words, fork=False)
+            assert ended.code == 0, ended.said
+
+        scene.prepare(self.root, run)
+        self.root.rename(self._start)
+        self.before = _files(self._start)
+        self._set()
+        # Once in the server itself, which keeps the answers, and once as all that follow.
+        first = server.run(self.words, fork=False)
+        self.after, self.code = _files(self.root), first.code
+        self.log = self._logged(folder / "log")
+        assert _files(self.root).keys() == self.after.keys()
+        # What is printed when all is there.
+        self.out = server.run(self.words, fork=False).out
+
+    def _logged(self, log: Path) -> list[tuple[str, str]]:
+        """Return the calls of an undisturbed run: what each is named, and its path."""
+        self._set()
+        self.shim.arm(self.root, log=log)
+        ended = self.server.run(self.words)
+        self.shim.disarm()
+        assert ended.code == self.code, ended.said
+        lines = log.read_text(encoding="utf-8").splitlines()
+        return [(name, path) for _, name, path in (line.split("\t") for line in lines)]
+
+    def plan(self, step: int = 1) -> list[tuple[int, str]]:
+        """Return the calls that are to fail, and how, in an order that is always the same.
+
+        What writes meets every fault, what reads one of them in turn; of all that every `step`-th.
+        """
+        every, numbers = list(FAULTS), range(len(self.log))
+        writing = [(k + 1, fault) for k in numbers if self._writes(k) for fault in every]
+        reading = [(k + 1, every[k % len(every)]) for k in numbers if not self._writes(k)]
+        planned = writing + reading
+        # However soon it is stopped, calls and faults of all kinds were tried.
+        random.Random(1).shuffle(planned)
+        return planned[::step]
+
+    def _writes(self, k: int) -> bool:
+        name, path = self.log[k]
+        if LEFT.match(path) or name in CHANGING:
+            return True
+        # The opening and closing of a folder that is brought to the disk.
+        around = self.log[max(k - 1, 0) : k + 2]
+        return any(n == "fsync" and p == path for n, p in around)
+
+    def trial(self, number: int, fault: str) -> Trial:
+        """Let a call fail, and give the command again."""
+        self._set()
+        self.shim.arm(self.root, number, fault)
+        ended = self.server.run(self.words)
+        seen = self.shim.disarm()
+        wrong = [*self._told(ended, seen, fault), *self._state(ended)]
+        again = self.server.run(self.words)
+        wrong += self._resumed(again)
+        return Trial(self.scene.name, number, fault, seen, ended.code, tuple(wrong))
+
+    def _set(self) -> None:
+        shutil.rmtree(self.root, ignore_errors=True)
+        shutil.copytree(self._start, self.root)
+
+    def _told(self, ended: Ended, seen: Seen, fault: str) -> Iterator[Wrong]:
+        """Judge how a command ended of which a call failed."""
+        if "Traceback" in ended.said or "Exception ignored" in ended.said:
+            yield Wrong("told", f"a traceback: {ended.err.strip().splitlines()[-1]}")
+        elif ended.code == -signal.SIGKILL:
+            if fault != "kill" or not seen.hit:
+                yield Wrong("told", "was killed")
+        elif ended.code not in (self.code, 2, *self.scene.again):
+            yield Wrong("told", f"left with {ended.code}: {ended.said.strip()[-200:]}")
+        elif ended.code != self.code and not self._named(ended.said, Path(seen.path)):
+            yield Wrong("told", f"names no file: {ended.said.strip()[-200:]}")
+
+    def _named(self, said: str, failed: Path) -> bool:
+        """Whether what is said names the file, or one that was to stand in the folder."""
+        match = LEFT.match(str(failed))
+        if match:
+            return f"{match[1]}{match[2]}" in said
+        return str(failed) in said
+
+    def _state(self, ended: Ended) -> Iterator[Wrong]:
+        """Judge what stands on disk after the fault."""
+        now = _files(self.root)
+        for name, content in now.items():
+            allowed = [files[name] for files in (self.before, self.after) if name in files]
+            if LEFT.match(name) or _is_summary(name, content):
+                continue
+            if not any(_same(name, content, one) for one in allowed):
+                yield Wrong("corrupt", name)
+        yield from (Wrong("lost", name) for name in self.before if name not in now)
+        if ended.code == self.code == 0:
+            yield from (Wrong("lost", f"{n}, and not a word") for n in self.after if n not in now)
+            old = [n for n in now if n in self.after and not _same(n, now[n], self.after[n])]
+            yield from (Wrong("different", f"{name}, and not a word") for name in old)
+
+    def _resumed(self, again: Ended) -> Iterator[Wrong]:
+        """Judge the command that was given again."""
+        now = _files(self.root)
+        if again.code != self.code or "Traceback" in again.said:
+            yield Wrong("unusable", f"left with {again.code}: {again.said.strip()[-300:]}")
+            return
+        yield from (Wrong("left", name) for name in now if LEFT.match(name))
+        yield from (Wrong("lost", f"{n}, also then") for n in self.after if n not in now)
+        for name, content in now.items():
+            if LEFT.match(name):
+                continue
+            if name not in self.after or not _same(name, content, self.after[name]):
+                yield Wrong("different", name)
+        if self.scene.words[0] == "tolerance" and again.out != self.out:
+            yield Wrong("different", "what is printed")
+
+
+def _files(folder: Path) -> Files:
+    found = (file for file in sorted(folder.rglob("*")) if not file.is_dir())
+    return {file.relative_to(folder).as_posix(): file.read_bytes() for file in found}
+
+
+def _is_summary(name: str, content: bytes) -> bool:
+    """Whether it is the whole summary of a batch, which tells also of what went wrong."""
+    try:
+        return Path(name).name == SUMMARY and "cases" in json.loads(content)
+    except json.JSONDecodeError:
+        return False
+
+
+def _same(name: str, one: bytes, other: bytes) -> bool:
+    if one == other:
+        return True
+    if OLD in (one, other):
+        return False
+    try:
+        return masked(name, one) == masked(name, other)
+    except json.JSONDecodeError:
+        return False
