@@ -75,7 +75,7 @@ def _write(path: Path, content: Content) -> None:
     # Where a link leads; the link itself stays.
     place = Path(os.path.realpath(path))
     make_folder(place.parent)
-    with _at_work(place.parent, {place.name[:LONG]}):
+    with _held(place.parent):
         temporary = place.with_name(f".{place.name[:LONG]}.{secrets.token_hex(8)}")
         try:
             _fill(temporary, content)
@@ -113,9 +113,9 @@ def clear(files: Iterable[Path]) -> None:
     for file in files:
         names.setdefault(file.parent, set()).add(file.name[:LONG])
     for folder, known in names.items():
-        if folder.is_dir():
-            with _at_work(folder, known):
-                pass
+        with _held(folder, alone=True) as is_alone:
+            if is_alone:
+                _clear(folder, known)
 
 
 _LEFT = re.compile(r"\.(.+)\.[0-9a-f]{16}", re.DOTALL)
@@ -137,27 +137,25 @@ def _clear(folder: Path, names: set[str]) -> None:
 
 
 @contextmanager
-def _at_work(folder: Path, names: set[str]) -> Iterator[None]:
-    """Hold a folder as one who writes in it; what nobody is writing any more is removed first.
+def _held(folder: Path, alone: bool = False) -> Iterator[bool]:
+    """Hold a folder as one of those who write in it, or alone; yields whether it is held so.
 
     The lock ends with the process. Windows needs none: it removes no file that is open.
     """
     if os.name != "posix":
-        _clear(folder, names)
-        yield
+        yield True
         return
     import fcntl
 
-    handle = -1
-    # Where there are no locks, what others may be writing is left alone.
+    how = fcntl.LOCK_EX | fcntl.LOCK_NB if alone else fcntl.LOCK_SH
+    handle, held = -1, False
+    # Without locks, and where somebody is writing, what others may be writing is left alone.
     with suppress(OSError):
         handle = os.open(folder, os.O_RDONLY)
-        with suppress(BlockingIOError):
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            _clear(folder, names)
-        fcntl.flock(handle, fcntl.LOCK_SH)
+        fcntl.flock(handle, how)
+        held = True
     try:
-        yield
+        yield held
     finally:
         if handle >= 0:
             with suppress(OSError):

@@ -10,6 +10,7 @@ from typer.core import TyperCommand
 from loadshare.cli.exits import UNUSABLE, fail
 from loadshare.cli.files import ask_for
 from loadshare.cli.options import OUTPUT
+from loadshare.output import clear
 
 PREFIX = "Value error, "
 """What pydantic, which reads options for typer, puts before a message."""
@@ -32,7 +33,9 @@ class Command(TyperCommand):
             error.message = error.message.removeprefix(PREFIX)
             raise
         named = [(p.opts[-1], ctx.params.get(p.name)) for p in self.params if p.metavar == OUTPUT]
-        ask_for((option, file) for option, file in named if file is not None)
+        asked = [(option, file) for option, file in named if file is not None]
+        ask_for(asked)
+        clear(file for _, file in asked)
         return left
 
     def invoke(self, ctx: Any) -> Any:
