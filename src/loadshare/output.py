@@ -8,7 +8,7 @@ import secrets
 import stat
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -72,6 +72,21 @@ def write_whole(path: Path, content: Content) -> None:
     finally:
         with suppress(OSError):
             temporary.unlink(missing_ok=True)
+
+
+def clear(files: Iterable[Path]) -> None:
+    """Remove what processes that were killed left beside files that they were writing."""
+    names: dict[Path, set[str]] = {}
+    for file in files:
+        names.setdefault(file.parent, set()).add(file.name[:LONG])
+    for folder, known in names.items():
+        for left in folder.iterdir() if folder.is_dir() else ():
+            half = _LEFT.fullmatch(left.name)
+            if half is not None and half[1] in known:
+                left.unlink(missing_ok=True)
+
+
+_LEFT = re.compile(r"\.(.+)\.[0-9a-f]{16}")
 
 
 def csv_of(frame: pd.DataFrame) -> str:

@@ -17,6 +17,8 @@ UNUSABLE = 2
 """The case is invalid, or the command was used wrongly."""
 INTERRUPTED = 130
 """Stopped from the keyboard, as shells count it."""
+TERMINATED = 143
+"""Stopped by SIGTERM, as shells count it."""
 
 
 def fail(lines: Iterable[str], code: int) -> NoReturn:

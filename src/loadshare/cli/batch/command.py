@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -10,10 +12,14 @@ import typer
 from loadshare.cli.batch.summary import print_summary, summary_document
 from loadshare.cli.batch.work import GOOD, SUMMARY, Outcome, Task, outcomes, result_names
 from loadshare.cli.console import progress
-from loadshare.cli.exits import INTERRUPTED, REFUSED, fail, writing
+from loadshare.cli.exits import REFUSED, UNUSABLE, fail, writing
 from loadshare.cli.files import write_document
 from loadshare.cli.find import find_cases
 from loadshare.cli.options import CasePaths, Method, Solver, Tolerance
+from loadshare.cli.stop import Stop
+from loadshare.errors import LoadshareError
+from loadshare.lock import alone_in
+from loadshare.output import clear
 
 
 def batch(
@@ -51,25 +57,47 @@ def batch(
     ]
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
+    stop = Stop(_stopping)
+    try:
+        with alone_in(folder), stop:
+            with writing(folder):
+                clear([task.target for task in tasks])
+            done = _done(tasks, min(jobs or cpu_count(), len(tasks)), stop)
+            ordered = [done[task.name] for task in tasks if task.name in done]
+            waiting = [str(task.case) for task in tasks if task.name not in done]
+            settings = {"solver": solver, "method": method, "tolerance": tolerance}
+            summary = folder / f"{SUMMARY}.json"
+            with writing(summary):
+                write_document(summary, summary_document(ordered, settings, waiting))
+            print_summary(ordered)
+            if stop.asked:
+                told = f"Interrupted: {len(ordered)} of {len(tasks)} cases done."
+                fail([told, "The same command goes on; what is certified is kept."], stop.code)
+    except LoadshareError as error:
+        fail([str(error)], UNUSABLE)
+    if any(outcome.outcome not in GOOD for outcome in ordered):
+        raise typer.Exit(REFUSED)
+
+
+def _done(tasks: Sequence[Task], jobs: int, stop: Stop) -> dict[str, Outcome]:
+    """Do all tasks, or as many as signals allow, and return their outcomes by name."""
     done: dict[str, Outcome] = {}
-    interrupted = False
-    with progress("cases", len(tasks)) as tick:
-        try:
-            for outcome in outcomes(tasks, min(jobs or cpu_count(), len(tasks))):
+    try:
+        with progress("cases", len(tasks)) as tick:
+            for outcome in outcomes(tasks, jobs, lambda: stop.asked):
                 done[outcome.name] = outcome
                 if tick is not None:
                     tick(len(done), len(tasks))
-        except KeyboardInterrupt:
-            interrupted = True
-    ordered = [done[task.name] for task in tasks if task.name in done]
-    waiting = [str(task.case) for task in tasks if task.name not in done]
-    settings = {"solver": solver, "method": method, "tolerance": tolerance}
-    summary = folder / f"{SUMMARY}.json"
-    with writing(summary):
-        write_document(summary, summary_document(ordered, settings, waiting))
-    print_summary(ordered)
-    if interrupted:
-        told = f"Interrupted: {len(ordered)} of {len(tasks)} cases done."
-        fail([told, "The same command goes on; what is certified is kept."], INTERRUPTED)
-    if any(outcome.outcome not in GOOD for outcome in ordered):
-        raise typer.Exit(REFUSED)
+        stop.over()
+    except KeyboardInterrupt:
+        stop.asked = True
+    return done
+
+
+def _stopping() -> None:
+    # Past Python's buffers: a signal may come while they are written to.
+    told = "Stopping; the cases under way are finished first. Ctrl-C again leaves them.\n"
+    os.write(STDERR, told.encode())
+
+
+STDERR = 2

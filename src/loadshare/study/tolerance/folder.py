@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from loadshare.errors import LoadshareError, Problem, ResultError
+from loadshare.lock import LOCK
 from loadshare.output import write_whole
 from loadshare.study.tolerance.job import SAMPLES, STAMP, Job, Part
 
@@ -34,6 +35,8 @@ class Folder:
     ----------
     path : pathlib.Path
     job : Job
+    lasting : bool
+        Whether it stays when the study fails.
 
     Raises
     ------
@@ -41,12 +44,12 @@ class Folder:
         If the folder holds another study, or what is no study.
     """
 
-    def __init__(self, path: Path, job: Job) -> None:
-        self.path, self.job = path, job
+    def __init__(self, path: Path, job: Job, *, lasting: bool = True) -> None:
+        self.path, self.job, self.lasting = path, job, lasting
         self.all = tuple(job.parts())
         content = {"case": job.name, "text": job.text, "hash": job.hash, "settings": job.settings}
         if not (path / STUDY).exists():
-            if path.exists() and (not path.is_dir() or any(path.iterdir())):
+            if path.exists() and (not path.is_dir() or {p.name for p in path.iterdir()} - {LOCK}):
                 raise LoadshareError(
                     f"{path}: is not empty and holds no tolerance study. Allowed: a new or empty "
                     "folder, or the folder of the same study, which is then completed"
@@ -73,6 +76,14 @@ class Folder:
         """Return where a part stands."""
         folder = self.path if part.design == SAMPLES else self.path / part.design
         return folder / f"part-{part.number:06d}.parquet"
+
+    def kept(self) -> str:
+        """Return what of a study that ends now is kept, and how to go on with it, in words."""
+        if not self.lasting:
+            return "Nothing is kept: the study has no folder (out, or --output)."
+        done = sum(self.file(part).exists() for part in self.all)
+        told = f"{done} of {len(self.all)} parts are kept in {self.path}"
+        return f"{told}: the same command goes on from there."
 
     def missing(self) -> list[Part]:
         """Return the parts that are not there, or not whole; the log names the latter."""
