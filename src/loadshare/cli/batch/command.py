@@ -95,9 +95,6 @@ def _done(tasks: Sequence[Task], jobs: int, stop: Stop) -> dict[str, Outcome]:
 
 
 def _stopping() -> None:
-    # Past Python's buffers: a signal may come while they are written to.
+    # Past the buffers of stderr: a signal may come while they are written to.
     told = "Stopping; the cases under way are finished first. Ctrl-C again leaves them.\n"
-    os.write(STDERR, told.encode())
-
-
-STDERR = 2
+    os.write(2, told.encode())
