@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     import pyarrow as pa
     from distributed import Client
 
-WAIT = 30.0
-"""Seconds that an answer of the scheduler is awaited, or another worker when the last is gone."""
 JOIN = 10.0
-"""Seconds that the first worker is awaited."""
+"""Seconds that the scheduler is awaited, and the first worker."""
+WAIT = 30.0
+"""Seconds that another worker is awaited when the last is gone."""
 LOOK = 2.0
 """Seconds between two looks whether there are workers."""
 SHOWN = 5
@@ -70,7 +70,7 @@ def solve_on_cluster(folder: Folder, parts: Sequence[Part], address: str) -> Ite
             "a cluster needs the package distributed: pip install 'loadshare[cluster]'"
         ) from None
     try:
-        client = Client(address, timeout=WAIT)
+        client = Client(address, timeout=JOIN)
     except (OSError, ValueError) as error:
         raise LoadshareError(f"scheduler {address}: cannot be reached: {error}") from None
     with client:
