@@ -99,7 +99,7 @@ def test_the_commands_of_the_documentation(tmp_path):
     )
     assert study[-2:] == ["-o", "study"]
     start = [sys.executable, "-c", "from loadshare.cli.main import main; main()", *study[1:-2]]
-    command = [*start, "--samples", "256", "--no-worst", "--with", "study.errors.indices=0", "-o"]
+    command = [*start, "--samples", "64", "--no-worst", "--with", "study.errors.indices=0", "-o"]
     study_in = {"env": environment(), "cwd": ROOT, "capture_output": True, "text": True}
     crew = []
     try:
