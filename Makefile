@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS = 1
 export NO_MKDOCS_2_WARNING = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-all lint format types layers docs docs-serve cases bench stress reproduce fuzz clean
+.PHONY: help run test test-all lint format types layers docs docs-serve cases bench stress reproduce fuzz kills clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  %-12s %s\n", $$1, $$2}'
@@ -71,6 +71,10 @@ reproduce: $(VENV)/.run ## compute the seed paper's figures (docs/reproduction.m
 N ?= 10000
 fuzz: $(VENV)/.dev ## try N inputs that nobody meant: no traceback, no hang, no wrong figure
 	$(BIN)/python -m tests.fuzz --count $(N) --processes $(WORKERS)
+
+KILLS ?= 200
+kills: $(VENV)/.dev ## kill batches and studies KILLS times: nothing left, and the same results after
+	$(BIN)/python -m tests.kills --count $(KILLS)
 
 clean: ## remove what was built
 	rm -rf $(VENV) site dist build .pytest_cache .mypy_cache .ruff_cache

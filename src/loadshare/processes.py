@@ -10,12 +10,14 @@ import signal
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
+
+    from loky import ProcessPoolExecutor
 
 Item = TypeVar("Item")
 Result = TypeVar("Result")
@@ -24,13 +26,15 @@ ENVIRONMENT = {"OPENBLAS_NUM_THREADS": "1"}
 """One thread of BLAS in each: matrices are small, and their sums then always round alike."""
 IDLE = 30.0
 """Seconds without work after which a worker ends."""
+WATCH = 1.0
+"""Seconds between two looks of a worker whether its parent is still there."""
 
 
 def side_by_side(
     work: Callable[[Item], Result],
     items: Iterable[Item],
     workers: int,
-    stopping: Callable[[], None] | None = None,
+    stopped: Callable[[], bool] = lambda: False,
 ) -> Iterator[tuple[Item, Result | None]]:
     """Do work in processes and yield every item with its result, as they come.
 
@@ -40,92 +44,115 @@ def side_by_side(
     items : iterable
     workers : int
         Processes.
-    stopping : callable, optional
-        Called when the keyboard interrupts, or nobody asks for more; what is under way is then
-        finished. Without it workers are killed.
+    stopped : callable, optional
+        Whether nothing more is to be begun; what is under way is then finished.
 
     Yields
     ------
     item
     result
-        None where the process died, once among others and once alone.
+        None where the process died twice: at first, and once more after all others were begun.
 
     Raises
     ------
     Exception
-        What `work` raises.
+        What `work` raises. Processes that are at work then, or when the caller asks for no more or
+        is interrupted, are killed.
     """
-    waiting = deque(items)
-    while waiting:
-        lost = yield from _crew(work, waiting, workers, stopping)
-        # A dead process takes its crew with it; alone, each item shows whether it was the one.
-        for item in lost:
-            again = yield from _crew(work, deque([item]), 1, stopping)
-            yield from ((item, None) for item in again)
-
-
-def _crew(
-    work: Callable[[Item], Result],
-    waiting: deque[Item],
-    workers: int,
-    stopping: Callable[[], None] | None,
-) -> Generator[tuple[Item, Result], None, list[Item]]:
-    """Work until nothing is waiting or a process dies; return what was under way then."""
     from concurrent.futures import FIRST_COMPLETED, wait
 
-    from loky import BrokenProcessPool, ProcessPoolExecutor
+    from loky import BrokenProcessPool
 
-    def lost(future: Future[Result]) -> bool:
-        return isinstance(future.exception(), BrokenProcessPool)
-
-    workers = min(workers, len(waiting))
-    pool = ProcessPoolExecutor(
-        workers, timeout=IDLE, initializer=_enlist, initargs=(os.getpid(),), env=ENVIRONMENT
-    )
-    running: dict[Future[Result], Item] = {}
-    finish = False
+    waiting = deque((item, False) for item in items)
+    crew = [_Worker() for _ in range(min(workers, len(waiting)))]
+    free = list(crew)
+    busy: dict[Future[Result], tuple[_Worker, Item, bool]] = {}
     try:
-        while waiting or running:
+        while busy or (waiting and not stopped()):
             # No more than are at work: what has been handed in cannot be called back.
-            while waiting and len(running) < workers:
-                with _interrupts_left():
-                    future = pool.submit(work, waiting[0])
-                running[future] = waiting.popleft()
-            for future in sorted(wait(running, return_when=FIRST_COMPLETED).done, key=lost):
-                result = future.result()
-                yield running.pop(future), result
-    except BrokenProcessPool:
-        pass
-    except (KeyboardInterrupt, GeneratorExit):
-        if stopping is not None:
-            stopping()
-            finish = True
-        raise
+            while waiting and free and not stopped():
+                worker = free.pop()
+                item, again = waiting.popleft()
+                busy[worker.begin(work, item)] = worker, item, again
+            for future in wait(busy, return_when=FIRST_COMPLETED).done:
+                worker, item, again = busy.pop(future)
+                free.append(worker)
+                try:
+                    result = future.result()
+                except BrokenProcessPool:
+                    worker.end()
+                    if again:
+                        yield item, None
+                    else:
+                        waiting.append((item, True))
+                else:
+                    yield item, result
     finally:
-        pool.shutdown(kill_workers=bool(running) and not finish)
-    return list(running.values())
+        with _signals_held():
+            for worker in crew:
+                worker.end()
+
+
+class _Worker:
+    """One process, and another when it dies: a pool that loses one of many loses them all."""
+
+    def __init__(self) -> None:
+        self.pool: ProcessPoolExecutor | None = None
+
+    def begin(self, work: Callable[[Item], Result], item: Item) -> Future[Result]:
+        """Begin with an item."""
+        from loky import BrokenProcessPool, ProcessPoolExecutor
+
+        while True:
+            if self.pool is None:
+                self.pool = ProcessPoolExecutor(
+                    1, timeout=IDLE, initializer=_enlist, initargs=(os.getpid(),), env=ENVIRONMENT
+                )
+            try:
+                with _signals_held():
+                    found: Future[Result] = self.pool.submit(work, item)
+            except BrokenProcessPool:
+                # It died after the item before.
+                self.end()
+            else:
+                return found
+
+    def end(self) -> None:
+        """Kill it, at work or not: nothing that it does is needed any more."""
+        if self.pool is not None:
+            self.pool.shutdown(kill_workers=True)
+            self.pool = None
 
 
 def _enlist(parent: int) -> None:
     """Begin as a worker: Ctrl-C is the parent's affair, and its end is the worker's."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, HELD)
 
     def end() -> None:
         while os.getppid() == parent:
-            time.sleep(1.0)
+            time.sleep(WATCH)
         os._exit(1)
 
     threading.Thread(target=end, daemon=True).start()
 
 
+HELD = (signal.SIGINT, signal.SIGTERM)
+"""Signals that wait while processes are started or ended."""
+
+
 @contextmanager
-def _interrupts_left() -> Iterator[None]:
-    """Start processes that ignore Ctrl-C from their first moment."""
-    if threading.current_thread() is not threading.main_thread():
+def _signals_held() -> Iterator[None]:
+    """Let no signal come between: none is lost, and none leaves a process that nobody knows of.
+
+    Processes that are started meanwhile hold them too, until they know what to do with them.
+    """
+    if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, HELD)
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

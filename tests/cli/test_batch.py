@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -14,6 +15,7 @@ import pytest
 import loadshare as ls
 from loadshare.cli.batch import work as pool
 from loadshare.cli.batch.work import result_names
+from loadshare.lock import alone_in
 
 
 @pytest.fixture
@@ -264,6 +266,69 @@ def test_an_interrupt_from_the_keyboard_stops_a_batch_in_processes(cases, tmp_pa
     for file in set(out.glob("*.json")) - {out / "summary.json"}:
         assert ls.load_result(file).passed
     assert not list(out.glob(".*"))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+@pytest.mark.parametrize("jobs", ["1", "2"])
+@pytest.mark.parametrize(
+    ("sent", "code"), [((signal.SIGINT, signal.SIGINT), 130), ((signal.SIGTERM,), 143)]
+)
+def test_a_batch_ends_where_it_stands(cases, tmp_path, environment, sent, code, jobs):
+    """At the second Ctrl-C and at SIGTERM what is under way is left, and what is kept is told."""
+    out, script = tmp_path / "out", tmp_path / "script.py"
+    script.write_text(GATED, encoding="utf-8")
+    words = (cases / "star", "-o", out, "--jobs", jobs)
+    batch = subprocess.Popen(
+        [sys.executable, script, "batch", *words],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        env=environment,
+        start_new_session=True,
+    )
+    # The gate stays closed: a batch that waits for what is under way never ends.
+    guard = threading.Timer(120.0, os.killpg, (batch.pid, signal.SIGKILL))
+    guard.start()
+    try:
+        while not (out / "floating_sun_3.json").exists():
+            assert batch.poll() is None
+            time.sleep(0.01)
+        # Workers have none of the first; of the second they may die, which is no crash of a case.
+        os.killpg(batch.pid, sent[0])
+        if sent[0] == signal.SIGINT:
+            assert batch.stderr.readline().startswith("Stopping")
+            os.killpg(batch.pid, signal.SIGINT)
+        # Workers hold the other end of this pipe: when it is read to its end, they are gone.
+        _, stderr = batch.communicate()
+    finally:
+        guard.cancel()
+    assert batch.returncode == code
+    # The file of a case is there a moment before its process has told of it.
+    assert re.search(r"Interrupted: [01] of 4 cases done\.\nThe same command goes on", stderr)
+    assert "Traceback" not in stderr
+    assert set(outcomes(out).items()) <= {("floating_sun_3", "certified")}
+    assert len(summary(out)["not_done"]) + len(outcomes(out)) == 4
+    assert sorted(file.name for file in out.iterdir()) == ["floating_sun_3.json", "summary.json"]
+
+
+def test_a_second_batch_in_a_folder_does_nothing(command, star, tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    with alone_in(out):
+        there = sorted(out.iterdir())
+        result = command("batch", star, "-o", out, "--jobs", "1")
+        assert sorted(out.iterdir()) == there
+    assert result.exit_code == 2
+    assert f"in use by process {os.getpid()} on " in " ".join(result.stderr.split())
+
+
+def test_what_a_killed_batch_left_is_removed(command, star, tmp_path):
+    half, other = (tmp_path / f".{name}.json.0123456789abcdef" for name in ("floating_sun_3", "x"))
+    half.write_text("{", encoding="utf-8")
+    other.write_text("{", encoding="utf-8")
+    command("batch", star, "-o", tmp_path, "--jobs", "1")
+    assert not half.exists()
+    assert other.exists()
 
 
 def test_a_process_that_dies_costs_only_its_own_case(star, tmp_path, environment):

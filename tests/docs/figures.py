@@ -444,7 +444,7 @@ GIVEN: dict[str, tuple[str, ...]] = {
         r"clocked by 0\.5 mrad",
         r"with 1 µm of clearance",
     ),
-    "exit codes": (r"^\| (?:0|1|2|130) \|", r"exit code (?:then is )?\d(?: or \d)?"),
+    "exit codes": (r"^\| (?:0|1|2|130|143) \|", r"exit code (?:then is )?\d(?: or \d)?"),
     "settings, each also a constant of the code": (
         r"^\| (?:line of action turned|approach neglected|mesh compression|arm of a ring).*$",
         r"1 % of either is about what mesh stiffnesses",

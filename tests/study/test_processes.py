@@ -5,7 +5,9 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 
+import psutil
 import pytest
 
 from loadshare.processes import side_by_side
@@ -24,6 +26,68 @@ def test_only_what_kills_its_process_is_lost():
 
     found = dict(side_by_side(work, range(6), 2))
     assert found == {n: None if n == 3 else -n for n in range(6)}
+
+
+def test_a_process_that_dies_costs_one_more_try_and_leaves_the_others_side_by_side(tmp_path):
+    """Of 40 items the fourth kills its process at first; from the 21st on, two at a time meet."""
+
+    def work(n):
+        with (tmp_path / f"{n}").open("a") as told:
+            told.write("begun ")
+        if n == 3 and (tmp_path / "3").read_text() == "begun ":
+            os.kill(os.getpid(), signal.SIGKILL)
+        other = tmp_path / f"{n ^ 1}"
+        end = time.monotonic() + 60.0
+        while n >= 20 and not other.exists():
+            if time.monotonic() > end:
+                return "alone"
+            time.sleep(0.001)
+        return "met"
+
+    found = list(side_by_side(work, range(40), 2))
+    assert sorted(found) == [(n, "met") for n in range(40)]
+    # It is tried again when all others have begun.
+    assert [n for n, _ in found].index(3) >= 38
+    begun = {n: (tmp_path / f"{n}").read_text().count("begun") for n in range(40)}
+    assert begun == {n: 2 if n == 3 else 1 for n in range(40)}
+
+
+def test_a_process_that_dies_between_two_items_takes_none_with_it():
+    found = {}
+    for item, pid in side_by_side(lambda _: os.getpid(), range(3), 1):
+        found[item] = pid
+        if item == 0:
+            victim = psutil.Process(pid)
+            victim.kill()
+            gone, _ = psutil.wait_procs([victim], timeout=60.0)
+            assert gone
+    assert sorted(found) == [0, 1, 2]
+    assert None not in found.values()
+    assert found[1] == found[2] != found[0]
+
+
+def test_what_is_under_way_is_finished_when_no_more_is_to_be_begun():
+    begun = []
+    found = side_by_side(lambda n: n, range(9), 1, lambda: len(begun) > 1)
+    for item, _ in found:
+        begun.append(item)
+    assert begun == [0, 1]
+
+
+def test_nobody_asks_for_more(tmp_path):
+    """What is at work then is killed, however long it would take."""
+
+    def work(n):
+        if n:
+            (tmp_path / "pid").write_text(f"{os.getpid()} ")
+            time.sleep(3600.0)
+
+    found = side_by_side(work, range(2), 2)
+    next(found)
+    while not (tmp_path / "pid").exists() or not (tmp_path / "pid").read_text().endswith(" "):
+        time.sleep(0.01)
+    found.close()
+    assert not psutil.pid_exists(int((tmp_path / "pid").read_text()))
 
 
 def test_what_work_raises_is_raised():

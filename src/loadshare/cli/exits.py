@@ -17,6 +17,8 @@ UNUSABLE = 2
 """The case is invalid, the command was used wrongly, or a file cannot be read or written."""
 INTERRUPTED = 130
 """Stopped from the keyboard, as shells count it."""
+TERMINATED = 143
+"""Stopped by SIGTERM, as shells count it."""
 
 
 def fail(lines: Iterable[str], code: int) -> NoReturn:

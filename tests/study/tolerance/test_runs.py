@@ -2,13 +2,14 @@
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
 import sys
 import time
 import tomllib
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from pyarrow import parquet
 from tests.support import CASES, shipped
 
 import loadshare as ls
+from loadshare.lock import alone_in
 from loadshare.results.digest import DIGEST, digest_of
 from loadshare.settings import TOLERANCE
 from loadshare.study.tolerance import local, study
@@ -393,83 +395,76 @@ def test_a_sample_that_makes_no_case_does_not_take_others_with_it(monkeypatch):
     assert any("makes no case" in text for text in found.messages)
 
 
-def address_in(file: Path) -> str:
-    """Address that a scheduler writes to a file, awaited until the file is whole."""
-    found = {}
-
-    def whole() -> bool:
-        with suppress(OSError, ValueError):
-            found.update(json.loads(file.read_text()))
-        return "address" in found
-
-    until(whole)
-    return found["address"]
-
-
-@contextmanager
-def cluster(folder: Path, workers: int):
-    """A scheduler and workers without nannies, each a process of its own."""
-    known = folder / "scheduler.json"
-    variables = environment(OPENBLAS_NUM_THREADS="1")
-    started = []
-
-    def start(*words: str) -> subprocess.Popen:
-        log = (folder / f"log-{len(started)}.txt").open("w")
-        process = subprocess.Popen(
-            [sys.executable, "-m", *words], env=variables, stdout=log, stderr=log, cwd=folder
-        )
-        log.close()
-        started.append(process)
-        return process
-
-    try:
-        start(
-            "distributed.cli.dask_scheduler",
-            *("--host", "127.0.0.1", "--port", "0", "--no-dashboard"),
-            *("--scheduler-file", str(known)),
-        )
-        address = address_in(known)
-        crew = [
-            start(
-                "distributed.cli.dask_worker",
-                *(address, "--nthreads", "1", "--no-nanny", "--no-dashboard"),
-            )
-            for _ in range(workers)
-        ]
-        yield address, crew
-    finally:
-        for process in reversed(started):
-            process.kill()
-            process.wait()
+COMMAND = """
+import signal
+from loadshare.cli.main import main
+from loadshare.study.tolerance import study
+if __name__ == "__main__":
+    # Whoever runs the tests in the background has interrupts ignored, and children inherit that.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    study.TOLERANCE = study.TOLERANCE._replace(small=0)
+    study.tolerance.__kwdefaults__.update(chunk=1, engine="vectorised")
+    main()
+"""
 
 
-@pytest.mark.filterwarnings("ignore::DeprecationWarning:distributed", "ignore::ResourceWarning")
-def test_a_cluster_that_loses_a_worker_gives_the_same_bits(reference, tmp_path):
-    pytest.importorskip("distributed")
+@pytest.fixture
+def scatter(tmp_path) -> Path:
+    """A case with a study that takes some seconds."""
+    case = shipped(PATHS).replace(
+        {"study.scatter": {"kind": "tolerance", "inputs": INPUTS, "indices": 0, "samples": 400_000}}
+    )
+    file = tmp_path / "case.toml"
+    file.write_text(case.to_toml(), encoding="utf-8")
+    return file
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+@pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize("workers", ["1", "2"])
+def test_a_study_that_is_stopped_says_what_is_kept(scatter, tmp_path, sent, code, workers):
     out = tmp_path / "study"
-    with cluster(tmp_path, 2) as (address, crew):
-        from distributed import Client
+    words = ("tolerance", scatter, "-o", out, "--workers", workers)
+    process = subprocess.Popen(
+        [sys.executable, "-c", COMMAND, *words],
+        env=environment(),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    try:
+        until(lambda: (out / "part-000000.parquet").exists(), process)
+        for _ in range(3):
+            process.send_signal(sent)
+        # Workers hold the other end of this pipe: when it is read to its end, they are gone.
+        _, told = process.communicate(timeout=120.0)
+    finally:
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+    assert process.returncode == code
+    assert "Traceback" not in told
+    found = re.search(r"Interrupted: ([\d,]+) of 400,000 samples are kept in .*study\.", told)
+    assert found is not None, told
+    kept = len(list(out.glob("part-*.parquet")))
+    assert int(found[1].replace(",", "")) <= 4096 * kept < 400_000
+    assert "The same command goes on from there." in told
 
-        with Client(address) as client:
-            client.wait_for_workers(2, timeout=60)
-        lost = []
 
-        def kill_one(done: int, _: int) -> None:
-            if done and not lost:
-                crew[0].send_signal(signal.SIGKILL)
-                lost.append(done)
-
-        run(out, scheduler=address, chunk=1, progress=kill_one)
-        assert lost == [4096]
-        assert crew[0].wait() == -signal.SIGKILL
-        assert crew[1].poll() is None
-    assert bits(out) == bits(reference)
+def test_a_second_study_in_a_folder_does_nothing(tmp_path):
+    out = tmp_path / "study"
+    out.mkdir()
+    with alone_in(out), pytest.raises(ls.LoadshareError, match=f"in use by process {os.getpid()} "):
+        run(out, samples=64)
+    assert list(out.iterdir()) == []
+    run(out, samples=64)
 
 
-def test_a_cluster_that_is_not_there(tmp_path, monkeypatch):
-    pytest.importorskip("distributed")
-    from loadshare.study.tolerance import cluster as room
+def test_what_has_no_folder_is_not_kept(monkeypatch, processes):
+    def dying(path, job, part):
+        os.kill(os.getpid(), signal.SIGKILL)
 
-    monkeypatch.setattr(room, "WAIT", "200ms")
-    with pytest.raises(ls.LoadshareError, match="cannot be reached"):
-        run(tmp_path / "study", samples=64, scheduler="tcp://127.0.0.1:9")
+    monkeypatch.setattr(local, "solve_there", dying)
+    with pytest.raises(ls.LoadshareError, match="Nothing is kept: the study has no folder"):
+        run(None, samples=64)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -18,10 +20,13 @@ from loadshare.cli.batch.work import (
     result_names,
 )
 from loadshare.cli.console import progress
-from loadshare.cli.exits import INTERRUPTED, REFUSED, UNUSABLE, fail, writing
+from loadshare.cli.exits import REFUSED, UNUSABLE, fail, writing
 from loadshare.cli.files import write_document
 from loadshare.cli.find import find_cases
 from loadshare.cli.options import CasePaths, Method, Solver, Tolerance
+from loadshare.cli.stop import Stop
+from loadshare.errors import LoadshareError
+from loadshare.lock import alone_in
 from loadshare.output import clear, make_folder
 
 
@@ -60,29 +65,46 @@ def batch(
     ]
     with writing(folder):
         make_folder(folder)
-        summary = folder / f"{SUMMARY}.json"
-        clear([summary, *(task.target for task in tasks)])
-    done: dict[str, Outcome] = {}
-    interrupted = False
-    with progress("cases", len(tasks)) as tick:
-        try:
-            for outcome in outcomes(tasks, min(jobs or cpu_count(), len(tasks))):
-                done[outcome.name] = outcome
-                if tick is not None:
-                    tick(len(done), len(tasks))
-        except KeyboardInterrupt:
-            interrupted = True
-    ordered = [done[task.name] for task in tasks if task.name in done]
-    waiting = [str(task.case) for task in tasks if task.name not in done]
-    settings = {"solver": solver, "method": method, "tolerance": tolerance}
-    # First, so that it is told also where nothing can be written.
-    print_summary(ordered)
-    with writing(summary):
-        write_document(summary, summary_document(ordered, settings, waiting))
-    if interrupted:
-        told = f"Interrupted: {len(ordered)} of {len(tasks)} cases done."
-        fail([told, "The same command goes on; what is certified is kept."], INTERRUPTED)
+    summary = folder / f"{SUMMARY}.json"
+    stop = Stop(_stopping)
+    try:
+        with alone_in(folder), stop:
+            clear([summary, *(task.target for task in tasks)])
+            done = _done(tasks, min(jobs or cpu_count(), len(tasks)), stop)
+            ordered = [done[task.name] for task in tasks if task.name in done]
+            waiting = [str(task.case) for task in tasks if task.name not in done]
+            settings = {"solver": solver, "method": method, "tolerance": tolerance}
+            # First, so that it is told also where nothing can be written.
+            print_summary(ordered)
+            with writing(summary):
+                write_document(summary, summary_document(ordered, settings, waiting))
+            if stop.asked:
+                told = f"Interrupted: {len(ordered)} of {len(tasks)} cases done."
+                fail([told, "The same command goes on; what is certified is kept."], stop.code)
+    except LoadshareError as error:
+        fail([str(error)], UNUSABLE)
     if any(outcome.outcome == UNWRITTEN for outcome in ordered):
         raise typer.Exit(UNUSABLE)
     if any(outcome.outcome not in GOOD for outcome in ordered):
         raise typer.Exit(REFUSED)
+
+
+def _done(tasks: Sequence[Task], jobs: int, stop: Stop) -> dict[str, Outcome]:
+    """Do all tasks, or as many as signals allow, and return their outcomes by name."""
+    done: dict[str, Outcome] = {}
+    try:
+        with progress("cases", len(tasks)) as tick:
+            for outcome in outcomes(tasks, jobs, lambda: stop.asked):
+                done[outcome.name] = outcome
+                if tick is not None:
+                    tick(len(done), len(tasks))
+        stop.over()
+    except KeyboardInterrupt:
+        stop.asked = True
+    return done
+
+
+def _stopping() -> None:
+    # Past the buffers of stderr: a signal may come while they are written to.
+    told = "Stopping; the cases under way are finished first. Ctrl-C again leaves them.\n"
+    os.write(2, told.encode())

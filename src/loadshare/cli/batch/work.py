@@ -10,8 +10,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import typer
-
 from loadshare._version import __version__
 from loadshare.errors import CaseError, Refused, ResultError
 from loadshare.processes import side_by_side
@@ -219,7 +217,7 @@ def result_names(cases: Sequence[Path]) -> list[str]:
     return names
 
 
-def outcomes(tasks: Sequence[Task], jobs: int) -> Iterator[Outcome]:
+def outcomes(tasks: Sequence[Task], jobs: int, stopped: Callable[[], bool]) -> Iterator[Outcome]:
     """Do all tasks and yield their outcomes as they come.
 
     Parameters
@@ -227,20 +225,22 @@ def outcomes(tasks: Sequence[Task], jobs: int) -> Iterator[Outcome]:
     tasks : sequence of Task
     jobs : int
         Processes; with one, everything is done in this process.
+    stopped : callable
+        Whether nothing more is to be begun; what is under way is then finished.
 
     Yields
     ------
     Outcome
-        One per task. A process that dies costs only the case on which it died.
+        One per task that was begun. A process that dies costs one more try of its case; a case
+        on which two die has crashed.
     """
     if jobs == 1:
-        yield from map(work, tasks)
+        for task in tasks:
+            if stopped():
+                return
+            yield work(task)
         return
-    for task, outcome in side_by_side(work, tasks, jobs, _stopping):
+    for task, outcome in side_by_side(work, tasks, jobs, stopped):
         yield outcome or Outcome(
-            task.name, str(task.case), "crashed", 0.0, messages=("its process died",)
+            task.name, str(task.case), "crashed", 0.0, messages=("its process died twice",)
         )
-
-
-def _stopping() -> None:
-    typer.echo("Stopping; the cases under way are finished first.", err=True)

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from loadshare.cli.console import say, say_all
+from loadshare.cli.console import Tick, say, say_all
 from loadshare.cli.exits import UNUSABLE, counted, fail
 from loadshare.cli.options import CaseFile
+from loadshare.cli.stop import Stop
 from loadshare.cli.study.common import Changes, asked, end
 from loadshare.cli.tables.table import show, table
 from loadshare.report.numbers import NONE
@@ -63,19 +64,24 @@ def tolerance(
     from loadshare.errors import CaseError, LoadshareError, Refused
     from loadshare.study.tolerance.study import tolerance as studied
 
+    stop = Stop()
     with asked(case, change, "samples", None, rated=True) as (loaded, tick):
+        count = _Counted(tick)
         try:
-            found = studied(
-                loaded,
-                study=name,
-                samples=samples,
-                seed=seed,
-                out=out,
-                scheduler=scheduler,
-                workers=workers,
-                worst=worst,
-                progress=tick,
-            )
+            with stop:
+                found = studied(
+                    loaded,
+                    study=name,
+                    samples=samples,
+                    seed=seed,
+                    out=out,
+                    scheduler=scheduler,
+                    workers=workers,
+                    worst=worst,
+                    progress=count,
+                )
+        except KeyboardInterrupt:
+            fail(["Interrupted: " + count.kept(out)], stop.code)
         except (CaseError, Refused):
             raise
         except LoadshareError as error:
@@ -84,6 +90,30 @@ def tolerance(
     if out is not None:
         typer.echo(f"Wrote {out}", err=True)
     end(refused_samples(found))
+
+
+class _Counted:
+    """Counts what is done, for the bar and for who is interrupted."""
+
+    def __init__(self, tick: Tick | None) -> None:
+        self.tick, self.done, self.total = tick, 0, 0
+
+    def __call__(self, done: int, total: int) -> None:
+        self.done, self.total = done, total
+        if self.tick is not None:
+            self.tick(done, total)
+
+    def kept(self, out: Path | None) -> str:
+        """Return what is kept, and how to go on, in words."""
+        if out is None:
+            return (
+                "nothing is kept. With -o FOLDER what is solved is, and the same command goes on."
+            )
+        if self.done == self.total > 0:
+            kept = f"all {self.total:,} samples are kept in {out}."
+            return f"{kept} The same command looks for the worst case again."
+        done = f"{self.done:,} of {self.total:,} samples are" if self.total else "what was there is"
+        return f"{done} kept in {out}. The same command goes on from there."
 
 
 def refused_samples(found: Tolerance) -> list[str]:

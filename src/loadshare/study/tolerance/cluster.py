@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import CancelledError
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
+from loadshare._version import __version__
 from loadshare.errors import LoadshareError
 from loadshare.settings import TOLERANCE
 from loadshare.study.tolerance.folder import Folder
@@ -13,14 +17,31 @@ from loadshare.study.tolerance.job import Part, known_job
 
 if TYPE_CHECKING:
     import pyarrow as pa
+    from distributed import Client
 
-WAIT = "30s"
-"""How long an answer of the scheduler is awaited."""
+JOIN = 10.0
+"""Seconds that the scheduler is awaited, and the first worker."""
+WAIT = 30.0
+"""Seconds that another worker is awaited when the last is gone."""
+LOOK = 2.0
+"""Seconds between two looks whether there are workers."""
+SHOWN = 5
+"""Workers that are named."""
 
 
 def part_table(job: str, part: Part) -> pa.Table:
-    """Solve a part on a worker, which needs nothing but the package."""
-    return known_job(job).table(part)
+    """Solve a part on a worker, which needs nothing but the package.
+
+    Raises
+    ------
+    LoadshareError
+        If the worker, perhaps one that came late, has another version than asks.
+    """
+    known = known_job(job)
+    if known.settings["version"] != __version__:
+        there = f"loadshare {__version__} there, {known.settings['version']} here"
+        raise LoadshareError(f"a worker has another version: {there}")
+    return known.table(part)
 
 
 def solve_on_cluster(folder: Folder, parts: Sequence[Part], address: str) -> Iterator[Part]:
@@ -39,42 +60,141 @@ def solve_on_cluster(folder: Folder, parts: Sequence[Part], address: str) -> Ite
     Raises
     ------
     LoadshareError
-        If `distributed` is not installed, the scheduler cannot be reached, or a part fails.
+        If `distributed` is not installed, the scheduler cannot be reached or is lost, there are no
+        workers, workers have other versions than this machine, or a part fails.
     """
     try:
-        from distributed import Client, as_completed
+        from distributed import Client
     except ImportError:
         raise LoadshareError(
             "a cluster needs the package distributed: pip install 'loadshare[cluster]'"
         ) from None
     try:
-        client = Client(address, timeout=WAIT)
+        client = Client(address, timeout=JOIN)
     except (OSError, ValueError) as error:
         raise LoadshareError(f"scheduler {address}: cannot be reached: {error}") from None
     with client:
-        # Sent with every part: what is scattered would be lost with the worker that holds it.
-        job = folder.job.to_json()
-        queue = iter(parts)
-        threads = sum(client.nthreads().values())
+        try:
+            _check_workers(client, address)
+            yield from _solved(client, folder, parts, address)
+        except (CancelledError, OSError) as error:
+            # What this machine cannot write is no matter of the cluster.
+            if client.status == "running":
+                raise
+            raise LoadshareError(
+                f"scheduler {address}: the connection is lost. {folder.kept()}"
+            ) from error
 
-        def send(part: Part) -> Any:
-            return client.submit(part_table, job, part, pure=False)
 
-        waiting = {send(part): part for part in islice(queue, TOLERANCE.ahead * max(threads, 1))}
-        found = as_completed(list(waiting))
-        for future in found:
+def _solved(client: Client, folder: Folder, parts: Sequence[Part], address: str) -> Iterator[Part]:
+    # Sent with every part: what is scattered would be lost with the worker that holds it.
+    job = folder.job.to_json()
+    queue = iter(parts)
+    ahead = TOLERANCE.ahead * max(sum(client.nthreads().values()), 1)
+    waiting: dict[Any, Part] = {}
+
+    def send(count: int) -> None:
+        for part in islice(queue, count):
+            waiting[client.submit(part_table, job, part, pure=False)] = part
+
+    send(ahead)
+    while waiting:
+        for future in _first(client, list(waiting), folder, address):
             part = waiting.pop(future)
             try:
                 table = future.result()
+            except CancelledError:
+                raise
             except Exception as error:
                 raise LoadshareError(
                     f"part {part.number} of {part.design} failed on the cluster: "
-                    f"{type(error).__name__}: {error}"
+                    f"{type(error).__name__}: {error}. {folder.kept()}"
                 ) from error
             future.release()
             folder.write(part, table)
-            for following in islice(queue, 1):
-                sent = send(following)
-                waiting[sent] = following
-                found.add(sent)
+            send(1)
             yield part
+
+
+def _first(client: Client, futures: list[Any], folder: Folder, address: str) -> set[Any]:
+    """Return the futures that are done, when there is one."""
+    from distributed import wait
+
+    seen = time.monotonic()
+    while True:
+        try:
+            done: set[Any] = wait(futures, timeout=LOOK, return_when="FIRST_COMPLETED").done
+        except TimeoutError:
+            if client.nthreads():
+                seen = time.monotonic()
+            elif time.monotonic() - seen > WAIT:
+                raise LoadshareError(f"{_without_workers(address)} {folder.kept()}") from None
+        else:
+            return done
+
+
+def _check_workers(client: Client, address: str) -> None:
+    """See that there are workers, and that they are what this machine is.
+
+    Raises
+    ------
+    LoadshareError
+        If that is not so; it names the workers.
+    """
+    try:
+        client.wait_for_workers(1, timeout=JOIN)
+    except TimeoutError:
+        raise LoadshareError(_without_workers(address)) from None
+    apart = _apart("Python", _python(sys.version), _pythons(client))
+    # Code that is sent is of one Python, so the other version is asked only then.
+    apart = apart or _apart("loadshare", __version__, client.run(_version(), on_error="return"))
+    if apart:
+        more = [f"  and {len(apart) - SHOWN} more"] if len(apart) > SHOWN else []
+        raise LoadshareError(
+            "\n".join(
+                [
+                    f"scheduler {address}: workers differ from this machine:",
+                    *apart[:SHOWN],
+                    *more,
+                    "Nothing was sent. Install the same versions on all, and start workers anew.",
+                ]
+            )
+        )
+
+
+def _without_workers(address: str) -> str:
+    return (
+        f"scheduler {address}: no worker is connected. Start one with "
+        f"`dask worker {address}`, on a machine where loadshare is installed."
+    )
+
+
+def _pythons(client: Client) -> dict[str, str]:
+    told = client.get_versions()["workers"]
+    return {worker: _python(one["host"]["python"]) for worker, one in told.items()}
+
+
+def _python(version: str) -> str:
+    """Return what matters of a Python's version: 3.12.1 and 3.12.2 read one another's code."""
+    return ".".join(version.split(".")[:2])
+
+
+def _version() -> Callable[[], str]:
+    """Return what tells the version there; sent as code, since the package may be missing."""
+
+    def version() -> str:
+        from importlib import import_module
+
+        try:
+            return str(import_module("loadshare._version").__version__)
+        except ImportError:
+            return "is missing"
+
+    return version
+
+
+def _apart(what: str, here: str, there: Mapping[str, object]) -> list[str]:
+    """Return a line for each worker that has another version."""
+    return [
+        f"  {worker}: {what} {v} there, {here} here" for worker, v in there.items() if v != here
+    ]

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from loadshare.errors import LoadshareError, Problem, ResultError
+from loadshare.lock import LOCK
 from loadshare.output import clear, is_left, write_whole
 from loadshare.results.digest import DIGEST, digest_of
 from loadshare.study.tolerance.job import SAMPLES, STAMP, Job, Part
@@ -35,6 +36,8 @@ class Folder:
     ----------
     path : pathlib.Path
     job : Job
+    lasting : bool
+        Whether it stays when the study fails.
 
     Raises
     ------
@@ -42,8 +45,8 @@ class Folder:
         If the folder holds another study, or what is no study.
     """
 
-    def __init__(self, path: Path, job: Job) -> None:
-        self.path, self.job = path, job
+    def __init__(self, path: Path, job: Job, *, lasting: bool = True) -> None:
+        self.path, self.job, self.lasting = path, job, lasting
         self.all = tuple(job.parts())
         clear([path / STUDY, path / WORST, *map(self.file, self.all)])
         content = {"case": job.name, "text": job.text, "hash": job.hash, "settings": job.settings}
@@ -80,6 +83,14 @@ class Folder:
         """Return where a part stands."""
         folder = self.path if part.design == SAMPLES else self.path / part.design
         return folder / f"part-{part.number:06d}.parquet"
+
+    def kept(self) -> str:
+        """Return what of a study that ends now is kept, and how to go on with it, in words."""
+        if not self.lasting:
+            return "Nothing is kept: the study has no folder (out, or --output)."
+        done = sum(self.file(part).exists() for part in self.all)
+        told = f"{done} of {len(self.all)} parts are kept in {self.path}"
+        return f"{told}: the same command goes on from there."
 
     def missing(self) -> list[Part]:
         """Return the parts that are not there, or not whole; the log names the latter."""
@@ -157,8 +168,9 @@ class Folder:
 
 
 def _is_foreign(file: Path) -> bool:
-    """Whether a file is none that another process is about to begin this study with."""
-    return not (is_left(file.name) and file.name.startswith(f".{STUDY}."))
+    """Whether a file is none with which a process begins this study."""
+    begins = is_left(file.name) and file.name.startswith(f".{STUDY}.")
+    return not begins and file.name != LOCK
 
 
 def digest(table: pa.Table) -> bytes:

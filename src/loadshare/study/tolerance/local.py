@@ -36,10 +36,10 @@ def solve_parts(folder: Folder, parts: Sequence[Part], workers: int) -> Iterator
         if failure is None:
             raise LoadshareError(
                 f"part {part.number} of {part.design}: its worker process died twice, perhaps for "
-                "want of memory. Parts that are done are kept: the same command goes on from there."
+                f"want of memory. {folder.kept()}"
             )
         if failure:
-            raise LoadshareError(f"part {part.number} of {part.design}: {failure}")
+            raise LoadshareError(f"part {part.number} of {part.design}: {failure}. {folder.kept()}")
         yield part
 
 

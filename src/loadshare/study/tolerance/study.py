@@ -19,6 +19,7 @@ from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.engines import ENGINES
 from loadshare.job.positions import wanted_positions
+from loadshare.lock import alone_in
 from loadshare.settings import CERTIFY, JOB, TOLERANCE
 from loadshare.study.positions import loaded
 from loadshare.study.tolerance.figures import KINDS, SYSTEM
@@ -98,7 +99,8 @@ def tolerance(
     CaseError
         If the study, an input or its distribution cannot be used; all problems are listed.
     LoadshareError
-        If `out` holds a study with other settings, or workers fail.
+        If `out` holds a study with other settings, or another process works there, or workers
+        fail.
     ValueError
         If a position or an engine does not exist.
 
@@ -124,11 +126,16 @@ def tolerance(
 def _folder(out: str | Path | None, job: Job) -> Iterator[Folder]:
     """Open a study's folder; one that nobody named is removed with the last who uses it."""
     if out is not None:
-        yield Folder(Path(out), job)
+        path = Path(out)
+        # What stands in the way is told by the folder.
+        with suppress(OSError):
+            path.mkdir(parents=True, exist_ok=True)
+        with alone_in(path):
+            yield Folder(path, job)
         return
     path = Path(tempfile.mkdtemp(prefix="loadshare-"))
     try:
-        folder = Folder(path, job)
+        folder = Folder(path, job, lasting=False)
         yield folder
     except BaseException:
         shutil.rmtree(path, ignore_errors=True)

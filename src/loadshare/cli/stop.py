@@ -1,0 +1,73 @@
+"""Ctrl-C and SIGTERM: a command that is told to stop says what was kept, and how to go on."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Callable
+from types import FrameType
+from typing import Any
+
+from loadshare.cli.exits import INTERRUPTED, TERMINATED
+
+
+class Stop:
+    """What a command was told by signals.
+
+    It is interrupted once at most: what it then still says and writes is short, and whoever
+    presses Ctrl-C again and again shall read it too.
+
+    Parameters
+    ----------
+    gently : callable, optional
+        Called at the first Ctrl-C, where the command then comes to its end by itself; the second
+        interrupts it. Without it the first one does. SIGTERM always does: what sends it kills soon.
+
+    Attributes
+    ----------
+    asked : bool
+        Whether the command was stopped, and nothing more is to be begun.
+    code : int
+        Exit code of a command that was stopped.
+    """
+
+    def __init__(self, gently: Callable[[], None] | None = None) -> None:
+        self.gently, self.asked, self.code = gently, False, INTERRUPTED
+        self._told = self._over = False
+        self._before: dict[int, Any] = {}
+
+    def __enter__(self) -> Stop:
+        """Take Ctrl-C and SIGTERM; what the process ignores it goes on ignoring."""
+        if threading.current_thread() is threading.main_thread():
+            for number in (signal.SIGINT, signal.SIGTERM):
+                if signal.getsignal(number) != signal.SIG_IGN:
+                    self._before[number] = signal.signal(number, self._take)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        # A process that was stopped has nothing left to do but to end.
+        for number, handler in self._before.items() if not self._told else ():
+            signal.signal(number, handler)
+
+    def over(self) -> None:
+        """Take no more signals: what is left is to say what was kept."""
+        self._over = True
+
+    def _take(self, number: int, _: FrameType | None) -> None:
+        """Handle a signal.
+
+        Raises
+        ------
+        KeyboardInterrupt
+            If the command is to end where it stands.
+        """
+        if self._over:
+            return
+        self._told = True
+        if number == signal.SIGINT and self.gently is not None and not self.asked:
+            self.asked = True
+            self.gently()
+            return
+        self.asked = self._over = True
+        self.code = TERMINATED if number == signal.SIGTERM else INTERRUPTED
+        raise KeyboardInterrupt

@@ -1,0 +1,107 @@
+"""One at a time in a folder: a lock of the system, which ends with the process that holds it."""
+
+from __future__ import annotations
+
+import errno
+import logging
+import os
+import socket
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from loadshare.errors import LoadshareError
+
+log = logging.getLogger("loadshare")
+
+LOCK = ".loadshare.lock"
+"""File of the lock; it says who holds it, and is removed when that one is done."""
+TAKEN = (errno.EACCES, errno.EAGAIN, errno.EDEADLK)
+"""What systems answer where another process holds a lock."""
+FAR = 1 << 30
+"""Byte that is locked on Windows, beyond the text, which others are to read."""
+
+
+@contextmanager
+def alone_in(folder: Path) -> Iterator[None]:
+    """Be the only one who works in a folder.
+
+    Where nothing can be written, or the file system has no locks, nobody is kept out.
+
+    Parameters
+    ----------
+    folder : Path
+        One that exists.
+
+    Raises
+    ------
+    LoadshareError
+        If another process works there; it names the process, its machine, and since when.
+    """
+    file = folder / LOCK
+    handle = _acquired(file)
+    if handle is None:
+        yield
+        return
+    try:
+        text = f"process {os.getpid()} on {socket.gethostname()}, since {_now()}"
+        os.ftruncate(handle, 0)
+        os.write(handle, text.encode())
+        yield
+    finally:
+        # While it is held; on Windows a file can be removed only when it is closed.
+        with suppress(OSError):
+            file.unlink()
+        os.close(handle)
+        with suppress(OSError):
+            if sys.platform == "win32":
+                file.unlink()
+
+
+def _acquired(file: Path) -> int | None:
+    """Return an open file that this process has locked; None where none can be."""
+    while True:
+        try:
+            handle = os.open(file, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o666)
+        except OSError as error:
+            log.debug("%s: no lock: %s", file, error)
+            return None
+        try:
+            _lock(handle)
+            # Whoever had it before may have removed the file between the two steps.
+            if os.path.samestat(os.fstat(handle), file.stat()):
+                return handle
+        except FileNotFoundError:
+            pass
+        except OSError as error:
+            told = os.read(handle, 200).decode(errors="replace") or "another process"
+            os.close(handle)
+            if error.errno in TAKEN:
+                raise LoadshareError(
+                    f"{file.parent}: is in use by {told}. Wait until that has ended, or give "
+                    "another folder."
+                ) from None
+            log.warning("%s: this file system has no locks; work here one at a time.", file.parent)
+            return None
+        os.close(handle)
+
+
+def _lock(handle: int) -> None:
+    if sys.platform == "win32":
+        import msvcrt
+
+        os.lseek(handle, FAR, os.SEEK_SET)
+        try:
+            msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
+        finally:
+            os.lseek(handle, 0, os.SEEK_SET)
+    else:
+        import fcntl
+
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+def _now() -> str:
+    return time.strftime("%Y-%m-%d %H:%M:%S %z")

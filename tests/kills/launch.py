@@ -1,0 +1,20 @@
+"""The command, with studies of few samples solved as studies of many are: part by part elsewhere.
+
+``python -m tests.kills.launch batch ...`` is ``loadshare batch ...``.
+"""
+
+from __future__ import annotations
+
+from loadshare.cli.main import main
+from loadshare.study.tolerance import study
+from loadshare.study.tolerance.study import tolerance
+
+
+def _small() -> None:
+    study.TOLERANCE = study.TOLERANCE._replace(small=0)
+    tolerance.__kwdefaults__.update(chunk=1, engine="vectorised")
+
+
+if __name__ == "__main__":
+    _small()
+    main()
