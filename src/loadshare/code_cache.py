@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import pickle
 from collections.abc import Callable
 from pathlib import Path
 from types import CodeType, FunctionType
-from typing import Any
+from typing import Any, ClassVar
 
-from numba.core.caching import FunctionCache, IndexDataCacheFile, NullCache
+from numba.core.caching import (
+    CompileResultCacheImpl,
+    FunctionCache,
+    IndexDataCacheFile,
+    NullCache,
+)
 
 
 def fingerprint(function: Callable[..., Any]) -> str:
@@ -82,8 +88,23 @@ class _Files(IndexDataCacheFile):
             file.write(hashlib.sha256(packed).digest() + packed)
 
 
+class _Places(CompileResultCacheImpl):
+    """Where compiled code may be kept.
+
+    For a user without a home, Numba would make a folder named ``~`` where the user stands.
+    """
+
+    _locator_classes: ClassVar[list[Any]] = [
+        place
+        for place in CompileResultCacheImpl._locator_classes
+        if not ("UserWide" in place.__name__ and os.path.expanduser("~") == "~")
+    ]
+
+
 class CodeCache(FunctionCache):
     """Compiled code of a function on disk; what cannot be read or written is compiled anew."""
+
+    _impl_class = _Places
 
     def __init__(self, function: Callable[..., Any], not_kept: Callable[[Exception], None]) -> None:
         super().__init__(function)

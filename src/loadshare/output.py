@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+import io
 import os
 import re
 import secrets
 import stat
 import sys
-import tempfile
-from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
 
 STANDARD = Path("-")
 """Stands for standard output."""
@@ -22,11 +22,15 @@ STANDARD = Path("-")
 LONG = 100
 """Letters of a name that the file beside it has as well; file systems allow some 250 bytes."""
 
-Content = str | bytes | Callable[[Path], object]
-"""What is written, or what writes to the path that it is given."""
+
+class NotWritten(OSError):  # noqa: N818 -- what became of a file
+    """A file that could not be written; what was there before is left as it was.
+
+    Its attributes are those of every `OSError`: `filename` is the file that was asked for.
+    """
 
 
-def write_whole(path: Path, content: Content) -> None:
+def write_whole(path: Path, content: str | bytes) -> None:
     """Write a file, whole or not at all.
 
     It is filled beside its place, brought to the disk, and put in place in one step. A link is
@@ -37,16 +41,24 @@ def write_whole(path: Path, content: Content) -> None:
     ----------
     path : Path
         Where the file shall stand; its folder is made. "-" stands for standard output.
-    content : str, bytes or callable
+    content : str or bytes
+        Text is written as UTF-8.
 
     Raises
     ------
-    OSError
+    NotWritten
         If it cannot be written; what was there before is left as it was.
     """
+    try:
+        _write(path, content.encode() if isinstance(content, str) else content)
+    except OSError as error:
+        raise NotWritten(error.errno, error.strerror or str(error), str(path)) from error
+
+
+def _write(path: Path, content: bytes) -> None:
     if path == STANDARD:
         sys.stdout.flush()
-        sys.stdout.buffer.write(_bytes(content))
+        sys.stdout.buffer.write(content)
         sys.stdout.buffer.flush()
         return
     try:
@@ -55,14 +67,14 @@ def write_whole(path: Path, content: Content) -> None:
         known = None
     if known is not None and not stat.S_ISREG(known.st_mode):
         with path.open("wb") as stream:
-            stream.write(_bytes(content))
+            stream.write(content)
         return
     # Where a link leads; the link itself stays.
     place = Path(os.path.realpath(path))
     place.parent.mkdir(parents=True, exist_ok=True)
     temporary = place.with_name(f".{place.name[:LONG]}.{secrets.token_hex(8)}")
     try:
-        _fill(temporary, content)
+        temporary.write_bytes(content)
         if known is not None:
             temporary.chmod(stat.S_IMODE(known.st_mode))
             _give(temporary, known)
@@ -87,27 +99,26 @@ def csv_of(frame: pd.DataFrame) -> str:
     return str(safe.to_csv(index=False, lineterminator="\n"))
 
 
+def netcdf_of(arrays: xr.Dataset) -> bytes:
+    """Return labelled arrays as a netCDF file.
+
+    HDF5 that meets a full disk cannot close its file any more, and takes the process with it: it
+    works in memory here, and others bring the bytes to the disk.
+    """
+    import h5netcdf
+    from xarray.backends import H5NetCDFStore
+
+    held = io.BytesIO()
+    with h5netcdf.File(held, "w") as file:
+        arrays.dump_to_store(H5NetCDFStore(file))
+    return held.getvalue()
+
+
 _FORMULA = re.compile(r"[=@\t\r\n]|[+-](?![\d.])")
 
 
 def _plain(cell: object) -> object:
     return f"'{cell}" if isinstance(cell, str) and _FORMULA.match(cell) else cell
-
-
-def _fill(path: Path, content: Content) -> None:
-    if callable(content):
-        content(path)
-    else:
-        path.write_bytes(content.encode() if isinstance(content, str) else content)
-
-
-def _bytes(content: Content) -> bytes:
-    if not callable(content):
-        return content.encode() if isinstance(content, str) else content
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "content"
-        content(file)
-        return file.read_bytes()
 
 
 def _give(path: Path, known: os.stat_result) -> None:

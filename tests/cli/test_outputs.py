@@ -1,7 +1,9 @@
 """Where commands write: never in place of a device, a pipe, a link or what they read."""
 
+import errno
 import json
 import os
+import pickle
 import stat
 import threading
 from pathlib import Path
@@ -11,7 +13,7 @@ from tests.support import CASES
 from typer.testing import CliRunner, Result
 
 from loadshare.cli.main import app
-from loadshare.output import STANDARD, csv_of, write_whole
+from loadshare.output import STANDARD, NotWritten, csv_of, write_whole
 
 CASE = CASES / "star" / "floating_sun_3.toml"
 
@@ -20,16 +22,21 @@ def call(*words: object) -> Result:
     return CliRunner().invoke(app, [str(word) for word in words])
 
 
-def test_a_file_stands_whole_or_not_at_all(tmp_path):
+def test_a_file_stands_whole_or_not_at_all(tmp_path, monkeypatch):
     file = tmp_path / "new" / "file.txt"
     write_whole(file, "one")
 
-    def breaks(to: Path) -> None:
-        to.write_text("half")
-        raise OSError("the disk is full")
+    def breaks(to: Path, content: bytes) -> None:
+        with to.open("wb") as stream:
+            stream.write(content[:1])
+        raise OSError(errno.ENOSPC, "the disk is full", str(to))
 
-    with pytest.raises(OSError, match="full"):
-        write_whole(file, breaks)
+    monkeypatch.setattr(Path, "write_bytes", breaks)
+    with pytest.raises(NotWritten, match="full") as told:
+        write_whole(file, "two")
+    assert told.value.filename == str(file)
+    again = pickle.loads(pickle.dumps(told.value))
+    assert (type(again), str(again)) == (NotWritten, str(told.value))
     assert file.read_text() == "one"
     assert [f.name for f in file.parent.iterdir()] == ["file.txt"]
 

@@ -20,7 +20,7 @@ import loadshare as ls
 from loadshare.certify import certify
 from loadshare.results.claim import claim_of
 from loadshare.results.derive import position_of, result_from
-from loadshare.results.digest import seal
+from loadshare.results.digest import sealed
 from loadshare.results.document import FORMAT, as_data
 from loadshare.results.reading import read_document
 from loadshare.results.writing import DOCUMENT
@@ -278,7 +278,7 @@ def test_arrays_that_do_not_agree_with_their_result_are_refused(small, tmp_path,
     assert ls.load_result(file) == small
     with xr.open_dataset(file, engine="h5netcdf") as arrays:
         change(arrays.load()).to_netcdf(spoilt, engine="h5netcdf")
-    seal(spoilt)
+    spoilt.write_bytes(sealed(spoilt.read_bytes()))
     with pytest.raises(ls.ResultError, match=r"spoilt\.nc"):
         ls.load_result(spoilt)
 

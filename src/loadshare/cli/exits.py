@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+import errno
+import os
+import sys
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import NoReturn
 
 import typer
 
 from loadshare.errors import CaseError
+from loadshare.output import NotWritten
 
 REFUSED = 1
 """An answer was refused, or one case of many failed."""
 UNUSABLE = 2
-"""The case is invalid, or the command was used wrongly."""
+"""The case is invalid, the command was used wrongly, or there was no room for what it needs."""
 INTERRUPTED = 130
 """Stopped from the keyboard, as shells count it."""
 
@@ -53,4 +57,56 @@ def writing(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        fail([f"{path}: cannot be written: {error.strerror or error}"], UNUSABLE)
+        fail([f"{path}: {unwritten(error)}"], UNUSABLE)
+
+
+def unwritten(error: OSError) -> str:
+    """Return what became of a file that could not be written."""
+    return f"cannot be written: {error.strerror or error}"
+
+
+def out_of_memory(error: MemoryError) -> str:
+    """Return that memory did not suffice, and for what as far as that is known."""
+    more = f" ({error})" if str(error) else ""
+    return (
+        f"There is not enough memory{more}. Give the process more, or ask for less at a time: "
+        "fewer points, samples or processes."
+    )
+
+
+@contextmanager
+def room_told() -> Iterator[None]:
+    """Turn a lack of room, on a disk or in memory, into a message and an exit code.
+
+    Raises
+    ------
+    SystemExit
+        With 2, for a file that cannot be written, standard output among them, and for a lack of
+        memory.
+    """
+    try:
+        yield
+        return
+    except MemoryError as error:
+        lines = [out_of_memory(error)]
+    except NotWritten as error:
+        lines = [f"{error.filename}: {unwritten(error)}"]
+    except OSError as error:
+        if error.errno not in NO_ROOM:
+            raise
+        lines = [f"{error.filename or 'standard output'}: {unwritten(error)}"]
+        _let_go()
+    with suppress(OSError):
+        for line in lines:
+            typer.echo(line, err=True)
+    raise SystemExit(UNUSABLE)
+
+
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""Of disks, quotas and limits on the size of files."""
+
+
+def _let_go() -> None:
+    """Drop what waits to be printed: at its end, Python would try again and tell that it failed."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

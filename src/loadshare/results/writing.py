@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from loadshare.output import write_whole
-from loadshare.results.digest import seal
+from loadshare.output import netcdf_of, write_whole
+from loadshare.results.digest import sealed
 from loadshare.results.document import to_document
 
 if TYPE_CHECKING:
@@ -28,9 +28,4 @@ def write_json(result: Result, path: str | Path | None = None) -> str:
 def write_netcdf(result: Result, path: str | Path) -> None:
     """Write labelled arrays for any reader of netCDF, and the whole result as an attribute."""
     arrays = result.dataset.assign_attrs({DOCUMENT: write_json(result)})
-
-    def write(file: Path) -> None:
-        arrays.to_netcdf(file, engine="h5netcdf")
-        seal(file)
-
-    write_whole(Path(path), write)
+    write_whole(Path(path), sealed(netcdf_of(arrays)))

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from loadshare.case import Case
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.job import Progress, solve
-from loadshare.output import csv_of, write_whole
+from loadshare.output import csv_of, netcdf_of, write_whole
 from loadshare.pictures import picture
 from loadshare.settings import ALLOWED
 from loadshare.study.parameter import (
@@ -136,8 +136,7 @@ class Sweep:
 
     def to_netcdf(self, path: str | FilePath) -> None:
         """Write the labelled arrays to a netCDF file."""
-        arrays = self.dataset
-        write_whole(FilePath(path), lambda file: arrays.to_netcdf(file, engine="h5netcdf"))
+        write_whole(FilePath(path), netcdf_of(self.dataset))
 
     def to_csv(self, path: str | FilePath) -> None:
         """Write the table to a CSV file."""

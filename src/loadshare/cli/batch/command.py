@@ -8,9 +8,17 @@ from typing import Annotated
 import typer
 
 from loadshare.cli.batch.summary import print_summary, summary_document
-from loadshare.cli.batch.work import GOOD, SUMMARY, Outcome, Task, outcomes, result_names
+from loadshare.cli.batch.work import (
+    GOOD,
+    SUMMARY,
+    UNWRITTEN,
+    Outcome,
+    Task,
+    outcomes,
+    result_names,
+)
 from loadshare.cli.console import progress
-from loadshare.cli.exits import INTERRUPTED, REFUSED, fail, writing
+from loadshare.cli.exits import INTERRUPTED, REFUSED, UNUSABLE, fail, writing
 from loadshare.cli.files import write_document
 from loadshare.cli.find import find_cases
 from loadshare.cli.options import CasePaths, Method, Solver, Tolerance
@@ -71,5 +79,7 @@ def batch(
     if interrupted:
         told = f"Interrupted: {len(ordered)} of {len(tasks)} cases done."
         fail([told, "The same command goes on; what is certified is kept."], INTERRUPTED)
+    if any(outcome.outcome == UNWRITTEN for outcome in ordered):
+        raise typer.Exit(UNUSABLE)
     if any(outcome.outcome not in GOOD for outcome in ordered):
         raise typer.Exit(REFUSED)

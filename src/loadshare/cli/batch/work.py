@@ -13,7 +13,9 @@ from typing import TYPE_CHECKING
 import typer
 
 from loadshare._version import __version__
+from loadshare.cli.exits import out_of_memory, unwritten
 from loadshare.errors import CaseError, Refused, ResultError
+from loadshare.output import NotWritten
 from loadshare.processes import side_by_side
 
 if TYPE_CHECKING:
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
 
 GOOD = ("certified", "kept")
 """Outcomes after which a certified result stands on disk."""
+UNWRITTEN = "unwritten"
+"""Outcome of a case whose file has no room."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +62,7 @@ class Outcome:
     ----------
     name, case : str
     outcome : str
-        "certified", "kept", "refused", "invalid" or "crashed".
+        "certified", "kept", "refused", "invalid", "unwritten" or "crashed".
     seconds : float
     positions : int
         Certified ones.
@@ -90,6 +94,10 @@ def work(task: Task) -> Outcome:
     messages: tuple[str, ...] = ()
     try:
         outcome, result, messages = _attempt(task)
+    except NotWritten as error:
+        outcome, messages = UNWRITTEN, (f"{error.filename}: {unwritten(error)}",)
+    except MemoryError as error:
+        messages = (out_of_memory(error),)
     except Exception as error:  # noqa: BLE001 -- a bug met in one case must not cost the others theirs
         messages = (f"{type(error).__name__}: {error}",)
     return Outcome(

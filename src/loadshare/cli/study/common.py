@@ -15,8 +15,8 @@ from loadshare.cli.exits import REFUSED, UNUSABLE, fail, problems_told, writing
 from loadshare.cli.files import tell_written
 from loadshare.cli.options import changes, ending, output
 from loadshare.cli.refusal import told
-from loadshare.errors import Refused
-from loadshare.output import csv_of, write_whole
+from loadshare.errors import LoadshareError, Refused
+from loadshare.output import csv_of, netcdf_of, write_whole
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -77,6 +77,8 @@ def answered() -> Iterator[None]:
             yield
     except Refused as refusal:
         fail([f"REFUSED  {line}" for line in told(refusal)], REFUSED)
+    except LoadshareError as error:
+        fail([str(error)], UNUSABLE)
     except ValueError as error:
         if not str(error).startswith("position"):
             raise
@@ -98,12 +100,8 @@ def write_table(
     if file is None:
         return
 
-    def write(path: Path) -> None:
-        if file.suffix == ".nc" and dataset is not None:
-            dataset().to_netcdf(path, engine="h5netcdf")
-        else:
-            path.write_text(csv_of(frame()), encoding="utf-8", newline="")
-
+    labelled = file.suffix == ".nc" and dataset is not None
+    content = netcdf_of(dataset()) if labelled else csv_of(frame())
     with writing(file):
-        write_whole(file, write)
+        write_whole(file, content)
     tell_written(file, err=True)

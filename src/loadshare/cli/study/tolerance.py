@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from loadshare.cli.console import say, say_all
-from loadshare.cli.exits import UNUSABLE, counted, fail
+from loadshare.cli.exits import counted
 from loadshare.cli.options import CaseFile
 from loadshare.cli.study.common import Changes, asked, end
 from loadshare.cli.tables.table import show, table
@@ -60,26 +60,20 @@ def tolerance(
     change: Changes = None,
 ) -> None:
     """Let inputs scatter as [study.NAME] says, and tell how load sharing does."""
-    from loadshare.errors import CaseError, LoadshareError, Refused
     from loadshare.study.tolerance.study import tolerance as studied
 
     with asked(case, change, "samples", None, rated=True) as (loaded, tick):
-        try:
-            found = studied(
-                loaded,
-                study=name,
-                samples=samples,
-                seed=seed,
-                out=out,
-                scheduler=scheduler,
-                workers=workers,
-                worst=worst,
-                progress=tick,
-            )
-        except (CaseError, Refused):
-            raise
-        except LoadshareError as error:
-            fail([str(error)], UNUSABLE)
+        found = studied(
+            loaded,
+            study=name,
+            samples=samples,
+            seed=seed,
+            out=out,
+            scheduler=scheduler,
+            workers=workers,
+            worst=worst,
+            progress=tick,
+        )
     show_tolerance(found)
     if out is not None:
         typer.echo(f"Wrote {out}", err=True)

@@ -98,12 +98,15 @@ class Folder:
 
     def write(self, part: Part, table: pa.Table) -> None:
         """Put a part in its place, whole or not at all."""
+        import pyarrow as pa
         from pyarrow import parquet
 
         file = self.file(part)
         sealed = table.replace_schema_metadata({**table.schema.metadata, DIGEST: digest(table)})
         how: dict[str, Any] = {"compression": "zstd", "write_page_checksum": True}
-        write_whole(file, lambda to: parquet.write_table(sealed, to, **how))
+        held = pa.BufferOutputStream()
+        parquet.write_table(sealed, held, **how)
+        write_whole(file, held.getvalue().to_pybytes())
         # What a killed process left of the same part.
         for left in file.parent.glob(f".{file.name}.*"):
             with suppress(FileNotFoundError):
