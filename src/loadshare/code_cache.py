@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-import os
 import pickle
 from collections.abc import Callable
 from pathlib import Path
 from types import CodeType, FunctionType
-from typing import Any, ClassVar
+from typing import Any
 
 from numba.core.caching import (
     CompileResultCacheImpl,
@@ -94,11 +93,19 @@ class _Places(CompileResultCacheImpl):
     For a user without a home, Numba would make a folder named ``~`` where the user stands.
     """
 
-    _locator_classes: ClassVar[list[Any]] = [
-        place
-        for place in CompileResultCacheImpl._locator_classes
-        if not ("UserWide" in place.__name__ and os.path.expanduser("~") == "~")
-    ]
+    def __init__(self, function: Callable[..., Any]) -> None:
+        if not _has_home():
+            places = [p for p in self._locator_classes if "UserWide" not in p.__name__]
+            self._locator_classes = places
+        super().__init__(function)
+
+
+def _has_home() -> bool:
+    try:
+        Path.home()
+    except RuntimeError:
+        return False
+    return True
 
 
 class CodeCache(FunctionCache):

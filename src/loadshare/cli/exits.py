@@ -86,24 +86,29 @@ def room_told() -> Iterator[None]:
     """
     try:
         yield
-        return
-    except MemoryError as error:
-        lines = [out_of_memory(error)]
-    except NotWritten as error:
-        lines = [f"{error.filename}: {unwritten(error)}"]
-    except OSError as error:
-        if error.errno not in NO_ROOM:
+    except (MemoryError, OSError) as error:
+        told = _want_of_room(error)
+        if told is None:
             raise
-        lines = [f"{error.filename or 'standard output'}: {unwritten(error)}"]
-        _let_go()
-    with suppress(OSError):
-        for line in lines:
-            typer.echo(line, err=True)
-    raise SystemExit(UNUSABLE)
+        with suppress(OSError):
+            typer.echo(told, err=True)
+        raise SystemExit(UNUSABLE) from None
 
 
-NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
-"""Of disks, quotas and limits on the size of files."""
+NO_ROOM = {"ENOSPC", "EDQUOT", "EFBIG"}
+"""Of disks, quotas and limits on the size of files; not every system has all of them."""
+
+
+def _want_of_room(error: MemoryError | OSError) -> str | None:
+    """Return what there was no room for, or None where it was something else that failed."""
+    if isinstance(error, MemoryError):
+        return out_of_memory(error)
+    if isinstance(error, NotWritten):
+        return f"{error.filename}: {unwritten(error)}"
+    if errno.errorcode.get(error.errno or 0) not in NO_ROOM:
+        return None
+    _let_go()
+    return f"{error.filename or 'standard output'}: {unwritten(error)}"
 
 
 def _let_go() -> None:

@@ -100,8 +100,11 @@ def write_table(
     if file is None:
         return
 
-    labelled = file.suffix == ".nc" and dataset is not None
-    content = netcdf_of(dataset()) if labelled else csv_of(frame())
+    content: str | bytes
+    if file.suffix == ".nc" and dataset is not None:
+        content = netcdf_of(dataset())
+    else:
+        content = csv_of(frame())
     with writing(file):
         write_whole(file, content)
     tell_written(file, err=True)

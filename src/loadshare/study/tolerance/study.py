@@ -132,8 +132,8 @@ def _folder(out: str | Path | None, job: Job) -> Iterator[Folder]:
         path = Path(tempfile.mkdtemp(prefix="loadshare-"))
     except OSError as error:
         raise LoadshareError(
-            f"samples: there is no folder for temporary files ({error.strerror or error}). Allowed: "
-            "a folder that can be written, as TMPDIR, or as --output (out in Python)"
+            f"samples: there is no folder for temporary files ({error.strerror or error}). "
+            "Allowed: a folder that can be written, as TMPDIR, or as --output (out in Python)"
         ) from None
     try:
         folder = Folder(path, job)
