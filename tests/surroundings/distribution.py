@@ -4,6 +4,7 @@ Run as ``python -m tests.surroundings.distribution dist``; it needs a package in
 """
 
 import argparse
+import os
 import subprocess
 import sys
 import tarfile
@@ -81,7 +82,11 @@ def installed_and_run(file: Path) -> None:
 
 
 def _output(place: Path, *words: str) -> str:
-    done = subprocess.run(words, capture_output=True, encoding="utf-8", check=False, cwd=place)
+    # Nothing of the source may be found from here.
+    alone = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"} | {"PYTHONUTF8": "1"}
+    done = subprocess.run(
+        words, capture_output=True, encoding="utf-8", check=False, cwd=place, env=alone
+    )
     if done.returncode:
         raise SystemExit(f"{' '.join(words)}: ended with {done.returncode}\n{done.stderr}")
     return done.stdout
