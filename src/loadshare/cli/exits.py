@@ -65,9 +65,9 @@ def unwritten(error: OSError) -> str:
     return f"cannot be written: {error.strerror or error}"
 
 
-def out_of_memory(error: MemoryError) -> str:
+def out_of_memory(what: str) -> str:
     """Return that memory did not suffice, and for what as far as that is known."""
-    more = f" ({error})" if str(error) else ""
+    more = f" ({what})" if what else ""
     return (
         f"There is not enough memory{more}. Give the process more, or ask for less at a time: "
         "fewer points, samples or processes."
@@ -86,7 +86,7 @@ def room_told() -> Iterator[None]:
     """
     try:
         yield
-    except (MemoryError, OSError) as error:
+    except (MemoryError, OSError, ImportError) as error:
         told = _want_of_room(error)
         if told is None:
             raise
@@ -99,10 +99,19 @@ NO_ROOM = {"ENOSPC", "EDQUOT", "EFBIG"}
 """Of disks, quotas and limits on the size of files; not every system has all of them."""
 
 
-def _want_of_room(error: MemoryError | OSError) -> str | None:
+NOT_MAPPED = ("failed to map segment", "annot allocate memory")
+"""What the system says of a library that does not fit into memory."""
+
+
+def _want_of_room(error: MemoryError | OSError | ImportError) -> str | None:
     """Return what there was no room for, or None where it was something else that failed."""
     if isinstance(error, MemoryError):
-        return out_of_memory(error)
+        return out_of_memory(str(error))
+    if isinstance(error, ImportError):
+        unmapped = any(told in str(error) for told in NOT_MAPPED)
+        return out_of_memory("a library could not be loaded") if unmapped else None
+    if error.errno == errno.ENOMEM:
+        return out_of_memory(str(error))
     if isinstance(error, NotWritten):
         return f"{error.filename}: {unwritten(error)}"
     if errno.errorcode.get(error.errno or 0) not in NO_ROOM:

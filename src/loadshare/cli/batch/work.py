@@ -97,7 +97,7 @@ def work(task: Task) -> Outcome:
     except NotWritten as error:
         outcome, messages = UNWRITTEN, (f"{error.filename}: {unwritten(error)}",)
     except MemoryError as error:
-        messages = (out_of_memory(error),)
+        messages = (out_of_memory(str(error)),)
     except Exception as error:  # noqa: BLE001 -- a bug met in one case must not cost the others theirs
         messages = (f"{type(error).__name__}: {error}",)
     return Outcome(
