@@ -112,7 +112,10 @@ def main() -> None:
         raise SystemExit("\n".join(told))
     for file in wrong:
         installed_and_run(file)
-        print(f"{file.name}: {file.stat().st_size // 1024} KiB; installs, and runs the main job")  # noqa: T201
+        print(
+            f"{file.name}: {file.stat().st_size // 1024} KiB; installs, and runs the main job",
+            flush=True,
+        )  # noqa: T201
 
 
 if __name__ == "__main__":
