@@ -9,7 +9,8 @@ export OPENBLAS_NUM_THREADS = 1
 export NO_MKDOCS_2_WARNING = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-all lint format types layers docs docs-serve cases bench stress reproduce fuzz kills clean
+.PHONY: help run test test-all test-lowest test-shuffled lint format types layers docs docs-serve cases \
+	bench stress reproduce fuzz kills dist clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  %-12s %s\n", $$1, $$2}'
@@ -35,6 +36,20 @@ test: lint types layers docs ## check and test everything that is not slow
 
 test-all: lint types layers docs ## the same with the slow tests
 	$(BIN)/python -m pytest -n $(WORKERS)
+
+LOWEST := .venv-lowest
+$(LOWEST)/.test: pyproject.toml constraints-lowest.txt
+	$(PYTHON) -m venv $(LOWEST)
+	$(LOWEST)/bin/python -m pip install --quiet --disable-pip-version-check -c constraints-lowest.txt -e '.[test]'
+	@touch $@
+
+test-lowest: $(LOWEST)/.test ## test with the lowest versions that are allowed
+	$(LOWEST)/bin/python -m pytest -n $(WORKERS) -m "not slow" tests/case tests/cli tests/physics tests/results \
+		tests/study/test_commands.py tests/tooth/use tests/report/test_save.py tests/surroundings
+
+SEED ?= 1
+test-shuffled: $(VENV)/.dev ## the tests in a random order (SEED=…)
+	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow" --shuffle $(SEED)
 
 lint: $(VENV)/.dev ## ruff: style and formatting
 	$(BIN)/ruff check .
@@ -76,5 +91,16 @@ KILLS ?= 200
 kills: $(VENV)/.dev ## kill batches and studies KILLS times: nothing left, and the same results after
 	$(BIN)/python -m tests.kills --count $(KILLS)
 
+$(VENV)/.release: $(VENV)/.run
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[release]'
+	@touch $@
+
+TAG ?=
+dist: $(VENV)/.release ## build wheel and sdist, check them, install and run each
+	rm -rf dist
+	$(BIN)/python -m build --outdir dist
+	$(BIN)/twine check --strict dist/*
+	$(BIN)/python -m tests.surroundings.distribution dist --tag "$(TAG)"
+
 clean: ## remove what was built
-	rm -rf $(VENV) site dist build .pytest_cache .mypy_cache .ruff_cache
+	rm -rf $(VENV) $(LOWEST) site dist build .pytest_cache .mypy_cache .ruff_cache

@@ -1,6 +1,7 @@
 """What holds for all tests."""
 
 import os
+import random
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -20,6 +21,26 @@ os.environ[OUTSIDE] = "1"
 
 settings.register_profile("same", SAME)
 settings.load_profile("same")
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--shuffle", metavar="SEED", type=int, help="Run in a random order.")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Shuffle files, and tests within each, where a seed is given: what a file shares stays so."""
+    seed = config.getoption("--shuffle")
+    if seed is None:
+        return
+    by_file: dict[Path, list[pytest.Item]] = {}
+    for item in items:
+        by_file.setdefault(item.path, []).append(item)
+    order = random.Random(seed)
+    files = list(by_file.values())
+    order.shuffle(files)
+    for file in files:
+        order.shuffle(file)
+    items[:] = [item for file in files for item in file]
 
 
 @pytest.fixture(autouse=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 from benchmarks.reproduction import (
@@ -52,7 +51,7 @@ class Reproduction:
         texts = {folder / PAGE: self.text}
         texts |= {folder / PICTURES / f"{n}.svg": svg for n, svg in self.pictures.items()}
         for path, text in texts.items():
-            write_whole(path, partial(_write, text))
+            write_whole(path, text)
         return list(texts)
 
 
@@ -100,7 +99,3 @@ def reproduce(folder: Path, tell: Callable[[str], None]) -> Reproduction:
         loads.chapter(loaded),
     )
     return Reproduction(chapters, seed.used)
-
-
-def _write(text: str, file: Path) -> None:
-    file.write_text(text, encoding="utf-8")

@@ -9,7 +9,12 @@ from pathlib import Path
 from types import CodeType, FunctionType
 from typing import Any
 
-from numba.core.caching import FunctionCache, IndexDataCacheFile, NullCache
+from numba.core.caching import (
+    CompileResultCacheImpl,
+    FunctionCache,
+    IndexDataCacheFile,
+    NullCache,
+)
 
 
 def fingerprint(function: Callable[..., Any]) -> str:
@@ -82,8 +87,31 @@ class _Files(IndexDataCacheFile):
             file.write(hashlib.sha256(packed).digest() + packed)
 
 
+class _Places(CompileResultCacheImpl):
+    """Where compiled code may be kept.
+
+    For a user without a home, Numba would make a folder named ``~`` where the user stands.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        if not _has_home():
+            places = [p for p in self._locator_classes if "UserWide" not in p.__name__]
+            self._locator_classes = places
+        super().__init__(function)
+
+
+def _has_home() -> bool:
+    try:
+        Path.home()
+    except RuntimeError:
+        return False
+    return True
+
+
 class CodeCache(FunctionCache):
     """Compiled code of a function on disk; what cannot be read or written is compiled anew."""
+
+    _impl_class = _Places
 
     def __init__(self, function: Callable[..., Any], not_kept: Callable[[Exception], None]) -> None:
         super().__init__(function)

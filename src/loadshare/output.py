@@ -8,8 +8,7 @@ import re
 import secrets
 import stat
 import sys
-import tempfile
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from io import BytesIO
 from pathlib import Path
@@ -25,11 +24,15 @@ STANDARD = Path("-")
 LONG = 100
 """Letters of a name that the file beside it has as well; file systems allow some 250 bytes."""
 
-Content = str | bytes | Callable[[Path], object]
-"""What is written, or what writes to the path that it is given."""
+
+class NotWritten(OSError):  # noqa: N818 -- what became of a file
+    """A file that could not be written; what was there before is left as it was.
+
+    Its attributes are those of every `OSError`: `filename` is the file that was asked for.
+    """
 
 
-def write_whole(path: Path, content: Content) -> None:
+def write_whole(path: Path, content: str | bytes) -> None:
     """Write a file, whole or not at all.
 
     It is filled beside its place, brought to the disk, and put in place in one step. A link is
@@ -40,37 +43,33 @@ def write_whole(path: Path, content: Content) -> None:
     ----------
     path : Path
         Where the file shall stand; its folder is made. "-" stands for standard output.
-    content : str, bytes or callable
+    content : str or bytes
+        Text is written as UTF-8.
 
     Raises
     ------
-    OSError
+    NotWritten
         If it cannot be written; what was there before is left as it was.
     """
+    try:
+        _write(path, content.encode() if isinstance(content, str) else content)
+    except OSError as error:
+        raise NotWritten(error.errno, error.strerror or str(error), str(path)) from error
+
+
+def _write(path: Path, content: bytes) -> None:
     if path == STANDARD:
         sys.stdout.flush()
-        sys.stdout.buffer.write(_bytes(content))
+        sys.stdout.buffer.write(content)
         sys.stdout.buffer.flush()
         return
-    try:
-        _write(path, content)
-    except OSError as error:
-        if error.errno is None:
-            # Of libraries that tell in words alone.
-            raise OSError(errno.EIO, str(error), str(path)) from error
-        # It may be of the file beside it; what was asked for is known to who reads this.
-        error.filename, error.filename2 = str(path), None
-        raise
-
-
-def _write(path: Path, content: Content) -> None:
     try:
         known = path.stat()
     except FileNotFoundError:
         known = None
     if known is not None and not stat.S_ISREG(known.st_mode):
         with path.open("wb") as stream:
-            stream.write(_bytes(content))
+            stream.write(content)
         return
     # Where a link leads; the link itself stays.
     place = Path(os.path.realpath(path))
@@ -78,7 +77,7 @@ def _write(path: Path, content: Content) -> None:
     with _held(place.parent):
         temporary = place.with_name(f".{place.name[:LONG]}.{secrets.token_hex(8)}")
         try:
-            _fill(temporary, content)
+            temporary.write_bytes(content)
             if known is not None:
                 temporary.chmod(stat.S_IMODE(known.st_mode))
                 _give(temporary, known)
@@ -195,22 +194,6 @@ _FORMULA = re.compile(r"[=@\t\r\n]|[+-](?![\d.])")
 
 def _plain(cell: object) -> object:
     return f"'{cell}" if isinstance(cell, str) and _FORMULA.match(cell) else cell
-
-
-def _fill(path: Path, content: Content) -> None:
-    if callable(content):
-        content(path)
-    else:
-        path.write_bytes(content.encode() if isinstance(content, str) else content)
-
-
-def _bytes(content: Content) -> bytes:
-    if not callable(content):
-        return content.encode() if isinstance(content, str) else content
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "content"
-        content(file)
-        return file.read_bytes()
 
 
 def _give(path: Path, known: os.stat_result) -> None:

@@ -3,6 +3,7 @@
 import errno
 import json
 import os
+import pickle
 import stat
 import threading
 from pathlib import Path
@@ -13,7 +14,7 @@ from typer.testing import CliRunner, Result
 
 from loadshare import output
 from loadshare.cli.main import app
-from loadshare.output import STANDARD, clear, csv_of, make_folder, write_whole
+from loadshare.output import STANDARD, NotWritten, clear, csv_of, make_folder, write_whole
 
 CASE = CASES / "star" / "floating_sun_3.toml"
 
@@ -22,16 +23,21 @@ def call(*words: object) -> Result:
     return CliRunner().invoke(app, [str(word) for word in words])
 
 
-def test_a_file_stands_whole_or_not_at_all(tmp_path):
+def test_a_file_stands_whole_or_not_at_all(tmp_path, monkeypatch):
     file = tmp_path / "new" / "file.txt"
     write_whole(file, "one")
 
-    def breaks(to: Path) -> None:
-        to.write_text("half")
-        raise OSError("the disk is full")
+    def breaks(to: Path, content: bytes) -> None:
+        with to.open("wb") as stream:
+            stream.write(content[:1])
+        raise OSError(errno.ENOSPC, "the disk is full", str(to))
 
-    with pytest.raises(OSError, match="full"):
-        write_whole(file, breaks)
+    monkeypatch.setattr(Path, "write_bytes", breaks)
+    with pytest.raises(NotWritten, match="full") as told:
+        write_whole(file, "two")
+    assert told.value.filename == str(file)
+    again = pickle.loads(pickle.dumps(told.value))
+    assert (type(again), str(again)) == (NotWritten, str(told.value))
     assert file.read_text() == "one"
     assert [f.name for f in file.parent.iterdir()] == ["file.txt"]
 
@@ -48,17 +54,20 @@ def test_what_a_killed_process_left_is_cleared(tmp_path):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="no locks of folders on this system")
-def test_what_another_is_writing_is_left_alone(tmp_path):
+def test_what_another_is_writing_is_left_alone(tmp_path, monkeypatch):
     """Both write the same file: each has its own beside it until it is whole."""
     file = tmp_path / "file.txt"
     begun, going = threading.Event(), threading.Event()
+    at_once = Path.write_bytes
 
-    def slow(to: Path) -> None:
-        to.write_text("of one")
-        begun.set()
-        assert going.wait(60)
+    def slow(to: Path, content: bytes) -> None:
+        at_once(to, content)
+        if content == b"of one":
+            begun.set()
+            assert going.wait(60)
 
-    one = threading.Thread(target=write_whole, args=(file, slow))
+    monkeypatch.setattr(Path, "write_bytes", slow)
+    one = threading.Thread(target=write_whole, args=(file, "of one"))
     one.start()
     assert begun.wait(60)
     write_whole(file, "of the other")
@@ -67,22 +76,6 @@ def test_what_another_is_writing_is_left_alone(tmp_path):
     going.set()
     one.join(60)
     assert {f.name: f.read_text() for f in tmp_path.iterdir()} == {"file.txt": "of one"}
-
-
-def test_an_error_names_the_file_that_was_asked_for(tmp_path):
-    """Not the one beside it; also that of a library which has nothing but words."""
-
-    def worded(to: Path) -> None:
-        raise OSError("the file system is unwell")
-
-    def numbered(to: Path) -> None:
-        raise OSError(errno.ENOSPC, "No space left on device", str(to))
-
-    for content, told in ((worded, "unwell"), (numbered, "No space")):
-        with pytest.raises(OSError, match=told) as caught:
-            write_whole(tmp_path / "file.txt", content)
-        assert caught.value.filename == str(tmp_path / "file.txt")
-        assert caught.value.filename2 is None
 
 
 @pytest.mark.skipif(os.name != "posix", reason="folders are not brought to the disk")

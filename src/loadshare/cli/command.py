@@ -7,7 +7,6 @@ from typing import Any
 import typer
 from typer.core import TyperCommand
 
-from loadshare.cli.exits import UNUSABLE, fail
 from loadshare.cli.files import ask_for
 from loadshare.cli.options import OUTPUT
 from loadshare.output import clear
@@ -37,13 +36,3 @@ class Command(TyperCommand):
         ask_for(asked)
         clear(file for _, file in asked)
         return left
-
-    def invoke(self, ctx: Any) -> Any:
-        """Run the command; a file that cannot be reached becomes a message."""
-        try:
-            return super().invoke(ctx)
-        except OSError as error:
-            if error.filename is None:
-                raise
-            why = (error.strerror or str(error)).lower()
-            fail([f"{error.filename}: cannot be read or written: {why}"], UNUSABLE)

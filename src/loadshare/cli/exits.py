@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import errno
+import os
+import sys
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import NoReturn
 
 import typer
 
 from loadshare.errors import CaseError
+from loadshare.output import NotWritten
 
 REFUSED = 1
 """An answer was refused, or one case of many failed."""
 UNUSABLE = 2
-"""The case is invalid, the command was used wrongly, or a file cannot be read or written."""
+"""The case is invalid, the command was used wrongly, a file cannot be read or written, or memory
+does not suffice."""
 INTERRUPTED = 130
 """Stopped from the keyboard, as shells count it."""
 TERMINATED = 143
@@ -55,4 +60,73 @@ def writing(path: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
-        fail([f"{path}: cannot be written: {error.strerror or error}"], UNUSABLE)
+        fail([f"{path}: {unwritten(error)}"], UNUSABLE)
+
+
+def unwritten(error: OSError) -> str:
+    """Return what became of a file that could not be written."""
+    return f"cannot be written: {error.strerror or error}"
+
+
+def out_of_memory(what: str) -> str:
+    """Return that memory did not suffice, and for what as far as that is known."""
+    more = f" ({what})" if what else ""
+    return (
+        f"There is not enough memory{more}. Give the process more, or ask for less at a time: "
+        "fewer points, samples or processes."
+    )
+
+
+@contextmanager
+def room_told() -> Iterator[None]:
+    """Turn a lack of room, on a disk or in memory, into a message and an exit code.
+
+    Raises
+    ------
+    SystemExit
+        With 2, for a file that cannot be written, standard output among them, and for a lack of
+        memory.
+    """
+    try:
+        yield
+    except (MemoryError, OSError, ImportError) as error:
+        told = _want_of_room(error)
+        if told is None:
+            raise
+        with suppress(OSError):
+            typer.echo(told, err=True)
+        raise SystemExit(UNUSABLE) from None
+
+
+NO_ROOM = {"ENOSPC", "EDQUOT", "EFBIG"}
+"""Of disks, quotas and limits on the size of files; not every system has all of them."""
+
+
+NOT_MAPPED = ("failed to map segment", "annot allocate memory")
+"""What the system says of a library that does not fit into memory."""
+
+
+def _want_of_room(error: MemoryError | OSError | ImportError) -> str | None:
+    """Return what there was no room for, or None where it was something else that failed."""
+    if isinstance(error, MemoryError):
+        return out_of_memory(str(error))
+    if isinstance(error, ImportError):
+        unmapped = any(told in str(error) for told in NOT_MAPPED)
+        return out_of_memory("a library could not be loaded") if unmapped else None
+    if error.errno == errno.ENOMEM:
+        return out_of_memory(str(error))
+    if isinstance(error, NotWritten):
+        return f"{error.filename}: {unwritten(error)}"
+    if error.filename is not None:
+        why = (error.strerror or str(error)).lower()
+        return f"{error.filename}: cannot be read or written: {why}"
+    if errno.errorcode.get(error.errno or 0) not in NO_ROOM:
+        return None
+    _let_go()
+    return f"{error.filename or 'standard output'}: {unwritten(error)}"
+
+
+def _let_go() -> None:
+    """Drop what waits to be printed: at its end, Python would try again and tell that it failed."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

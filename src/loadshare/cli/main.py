@@ -21,6 +21,7 @@ from loadshare.cli.batch.command import batch
 from loadshare.cli.check import check
 from loadshare.cli.command import Command
 from loadshare.cli.draw import draw
+from loadshare.cli.exits import room_told
 from loadshare.cli.ltca import ltca
 from loadshare.cli.new import new
 from loadshare.cli.outside import reads_cases
@@ -80,8 +81,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     Raises
     ------
     SystemExit
-        Always: 0 for success, 1 for an answer that is refused, 2 for an invalid case, wrong usage
-        or a file that cannot be read or written, 130 for an interruption.
+        Always: 0 for success, 1 for an answer that is refused, 2 for an invalid case, wrong usage,
+        a file that cannot be read or written or too little memory, 130 for an interruption.
     """
     # The matrices are far too small to share among threads, and a batch has its own processes.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -89,7 +90,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if isinstance(stream, TextIOWrapper):
             # A stream that cannot show Ω shall show a question mark and go on.
             stream.reconfigure(errors="replace")
-    _built()(arguments, prog_name="loadshare")
+    with room_told():
+        _built()(arguments, prog_name="loadshare")
 
 
 @cache

@@ -28,5 +28,4 @@ def write_json(result: Result, path: str | Path | None = None) -> str:
 def write_netcdf(result: Result, path: str | Path) -> None:
     """Write labelled arrays for any reader of netCDF, and the whole result as an attribute."""
     arrays = result.dataset.assign_attrs({DOCUMENT: write_json(result)})
-
     write_whole(Path(path), sealed(netcdf_of(arrays)))

@@ -136,8 +136,7 @@ class Sweep:
 
     def to_netcdf(self, path: str | FilePath) -> None:
         """Write the labelled arrays to a netCDF file."""
-        arrays = self.dataset
-        write_whole(FilePath(path), netcdf_of(arrays))
+        write_whole(FilePath(path), netcdf_of(self.dataset))
 
     def to_csv(self, path: str | FilePath) -> None:
         """Write the table to a CSV file."""

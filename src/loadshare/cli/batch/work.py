@@ -11,7 +11,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from loadshare._version import __version__
+from loadshare.cli.exits import out_of_memory, unwritten
 from loadshare.errors import CaseError, Refused, ResultError
+from loadshare.output import NotWritten
 from loadshare.processes import side_by_side
 
 if TYPE_CHECKING:
@@ -91,6 +93,10 @@ def work(task: Task) -> Outcome:
     messages: tuple[str, ...] = ()
     try:
         outcome, result, messages = _attempt(task)
+    except NotWritten as error:
+        outcome, messages = UNWRITTEN, (f"{error.filename}: {unwritten(error)}",)
+    except MemoryError as error:
+        messages = (out_of_memory(str(error)),)
     except Exception as error:  # noqa: BLE001 -- a bug met in one case must not cost the others theirs
         messages = (f"{type(error).__name__}: {error}",)
     return Outcome(
@@ -123,28 +129,10 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
     except CaseError as error:
         return "invalid", None, tuple(map(str, error.problems))
     except Refused as refusal:
-        document = refused_document(refusal, task.case.stem)
-        lines = tuple(told(refusal))
-        return _written(
-            task, "refused", refusal.partial, lines, lambda to: write_document(to, document)
-        )
-    return _written(task, "certified", result, (*notes, *_warnings(result)), result.to_json)
-
-
-def _written(
-    task: Task,
-    outcome: str,
-    result: Result | None,
-    messages: tuple[str, ...],
-    write: Callable[[Path], object],
-) -> tuple[str, Result | None, tuple[str, ...]]:
-    """Write what was found; where that cannot be, it is the outcome."""
-    try:
-        write(task.target)
-    except OSError as error:
-        why = f"{task.target}: cannot be written: {error.strerror or error}"
-        return UNWRITTEN, result, (why, *messages)
-    return outcome, result, messages
+        write_document(task.target, refused_document(refusal, task.case.stem))
+        return "refused", refusal.partial, tuple(told(refusal))
+    result.to_json(task.target)
+    return "certified", result, (*notes, *_warnings(result))
 
 
 def _warnings(result: Result) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from loadshare.cli.exits import REFUSED, UNUSABLE, fail, problems_told, writing
 from loadshare.cli.files import tell_written
 from loadshare.cli.options import changes, ending, output
 from loadshare.cli.refusal import told
-from loadshare.errors import Refused
+from loadshare.errors import LoadshareError, Refused
 from loadshare.output import csv_of, netcdf_of, write_whole
 
 if TYPE_CHECKING:
@@ -77,6 +77,8 @@ def answered() -> Iterator[None]:
             yield
     except Refused as refusal:
         fail([f"REFUSED  {line}" for line in told(refusal)], REFUSED)
+    except LoadshareError as error:
+        fail([str(error)], UNUSABLE)
     except ValueError as error:
         if not str(error).startswith("position"):
             raise

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from loadshare.cli.console import Tick, say, say_all
-from loadshare.cli.exits import UNUSABLE, counted, fail
+from loadshare.cli.exits import counted, fail
 from loadshare.cli.options import CaseFile
 from loadshare.cli.stop import Stop
 from loadshare.cli.study.common import Changes, asked, end
@@ -61,7 +61,6 @@ def tolerance(
     change: Changes = None,
 ) -> None:
     """Let inputs scatter as [study.NAME] says, and tell how load sharing does."""
-    from loadshare.errors import CaseError, LoadshareError, Refused
     from loadshare.study.tolerance.study import tolerance as studied
 
     stop = Stop()
@@ -82,10 +81,6 @@ def tolerance(
                 )
         except KeyboardInterrupt:
             fail(["Interrupted: " + count.kept(out)], stop.code)
-        except (CaseError, Refused):
-            raise
-        except LoadshareError as error:
-            fail([str(error)], UNUSABLE)
     show_tolerance(found)
     if out is not None:
         typer.echo(f"Wrote {out}", err=True)

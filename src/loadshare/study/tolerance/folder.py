@@ -116,6 +116,7 @@ class Folder:
 
     def write(self, part: Part, table: pa.Table) -> None:
         """Put a part in its place, whole or not at all."""
+        import pyarrow as pa
         from pyarrow import parquet
 
         file = self.file(part)
@@ -123,7 +124,9 @@ class Folder:
             {**table.schema.metadata, PART_DIGEST: digest(table)}
         )
         how: dict[str, Any] = {"compression": "zstd", "write_page_checksum": True}
-        write_whole(file, lambda to: parquet.write_table(sealed, to, **how))
+        held = pa.BufferOutputStream()
+        parquet.write_table(sealed, held, **how)
+        write_whole(file, held.getvalue().to_pybytes())
 
     def worst(self) -> list[dict[str, Any]] | None:
         """Return the worst cases that were found for this study, or None if none are known.

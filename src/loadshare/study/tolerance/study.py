@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from loadshare.case import Case, Study
-from loadshare.errors import CaseError, Problem
+from loadshare.errors import CaseError, LoadshareError, Problem
 from loadshare.job import Progress
 from loadshare.job.engines import ENGINES
 from loadshare.job.positions import wanted_positions
@@ -99,8 +99,10 @@ def tolerance(
     CaseError
         If the study, an input or its distribution cannot be used; all problems are listed.
     LoadshareError
-        If `out` holds a study with other settings, or another process works there, or workers
-        fail.
+        If `out` holds a study with other settings, another process works there, workers fail,
+        or samples have no place.
+    OSError
+        If a file cannot be written; what is there is whole, and the same call goes on.
     ValueError
         If a position or an engine does not exist.
 
@@ -133,7 +135,13 @@ def _folder(out: str | Path | None, job: Job) -> Iterator[Folder]:
         with alone_in(path):
             yield Folder(path, job)
         return
-    path = Path(tempfile.mkdtemp(prefix="loadshare-"))
+    try:
+        path = Path(tempfile.mkdtemp(prefix="loadshare-"))
+    except OSError as error:
+        raise LoadshareError(
+            f"samples: there is no folder for temporary files ({error.strerror or error}). "
+            "Allowed: a folder that can be written, as TMPDIR, or as --output (out in Python)"
+        ) from None
     try:
         folder = Folder(path, job, lasting=False)
         yield folder

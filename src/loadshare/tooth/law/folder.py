@@ -65,10 +65,18 @@ def _key(pair: PairFile) -> str:
     return key_of(__version__, pair.hash)
 
 
-def cache_folder() -> Path:
-    """Folder of the cache: ``$LOADSHARE_CACHE``, or ``loadshare`` among the user's caches."""
+def cache_folder() -> Path | None:
+    """Folder of the cache: ``$LOADSHARE_CACHE``, or ``loadshare`` among the user's caches.
+
+    None for a user without a home: services and containers may lack one.
+    """
     told = os.environ.get(VARIABLE)
-    return Path(told).expanduser() if told else user_cache_path("loadshare", appauthor=False)
+    try:
+        found = Path(told).expanduser() if told else user_cache_path("loadshare", appauthor=False)
+    except RuntimeError:
+        return None
+    # Versions of platformdirs differ in what they make of a home that is not known.
+    return None if found.parts[:1] == ("~",) else found
 
 
 def key_of(*parts: str) -> str:
@@ -79,7 +87,10 @@ def key_of(*parts: str) -> str:
 def read_entry(key: str) -> str | None:
     """Text of an entry, or None where there is none or it is damaged."""
     try:
-        digest, _, text = _file(key).read_text(encoding="utf-8").partition("\n")
+        file = _file(key)
+        if file is None:
+            return None
+        digest, _, text = file.read_text(encoding="utf-8").partition("\n")
     except (OSError, UnicodeDecodeError):
         return None
     return text if digest == _digest(text) else None
@@ -88,6 +99,8 @@ def read_entry(key: str) -> str | None:
 def write_entry(key: str, text: str) -> None:
     """Keep a text, whole or not at all; a cache that cannot be written is done without."""
     file = _file(key)
+    if file is None:
+        return
     with suppress(OSError):
         write_whole(file, f"{_digest(text)}\n{text}")
 
@@ -102,8 +115,9 @@ def code_hash(room: Path = Path(__file__).parents[1]) -> str:
     return found.hexdigest()
 
 
-def _file(key: str) -> Path:
-    return cache_folder() / "laws" / f"{key}.toml"
+def _file(key: str) -> Path | None:
+    folder = cache_folder()
+    return None if folder is None else folder / "laws" / f"{key}.toml"
 
 
 def _digest(text: str) -> str:

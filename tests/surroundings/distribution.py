@@ -1,0 +1,122 @@
+"""Check what would be released: what wheel and sdist hold, and that each installs and runs.
+
+Run as ``python -m tests.surroundings.distribution dist``; it needs a package index.
+"""
+
+import argparse
+import os
+import subprocess
+import sys
+import tarfile
+import tempfile
+import venv
+import zipfile
+from collections.abc import Iterable
+from pathlib import Path
+
+import typer
+
+ROOT = Path(__file__).parents[2]
+NEEDED = (
+    *("py.typed", "case/starter.toml"),
+    *(f"report/page/templates/{name}" for name in ("report.html", "page.css", "page.js")),
+)
+"""What of the package is no Python."""
+CASE = ("fgfbstts/base.toml", "fgfbstts/limit_ring.toml")
+
+
+def version() -> str:
+    """The version of the source."""
+    scope: dict[str, str] = {}
+    exec((ROOT / "src/loadshare/_version.py").read_text(encoding="utf-8"), scope)
+    return scope["__version__"]
+
+
+def problems_of_wheel(names: Iterable[str]) -> list[str]:
+    """What is wrong with the names in a wheel."""
+    held = set(names)
+    package = {n.removeprefix("loadshare/") for n in held if n.startswith("loadshare/")}
+    source = ROOT / "src/loadshare"
+    wanted = {f.relative_to(source).as_posix() for f in source.rglob("*.py")} | set(NEEDED)
+    found = [f"lacks {name}" for name in sorted(wanted - package)]
+    other = {
+        n for n in held if not n.startswith(("loadshare/", f"loadshare-{version()}.dist-info/"))
+    }
+    found += [f"holds {name}" for name in sorted(other)]
+    found += [f"holds {n}" for n in sorted(held) if "__pycache__" in n]
+    if not any(n.endswith(".dist-info/licenses/LICENSE") for n in held):
+        found.append("lacks LICENSE")
+    return found
+
+
+def problems_of_sdist(names: Iterable[str]) -> list[str]:
+    """What is wrong with the names in an sdist."""
+    held = {name.partition("/")[2] for name in names}
+    wanted = ("LICENSE", "README.md", "CHANGELOG.md", "pyproject.toml", "constraints.txt")
+    folders = ("src/loadshare/__init__.py", "tests/conftest.py", f"cases/{CASE[0]}")
+    found = [f"lacks {name}" for name in (*wanted, *folders) if name not in held]
+    hidden = (n for n in held if "__pycache__" in n or n.startswith((".venv", "site/", "dist/")))
+    return found + [f"holds {name}" for name in sorted(hidden)]
+
+
+def installed_and_run(file: Path) -> None:
+    """Install a distribution into an empty environment and solve a case with it, far from here."""
+    with tempfile.TemporaryDirectory() as folder:
+        place = Path(folder)
+        venv.create(place / "env", with_pip=True)
+        scripts = place / "env" / ("Scripts" if sys.platform == "win32" else "bin")
+        pip = [str(scripts / "python"), "-m", "pip", "install", "--quiet"]
+        pins = ["-c", str(ROOT / "constraints.txt")]
+        subprocess.run([*pip, *pins, str(file)], check=True, cwd=place)
+        for name in CASE:
+            text = (ROOT / "cases" / name).read_bytes()
+            (place / Path(name).name).write_bytes(text)
+        command = str(scripts / "loadshare")
+        told = _output(place, command, "--version")
+        if told.split() != ["loadshare", version()]:
+            raise SystemExit(f"{file.name}: --version says {told!r}")
+        if "PASSED  5 of 5 positions certified" not in _output(
+            place, command, "run", "limit_ring.toml"
+        ):
+            raise SystemExit(f"{file.name}: the main job does not pass")
+        _output(place, command, "new", "own")
+        _output(place, command, "report", "own.toml", "-o", "own.html")
+
+
+def _output(place: Path, *words: str) -> str:
+    # Nothing of the source may be found from here.
+    alone = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"} | {"PYTHONUTF8": "1"}
+    done = subprocess.run(
+        words, capture_output=True, encoding="utf-8", check=False, cwd=place, env=alone
+    )
+    if done.returncode:
+        raise SystemExit(f"{' '.join(words)}: ended with {done.returncode}\n{done.stderr}")
+    return done.stdout
+
+
+def main() -> None:
+    """Check every distribution in a folder."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--tag", default="", help="tag of the release, which names the version")
+    asked = parser.parse_args()
+    if asked.tag and asked.tag != f"v{version()}":
+        raise SystemExit(f"the tag is {asked.tag}, the version {version()}")
+    wheels, sdists = (sorted(asked.folder.glob(end)) for end in ("*.whl", "*.tar.gz"))
+    if (len(wheels), len(sdists)) != (1, 1):
+        raise SystemExit(f"{asked.folder}: holds {len(wheels)} wheels and {len(sdists)} sdists")
+    with zipfile.ZipFile(wheels[0]) as wheel:
+        wrong = {wheels[0]: problems_of_wheel(wheel.namelist())}
+    with tarfile.open(sdists[0]) as sdist:
+        wrong[sdists[0]] = problems_of_sdist(sdist.getnames())
+    told = [f"{file.name} {problem}" for file, found in wrong.items() for problem in found]
+    if told:
+        raise SystemExit("\n".join(told))
+    for file in wrong:
+        installed_and_run(file)
+        size = file.stat().st_size // 1024
+        typer.echo(f"{file.name}: {size} KiB; installs, and runs the main job")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,141 @@
+"""Places that cannot be written, and users without a home: commands answer all the same."""
+
+import pwd
+import subprocess
+import sys
+
+import pytest
+from tests.cli.conftest import plain_environment
+from tests.job.test_compilation import as_a_user, read_only  # noqa: F401 -- a fixture
+from tests.support import CASES
+from tests.tooth.use.pairs import SPUR
+
+from loadshare.cli.main import main
+from loadshare.tooth.law import folder as cache
+
+RING = CASES / "fgfbstts" / "limit_ring.toml"
+SWEEP = ("sweep", RING, "--set", "rings.4.float=1 um, 2 um", "--position", 1)
+STUDY = """extends = '{ring}'
+[study.scatter]
+kind = "tolerance"
+samples = 16
+indices = 0
+[study.scatter.inputs]
+"rings.4.float" = {{ distribution = "uniform", low = "2 um", high = "12 um" }}
+"""
+
+
+def ended(*words: object) -> object:
+    with pytest.raises(SystemExit) as end:
+        main([str(word) for word in words])
+    return end.value.code
+
+
+def test_commands_answer_where_nothing_can_be_written(read_only, tmp_path):  # noqa: F811
+    pair = tmp_path / "pair.toml"
+    pair.write_text(SPUR, encoding="utf-8")
+    out = tmp_path / "out"
+    asked = [("run", RING), SWEEP, ("batch", CASES / "star", "-o", out, "-j", 1)]
+    asked.append(("ltca", pair, "--positions", 1, "-o", out / "pair"))
+    script = f"""
+from loadshare.cli.main import main
+for words in {[[str(w) for w in words] for words in asked]!r}:
+    try:
+        main(words)
+    except SystemExit as end:
+        assert end.code == 0, (words, end.code)
+"""
+    told = plain_environment(LOADSHARE_CACHE="", NUMBA_CACHE_DIR="") | read_only
+    done = subprocess.run(
+        [*as_a_user(), sys.executable, "-c", script],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=told,
+        cwd=tmp_path / "home",
+    )
+    assert done.returncode == 0, done.stderr
+    assert "Traceback" not in done.stderr
+    # The tooth contact is compiled, and cannot be kept: that is said, once.
+    assert done.stderr.count("NUMBA_CACHE_DIR") + done.stderr.count("could not be kept") == 1
+    assert (out / "pair" / "law.toml").exists()
+    assert list((tmp_path / "home").iterdir()) == []
+
+
+def test_an_output_folder_that_cannot_be_written_is_told(read_only, tmp_path):  # noqa: F811
+    home = read_only["HOME"]
+    for words, file in (
+        (("run", RING, "--json", f"{home}/a.json"), f"{home}/a.json"),
+        (("new", "own", "-o", f"{home}/own.toml"), f"{home}/own.toml"),
+        (("batch", CASES / "star", "-o", f"{home}/out"), f"{home}/out"),
+        ((*SWEEP, "-o", f"{home}/new/a.csv"), f"{home}/new/a.csv"),
+    ):
+        done = subprocess.run(
+            [*as_a_user(), sys.executable, "-B", "-m", "loadshare", *map(str, words)],
+            capture_output=True,
+            text=True,
+            check=False,
+            env=plain_environment(),
+        )
+        assert done.returncode == 2
+        assert done.stderr.splitlines()[-1] == f"{file}: cannot be written: Permission denied"
+
+
+@pytest.fixture
+def no_home(monkeypatch, tmp_path):
+    """A user whom the system knows by number only, as in many containers."""
+
+    def unknown(number: int) -> None:
+        raise KeyError(number)
+
+    for name in ("HOME", "XDG_CACHE_HOME", "LOADSHARE_CACHE", "NUMBA_CACHE_DIR"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(pwd, "getpwuid", unknown)
+    here = tmp_path / "here"
+    here.mkdir()
+    monkeypatch.chdir(here)
+    return here
+
+
+def test_without_a_home_laws_are_not_kept(no_home, tmp_path):
+    pair = tmp_path / "pair.toml"
+    pair.write_text(SPUR, encoding="utf-8")
+    assert cache.cache_folder() is None
+    assert ended("ltca", pair, "--positions", 1, "-o", tmp_path / "out") == 0
+    assert list(no_home.iterdir()) == []
+
+
+def test_without_a_home_compiled_code_is_kept_nowhere_else(no_home, tmp_path, monkeypatch):
+    """Numba would make a folder named ~ where the user stands."""
+    from loadshare import code_cache
+
+    def function(x: float) -> float:
+        return x
+
+    classes = code_cache.CompileResultCacheImpl._locator_classes
+    monkeypatch.setattr(
+        code_cache.CompileResultCacheImpl,
+        "_locator_classes",
+        [place for place in classes if "UserWide" in place.__name__],
+    )
+    with pytest.raises(RuntimeError, match="no locator available"):
+        code_cache.CodeCache(function, lambda _: None)
+    assert list(no_home.iterdir()) == []
+
+
+def test_samples_that_have_no_place_are_told(monkeypatch, tmp_path, capsys):
+    import tempfile
+
+    case = tmp_path / "case.toml"
+    case.write_text(STUDY.format(ring=RING.as_posix()), encoding="utf-8")
+
+    def nowhere(**_: object) -> str:
+        raise FileNotFoundError(2, "No usable temporary directory found")
+
+    monkeypatch.setattr(tempfile, "mkdtemp", nowhere)
+    for words in (("tolerance", case), ("study", case, "scatter")):
+        assert ended(*words) == 2
+        told = capsys.readouterr().err
+        assert "no folder for temporary files (No usable temporary directory found)" in told
+        assert "--output" in told
+    assert ended("tolerance", case, "--no-worst", "-o", tmp_path / "own") == 0
