@@ -112,10 +112,9 @@ def main() -> None:
         raise SystemExit("\n".join(told))
     for file in wrong:
         installed_and_run(file)
-        print(
-            f"{file.name}: {file.stat().st_size // 1024} KiB; installs, and runs the main job",
-            flush=True,
-        )  # noqa: T201
+        size = file.stat().st_size // 1024
+        sys.stdout.write(f"{file.name}: {size} KiB; installs, and runs the main job\n")
+        sys.stdout.flush()
 
 
 if __name__ == "__main__":
