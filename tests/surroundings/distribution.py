@@ -14,8 +14,6 @@ import zipfile
 from collections.abc import Iterable
 from pathlib import Path
 
-import typer
-
 ROOT = Path(__file__).parents[2]
 NEEDED = (
     *("py.typed", "case/starter.toml"),
@@ -115,7 +113,8 @@ def main() -> None:
     for file in wrong:
         installed_and_run(file)
         size = file.stat().st_size // 1024
-        typer.echo(f"{file.name}: {size} KiB; installs, and runs the main job")
+        sys.stdout.write(f"{file.name}: {size} KiB; installs, and runs the main job\n")
+        sys.stdout.flush()
 
 
 if __name__ == "__main__":
