@@ -180,7 +180,9 @@ class Stage:
         yield from (Wrong("lost", name) for name in self.before if name not in now)
         if ended.code == self.code == 0:
             yield from (Wrong("lost", f"{n}, and not a word") for n in self.after if n not in now)
-            old = [n for n in now if n in self.after and not _same(n, now[n], self.after[n])]
+            # A summary tells of a result that could not be read, and so was not kept.
+            told = [n for n in now if n in self.after and not _is_summary(n, now[n])]
+            old = [n for n in told if not _same(n, now[n], self.after[n])]
             yield from (Wrong("different", f"{name}, and not a word") for name in old)
 
     def _resumed(self, again: Ended) -> Iterator[Wrong]:
