@@ -47,8 +47,10 @@ def alone_in(folder: Path) -> Iterator[None]:
         return
     try:
         text = f"process {os.getpid()} on {socket.gethostname()}, since {_now()}"
-        os.ftruncate(handle, 0)
-        os.write(handle, text.encode())
+        with suppress(OSError):
+            # On a full disk it is held all the same, by who is not told.
+            os.ftruncate(handle, 0)
+            os.write(handle, text.encode())
         yield
     finally:
         # While it is held; on Windows a file can be removed only when it is closed.

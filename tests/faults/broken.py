@@ -5,9 +5,9 @@ from pathlib import Path
 from loadshare import output
 
 
-def _in_place(path: Path, content: output.Content) -> None:
+def _in_place(path: Path, content: bytes) -> None:
     output.make_folder(path.parent)
-    path.write_bytes(output._bytes(content))
+    path.write_bytes(content)
 
 
 output._write = _in_place

@@ -15,6 +15,8 @@ from tests.faults.scenes import OLD, SUMMARY, Scene, masked
 from tests.faults.server import Ended, Server
 from tests.faults.shim import FAULTS, Seen, Shim
 
+from loadshare.lock import LOCK
+
 Files = dict[str, bytes]
 LEFT = re.compile(r"^(.*/)?\.(.+)\.[0-9a-f]{16}$")
 """What a killed process may leave, until the command is given again."""
@@ -173,7 +175,7 @@ class Stage:
         now = _files(self.root)
         for name, content in now.items():
             allowed = [files[name] for files in (self.before, self.after) if name in files]
-            if LEFT.match(name) or _is_summary(name, content):
+            if LEFT.match(name) or _is_summary(name, content) or Path(name).name == LOCK:
                 continue
             if not any(_same(name, content, one) for one in allowed):
                 yield Wrong("corrupt", name)

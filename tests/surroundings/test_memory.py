@@ -57,7 +57,7 @@ def test_want_of_memory_is_told_however_it_shows(monkeypatch, capsys, error, tol
     def fails(*_: object, **__: object) -> None:
         raise error
 
-    monkeypatch.setattr(entry, "app", fails)
+    monkeypatch.setattr(entry, "_built", lambda: fails)
     with pytest.raises(SystemExit) as end:
         entry.main(["run"])
     assert end.value.code == 2
@@ -69,7 +69,7 @@ def test_other_errors_are_not_taken_for_it(monkeypatch, error):
     def fails(*_: object, **__: object) -> None:
         raise error
 
-    monkeypatch.setattr(entry, "app", fails)
+    monkeypatch.setattr(entry, "_built", lambda: fails)
     with pytest.raises(type(error)):
         entry.main(["run"])
 
