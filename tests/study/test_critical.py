@@ -342,22 +342,6 @@ def test_a_scan_shows_what_events_leave_out():
     assert compared(fewer, values, seen)[0]
 
 
-def test_what_no_cutting_proves_is_given_up():
-    """Floats leave corners of two contacts: beside these values some picometres are not proved."""
-    found = ls.critical(
-        shipped("fgfbstts/limit_ring"), "rings.*.float", "4 um", "12.772 um", positions=[1]
-    )
-    assert [round(event.value, 5) for event in found.events] == [8.34992, 8.34992]
-    assert sum(gap.stop - gap.start for gap in found.unproved) < 1e-5
-    line = Line(shipped("fgfbstts/limit_ring"), found.parameter, 4.0, 12.772)
-    search = Search(line, 1, 4.0, 12.772)
-    solved: list[int] = []
-    points = search.points
-    search.points = lambda values: solved.append(len(values)) or points(values)
-    search.run()
-    assert sum(solved) < 400
-
-
 def test_an_interval_without_events():
     found = ls.critical(shipped("fgfbstts/limit_ring"), "rings.4.float", "9 um", "12 um")
     assert found.events == ()

@@ -53,10 +53,6 @@ class Follow(NamedTuple):
     """Distance from an event at which a stretch is cut, over its width."""
     least: float = 1e-10
     """Width of a stretch that is not cut any more, over the largest value."""
-    narrow: float = 1e-7
-    """Width of a stretch, over the parameter, below which it is cut on only where that helps."""
-    barren: int = 4
-    """Cuts in a row that prove no part of such a stretch, after which it is named."""
     most: int = 2000
     """Stretches of a position; what is left then is named as not proved."""
     idle: float = 1e-11

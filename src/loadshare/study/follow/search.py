@@ -103,16 +103,12 @@ class Search:
         self.line, self.position, self.low, self.high = line, position, low, high
         # Which contacts are rigid or curved anywhere on the way.
         self._anywhere = line.numbers(position, np.linspace(low, high, 3))
-        largest = max(abs(low), abs(high))
-        self.least, self.narrow = FOLLOW.least * largest, FOLLOW.narrow * largest
+        self.least = FOLLOW.least * max(abs(low), abs(high))
         self.changes: list[Change] = []
         self.gaps: list[Gap] = []
         self._equations: dict[WorkingSet, Equations] = {}
         self._hints: dict[tuple[float, float], float] = {}
         self._sharp: dict[float, bool] = {}
-        # What was cut, in parts, and how many cuts in a row proved no part of a stretch.
-        self._parts: list[list[Stretch]] = []
-        self._barren: dict[tuple[float, float], int] = {}
 
     def run(self) -> None:
         """Find all changes, by value, and what could not be proved.
@@ -136,7 +132,6 @@ class Search:
             left = [s for s in stretches if not self._settled(s)]
             left = self.proved_alike(left)
             left = [s for s in left if not self._crossed(s)] if count <= FOLLOW.most else left
-            self._count_barren(left)
             if count > FOLLOW.most:
                 self.gaps += [Gap(*stretch, "too many stretches") for stretch in left]
                 break
@@ -222,19 +217,10 @@ class Search:
         if isinstance(first, Missing) and isinstance(last, Missing):
             self.gaps.append(Gap(first, last, first.why))
             return True
-        width, barren = last.value - first.value, self._barren.get((first.value, last.value), 0)
-        if width <= self.least or (width <= self.narrow and barren >= FOLLOW.barren):
+        if last.value - first.value <= self.least:
             self.gaps.append(Gap(first, last, "nothing could be proved however near"))
             return True
         return False
-
-    def _count_barren(self, left: list[Stretch]) -> None:
-        """Count, for what is left, the cuts in a row that proved no part."""
-        ends = {(first.value, last.value) for first, last in left}
-        for parts in self._parts:
-            kept = [key for first, last in parts if (key := (first.value, last.value)) in ends]
-            for key in kept:
-                self._barren[key] = self._barren[key] + 1 if len(kept) == len(parts) else 0
 
     def _unconfirmed(self, gap: Gap) -> Change | None:
         """Return the change between the ends of what is not proved, if there is one."""
@@ -406,13 +392,10 @@ class Search:
             cuts.append([v for v in inner if low + 0.01 * width < v < last.value - 0.01 * width])
         flat = np.array([v for some in cuts for v in some])
         points = iter(self.points(flat) if len(flat) else [])
-        self._parts = []
+        found: list[Stretch] = []
         for (first, last), some in zip(stretches, cuts, strict=True):
-            parts = list(pairwise([first, *(next(points) for _ in some), last]))
-            barren = self._barren.get((first.value, last.value), 0)
-            self._barren |= {(here.value, there.value): barren for here, there in parts}
-            self._parts.append(parts)
-        return [stretch for parts in self._parts for stretch in parts]
+            found += pairwise([first, *(next(points) for _ in some), last])
+        return found
 
 
 def merged(gaps: Iterable[Gap]) -> list[Gap]:
