@@ -589,7 +589,7 @@ def _layout(columns: Columns, spring: Numbers, spring_arm: Array) -> Layout:
         np.array([order[n] for r in train.drums for n in r.neighbours], dtype=np.intp),
         gear_pairs,
         across[np.arange(len(gear_pairs)), gear_pairs[:, 0]] / size.line,
-        size.line[:, 0],
+        size.line[:, 0].copy(),
         1.0 / (size.height[:, 0] * CERTIFY.compressed),
         min(CERTIFY.turned, size.vanishing),
     )

@@ -100,16 +100,20 @@ def _solved(client: Client, folder: Folder, parts: Sequence[Part], address: str)
     send(ahead)
     while waiting:
         for future in _first(client, list(waiting), folder, address):
-            part = waiting.pop(future)
+            part = waiting[future]
             try:
-                table = future.result()
+                table = future.result(timeout=WAIT)
             except CancelledError:
                 raise
+            except TimeoutError:
+                # Its worker was lost before it was fetched: others solve it, if there are any.
+                continue
             except Exception as error:
                 raise LoadshareError(
                     f"part {part.number} of {part.design} failed on the cluster: "
                     f"{type(error).__name__}: {error}. {folder.kept()}"
                 ) from error
+            del waiting[future]
             future.release()
             folder.write(part, table)
             send(1)
