@@ -88,7 +88,7 @@ class Folder:
         """Return what of a study that ends now is kept, and how to go on with it, in words."""
         if not self.lasting:
             return "Nothing is kept: the study has no folder (out, or --output)."
-        done = sum(self.file(part).exists() for part in self.all)
+        done = sum(self.file(part).is_file() for part in self.all)
         told = f"{done} of {len(self.all)} parts are kept in {self.path}"
         return f"{told}: the same command goes on from there."
 

@@ -11,6 +11,7 @@ from functools import lru_cache, partial
 from pathlib import Path
 
 from loadshare.errors import LoadshareError
+from loadshare.output import NotWritten
 from loadshare.processes import side_by_side
 from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.job import Part, known_job
@@ -48,6 +49,8 @@ def solve_there(path: str, job: str, part: Part) -> str:
     try:
         folder = _folder(path, job)
         folder.write(part, folder.job.table(part))
+    except NotWritten as error:
+        return f"{error.filename} cannot be written: {error.strerror}"
     except Exception as error:  # noqa: BLE001 -- told by the study; not everything can be pickled
         return f"{type(error).__name__}: {error}"
     return ""
