@@ -9,21 +9,12 @@ from pathlib import Path
 
 import numpy as np
 from pyarrow import parquet
+from tests.study.tolerance.test_runs import INPUTS, PATHS
 from tests.support import CASES, shipped
 
 import loadshare as ls
 from loadshare.study.tolerance.folder import STUDY, WORST, Folder
 from loadshare.study.tolerance.job import Job
-
-CASE = "two_path/clocking_error"
-INPUTS = {
-    f'shafts."wheel{path}-pinion{path}".clocking': {
-        "distribution": "normal",
-        "mean": "0 mrad",
-        "deviation": "1 mrad",
-    }
-    for path in "AB"
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +83,7 @@ def _results(folder: Path) -> Iterator[Subject]:
 
 
 def _study(out: Path) -> Iterator[Subject]:
-    ls.tolerance(shipped(CASE), INPUTS, out=out, samples=4000, seed=3, engine="vectorised")
+    ls.tolerance(shipped(PATHS), INPUTS, out=out, samples=4000, seed=3, engine="vectorised")
     about = json.loads((out / STUDY).read_text(encoding="utf-8"))
     job = Job(about["case"], about["text"], about["settings"])
     folder = Folder(out, job)
