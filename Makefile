@@ -10,7 +10,7 @@ export NO_MKDOCS_2_WARNING = 1
 
 .DEFAULT_GOAL := help
 .PHONY: help run test test-all test-lowest test-shuffled lint format types layers docs docs-serve cases \
-	bench stress reproduce fuzz kills dist clean
+	bench stress reproduce fuzz fuzz-guided kills dist clean
 
 help: ## list the targets
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F':.*## ' '{printf "  %-12s %s\n", $$1, $$2}'
@@ -86,6 +86,15 @@ reproduce: $(VENV)/.run ## compute the seed paper's figures (docs/reproduction.m
 N ?= 10000
 fuzz: $(VENV)/.dev ## try N inputs that nobody meant: no traceback, no hang, no wrong figure
 	$(BIN)/python -m tests.fuzz --count $(N) --processes $(WORKERS)
+
+$(VENV)/.fuzz: $(VENV)/.dev
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[fuzz]'
+	@touch $@
+
+SECONDS ?= 600
+FOUND ?= build/fuzz
+fuzz-guided: $(VENV)/.fuzz ## for SECONDS, change the cases that reach new lines (Linux)
+	$(BIN)/python -m tests.fuzz.guided $(FOUND) -max_total_time=$(SECONDS)
 
 KILLS ?= 200
 kills: $(VENV)/.dev ## kill batches and studies KILLS times: nothing left, and the same results after

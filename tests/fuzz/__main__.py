@@ -1,6 +1,7 @@
 """Try inputs that nobody meant: ``python -m tests.fuzz --count 100000 --processes 2``.
 
-Prints what must not happen, with the command to try it again; leaves with 1 if anything did.
+Prints what must not happen, once of each kind, and keeps the input in `corpus`, where the tests try
+it again; leaves with 1 if anything did.
 """
 
 from __future__ import annotations
@@ -8,32 +9,44 @@ from __future__ import annotations
 import argparse
 import os
 import resource
-import shutil
 import sys
 import time
 from collections import Counter
+from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import typer
-from tests.fuzz.trial import Trial, compile_first, trial
+from tests.fuzz.corpus import keep
+from tests.fuzz.trial import Trial, compile_first, drawn, trial
 
 MEMORY = 2 << 30
 """Bytes that no input may take."""
 
 
-def _alone(seed: int, number: int, keep: Path | None = None) -> Trial:
+def _alone(seed: int, number: int) -> Trial:
     resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, resource.RLIM_INFINITY))
+    with _empty() as folder:
+        return trial(seed, number, folder)
+
+
+@contextmanager
+def _empty() -> Iterator[Path]:
+    """Make a folder; not that of temporary files itself, as one may ask for what is above."""
     with TemporaryDirectory() as above:
-        # Not in the folder of temporary files itself: one may ask for what is above.
         folder = Path(above) / "in"
         folder.mkdir()
-        found = trial(seed, number, folder)
-        if keep is not None:
-            shutil.copytree(folder, keep, dirs_exist_ok=True)
-    return found
+        yield folder
+
+
+def _kept(seed: int, number: int) -> Path:
+    """Draw an input again and keep it."""
+    with _empty() as folder:
+        kind, words = drawn(seed, number, folder)
+        return keep(f"{kind}-{seed}-{number}", kind, words, folder)
 
 
 def _run() -> int:
@@ -42,11 +55,7 @@ def _run() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0, help="number of the first input")
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
-    parser.add_argument("--keep", type=Path, help="write the input of --first here, and try it")
     asked = parser.parse_args()
-    if asked.keep is not None:
-        typer.echo(_alone(asked.seed, asked.first, asked.keep))
-        return 0
     with ProcessPoolExecutor(1) as pool:
         # In a process of its own: what compiling takes would count as an input's memory.
         pool.submit(compile_first).result()
@@ -61,8 +70,8 @@ def _run() -> int:
                 faults += 1
                 if found.fault not in seen:
                     seen.add(found.fault)
-                    again = f"--seed {found.seed} --first {found.number} --keep FOLDER"
-                    typer.echo(f"{found.fault}\n    {' '.join(found.words)[:200]}\n    {again}")
+                    kept = _kept(found.seed, found.number)
+                    typer.echo(f"{found.fault}\n    {' '.join(found.words)[:200]}\n    {kept}")
             if time.monotonic() - told > 10.0:
                 told = time.monotonic()
                 typer.echo(f"{done:,} tried, {faults} faults, {told - begun:.0f} s")

@@ -5,6 +5,7 @@ import stat
 
 import pytest
 from tests.cli.conftest import on_a_screen_of
+from tests.fuzz.corpus import CORPUS, retried
 from tests.fuzz.trial import compile_first, trial
 
 import loadshare as ls
@@ -66,3 +67,10 @@ def test_a_name_that_is_too_long_is_told():
     found = on_a_screen_of(80)("check", "a" * 5000)
     assert found.exit_code == 2
     assert "file name too long" in found.output
+
+
+@pytest.mark.usefixtures("compiled")
+@pytest.mark.parametrize("kept", sorted(CORPUS.iterdir()), ids=lambda kept: kept.name)
+def test_what_was_found_once_is_told_in_words(tmp_path, kept, monkeypatch):
+    monkeypatch.delenv(OUTSIDE)
+    assert retried(kept, tmp_path) == ""

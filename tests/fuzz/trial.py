@@ -153,41 +153,49 @@ def _figures(data: Any) -> Iterator[float]:
 
 
 @cache
-def _cases() -> list[tuple[Path, dict[str, Any]]]:
+def shipped_cases() -> list[tuple[Path, dict[str, Any]]]:
     """Shipped cases but that of teeth, whose analysis may take its time."""
     return [s for s in seeds(CASES) if s[0].parent.name != "pairs" and "geometry" not in s[0].name]
 
 
 def _case(random: Random, folder: Path) -> tuple[str, ...]:
     """Write a case with some values changed."""
-    file, data = pick(random, _cases())
+    file, data = pick(random, shipped_cases())
     (folder / "case.toml").write_text(toml(mutated(random, data)), encoding="utf-8")
-    _lay_beside(file, folder)
+    lay_beside(file, folder)
     return _solved(random, folder)
 
 
 def _rescaled(random: Random, folder: Path) -> tuple[str, ...]:
     """Write a case with other numbers, such as one might mean."""
-    file, data = pick(random, _cases())
+    file, data = pick(random, shipped_cases())
     (folder / "case.toml").write_text(toml(rescaled(random, data)), encoding="utf-8")
-    _lay_beside(file, folder)
+    lay_beside(file, folder)
     return _solved(random, folder)
 
 
 def _study(random: Random, folder: Path) -> tuple[str, ...]:
     """Write studies with some values changed, and run one."""
     name = pick(random, tuple(STUDIES))
-    asked = {"study": {name: STUDIES[name]}, "measured": MEASURED}
-    made = (rescaled if random.integers(2) else mutated)(random, asked)
-    for table in _tables(made):
+    made = (rescaled if random.integers(2) else mutated)(random, study_case(name))
+    (folder / "case.toml").write_text(toml(shortened(made)), encoding="utf-8")
+    lay_beside(CASES / "fgfbstts" / "limit_ring.toml", folder)
+    return ("study", str(folder / "case.toml"), name)
+
+
+def study_case(name: str) -> dict[str, Any]:
+    """Return a case that holds a study."""
+    study = {name: STUDIES[name]}
+    return {"extends": "limit_ring.toml", "study": study, "measured": MEASURED}
+
+
+def shortened(case: dict[str, Any]) -> dict[str, Any]:
+    """Return a case without what may take hours as it is asked for: samples, steps."""
+    for table in _tables(case):
         for key in COUNTS & set(table):
             if isinstance(table[key], int) and 20 < table[key] <= ALLOWED.samples:
-                # What is asked for may take hours.
                 table[key] = 20
-    text = toml({"extends": "limit_ring.toml", **made})
-    (folder / "case.toml").write_text(text, encoding="utf-8")
-    _lay_beside(CASES / "fgfbstts" / "limit_ring.toml", folder)
-    return ("study", str(folder / "case.toml"), name)
+    return case
 
 
 def _tables(data: Any) -> Iterator[dict[str, Any]]:
@@ -200,13 +208,13 @@ def _tables(data: Any) -> Iterator[dict[str, Any]]:
 
 def _bytes(random: Random, folder: Path) -> tuple[str, ...]:
     """Write a case with some bytes changed."""
-    file, _ = pick(random, _cases())
+    file, _ = pick(random, shipped_cases())
     (folder / "case.toml").write_bytes(garbled(random, file.read_bytes()))
-    _lay_beside(file, folder)
+    lay_beside(file, folder)
     return _solved(random, folder)
 
 
-def _lay_beside(file: Path, folder: Path) -> None:
+def lay_beside(file: Path, folder: Path) -> None:
     """Put what a case may extend where it looks for it."""
     for known in file.parent.glob("*.toml"):
         shutil.copyfile(known, folder / known.name)
@@ -221,7 +229,7 @@ def _solved(random: Random, folder: Path) -> tuple[str, ...]:
 
 def _words(random: Random, folder: Path) -> tuple[str, ...]:
     """Ask for what is nothing, of a case that is good."""
-    case = str(pick(random, _cases())[0])
+    case = str(pick(random, shipped_cases())[0])
     value = f"{pick(random, NUMBERS)} {pick(random, UNITS)}"
     if random.integers(3) == 0:
         value = pick(random, NAMES)
@@ -300,16 +308,23 @@ KINDS: dict[str, Callable[[Random, Path], tuple[str, ...]]] = {
 }
 JUDGES = {"pair": _read, "result": _loaded}
 SHARES = (
-    *(("case",) * 6 + ("numbers",) * 3 + ("bytes",) * 3 + ("words",) * 3 + ("study",) * 3),
-    *(("pair",) * 2 + ("result",) * 2),
+    *(("case",) * 14 + ("numbers",) * 4 + ("bytes",) * 8 + ("words",) * 6 + ("study",) * 2),
+    *(("pair",) * 6 + ("result",) * 4),
 )
-"""How often each kind is drawn."""
+"""How often each kind is drawn: studies take ten times as long as all others."""
 
 
 def compile_first() -> None:
     """Compile all that an input may lead to: that takes its minutes, and is no hang."""
     case = CASES / "fgfbstts" / "all_elements.toml"
     ls.solve_many(case, {"rings.4.float [um]": [1.0, 2.0]}, engine="compiled")
+
+
+def drawn(seed: int, number: int, folder: Path) -> tuple[str, tuple[str, ...]]:
+    """Draw an input, write its files into an empty folder, and return its kind and its command."""
+    random = np.random.default_rng([seed, number])
+    kind = pick(random, SHARES)
+    return kind, KINDS[kind](random, folder)
 
 
 def trial(seed: int, number: int, folder: Path) -> Trial:
@@ -321,20 +336,21 @@ def trial(seed: int, number: int, folder: Path) -> Trial:
     folder : pathlib.Path
         Empty; what is written stays there.
     """
-    random = np.random.default_rng([seed, number])
-    kind = pick(random, SHARES)
-    words = KINDS[kind](random, folder)
-    code, fault = -1, ""
+    kind, words = drawn(seed, number, folder)
+    return Trial(kind, seed, number, words, *tried(kind, words, folder))
+
+
+def tried(kind: str, words: tuple[str, ...], folder: Path) -> tuple[int, str]:
+    """Give an input to the command; return its exit code and what must not happen."""
     try:
         with chdir(folder), limited(SECONDS), warnings.catch_warnings():
             warnings.simplefilter("error")
-            code, fault = JUDGES.get(kind, _judged)(words, folder)
+            return JUDGES.get(kind, _judged)(words, folder)
     except TooLong:
-        fault = f"takes longer than {SECONDS:.0f} s"
+        return -1, f"takes longer than {SECONDS:.0f} s"
     except BaseException as error:  # noqa: BLE001 -- whatever escapes is what is looked for
         trace = error.__traceback__
         while trace is not None and trace.tb_next is not None:
             trace = trace.tb_next
         where = f"{trace.tb_frame.f_code.co_filename}:{trace.tb_lineno}" if trace else ""
-        fault = f"{type(error).__name__}: {str(error)[:200]} ({where})"
-    return Trial(kind, seed, number, words, code, fault)
+        return -1, f"{type(error).__name__}: {str(error)[:200]} ({where})"

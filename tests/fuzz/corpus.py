@@ -1,0 +1,56 @@
+"""Inputs that were found to end in what must not be, kept and tried again ever after."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+from tests.fuzz.trial import CASES, tried
+
+CORPUS = Path(__file__).with_name("corpus")
+"""A folder for each, with its files and `command.json`."""
+COMMAND = "command.json"
+
+
+def keep(name: str, kind: str, words: tuple[str, ...], folder: Path) -> Path:
+    """Keep an input under a name; return its folder.
+
+    Parameters
+    ----------
+    name : str
+    kind : str
+        A key of `tests.fuzz.trial.KINDS`.
+    words : tuple of str
+        The command.
+    folder : pathlib.Path
+        With its files.
+    """
+    kept = CORPUS / name
+    kept.mkdir(parents=True, exist_ok=True)
+    for file in folder.iterdir():
+        # What is shipped is laid beside it again.
+        if file.is_file() and not _is_shipped(file):
+            shutil.copyfile(file, kept / file.name)
+    marked = [w.replace(str(folder), "{folder}").replace(str(CASES), "{cases}") for w in words]
+    told = {"kind": kind, "words": marked}
+    (kept / COMMAND).write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
+    return kept
+
+
+def _is_shipped(file: Path) -> bool:
+    content = file.read_bytes()
+    return any(one.read_bytes() == content for one in CASES.rglob(file.name))
+
+
+def retried(kept: Path, folder: Path) -> str:
+    """Try a kept input in an empty folder; return what must not happen."""
+    for file in [*CASES.glob("*/*.toml"), *kept.iterdir()]:
+        shutil.copyfile(file, folder / file.name)
+    told = json.loads((folder / COMMAND).read_text(encoding="utf-8"))
+    # By hand: words may hold braces of their own.
+    words = (
+        word.replace("{folder}", str(folder)).replace("{cases}", str(CASES))
+        for word in told["words"]
+    )
+    return tried(told["kind"], tuple(words), folder)[1]

@@ -1,0 +1,19 @@
+"""All that reads and answers a case, imported with counters of its lines."""
+
+import atheris
+
+CODE = ("case", "cli", "job", "report", "results", "scene", "study", "train")
+"""Folders whose lines count; not those with code that Numba compiles, which takes no counters."""
+
+with atheris.instrument_imports(include=[f"loadshare.{name}" for name in CODE]):
+    import loadshare.cli.draw
+    import loadshare.cli.run
+    import loadshare.cli.study
+    import loadshare.results.files
+    import loadshare.study.compare
+    import loadshare.study.critical
+    import loadshare.study.fit
+    import loadshare.study.march
+    import loadshare.study.sensitivity
+    import loadshare.study.sweep
+    import loadshare.study.tolerance  # noqa: F401
