@@ -13,7 +13,14 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import typer
-from tests.faults.scenes import ENVIRONMENT, Scene, batch_scenes, file_scenes, study_scenes
+from tests.faults.scenes import (
+    ENVIRONMENT,
+    Scene,
+    batch_scenes,
+    file_scenes,
+    study_scenes,
+    worker_scenes,
+)
 from tests.faults.server import Server
 from tests.faults.shim import Shim, why_not
 from tests.faults.trial import KINDS, Stage
@@ -64,10 +71,12 @@ def _run() -> int:
     if why_not():
         typer.echo(f"Nothing is tried: {why_not()}.")
         return 2
+    study = asked.samples, asked.positions, asked.indices
     scenes = [
         *batch_scenes(asked.cases),
-        *study_scenes(asked.samples, asked.positions, asked.indices),
+        *study_scenes(*study),
         *file_scenes(),
+        *worker_scenes(asked.cases, *study),
     ]
     bad = 0
     with TemporaryDirectory() as above:

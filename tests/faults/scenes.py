@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tests.support import CASES
 
 from loadshare.outside import OUTSIDE
+from loadshare.settings import TOLERANCE
 
 Prepare = Callable[[Path, Callable[[Sequence[str]], None]], None]
 """Fills a folder; it is given what runs a command."""
@@ -32,12 +33,15 @@ class Scene:
     prepare : callable
     again : tuple of int
         Exit codes, beside 2, with which an error may be told.
+    apart : bool
+        Whether its workers are processes of their own.
     """
 
     name: str
     words: tuple[str, ...]
     prepare: Prepare
     again: tuple[int, ...] = ()
+    apart: bool = False
 
 
 SUMMARY = "summary.json"
@@ -122,6 +126,17 @@ def study_scenes(samples: int, positions: int, indices: int) -> list[Scene]:
 
     scenes = {"study": fresh, "study in an empty folder": empty, "study, half of it there": half}
     return [Scene(name, words, prepare) for name, prepare in scenes.items()]
+
+
+def worker_scenes(count: int, samples: int, positions: int, indices: int) -> list[Scene]:
+    """Return a batch and a study that two processes work at; it is as large as that takes."""
+    most = TOLERANCE.small // positions // 16 * 16 + 16
+    batch = batch_scenes(count)[0]
+    study = study_scenes(max(samples, most), positions, indices)[0]
+    return [
+        replace(scene, name=f"{scene.name} in workers", words=(*scene.words[:-1], "2"), apart=True)
+        for scene in (batch, study)
+    ]
 
 
 FLOAT = "rings.4.float=0 um:12 um:3"

@@ -81,11 +81,20 @@ class Server:
         self._process.wait()
         self._process.stdout.close()
 
-    def run(self, words: Sequence[str], *, fork: bool = True) -> Ended:
-        """Run a command; without a fork, what it solves is kept for those to come."""
+    def run(self, words: Sequence[str], *, fork: bool = True, apart: bool = False) -> Ended:
+        """Run a command.
+
+        Parameters
+        ----------
+        words : sequence of str
+        fork : bool
+            Without, what it solves is kept for those to come.
+        apart : bool
+            Whether what is large is left to its workers, which know nothing of what is kept.
+        """
         assert self._process.stdin is not None
         assert self._process.stdout is not None
-        self._process.stdin.write(json.dumps([list(words), fork]) + "\n")
+        self._process.stdin.write(json.dumps([list(words), fork, apart]) + "\n")
         self._process.stdin.flush()
         code = json.loads(self._process.stdout.readline())
         out, err = ((self._folder / name).read_text(errors="replace") for name in ("out", "err"))
@@ -99,15 +108,17 @@ def _serve(folder: Path, modules: Sequence[str]) -> None:
     _keep_answers()
     answers = os.fdopen(os.dup(1), "w")
     for line in sys.stdin:
-        words, fork = json.loads(line)
+        words, fork, apart = json.loads(line)
         if fork:
             child = os.fork()
             if not child:
                 signal.alarm(SECONDS)
+                _solve_here(not apart)
                 os._exit(_run(words, folder))
             _, status = os.waitpid(child, 0)
             code = os.waitstatus_to_exitcode(status)
         else:
+            _solve_here(True)
             code = _run(words, folder)
         answers.write(f"{code}\n")
         answers.flush()
@@ -161,11 +172,17 @@ def _keep_answers() -> None:
     figures.Solver.solve = _keeping(figures.Solver.solve, samples_key)  # type: ignore[method-assign]
     design.uniforms = _keeping(design.uniforms, lambda *given: repr(given))
     study.read_inputs = _keeping(study.read_inputs, inputs_key)
-    # Large studies are solved in this process as well, which knows the answers.
-    study.TOLERANCE = study.TOLERANCE._replace(small=sys.maxsize)
     # Statistics resample a thousand times.
     for name in ("summary", "exceedance", "shares"):
         setattr(study, name, _keeping(getattr(study, name), array_key))
+
+
+def _solve_here(here: bool) -> None:
+    """Let large studies be solved in this process as well, which knows the answers, or not."""
+    from loadshare.settings import TOLERANCE
+    from loadshare.study.tolerance import study
+
+    study.TOLERANCE = TOLERANCE._replace(small=sys.maxsize) if here else TOLERANCE
 
 
 def _keeping(function: Callable[..., Any], key: Callable[..., Any]) -> Callable[..., Any]:

@@ -109,7 +109,7 @@ class Stage:
         """Return the calls of an undisturbed run: what each is named, and its path."""
         self._set()
         self.shim.arm(self.root, log=log)
-        ended = self.server.run(self.words)
+        ended = self._given()
         self.shim.disarm()
         assert ended.code == self.code, ended.said
         lines = log.read_text(encoding="utf-8").splitlines()
@@ -140,12 +140,15 @@ class Stage:
         """Let a call fail, and give the command again."""
         self._set()
         self.shim.arm(self.root, number, fault)
-        ended = self.server.run(self.words)
+        ended = self._given()
         seen = self.shim.disarm()
         wrong = [*self._told(ended, seen, fault), *self._state(ended)]
-        again = self.server.run(self.words)
+        again = self._given()
         wrong += self._resumed(again)
         return Trial(self.scene.name, number, fault, seen, ended.code, tuple(wrong))
+
+    def _given(self) -> Ended:
+        return self.server.run(self.words, apart=self.scene.apart)
 
     def _set(self) -> None:
         shutil.rmtree(self.root, ignore_errors=True)

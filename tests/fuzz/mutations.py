@@ -52,6 +52,11 @@ def at(data: Any, path: tuple[Step, ...]) -> Any:
     return data
 
 
+def copied(data: Any) -> Any:
+    """Return data that may be changed without changing others."""
+    return json.loads(json.dumps(data))
+
+
 def pick(random: Random, some: Any) -> Any:
     """Return one of some things."""
     return some[int(random.integers(len(some)))]
@@ -94,7 +99,7 @@ def whole(random: Random, value: Any) -> Any:
 
 def other(random: Random, value: Any) -> Any:
     """Return something of any kind."""
-    return pick(random, VALUES)
+    return copied(pick(random, VALUES))
 
 
 def named(random: Random, value: Any) -> Any:
@@ -117,7 +122,7 @@ CHANGES: tuple[Callable[[Random, Any], Any], ...] = (
 
 def mutated(random: Random, data: dict[str, Any]) -> dict[str, Any]:
     """Return data with one to three changes."""
-    made: dict[str, Any] = json.loads(json.dumps(data))
+    made: dict[str, Any] = copied(data)
     for _ in range(int(random.integers(1, 4))):
         every = list(places(made))
         if not every:
@@ -131,9 +136,9 @@ def mutated(random: Random, data: dict[str, Any]) -> dict[str, Any]:
                 holder[pick(random, NAMES)] = holder.pop(step)
             case 2:
                 # Something of another place, or of this one in another one's place.
-                holder[step] = json.loads(json.dumps(at(made, pick(random, every))))
+                holder[step] = copied(at(made, pick(random, every)))
             case 3 if isinstance(holder, list):
-                holder.extend(holder[: 1 + int(random.integers(3))])
+                holder.extend(copied(holder[: 1 + int(random.integers(3))]))
             case 4 if isinstance(holder, dict):
                 holder[pick(random, ("law", "float", "support", "extends", "about", "x"))] = other(
                     random, None
@@ -145,7 +150,7 @@ def mutated(random: Random, data: dict[str, Any]) -> dict[str, Any]:
 
 def rescaled(random: Random, data: dict[str, Any]) -> dict[str, Any]:
     """Return data with some numbers made larger or smaller, up to a thousand times."""
-    made: dict[str, Any] = json.loads(json.dumps(data))
+    made: dict[str, Any] = copied(data)
     every = [path for path in places(made) if _QUANTITY.fullmatch(str(at(made, path)))]
     for _ in range(int(random.integers(1, 6))):
         path = pick(random, every)

@@ -218,7 +218,7 @@ class _Rounds:
         visits.append(here.tobytes())
         if visits.count(visits[-1]) < EXCHANGE.returns:
             return at.OTHER
-        to_and_fro = visits[-2] == proposal.tobytes() == visits[-4:-3][0]
+        to_and_fro = visits[-4:-3] == visits[-2:-1] == [proposal.tobytes()]
         if not to_and_fro:
             return at.FAILED
         if np.count_nonzero(here) < np.count_nonzero(proposal):
