@@ -33,7 +33,7 @@ def _tried(
     stage = Stage(scene, folder, server, shim)
     wrong, faults, bad, told = Counter[str](), Counter[str](), 0, time.monotonic()
     begun = told
-    planned = stage.plan(asked.step)
+    planned = stage.plan(asked.step, asked.once)
     for number, fault in planned[asked.first :]:
         found = stage.trial(number, fault)
         faults[fault if found.seen.hit else "none"] += 1
@@ -64,6 +64,7 @@ def _run() -> int:
     parser.add_argument("--positions", type=int, default=5, help="positions of a study")
     parser.add_argument("--indices", type=int, default=16, help="rows for the shares of variance")
     parser.add_argument("--step", type=int, default=1, help="try every so manieth fault only")
+    parser.add_argument("--once", action="store_true", help="let each call fail in one way only")
     parser.add_argument("--first", type=int, default=0, help="leave so many faults out at first")
     parser.add_argument("--only", default="", help="scenes whose name begins so")
     parser.add_argument("--seconds", type=int, help="most for each scene")

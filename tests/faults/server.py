@@ -148,7 +148,7 @@ def _run(words: Sequence[str], folder: Path) -> int:
 def _keep_answers() -> None:
     """Let what was solved once be looked up."""
     import loadshare.job
-    from loadshare.results import files
+    from loadshare.results import files, writing
     from loadshare.study.tolerance import design, figures, study, worst
 
     def case_key(case: Any, **how: Any) -> str:
@@ -158,6 +158,8 @@ def _keep_answers() -> None:
     kept = _keeping(loadshare.job.solve, case_key)
     loadshare.job.solve = worst.solve = kept  # type: ignore[attr-defined]
 
+    # What was solved once is one object, and says the same.
+    writing.text_of = _keeping(writing.text_of, id)
     files.read_document = _keeping(files.read_document, lambda text, file: (text, file))
 
     def samples_key(solver: Any, values: Any) -> tuple[object, ...]:

@@ -115,15 +115,18 @@ class Stage:
         lines = log.read_text(encoding="utf-8").splitlines()
         return [(name, path) for _, name, path in (line.split("\t") for line in lines)]
 
-    def plan(self, step: int = 1) -> list[tuple[int, str]]:
+    def plan(self, step: int = 1, once: bool = False) -> list[tuple[int, str]]:
         """Return the calls that are to fail, and how, in an order that is always the same.
 
-        What writes meets every fault, what reads one of them in turn; of all that every `step`-th.
+        What writes meets every fault, unless each call is to fail once; what reads meets one of
+        them in turn. Of all that every `step`-th.
         """
         every, numbers = list(FAULTS), range(len(self.log))
-        writing = [(k + 1, fault) for k in numbers if self._writes(k) for fault in every]
-        reading = [(k + 1, every[k % len(every)]) for k in numbers if not self._writes(k)]
-        planned = writing + reading
+        planned = [
+            (k + 1, fault)
+            for k in numbers
+            for fault in (every if self._writes(k) and not once else [every[k % len(every)]])
+        ]
         # However soon it is stopped, calls and faults of all kinds were tried.
         random.Random(1).shuffle(planned)
         return planned[::step]

@@ -19,13 +19,18 @@ DOCUMENT = "loadshare_result"
 
 def write_json(result: Result, path: str | Path | None = None) -> str:
     """Return the JSON text of a result, and write it to `path` if given."""
-    text = json.dumps(to_document(result), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    text = text_of(result)
     if path is not None:
         write_whole(Path(path), text)
     return text
 
 
+def text_of(result: Result) -> str:
+    """Return the JSON text of a result."""
+    return json.dumps(to_document(result), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
 def write_netcdf(result: Result, path: str | Path) -> None:
     """Write labelled arrays for any reader of netCDF, and the whole result as an attribute."""
-    arrays = result.dataset.assign_attrs({DOCUMENT: write_json(result)})
+    arrays = result.dataset.assign_attrs({DOCUMENT: text_of(result)})
     write_whole(Path(path), sealed(netcdf_of(arrays)))
