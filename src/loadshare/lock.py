@@ -18,8 +18,8 @@ log = logging.getLogger("loadshare")
 
 LOCK = ".loadshare.lock"
 """File of the lock; it says who holds it, and is removed when that one is done."""
-TAKEN = (errno.EACCES, errno.EAGAIN, errno.EDEADLK)
-"""What systems answer where another process holds a lock."""
+TAKEN = (errno.EACCES, errno.EDEADLK) if sys.platform == "win32" else (errno.EWOULDBLOCK,)
+"""What the system answers where another process holds a lock."""
 FAR = 1 << 30
 """Byte that is locked on Windows, beyond the text, which others are to read."""
 
@@ -56,7 +56,7 @@ def alone_in(folder: Path) -> Iterator[None]:
         # While it is held; on Windows a file can be removed only when it is closed.
         with suppress(OSError):
             file.unlink()
-        os.close(handle)
+        _close(handle)
         with suppress(OSError):
             if sys.platform == "win32":
                 file.unlink()
@@ -78,8 +78,8 @@ def _acquired(file: Path) -> int | None:
         except FileNotFoundError:
             pass
         except OSError as error:
-            told = os.read(handle, 200).decode(errors="replace") or "another process"
-            os.close(handle)
+            told = _holder(handle)
+            _close(handle)
             if error.errno in TAKEN:
                 raise LoadshareError(
                     f"{file.parent}: is in use by {told}. Wait until that has ended, or give "
@@ -87,6 +87,19 @@ def _acquired(file: Path) -> int | None:
                 ) from None
             log.warning("%s: this file system has no locks; work here one at a time.", file.parent)
             return None
+        _close(handle)
+
+
+def _holder(handle: int) -> str:
+    """Return who wrote that it holds the lock."""
+    with suppress(OSError):
+        return os.read(handle, 200).decode(errors="replace") or "another process"
+    return "another process"
+
+
+def _close(handle: int) -> None:
+    # A file that is closed is closed, whatever is said of it.
+    with suppress(OSError):
         os.close(handle)
 
 
