@@ -65,7 +65,11 @@ def test_a_case_built_in_python(drive):
 def test_a_bad_case_built_in_python_is_told_in_the_same_words():
     with pytest.raises(CaseError) as caught:
         Case(operating={"input": "1"}, gears={}, meshes={})
-    assert str(caught.value) == "case: operating.output: is missing. Gear at which it leaves."
+    assert str(caught.value).splitlines() == [
+        "case: operating.output: is missing. Gear at which it leaves.",
+        "case: gears: is empty. The gears, by name.",
+        "case: meshes: is empty. The meshes; one named a-b joins the driver a to the driven gear b.",
+    ]
 
 
 def test_gears_may_have_dashes_in_their_names(drive):

@@ -11,22 +11,31 @@ import subprocess
 import sys
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 SOURCE = Path(__file__).with_name("shim.c")
 ROOM = 1024
 FIELDS = struct.Struct(f"=6q{ROOM}s64s{ROOM}s{ROOM}s")
 """As `struct control` has them."""
 SHORT, KILL = -1, -2
-FAULTS: dict[str, tuple[int, bool]] = {
-    "ENOSPC": (errno.ENOSPC, False),
-    "EIO": (errno.EIO, False),
-    "EACCES": (errno.EACCES, False),
-    "EINTR": (errno.EINTR, False),
-    "short": (SHORT, False),
-    "kill": (KILL, False),
-    "full": (errno.ENOSPC, True),
+
+
+class Fault(NamedTuple):
+    """What becomes of a call, and whether the disk stays full from there on."""
+
+    error: int
+    lasting: bool = False
+
+
+FAULTS = {
+    "ENOSPC": Fault(errno.ENOSPC),
+    "EIO": Fault(errno.EIO),
+    "EACCES": Fault(errno.EACCES),
+    "EINTR": Fault(errno.EINTR),
+    "short": Fault(SHORT),
+    "kill": Fault(KILL),
+    "full": Fault(errno.ENOSPC, lasting=True),
 }
-"""What becomes of the call; whether the disk stays full from there on."""
 
 
 def why_not() -> str:

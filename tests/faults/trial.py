@@ -166,11 +166,16 @@ class Stage:
                 yield Wrong("told", "was killed")
         elif ended.code not in (self.code, 2, *self.scene.again):
             yield Wrong("told", f"left with {ended.code}: {ended.said.strip()[-200:]}")
-        elif ended.code != self.code and not self._named(ended.said, Path(seen.path)):
+        elif ended.code != self.code and not self._named(ended.said, fault, Path(seen.path)):
             yield Wrong("told", f"names no file: {ended.said.strip()[-200:]}")
 
-    def _named(self, said: str, failed: Path) -> bool:
-        """Whether what is said names the file, or one that was to stand in the folder."""
+    def _named(self, said: str, fault: str, failed: Path) -> bool:
+        """Whether what is said names the file, or one that was to stand in the folder.
+
+        Where a disk stays full, the file that ends a command need not be the first that failed.
+        """
+        if FAULTS[fault].lasting:
+            return str(self.root) in said
         match = LEFT.match(str(failed))
         if match:
             return f"{match[1]}{match[2]}" in said

@@ -74,10 +74,11 @@ def read_draft(data: Mapping[str, Any], origin: Origin) -> Draft:
             hint = did_you_mean(key, fields)
             draft.tell((key,), "unknown key", choices(fields), hint)
     for name, about in fields.items():
-        if name in data:
+        if about.is_required() and data.get(name, {}) == {}:
+            missing = "is empty" if name in data else "is missing"
+            draft.tell((name,), missing, hint=about.description or "")
+        elif name in data:
             _read_section(draft, name, about)
-        elif about.is_required():
-            draft.tell((name,), "is missing", hint=about.description or "")
     return draft
 
 
