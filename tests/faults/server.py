@@ -148,6 +148,7 @@ def _run(words: Sequence[str], folder: Path) -> int:
 def _keep_answers() -> None:
     """Let what was solved once be looked up."""
     import loadshare.job
+    from loadshare.report.figure import Figure
     from loadshare.results import files, writing
     from loadshare.study.tolerance import design, figures, study, worst
 
@@ -159,6 +160,9 @@ def _keep_answers() -> None:
     loadshare.job.solve = worst.solve = kept  # type: ignore[attr-defined]
 
     # What was solved once is one object, and says the same.
+    Figure._converted = _keeping(  # type: ignore[method-assign]
+        Figure._converted, lambda figure, form, **how: (json.dumps(figure.spec), form, repr(how))
+    )
     writing.text_of = _keeping(writing.text_of, id)
     files.read_document = _keeping(files.read_document, lambda text, file: (text, file))
 
