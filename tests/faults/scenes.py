@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -45,13 +46,17 @@ class Scene:
 
 
 SUMMARY = "summary.json"
+MINUTE = re.compile(rb"on \d{4}-\d\d-\d\d \d\d:\d\d UTC")
 
 
 def masked(name: str, content: bytes) -> bytes:
     """Return what of a file must be the same in every run.
 
-    That of a batch's summary says how long each case took, and whether its result was kept.
+    That of a batch's summary says how long each case took, and whether its result was kept; a page
+    says when it was made.
     """
+    if name.endswith(".html"):
+        return MINUTE.sub(b"", content)
     if Path(name).name != SUMMARY:
         return content
     told = json.loads(content)
