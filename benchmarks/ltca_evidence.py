@@ -12,7 +12,6 @@ import sys
 from collections.abc import Iterable
 from dataclasses import replace
 
-from benchmarks.iso6336 import formula_stiffness
 from benchmarks.ltca import PAIRS, on_half_planes, table
 from loadshare.tooth.analysis.fit import FIT_LOADS
 from loadshare.tooth.analysis.ltca import (
@@ -27,6 +26,7 @@ from loadshare.tooth.compliance.finite import FiniteElements
 from loadshare.tooth.contact.programme import solve_contact
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.cylindrical.pair import HelicoidPair
+from loadshare.tooth.law.iso6336 import formula_stiffness
 from loadshare.tooth.pair.file import PairFile, load_pair
 
 PAPER = {"p12": (7.46e5, 9.27e5), "p46": (3.77e6, 4.78e6), "p610": (6.17e6, 6.68e6)}

@@ -14,7 +14,7 @@ import time
 from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -24,13 +24,21 @@ from tests.fuzz.corpus import keep
 from tests.fuzz.trial import Trial, compile_first, drawn, trial
 
 MEMORY = 2 << 30
-"""Bytes that no input may take."""
+"""Bytes that no input may take, beside what the process has."""
 
 
 def _alone(seed: int, number: int) -> Trial:
-    resource.setrlimit(resource.RLIMIT_DATA, (MEMORY, resource.RLIM_INFINITY))
+    most = _data() + MEMORY
+    resource.setrlimit(resource.RLIMIT_DATA, (most, resource.RLIM_INFINITY))
     with _empty() as folder:
         return trial(seed, number, folder)
+
+
+def _data() -> int:
+    """Bytes of data that this process has; where nobody tells, none."""
+    with suppress(OSError), Path("/proc/self/status").open(encoding="ascii") as told:
+        return 1024 * next(int(line.split()[1]) for line in told if line.startswith("VmData"))
+    return 0
 
 
 @contextmanager

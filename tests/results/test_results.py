@@ -7,7 +7,7 @@ import json
 
 import numpy as np
 import pytest
-from tests.support import shipped
+from tests.support import CASES, shipped
 
 import loadshare as ls
 from loadshare.results.share import coefficients
@@ -137,3 +137,19 @@ def test_samples_have_the_names_and_units_of_results():
         there = alone[name].sel({dim: here[dim].values for dim in here.dims})
         np.testing.assert_allclose(here, there, rtol=1e-9, atol=1e-15)
     assert all(v.attrs["units"] and v.attrs["long_name"] for v in many.data_vars.values())
+
+
+@pytest.mark.parametrize(
+    ("key", "stiffness"),
+    [
+        ('meshes."8-10".stiffness', "1e40 N*m/rad"),
+        ('shafts."2-4".stiffness', "1e40 N*m/rad"),
+        ("gears.6.support", "1e40 N/m"),
+    ],
+)
+@pytest.mark.parametrize("engine", ["vectorised", "compiled"])
+def test_what_is_all_but_rigid_is_certified_again(tmp_path, key, stiffness, engine):
+    """Rounding of its length, times its stiffness, is no energy that anybody claims."""
+    case = ls.load_case(CASES / "fgfbstts" / "base.toml").replace({key: stiffness})
+    ls.solve(case, positions=[1], engine=engine).to_json(tmp_path / "found.json")
+    assert ls.load_result(tmp_path / "found.json").passed

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated, Literal
 
 from pydantic import Field, Strict, Tag
 
-from loadshare.case.element import LIST, TABLE, VALUE, Element, Number, Rule, shaped
+from loadshare.case.element import LIST, TABLE, VALUE, Element, Number, Positive, Rule, shaped
 from loadshare.case.quantity import (
+    ANGLE,
     LENGTH,
     STIFFNESS,
     Angle,
@@ -18,8 +22,40 @@ from loadshare.case.quantity import (
     Quantity,
     Radius,
 )
+from loadshare.involute import InvoluteTooth
+
+OF_TEETH = (
+    "pressure_angle",
+    "helix_angle",
+    "profile_shift",
+    "face_width",
+    "addendum",
+    "dedendum",
+    "tip_alteration",
+    "web",
+    "rim",
+)
+"""Keys of a gear that say more of its teeth, beside their number and module."""
+RADIUS_TOLERANCE = 1e-3
+"""How far a given base radius may be from that of the teeth, as a part of it [-]."""
+STEEPEST = Quantity("45 deg", math.radians(45))
+STEEPEST_HELIX = math.radians(60)
 
 Components = Annotated[tuple[Length, ...], Field(min_length=2, max_length=3), Tag(LIST)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tooth(InvoluteTooth):
+    """The teeth of a cylindrical gear, as `InvoluteTooth` has them, and their dedendum [-]."""
+
+    module: float
+    teeth: int
+    pressure_angle: float
+    helix_angle: float
+    profile_shift: float
+    addendum: float
+    dedendum: float
+    internal: bool
 
 
 class Polar(Element):
@@ -69,6 +105,36 @@ class Gear(Element):
     teeth: Annotated[int, Strict(), Field(ge=5)] | None = None
     """Number of teeth [-]; sets how far gears turn in a cycle and what position they reach."""
 
+    module: Radius | None = None
+    """Normal module, from which with `teeth` the base radius follows [length]."""
+
+    pressure_angle: Annotated[Quantity, ANGLE.bounded(above=0, at_most=STEEPEST)] | None = None
+    """Normal pressure angle of the rack; 20 deg when left out [angle]."""
+
+    helix_angle: Angle | None = None
+    """Helix angle at the reference circle, positive for a right-hand helix [angle]."""
+
+    profile_shift: Number | None = None
+    """Profile shift coefficient; positive for a thicker tooth, of an internal gear too [-]."""
+
+    face_width: Radius | None = None
+    """Face width of the teeth [length]."""
+
+    addendum: Positive | None = None
+    """Addendum of the rack in modules; 1 when left out [-]."""
+
+    dedendum: Positive | None = None
+    """Dedendum of the rack in modules; 1.25 when left out [-]."""
+
+    tip_alteration: Length | None = None
+    """Alteration of the tooth's height at its tip, negative where it is shortened [length]."""
+
+    web: Radius | None = None
+    """Thickness of the web of a gear with a thin one, for `law = "iso"` [length]."""
+
+    rim: Radius | None = None
+    """Thickness of the rim below the teeth on a thin web, for `law = "iso"` [length]."""
+
     support: (
         Annotated[
             Annotated[
@@ -89,6 +155,8 @@ class Gear(Element):
     def rules(self) -> Iterator[Rule]:
         """Yield what does not hold of the radii and the axis."""
         radii = self.given("inner_radius", "outer_radius")
+        if self.module is not None or self.given(*OF_TEETH):
+            yield from self._tooth_rules()
         if radii and self.type != "face":
             yield Rule("is for face gears only", (radii[0],), hint="Give base_radius.")
         elif radii and self.base_radius is not None:
@@ -96,9 +164,9 @@ class Gear(Element):
         elif len(radii) == 1:
             missing = "outer_radius" if radii == ["inner_radius"] else "inner_radius"
             yield Rule("is missing", (missing,), hint=f"It goes with {radii[0]}.")
-        elif not radii and self.base_radius is None:
-            both = "inner_radius and outer_radius"
-            hint = f"Or give {both}." if self.type == "face" else ""
+        elif not radii and self.base_radius is None and self.module is None:
+            other = "inner_radius and outer_radius" if self.type == "face" else "module and teeth"
+            hint = f"Or give {other}."
             yield Rule("is missing", ("base_radius",), LENGTH.allowed, hint)
         elif (
             self.inner_radius and self.outer_radius and self.inner_radius.si >= self.outer_radius.si
@@ -107,11 +175,56 @@ class Gear(Element):
         if not isinstance(self.axis, str) and not any(self.axis):
             yield Rule("has no direction", ("axis",), "x, y, z, or a list of 3 numbers, not all 0")
 
+    def _tooth_rules(self) -> Iterator[Rule]:
+        if self.type == "face":
+            key = self.given("module", *OF_TEETH)[0]
+            yield Rule("is for cylindrical gears only", (key,), hint="Give the gear's radii.")
+            return
+        for missing in ("module", "teeth"):
+            if getattr(self, missing) is None:
+                with_it = self.given("module", *OF_TEETH)[0]
+                yield Rule("is missing", (missing,), hint=f"It goes with {with_it}.")
+        if self.helix_angle is not None and abs(self.helix_angle.si) > STEEPEST_HELIX:
+            yield Rule("is steeper than 60 deg", ("helix_angle",), ANGLE.allowed)
+            return
+        tooth = self.tooth
+        if tooth is None:
+            return
+        if self.base_radius is not None:
+            given, follows = self.base_radius.si, tooth.base_radius
+            if abs(given - follows) > RADIUS_TOLERANCE * follows:
+                teeth = f"that of the teeth is {1e3 * follows:.8g} mm"
+                yield Rule(f"contradicts module and teeth: {teeth}", ("base_radius",))
+        if tooth.tip <= tooth.base_radius:
+            tip, base = 1e3 * tooth.tip, 1e3 * tooth.base_radius
+            key = next(iter(self.given("tip_alteration", "addendum", "profile_shift")), "module")
+            inside = f"with a tip radius of {tip:.6g} mm inside the base circle of {base:.6g} mm"
+            yield Rule(f"leaves teeth {inside}", (key,))
+
+    @cached_property
+    def tooth(self) -> Tooth | None:
+        """The teeth, where the gear says what they are."""
+        if self.module is None or self.teeth is None or self.type == "face":
+            return None
+        altered = self.tip_alteration.si / self.module.si if self.tip_alteration else 0.0
+        return Tooth(
+            module=self.module.si,
+            teeth=self.teeth,
+            pressure_angle=self.pressure_angle.si if self.pressure_angle else math.radians(20.0),
+            helix_angle=self.helix_angle.si if self.helix_angle else 0.0,
+            profile_shift=self.profile_shift or 0.0,
+            addendum=(self.addendum or 1.0) + altered,
+            dedendum=self.dedendum or 1.25,
+            internal=self.type == "internal",
+        )
+
     @property
     def acting_radius(self) -> float:
         """Lever arm of the tooth force [m]: the base radius, of a face gear also (L1 + L2)/2."""
         if self.base_radius is not None:
             return self.base_radius.si
+        if self.tooth is not None:
+            return self.tooth.base_radius
         if self.inner_radius is None or self.outer_radius is None:
             raise ValueError("a gear without radii")
         return (self.inner_radius.si + self.outer_radius.si) / 2

@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from itertools import pairwise
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field, Tag
 
 from loadshare.case.element import (
     LIST,
     NESTED,
+    TABLE,
+    VALUE,
     Element,
     PerPosition,
     Rule,
@@ -19,6 +21,7 @@ from loadshare.case.element import (
     values,
     without_default,
 )
+from loadshare.case.gears import STEEPEST
 from loadshare.case.keys import Path
 from loadshare.case.quantity import (
     ANGLE,
@@ -32,7 +35,6 @@ from loadshare.case.quantity import (
 )
 from loadshare.case.words import count
 
-STEEPEST = Quantity("45 deg", math.radians(45))
 LAWS = ("stiffness", "law", "table", "law_file", "geometry")
 
 MeshStiffness = Annotated[Quantity, TORSIONAL_STIFFNESS.bounded(above=0)]
@@ -110,17 +112,30 @@ class Mesh(Element):
     driven: str = Field(default="", json_schema_extra=without_default)
     """Gear that is driven; the second of the mesh's name when left out."""
 
-    pressure_angle: Annotated[Quantity, ANGLE.bounded(above=0, at_most=STEEPEST)]
-    """Transverse working pressure angle, at most 45 deg [angle]."""
+    pressure_angle: Annotated[Quantity, ANGLE.bounded(above=0, at_most=STEEPEST)] | None = None
+    """Transverse working pressure angle, at most 45 deg [angle].
 
-    helix_angle: Annotated[Quantity, ANGLE] = Quantity("0 deg", 0.0)
-    """Base helix angle [angle]."""
+    Left out, it is the one at which the base circles have a common tangent; a face gear needs it.
+    """
+
+    helix_angle: Annotated[Quantity, ANGLE] | None = None
+    """Base helix angle; that of the teeth, or 0 deg, when left out [angle]."""
 
     stiffness: PerPosition[MeshStiffness] | None = None
     """Constant stiffness at the driver [torque/angle], one value or one per position."""
 
-    law: Law | None = None
-    """Deformation law a + b T + c T^(2/3) at the driver [angle]."""
+    law: (
+        Annotated[
+            Annotated[Literal["iso", "iso solid"], Tag(VALUE)] | Annotated[Law, Tag(TABLE)],
+            shaped('"iso", "iso solid", or a table of a, b and c'),
+        ]
+        | None
+    ) = None
+    """Deformation law a + b T + c T^(2/3) at the driver [angle], or a word for its source.
+
+    iso: mean stiffness by ISO 6336-1, method B, from the teeth of both gears; iso solid: without
+    C_M = 0.8, by which measured teeth are softer than calculated ones.
+    """
 
     table: Table | None = None
     """Deformation at the driver [angle] as a table over the torque [torque]."""
@@ -148,7 +163,7 @@ class Mesh(Element):
         elif len(laws) > 1:
             hint = f"Drop {' or '.join(laws)}; an inherited one with `remove`."
             yield Rule(f"has {len(laws)} deformation laws: {', '.join(laws)}", hint=hint)
-        if self.gap is not None and self.law is not None and any(values(self.law.a)):
+        if self.gap is not None and self.power_law is not None and any(values(self.power_law.a)):
             yield Rule("stands beside law.a: give one or the other", ("gap",))
         if self.gap is not None and (self.law_file or self.geometry):
             source = "geometry" if self.geometry else "law_file"
@@ -156,14 +171,24 @@ class Mesh(Element):
             yield Rule(f"stands beside {source}, which gives the gap", ("gap",), hint=hint)
         if self.backlash is not None and self.normal_backlash is not None:
             yield Rule("stands beside backlash: give one or the other", ("normal_backlash",))
-        if abs(self.helix_angle.si) >= math.pi / 2:
+        if self.helix_angle is not None and abs(self.helix_angle.si) >= math.pi / 2:
             yield Rule("is 90 deg or more", ("helix_angle",), ANGLE.allowed)
+
+    @property
+    def power_law(self) -> Law | None:
+        """The law a + b T + c T^(2/3), if one is given in numbers."""
+        return self.law if isinstance(self.law, Law) else None
+
+    @property
+    def law_is_computed(self) -> bool:
+        """Whether the law is not given in numbers, but by what it is computed from."""
+        return bool(self.geometry or self.law_file or isinstance(self.law, str))
 
     def per_position(self) -> Iterator[tuple[Path, object]]:
         """Yield what may be given once or once per position, with its key."""
         yield from (((key,), getattr(self, key)) for key in ("stiffness", "gap"))
-        if self.law is not None:
-            yield from ((("law", key), getattr(self.law, key)) for key in "abc")
+        if self.power_law is not None:
+            yield from ((("law", key), getattr(self.power_law, key)) for key in "abc")
         if self.table is not None:
             yield ("table", "deflection"), self.table.curves
 

@@ -30,9 +30,11 @@ WANTED = {
     "too_long": "a list of at most {max_length}",
 }
 
-TEETH = ("module", "pressure_angle", "helix_angle", "face_width", "profile_shift", "tip_relief")
-"""Keys that one expects of a gear or a mesh, and that stand in a pair file."""
-OF_TEETH = 'Teeth stand in a pair file, which the mesh names: geometry = "pair.toml".'
+TEETH = ("module", "face_width", "profile_shift", "addendum", "dedendum", "tip_relief")
+"""Keys that one may expect of a mesh, and that stand elsewhere."""
+OF_TEETH = (
+    'Teeth stand with the gears, or in a pair file that the mesh names: geometry = "pair.toml".'
+)
 
 
 def translate(error: ValidationError, model: type[Element]) -> list[Rule]:

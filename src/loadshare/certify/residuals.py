@@ -200,8 +200,35 @@ def energy_gap(state: ClaimedState) -> Blocks:
     forces = np.abs(state.force).sum(axis=0)
     if of.pulls:
         forces = forces + size(state.reaction).sum(axis=0)
-    rounding = CERTIFY.rounded * sizes + state.resolution * forces
+    rounding = CERTIFY.rounded * sizes + state.resolution * forces + _unresolved(state)
     return [(np.maximum(gap - rounding, 0.0)[None], ("the whole train",))]
+
+
+def _unresolved(state: ClaimedState) -> Array:
+    """Energy [J] of what rounding leaves of lengths, shape (S,).
+
+    What is all but rigid holds as much as one likes in a length that is nothing: K s (|d| + s) with
+    the resolution s, and d by which a length is not that of its force.
+    """
+    of, here, step = state.of, state.here, state.resolution
+    near = state.approach > -step
+    yields = state.tangent
+    stiffness = np.where(near & (yields > 0.0), 1.0 / np.where(yields > 0.0, yields, 1.0), 0.0)
+    found = (stiffness * (np.abs(state.overlap) + step)).sum(axis=0) * step
+    if len(of.shaft):
+        torsion, turn = here.torsion[of.elastic], step / of.radius[of.shaft[of.elastic, :1]]
+        lag = np.abs(state.wind[of.elastic] - state.claim.shaft_torque[of.elastic] / torsion)
+        found = found + (torsion * turn * (lag + turn)).sum(axis=0)
+    if len(of.moving):
+        stiffness, force = state.support
+        held = np.where(stiffness > 0.0, stiffness, 1.0)
+        lag = np.where(stiffness > 0.0, np.abs(state.moved - force / held) + step, 0.0)
+        found = found + (stiffness * lag).sum(axis=(0, 1)) * step
+    if of.pulls:
+        within = np.maximum(state.radius - step, 0.0)
+        change = energy(state.graph, state.radius + step) - energy(state.graph, within)
+        found = found + change.sum(axis=0)
+    return np.asarray(found)
 
 
 FIGURES: dict[str, tuple[Callable[[ClaimedState], Blocks], str]] = {

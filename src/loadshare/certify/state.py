@@ -265,6 +265,20 @@ class ClaimedState:
         return np.asarray(self.of.spline_moment @ self.claim.flank_force)
 
     @cached_property
+    def tangent(self) -> Array:
+        """Compliance of every contact at its force [m/N], shape (contacts, S).
+
+        Infinite where a Hertz contact carries nothing; none, where it follows a table.
+        """
+        of, here, root = self.of, self.here, self._root
+        b, c = here.bending[of.mesh_of], here.hertz[of.mesh_of]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            flanks = b + np.where(c > 0.0, 2.0 * c / (3.0 * root), 0.0)
+        flanks[of.tabled] = 0.0
+        walls = np.repeat(here.wall, 4, axis=0) if len(of.drum) else np.zeros((0, 1))
+        return np.concatenate([np.broadcast_to(v, (len(v), self.count)) for v in (flanks, walls)])
+
+    @cached_property
     def overlap(self) -> Array:
         """Approach less compression [m], shape (contacts, S)."""
         return np.asarray(self.approach - self.compression)

@@ -49,7 +49,7 @@ def build_train(case: spec.Case) -> Train:
 
 def with_laws(case: spec.Case) -> spec.Case:
     """Return the case, its mesh laws computed where it asks for them."""
-    if any(mesh.geometry or mesh.law_file for mesh in case.meshes.values()):
+    if any(mesh.law_is_computed for mesh in case.meshes.values()):
         from loadshare.tooth import resolve
 
         return resolve(case)
@@ -157,13 +157,14 @@ def _mesh(name: str, mesh: spec.Mesh, pair: Pair) -> Mesh:
     if mesh.normal_backlash is not None:
         backlash = mesh.normal_backlash.si
     elif mesh.backlash is not None:
-        angles = mesh.pressure_angle.si, mesh.helix_angle.si
-        backlash = mesh.backlash.si * math.cos(angles[0]) * math.cos(angles[1])
+        line = pair.line
+        backlash = mesh.backlash.si * math.cos(line.pressure_angle) * math.cos(line.helix_angle)
     else:
         backlash = math.inf
     radii = pair.driver.base_radius, pair.driven.base_radius
     r = radii[1] if pair.turned else radii[0]
-    gap = mesh.law.a if mesh.gap is None and mesh.law is not None else mesh.gap
+    law = mesh.power_law
+    gap = law.a if mesh.gap is None and law is not None else mesh.gap
     return Mesh(
         name=name,
         driver=pair.driver.name,
@@ -180,8 +181,9 @@ def _mesh(name: str, mesh: spec.Mesh, pair: Pair) -> Mesh:
 
 def _laws(mesh: spec.Mesh, r: float) -> tuple[Law, ...]:
     """Angle laws at the driver turned into laws along the line of action: δ = r Δφ, T = r F."""
-    if mesh.law is not None:
-        b, c = _each(mesh.law.b), _each(mesh.law.c)
+    law = mesh.power_law
+    if law is not None:
+        b, c = _each(law.b), _each(law.c)
         count = max(len(b), len(c))
         return tuple(
             PowerLaw(b[k % len(b)].si * r**2, c[k % len(c)].si * r ** (5.0 / 3.0))

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loadshare import case as spec
+from loadshare.case.line_of_action import LineOfAction, line_of_action
 from loadshare.case.place import axis_of, centres_of
 from loadshare.case.power_flow import against_the_names
 from loadshare.case.teeth import tooth_counts
@@ -31,12 +32,14 @@ class Pair:
         n and n'.
     turned : bool
         See `Mesh`.
+    line : LineOfAction
     """
 
     driver: Gear
     driven: Gear
     normals: tuple[Vector, Vector]
     turned: bool
+    line: LineOfAction
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -113,13 +116,16 @@ def _pairs(
 ) -> dict[str, Pair]:
     """Meshes with the flanks that the torque presses, whichever way it runs through them."""
     against = all(against_the_names(case.operating, case.meshes, case.shafts) or (False,))
-    found = {}
+    found, centres = {}, centres_of(case.gears)
     for name, mesh in case.meshes.items():
+        line = line_of_action(mesh, case.gears, centres)
+        if line is None:
+            raise ValueError(f"no line of action: {name}")
         driver, driven, contact = gears[mesh.driver], gears[mesh.driven], contacts[name]
         turned = against and not mesh.given("backlash", "normal_backlash")
         if turned:
             driver, driven = driven, driver
             contact = contact_of(driver, driven)
-        normals = [contact.normal(mesh.pressure_angle.si, drive) for drive in (True, False)]
-        found[name] = Pair(driver, driven, (normals[0], normals[1]), turned)
+        normals = [contact.normal(line.pressure_angle, drive) for drive in (True, False)]
+        found[name] = Pair(driver, driven, (normals[0], normals[1]), turned, line)
     return found

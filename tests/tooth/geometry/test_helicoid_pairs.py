@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.tooth.geometry.samples import RELIEVED, gear, pair
 
+from loadshare.involute import inv
 from loadshare.tooth.cylindrical.gear import Modification
 from loadshare.tooth.cylindrical.pair import HelicoidPair, Misalignment
-from loadshare.tooth.geometry.involute import inv
 from loadshare.tooth.unloaded.positions import position, positions, transmission_error
 from loadshare.tooth.unloaded.touch import contact_points
 

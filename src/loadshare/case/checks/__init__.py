@@ -16,6 +16,7 @@ CHECKS = (
     meshing.check_list_lengths,
     meshing.check_tooth_kinds,
     meshing.check_fit,
+    meshing.check_formula_laws,
     floats.check_support,
     floats.check_spline_law,
     floats.check_ring_neighbours,

@@ -75,7 +75,7 @@ def check_float_backlashes(draft: Draft) -> Iterator[Problem]:
 def check_idle_inputs(draft: Draft) -> Iterator[Problem]:
     """Yield what was given and bears on nothing for want of something else."""
     for name, mesh in draft.meshes.items():
-        if mesh.helix_angle.si and mesh.backlash is None:
+        if mesh.helix_angle is not None and mesh.helix_angle.si and mesh.backlash is None:
             message = "turns a circumferential backlash into one along the line of action, but"
             path = ("meshes", name, "helix_angle")
             if mesh.normal_backlash is not None:

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loadshare.case import Gear, Mesh
+from loadshare.case import Gear
 from loadshare.case.checks.meshing import TOLERANCE
 from loadshare.case.content import Sections
+from loadshare.case.line_of_action import line_of_action
 from loadshare.case.place import axis_of, centres_of
 from loadshare.train import Train
 from loadshare.train.gear import Vector, transverse_frame
@@ -134,7 +135,7 @@ def layout_of(case: Sections, train: Train | None) -> Layout:
         if name in centres
     }
     shafts = tuple(s.ends for s in case.shafts.values() if set(s.ends) <= set(bodies))
-    return Layout(bodies, tuple(_pairs(case.meshes, bodies, train)), shafts)
+    return Layout(bodies, tuple(_pairs(case, bodies, centres, train)), shafts)
 
 
 def _body(case: Sections, name: str, gear: Gear, centre: Vector, train: Train | None) -> Body:
@@ -161,19 +162,25 @@ def _body(case: Sections, name: str, gear: Gear, centre: Vector, train: Train | 
 
 
 def _pairs(
-    meshes: Mapping[str, Mesh], bodies: Mapping[str, Body], train: Train | None
+    case: Sections,
+    bodies: Mapping[str, Body],
+    centres: Mapping[str, tuple[float, float, float]],
+    train: Train | None,
 ) -> Iterator[Pair]:
-    for name, mesh in meshes.items():
+    for name, mesh in case.meshes.items():
         if mesh.driver not in bodies or mesh.driven not in bodies or mesh.driver == mesh.driven:
+            continue
+        line = line_of_action(mesh, case.gears, centres)
+        if line is None:
             continue
         driver, driven = bodies[mesh.driver], bodies[mesh.driven]
         place = _face_place if "face" in (driver.kind, driven.kind) else _parallel_place
-        radii, point, distance, needed = place(driver, driven, mesh.pressure_angle.si)
+        radii, point, distance, needed = place(driver, driven, line.pressure_angle)
         yield Pair(
             name=name,
             driver=driver.name,
             driven=driven.name,
-            angle=mesh.pressure_angle.si,
+            angle=line.pressure_angle,
             pitch_radii=radii,
             pitch_point=point,
             push=train.meshes[name].drive_normal if train else None,

@@ -6,14 +6,13 @@ import math
 from collections.abc import Iterator
 
 from loadshare.errors import CaseError, Problem
+from loadshare.involute import base_distance, inv, working_angle_without_backlash
 from loadshare.tooth.cylindrical.checks import gear_problems
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.cylindrical.pair import (
     HelicoidPair,
     Misalignment,
-    working_angle_without_backlash,
 )
-from loadshare.tooth.geometry.involute import inv
 from loadshare.tooth.problems import (
     Check,
     degrees,
@@ -57,7 +56,7 @@ def helicoid_pair(
     misalignment = misalignment or Misalignment()
     refuse(gear_problems(driver, "driver") + gear_problems(driven, "driven"))
     refuse(_partner_problems(driver, driven, misalignment))
-    base = abs(driven.base_radius + driver.kind * driven.kind * driver.base_radius)
+    base = base_distance(driver, driven)
     if centre_distance is None:
         try:
             angle = working_angle_without_backlash(driver, driven)

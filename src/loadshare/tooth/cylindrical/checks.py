@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterator
 
 from loadshare.errors import Problem
+from loadshare.involute import inverse_inv
 from loadshare.tooth.cylindrical.body import fillet_angle, rack_tip_half_width
 from loadshare.tooth.cylindrical.gear import HelicoidGear
-from loadshare.tooth.geometry.involute import inverse_inv
 from loadshare.tooth.problems import Check, digits, failed, millimetres, problem
 
 

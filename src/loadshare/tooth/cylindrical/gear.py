@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal, NamedTuple
 
+from loadshare.involute import InvoluteTooth
 from loadshare.tooth.geometry.body import Gear
-from loadshare.tooth.geometry.involute import inv
 
 
 @dataclass(frozen=True)
@@ -61,62 +61,6 @@ class Taken(NamedTuple):
     lead_crowning: float
     end_relief: float
     end_relief_length: float
-
-
-class InvoluteTooth:
-    """Radii and angles of involute teeth: of a cylindrical gear, or of the cutter of a face gear.
-
-    Names and signs are those of ISO 21771 with positive tooth counts: a positive profile shift
-    thickens the tooth at the reference circle, and moves the teeth of an internal gear inwards.
-    """
-
-    module: float
-    teeth: int
-    pressure_angle: float
-    profile_shift: float
-    addendum: float
-    helix_angle: float = 0.0
-    internal: bool = False
-
-    @property
-    def kind(self) -> int:
-        """σ: +1 external, −1 internal."""
-        return -1 if self.internal else 1
-
-    @cached_property
-    def transverse_angle(self) -> float:
-        """Transverse pressure angle α_t [rad]."""
-        return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
-
-    @cached_property
-    def radius(self) -> float:
-        """Reference radius [m]."""
-        return 0.5 * self.module * self.teeth / math.cos(self.helix_angle)
-
-    @cached_property
-    def base_radius(self) -> float:
-        """Base radius r_b [m]."""
-        return self.radius * math.cos(self.transverse_angle)
-
-    @property
-    def tip(self) -> float:
-        """Tip radius [m]."""
-        return self.radius + self.kind * (self.addendum + self.profile_shift) * self.module
-
-    @cached_property
-    def tip_roll(self) -> float:
-        """Angle of roll at the tip [rad]."""
-        return math.sqrt((self.tip / self.base_radius) ** 2 - 1.0)
-
-    @cached_property
-    def base_half_angle(self) -> float:
-        """Half the angle of a tooth where its involutes, prolonged, meet the base circle [rad]."""
-        thickness = 0.5 * math.pi + 2.0 * self.profile_shift * math.tan(self.pressure_angle)
-        return thickness / self.teeth + self.kind * inv(self.transverse_angle)
-
-    def addendum_to(self, radius: float) -> float:
-        """Addendum, in modules, of a tip at a radius [m]."""
-        return self.kind * (radius - self.radius) / self.module - self.profile_shift
 
 
 @dataclass(frozen=True)
@@ -189,14 +133,9 @@ class HelicoidGear(InvoluteTooth, Gear):
         """Turn of the transverse section per axial length, tan β / r [rad/m]."""
         return math.tan(self.helix_angle) / self.radius
 
-    @cached_property
-    def base_helix_angle(self) -> float:
-        """Helix angle on the base cylinder β_b [rad]."""
-        return math.asin(math.sin(self.helix_angle) * math.cos(self.pressure_angle))
-
     def half_angle(self, radius: float) -> float:
         """Half the angle of a tooth at a radius [m] not below the base radius [rad]."""
-        return self.base_half_angle - self.kind * inv(math.acos(self.base_radius / radius))
+        return self.half_angle_at(math.acos(self.base_radius / radius))
 
     @property
     def straight_dedendum(self) -> float:

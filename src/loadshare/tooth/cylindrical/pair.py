@@ -10,12 +10,12 @@ from typing import TypeVar
 
 import numpy as np
 
+from loadshare.involute import inv, working_angle
 from loadshare.tooth.cylindrical.body import HelicoidBody
 from loadshare.tooth.cylindrical.flank import HelicoidFlank
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.geometry.body import Array, Placement, about_x, about_y
 from loadshare.tooth.geometry.gap import Extents, Trace, meet
-from loadshare.tooth.geometry.involute import inv, inverse_inv
 from loadshare.tooth.unloaded.positions import GearPair, between
 
 Roll = TypeVar("Roll", float, Array)
@@ -84,8 +84,7 @@ class HelicoidPair(GearPair):
     @cached_property
     def working_angle(self) -> float:
         """Transverse pressure angle at the actual centre distance [rad]."""
-        base = self.driven_gear.base_radius + self.kind * self.driver_gear.base_radius
-        return math.acos(abs(base) / self.actual_distance)
+        return working_angle(self.driver_gear, self.driven_gear, self.actual_distance)
 
     @cached_property
     def roll_range(self) -> tuple[float, float]:
@@ -215,20 +214,3 @@ class HelicoidPair(GearPair):
         slope = self.driver_gear.kind * self.driver_gear.twist
         tangent = slope * own.rays[0] + own.rays[1]
         return Trace(own, other, (roll, stations), driven_at, gap, tangent)
-
-
-def working_angle_without_backlash(one: HelicoidGear, two: HelicoidGear) -> float:
-    """Transverse working pressure angle at which both flanks touch [rad].
-
-    inv α_wt = inv α_t + 2 tan α_n (x1 + x2)/(z1 ± z2), the lower sign with an internal gear
-    (ISO 21771, in which z2 < 0).
-
-    Raises
-    ------
-    ValueError
-        If the profile shifts bring the gears closer than their base circles allow.
-    """
-    teeth = one.kind * one.teeth + two.kind * two.teeth
-    shift = one.profile_shift + two.profile_shift
-    change = 2.0 * math.tan(one.pressure_angle) * shift / teeth
-    return inverse_inv(inv(one.transverse_angle) + change)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 
 from loadshare.errors import Problem
+from loadshare.involute import inv
 from loadshare.tooth.cylindrical.checks import (
     elasticity_checks,
     gear_problems,
@@ -15,7 +16,6 @@ from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.face.flank import NoLimitError, pointing_limit, undercut_limit
 from loadshare.tooth.face.gear import FaceGear, Shaper
 from loadshare.tooth.face.pair import FaceGearPair, FaceMisalignment
-from loadshare.tooth.geometry.involute import inv
 from loadshare.tooth.problems import (
     Check,
     degrees,

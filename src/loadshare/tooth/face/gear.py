@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from loadshare.tooth.cylindrical.gear import InvoluteTooth
+from loadshare.involute import InvoluteTooth
 from loadshare.tooth.geometry.body import Array, Gear, about_y
 
 

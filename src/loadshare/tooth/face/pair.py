@@ -11,6 +11,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.involute import inv, inverse_inv
 from loadshare.settings import TEETH
 from loadshare.tooth.cylindrical.body import HelicoidBody
 from loadshare.tooth.cylindrical.flank import HelicoidFlank
@@ -20,7 +21,6 @@ from loadshare.tooth.face.flank import FaceFlank, root_of
 from loadshare.tooth.face.gear import FaceGear
 from loadshare.tooth.geometry.body import Array, Placement, about_y
 from loadshare.tooth.geometry.gap import Extents
-from loadshare.tooth.geometry.involute import inv, inverse_inv
 from loadshare.tooth.geometry.valley import Flanks, Known, Valleys, anchor, span
 from loadshare.tooth.unloaded.positions import GearPair, between
 

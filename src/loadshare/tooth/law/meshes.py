@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from loadshare.case.keys import dotted, parse
+from loadshare.case.line_of_action import centre_distance
+from loadshare.case.place import centres_of, minus
 from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
 
@@ -22,7 +24,7 @@ SOURCES = ("geometry", "law_file")
 
 
 def resolve(case: Case, progress: Tick | None = None) -> Case:
-    """Replace `geometry` and `law_file` of the meshes of a case by `law`.
+    """Replace `geometry`, `law_file` and the words for `law` of the meshes of a case by numbers.
 
     Laws of pairs are computed at the positions of the case, once for each pair file, and kept on
     disk (:mod:`loadshare.tooth.law.folder`). File names count from the file in which they stand.
@@ -36,7 +38,7 @@ def resolve(case: Case, progress: Tick | None = None) -> Case:
     Returns
     -------
     Case
-        The same object where no mesh names a file.
+        The same object where all laws are numbers.
 
     Raises
     ------
@@ -51,17 +53,21 @@ def resolve(case: Case, progress: Tick | None = None) -> Case:
         for source in SOURCES
         if getattr(mesh, source) is not None
     }
-    if not sources:
+    words = {name: m.law for name, m in case.meshes.items() if isinstance(m.law, str)}
+    if not sources and not words:
         return case
     laws, pairs, problems = _read(case, sources)
-    if problems:
-        raise CaseError(problems)
+    formulas, more = _by_formula(case, words)
+    if problems or more:
+        raise CaseError([*problems, *more])
     by_hash = _laws({pair.hash: pair for pair in pairs.values()}, progress)
     laws |= {name: by_hash[pair.hash] for name, pair in pairs.items()}
     changes: dict[str, object] = {}
     for name, source in sources.items():
         changes[dotted(("meshes", name, source))] = None
         changes[dotted(("meshes", name, "law"))] = laws[name].coefficients
+    for name, compliance in formulas.items():
+        changes[dotted(("meshes", name, "law"))] = {"b": f"{compliance!r} rad/(N*m)"}
     if case.assumed:
         changes["assumed"] = _still_assumed(case.assumed)
     return case.replace(changes)
@@ -104,6 +110,28 @@ def _read(
         except CaseError as error:
             problems |= dict.fromkeys(error.problems)
     return laws, pairs, list(problems)
+
+
+def _by_formula(case: Case, words: Mapping[str, str]) -> tuple[dict[str, float], list[Problem]]:
+    """Compliances at the driver [rad/(N·m)] by mesh, and what is wrong with their gears."""
+    from loadshare.tooth.law.iso6336 import mesh_stiffness
+
+    centres = centres_of(case.gears)
+    found: dict[str, float] = {}
+    problems: list[Problem] = []
+    for name, word in words.items():
+        mesh = case.meshes[name]
+        pair = case.gears[mesh.driver], case.gears[mesh.driven]
+        offset = minus(centres[mesh.driven], centres[mesh.driver])
+        try:
+            stiffness = mesh_stiffness(
+                pair, centre_distance(pair[0], offset), measured=word == "iso"
+            )
+        except ValueError as error:
+            problems.append(case.problem(("meshes", name, "law"), str(error)))
+            continue
+        found[name] = 1.0 / (stiffness * pair[0].acting_radius ** 2)
+    return found, problems
 
 
 def _laws(pairs: dict[str, PairFile], progress: Tick | None) -> dict[str, MeshLaw]:

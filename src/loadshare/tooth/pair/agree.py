@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from loadshare.case.keys import dotted
+from loadshare.case.line_of_action import line_of_action
+from loadshare.case.place import centres_of
 from loadshare.errors import Problem
 from loadshare.tooth.face.pair import FaceGearPair
 from loadshare.tooth.problems import degrees, millimetres
@@ -40,14 +42,21 @@ def disagreements(case: Case, name: str, pair: PairFile) -> Iterator[Problem]:
     )
     for gear, radius, teeth, kind in sides:
         yield from _gear(case, gear, here, radius, teeth, kind)
-    angles = [("pressure_angle", geometry.working_angle)]
-    if "helix_angle" in mesh.model_fields_set:
+    line = line_of_action(mesh, case.gears, centres_of(case.gears))
+    if line is None:
+        return
+    angles = [("pressure_angle", line.pressure_angle, geometry.working_angle)]
+    if mesh.helix_angle is not None:
         # The helix is not needed for the law; a case that leaves it out says nothing of it.
-        angles.append(("helix_angle", _base_helix(pair)))
-    for key, wanted in angles:
-        if abs(abs(getattr(mesh, key).si) - wanted) > ANGLE:
-            path = dotted(("meshes", name, key))
-            yield case.problem(path, f"{here} {degrees(wanted)}", degrees(wanted))
+        angles.append(("helix_angle", line.helix_angle, _base_helix(pair)))
+    for key, own, wanted in angles:
+        if abs(abs(own) - wanted) > ANGLE:
+            given = getattr(mesh, key) is not None
+            path = dotted(("meshes", name, key if given else "geometry"))
+            message = f"{here} {degrees(wanted)}"
+            if not given:
+                message = f"{here} the {key} {degrees(wanted)}; by the centres it is {degrees(own)}"
+            yield case.problem(path, message, degrees(wanted) if given else "")
 
 
 def _gear(
@@ -57,7 +66,7 @@ def _gear(
     if gear.type != kind:
         yield case.problem(dotted(("gears", name, "type")), f"{here} a gear of type {kind}", kind)
     elif abs(gear.acting_radius - radius) > RADIUS * radius:
-        keys = gear.given("base_radius", "inner_radius")
+        keys = gear.given("base_radius", "inner_radius", "module")
         message = f"{here} the base radius {millimetres(radius)}"
         if keys == ["inner_radius"]:
             message += f", and (L1 + L2)/2 is {millimetres(gear.acting_radius)}"

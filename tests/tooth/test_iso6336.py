@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from benchmarks.iso6336 import formula_stiffness
+from loadshare.tooth.law.iso6336 import formula_stiffness
 
 UNIT = 1e9  # N/(mm·µm)
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from loadshare.tooth.geometry.involute import inv, inverse_inv
+from loadshare.involute import inv, inverse_inv
 
 
 @given(st.floats(1e-4, 1.5))

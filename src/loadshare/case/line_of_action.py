@@ -1,0 +1,76 @@
+"""Lines of action: what meshes say of them, and what follows from where their gears stand."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from loadshare.case.gears import Gear
+from loadshare.case.meshes import Mesh
+from loadshare.case.place import Vector, axis_of, dot, minus
+
+
+@dataclass(frozen=True, slots=True)
+class LineOfAction:
+    """Where the teeth of a mesh push.
+
+    Attributes
+    ----------
+    pressure_angle : float
+        Transverse working pressure angle [rad].
+    helix_angle : float
+        Base helix angle [rad].
+    """
+
+    pressure_angle: float
+    helix_angle: float
+
+
+def centre_distance(driver: Gear, offset: Vector) -> float:
+    """Return how far a centre is from a gear's axis [m].
+
+    Parameters
+    ----------
+    driver : Gear
+    offset : tuple of float
+        The centre, seen from the gear's own [m].
+    """
+    along = dot(offset, axis_of(driver))
+    return math.sqrt(max(dot(offset, offset) - along**2, 0.0))
+
+
+def tangent_distance(driver: Gear, driven: Gear) -> float:
+    """Return the sum of two base radii, or their difference with an internal gear [m]."""
+    radii = driver.acting_radius, driven.acting_radius
+    return abs(radii[0] - radii[1]) if "internal" in (driver.type, driven.type) else sum(radii)
+
+
+def line_of_action(
+    mesh: Mesh, gears: Mapping[str, Gear], centres: Mapping[str, Vector]
+) -> LineOfAction | None:
+    """Return the line of action of a mesh: what is given, else what follows.
+
+    cos α_wt = |r_b2 ± r_b1| / a. None where nothing tells the angle.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    gears : mapping of str to Gear
+    centres : mapping of str to tuple of float
+        Centres of both gears [m].
+    """
+    driver, driven = gears[mesh.driver], gears[mesh.driven]
+    helix = mesh.helix_angle.si if mesh.helix_angle is not None else _base_helix(driver, driven)
+    if mesh.pressure_angle is not None:
+        return LineOfAction(mesh.pressure_angle.si, helix)
+    if "face" in (driver.type, driven.type):
+        return None
+    distance = centre_distance(driver, minus(centres[mesh.driven], centres[mesh.driver]))
+    radius = tangent_distance(driver, driven)
+    return LineOfAction(math.acos(radius / distance), helix) if radius < distance else None
+
+
+def _base_helix(driver: Gear, driven: Gear) -> float:
+    tooth = driver.tooth or driven.tooth
+    return 0.0 if tooth is None else abs(tooth.base_helix_angle)

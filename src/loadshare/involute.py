@@ -1,0 +1,170 @@
+"""Involute teeth: radii and angles of a gear, and of two gears at a distance (ISO 21771).
+
+Tooth counts are positive, those of internal gears as well. σ is +1 for teeth that point away from
+the axis and −1 for those that point to it; a positive profile shift thickens the tooth of either at
+the reference circle, and moves the teeth of an internal gear inwards.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+
+def inv(angle: float) -> float:
+    """Involute of a pressure angle [rad]: tan α − α."""
+    return math.tan(angle) - angle
+
+
+def inverse_inv(value: float) -> float:
+    """Pressure angle [rad] of an involute value, 0 ≤ α < π/2.
+
+    Parameters
+    ----------
+    value : float
+        inv α, not negative.
+
+    Raises
+    ------
+    ValueError
+        If `value` is negative: no involute reaches inside its base circle.
+    """
+    from scipy.optimize import brentq
+
+    if value < 0.0:
+        raise ValueError(f"inv α = {value:.6g} is negative; no pressure angle has it")
+    # In t = tan α the equation is t − atan t = value; both bounds on the root lie above it.
+    highest = value + math.pi / 2 if value > 1.0 else (3.0 * value) ** (1 / 3) * (1.0 + value)
+    highest *= 2.0  # beyond round-off
+    found = brentq(lambda t: t - math.atan(t) - value, 0.0, highest, xtol=1e-300, rtol=1e-15)
+    return math.atan(found)
+
+
+class InvoluteTooth:
+    """Radii and angles of involute teeth: of a cylindrical gear, or of the cutter of a face gear.
+
+    Attributes
+    ----------
+    module : float
+        Normal module [m].
+    teeth : int
+        Number of teeth.
+    pressure_angle, helix_angle : float
+        Normal pressure angle and reference helix angle [rad].
+    profile_shift : float
+        Profile shift coefficient x.
+    addendum : float
+        Height of the tip above the datum line, in modules, alteration of the tip included.
+    internal : bool
+        Whether the teeth point to the axis.
+    """
+
+    module: float
+    teeth: int
+    pressure_angle: float
+    profile_shift: float
+    addendum: float
+    helix_angle: float = 0.0
+    internal: bool = False
+
+    @property
+    def kind(self) -> int:
+        """σ: +1 external, −1 internal."""
+        return -1 if self.internal else 1
+
+    @cached_property
+    def transverse_angle(self) -> float:
+        """Transverse pressure angle α_t [rad]."""
+        return math.atan(math.tan(self.pressure_angle) / math.cos(self.helix_angle))
+
+    @cached_property
+    def radius(self) -> float:
+        """Reference radius [m]."""
+        return 0.5 * self.module * self.teeth / math.cos(self.helix_angle)
+
+    @cached_property
+    def base_radius(self) -> float:
+        """Base radius r_b [m]."""
+        return self.radius * math.cos(self.transverse_angle)
+
+    @property
+    def tip(self) -> float:
+        """Tip radius [m]."""
+        return self.radius + self.kind * (self.addendum + self.profile_shift) * self.module
+
+    @cached_property
+    def tip_roll(self) -> float:
+        """Angle of roll at the tip [rad]."""
+        return math.sqrt((self.tip / self.base_radius) ** 2 - 1.0)
+
+    @cached_property
+    def base_half_angle(self) -> float:
+        """Half the angle of a tooth where its involutes, prolonged, meet the base circle [rad]."""
+        thickness = 0.5 * math.pi + 2.0 * self.profile_shift * math.tan(self.pressure_angle)
+        return thickness / self.teeth + self.kind * inv(self.transverse_angle)
+
+    def addendum_to(self, radius: float) -> float:
+        """Addendum, in modules, of a tip at a radius [m]."""
+        return self.kind * (radius - self.radius) / self.module - self.profile_shift
+
+    @cached_property
+    def base_helix_angle(self) -> float:
+        """Helix angle on the base cylinder β_b [rad]."""
+        return math.asin(math.sin(self.helix_angle) * math.cos(self.pressure_angle))
+
+    def half_angle_at(self, pressure_angle: float) -> float:
+        """Half the angle of a tooth where it has a transverse pressure angle [rad]."""
+        return self.base_half_angle - self.kind * inv(pressure_angle)
+
+
+def base_distance(one: InvoluteTooth, two: InvoluteTooth) -> float:
+    """Centre distance below which two gears have no line of action: |r_b2 + σ r_b1| [m]."""
+    return abs(two.base_radius + one.kind * two.kind * one.base_radius)
+
+
+def working_angle(one: InvoluteTooth, two: InvoluteTooth, distance: float) -> float:
+    """Transverse working pressure angle α_wt at a centre distance [m], [rad].
+
+    cos α_wt = |r_b2 + σ r_b1| / a.
+    """
+    return math.acos(base_distance(one, two) / distance)
+
+
+def working_angle_without_backlash(one: InvoluteTooth, two: InvoluteTooth) -> float:
+    """Transverse working pressure angle at which both flanks touch [rad].
+
+    inv α_wt = inv α_t + 2 tan α_n (x1 + x2)/(z1 ± z2), the lower sign with an internal gear
+    (ISO 21771, in which z2 < 0).
+
+    Raises
+    ------
+    ValueError
+        If the profile shifts bring the gears closer than their base circles allow.
+    """
+    teeth = one.kind * one.teeth + two.kind * two.teeth
+    shift = one.profile_shift + two.profile_shift
+    change = 2.0 * math.tan(one.pressure_angle) * shift / teeth
+    return inverse_inv(inv(one.transverse_angle) + change)
+
+
+def contact_ratio(one: InvoluteTooth, two: InvoluteTooth, distance: float) -> float:
+    """Transverse contact ratio ε_α of two gears at a centre distance [m].
+
+    The paths of contact between pitch point and tips, σ (√(r_a² − r_b²) − r_b tan α_wt) of each,
+    over the transverse base pitch.
+    """
+    slope = math.tan(working_angle(one, two, distance))
+    paths = (g.kind * g.base_radius * (g.tip_roll - slope) for g in (one, two))
+    return sum(paths) * one.teeth / (2.0 * math.pi * one.base_radius)
+
+
+def normal_backlash(one: InvoluteTooth, two: InvoluteTooth, distance: float) -> float:
+    """Backlash along the line of action at a centre distance [m]; negative where teeth overlap.
+
+    What the teeth leave of the pitch on the working pitch circles, 2 r_w (π/z − ψ) − 2 r_w2 ψ_2
+    with the half angles ψ of the teeth there, times cos α_wt cos β_b.
+    """
+    angle = working_angle(one, two, distance)
+    left = one.base_radius * (math.pi / one.teeth - one.half_angle_at(angle))
+    left -= two.base_radius * two.half_angle_at(angle)
+    return 2.0 * left * math.cos(one.base_helix_angle)
