@@ -230,13 +230,9 @@ if __name__ == "__main__":
 """A batch whose first case is solved at once, while the others wait for a file."""
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="signals")
-def test_an_interrupt_from_the_keyboard_stops_a_batch_in_processes(cases, tmp_path, environment):
-    """What is under way is finished, what waits is left: as a terminal interrupts, all at once."""
-    out, script = tmp_path / "out", tmp_path / "script.py"
-    script.write_text(GATED, encoding="utf-8")
-    words = (cases / "star", cases / "two_path", "-o", out, "--jobs", "2")
-    batch = subprocess.Popen(
+def gated(script, words, environment):
+    """Start such a batch, in a session of its own."""
+    return subprocess.Popen(
         [sys.executable, script, "batch", *words],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
@@ -244,13 +240,27 @@ def test_an_interrupt_from_the_keyboard_stops_a_batch_in_processes(cases, tmp_pa
         env=environment,
         start_new_session=True,
     )
+
+
+def await_first(out, batch):
+    """Wait for the result of its first case."""
+    while not (out / "floating_sun_3.json").exists():
+        assert batch.poll() is None
+        time.sleep(0.01)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_an_interrupt_from_the_keyboard_stops_a_batch_in_processes(cases, tmp_path, environment):
+    """What is under way is finished, what waits is left: as a terminal interrupts, all at once."""
+    out, script = tmp_path / "out", tmp_path / "script.py"
+    script.write_text(GATED, encoding="utf-8")
+    words = (cases / "star", cases / "two_path", "-o", out, "--jobs", "2")
+    batch = gated(script, words, environment)
     # A batch that does not react would wait for its gate, and the test for the batch.
     guard = threading.Timer(60.0, os.killpg, (batch.pid, signal.SIGKILL))
     guard.start()
     try:
-        while not (out / "floating_sun_3.json").exists():
-            assert batch.poll() is None
-            time.sleep(0.01)
+        await_first(out, batch)
         os.killpg(batch.pid, signal.SIGINT)
         assert batch.stderr.readline().startswith("Stopping")
         (tmp_path / "gate").touch()
@@ -278,21 +288,12 @@ def test_a_batch_ends_where_it_stands(cases, tmp_path, environment, sent, code, 
     out, script = tmp_path / "out", tmp_path / "script.py"
     script.write_text(GATED, encoding="utf-8")
     words = (cases / "star", "-o", out, "--jobs", jobs)
-    batch = subprocess.Popen(
-        [sys.executable, script, "batch", *words],
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        text=True,
-        env=environment,
-        start_new_session=True,
-    )
+    batch = gated(script, words, environment)
     # The gate stays closed: a batch that waits for what is under way never ends.
     guard = threading.Timer(120.0, os.killpg, (batch.pid, signal.SIGKILL))
     guard.start()
     try:
-        while not (out / "floating_sun_3.json").exists():
-            assert batch.poll() is None
-            time.sleep(0.01)
+        await_first(out, batch)
         # Workers have none of the first; of the second they may die, which is no crash of a case.
         os.killpg(batch.pid, sent[0])
         if sent[0] == signal.SIGINT:

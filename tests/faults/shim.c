@@ -185,36 +185,9 @@ static void mark(int fd, int is) {
         return own values;                                                    \
     }
 
-#define OPEN(name)                                                            \
-    int name(const char *path, int flags, ...) {                              \
-        static int (*own)(const char *, int, ...);                            \
-        char full[ROOM];                                                      \
-        mode_t mode = 0;                                                      \
-        if (flags & (O_CREAT | O_TMPFILE)) {                                  \
-            va_list more;                                                     \
-            va_start(more, flags);                                            \
-            mode = va_arg(more, mode_t);                                      \
-            va_end(more);                                                     \
-        }                                                                     \
-        if (own == NULL) *(void **)&own = dlsym(RTLD_NEXT, #name);            \
-        int mine = below(AT_FDCWD, path, full);                               \
-        if (mine) {                                                           \
-            int64_t error = look(#name, full, flags & O_CREAT, 0);            \
-            if (error > 0) {                                                  \
-                errno = (int)error;                                           \
-                return -1;                                                    \
-            }                                                                 \
-        }                                                                     \
-        int fd = own(path, flags, mode);                                      \
-        mark(fd, mine);                                                       \
-        return fd;                                                            \
-    }
-OPEN(open)
-OPEN(open64)
-
-#define OPENAT(name)                                                          \
-    int name(int at, const char *path, int flags, ...) {                      \
-        static int (*own)(int, const char *, int, ...);                       \
+#define OPENING(name, at, parameters, values)                                 \
+    int name parameters {                                                     \
+        static int (*own) parameters;                                         \
         char full[ROOM];                                                      \
         mode_t mode = 0;                                                      \
         if (flags & (O_CREAT | O_TMPFILE)) {                                  \
@@ -232,10 +205,15 @@ OPEN(open64)
                 return -1;                                                    \
             }                                                                 \
         }                                                                     \
-        int fd = own(at, path, flags, mode);                                  \
+        int fd = own values;                                                  \
         mark(fd, mine);                                                       \
         return fd;                                                            \
     }
+#define OPEN(name) OPENING(name, AT_FDCWD, (const char *path, int flags, ...), (path, flags, mode))
+#define OPENAT(name) \
+    OPENING(name, at, (int at, const char *path, int flags, ...), (at, path, flags, mode))
+OPEN(open)
+OPEN(open64)
 OPENAT(openat)
 OPENAT(openat64)
 

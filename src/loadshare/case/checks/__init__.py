@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from loadshare.case.checks import floats, flow, meshing, names
+from loadshare.case.checks import fit, floats, flow, meshing, names
 from loadshare.case.draft import Draft
 from loadshare.errors import Problem
 
@@ -14,9 +14,9 @@ CHECKS = (
     names.check_about_circles,
     names.check_pairs,
     meshing.check_list_lengths,
-    meshing.check_tooth_kinds,
-    meshing.check_fit,
-    meshing.check_formula_laws,
+    fit.check_tooth_kinds,
+    fit.check_fit,
+    fit.check_formula_laws,
     floats.check_support,
     floats.check_spline_law,
     floats.check_ring_neighbours,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from loadshare.case.checks.meshing import SQUARE
+from loadshare.case.checks.fit import SQUARE
 from loadshare.case.content import FLOATS
 from loadshare.case.draft import Draft
 from loadshare.case.links import Backlashes

@@ -1,167 +1,17 @@
-"""Gears that mesh must be able to, and what changes as they turn must be told for all of it."""
+"""What changes over the mesh cycle, or as gears turn, must be told for all of it."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
 
 from loadshare.case.draft import Draft
-from loadshare.case.gears import STEEPEST, Gear, Tooth
+from loadshare.case.gears import Gear
 from loadshare.case.keys import Path
-from loadshare.case.line_of_action import centre_distance, tangent_distance
 from loadshare.case.meshes import Mesh
 from loadshare.case.operation import March, Operating
-from loadshare.case.place import Vector, axis_of, centres_of, dot, minus
-from loadshare.case.quantity import ANGLE
 from loadshare.case.teeth import Misfit, tooth_counts
 from loadshare.case.words import count
 from loadshare.errors import Problem
-from loadshare.involute import base_distance, normal_backlash, working_angle_without_backlash
-
-TOLERANCE = 1e-3
-"""How far base radii may miss the centre distance, as a part of it [-]."""
-
-# Two directions are the same, or square, within what three written decimals leave open [-].
-SQUARE = 1e-6
-TEETH_ALIKE = 1e-6
-"""How far modules and angles of teeth that mesh may be apart, as a part of them [-]."""
-OVERLAP = 1e-3
-"""By how much teeth may overlap for want of written digits, in modules [-]."""
-
-
-def check_tooth_kinds(draft: Draft) -> Iterator[Problem]:
-    """Yield pairs of gears whose kinds of teeth cannot mesh."""
-    for name, _, driver, driven in _pairs(draft):
-        kinds = {driver.type, driven.type}
-        if kinds == {"internal"}:
-            yield draft.problem(("meshes", name), "two internal gears cannot mesh")
-        elif "face" in kinds and "external" not in kinds:
-            yield draft.problem(("meshes", name), "a face gear meshes with an external pinion only")
-
-
-def check_fit(draft: Draft) -> Iterator[Problem]:
-    """Yield pairs whose axes, base radii and pressure angle do not fit where they stand."""
-    centres = centres_of(draft.gears)
-    for name, mesh, driver, driven in _pairs(draft):
-        kinds = {driver.type, driven.type}
-        if mesh.driver in centres and mesh.driven in centres and "external" in kinds:
-            offset = minus(centres[mesh.driven], centres[mesh.driver])
-            fit = _face_fit if "face" in kinds else _parallel_fit
-            yield from fit(draft, name, mesh, offset)
-
-
-def _parallel_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterator[Problem]:
-    driver, driven = draft.gears[mesh.driver], draft.gears[mesh.driven]
-    if 1 - abs(dot(axis_of(driver), axis_of(driven))) > SQUARE:
-        yield draft.problem(("meshes", name), "the two axes are not parallel")
-        return
-    distance = centre_distance(driver, offset)
-    if distance <= SQUARE * max(driver.acting_radius, driven.acting_radius):
-        yield draft.problem(("meshes", name), "the two gears stand on the same axis")
-        return
-    radius = tangent_distance(driver, driven)
-    if "internal" in (driver.type, driven.type):
-        inner, outer = sorted((driver, driven), key=lambda gear: gear.type == "internal")
-        sum_ = f"{_mm(outer.acting_radius)} − {_mm(inner.acting_radius)}"
-    else:
-        sum_ = f"{_mm(driver.acting_radius)} + {_mm(driven.acting_radius)}"
-    where = f"the base radii {sum_} = {_mm(radius)}"
-    if mesh.pressure_angle is None:
-        if not math.cos(STEEPEST.si) * distance <= radius < distance:
-            what = f"{where} leave no line of action at the centre distance {_mm(distance)}"
-            most = radius / math.cos(STEEPEST.si)
-            allowed = f"a centre distance above {_mm(radius)} and up to {_mm(most)}"
-            yield draft.problem(("meshes", name), what, allowed)
-            return
-    else:
-        yield from _compare(draft, name, mesh, f"{where} do", radius, distance, "centre distance")
-    if driver.tooth is not None and driven.tooth is not None:
-        yield from _teeth_fit(draft, name, driver.tooth, driven.tooth, distance)
-
-
-def _teeth_fit(
-    draft: Draft, name: str, one: Tooth, two: Tooth, distance: float
-) -> Iterator[Problem]:
-    """Yield what keeps the teeth of two gears from meshing."""
-    path: Path = ("meshes", name)
-    if not math.isclose(one.module, two.module, rel_tol=TEETH_ALIKE):
-        modules = f"{_mm(one.module)} and {_mm(two.module)}"
-        yield draft.problem(path, f"the gears have different modules, {modules}")
-        return
-    if not math.isclose(one.pressure_angle, two.pressure_angle, rel_tol=TEETH_ALIKE):
-        angles = f"{_deg(one.pressure_angle)} and {_deg(two.pressure_angle)}"
-        yield draft.problem(path, f"the gears have different normal pressure angles, {angles}")
-        return
-    helix = -one.kind * two.kind * one.helix_angle
-    if abs(two.helix_angle - helix) > TEETH_ALIKE:
-        angles = f"{_deg(one.helix_angle)} and {_deg(two.helix_angle)}"
-        hands = "the same" if one.kind * two.kind < 0 else "opposite"
-        hint = f"These gears need helices of one size and of {hands} hands."
-        yield draft.problem(path, f"the helix angles {angles} do not mesh", hint=hint)
-        return
-    backlash = normal_backlash(one, two, distance)
-    if backlash < -OVERLAP * one.module:
-        hint = ""
-        with suppress(ValueError):
-            angle = working_angle_without_backlash(one, two)
-            fits = base_distance(one, two) / math.cos(angle)
-            hint = f"Without backlash it would be {_mm(fits)}."
-        what = f"at the centre distance {_mm(distance)} the teeth overlap by {_mm(-backlash)}"
-        yield draft.problem(path, what, hint=hint)
-
-
-def _face_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterator[Problem]:
-    pinion, face = sorted(
-        (draft.gears[mesh.driver], draft.gears[mesh.driven]), key=lambda gear: gear.type == "face"
-    )
-    axis = axis_of(face)
-    if abs(dot(axis, axis_of(pinion))) > SQUARE:
-        yield draft.problem(
-            ("meshes", name), "the axes of a face gear and its pinion are not square"
-        )
-        return
-    if mesh.pressure_angle is None:
-        hint = "Only that of two cylindrical gears follows from their base radii."
-        yield draft.problem(("meshes", name, "pressure_angle"), "is missing", ANGLE.allowed, hint)
-        return
-    radius = pinion.acting_radius
-    where = f"the pinion's base radius {_mm(radius)} does"
-    height = abs(dot(offset, axis))
-    yield from _compare(draft, name, mesh, where, radius, height, "height over the face gear")
-
-
-def _compare(
-    draft: Draft, name: str, mesh: Mesh, where: str, radius: float, distance: float, what: str
-) -> Iterator[Problem]:
-    """Yield a problem where a distance, seen along the line of action, is not the radius."""
-    if mesh.pressure_angle is None:
-        return
-    reach = distance * math.cos(mesh.pressure_angle.si)
-    if abs(reach - radius) <= TOLERANCE * distance:
-        return
-    message = f"{where} not fit the {what} {_mm(distance)}, which times the cosine is {_mm(reach)}"
-    hint = ""
-    if math.cos(STEEPEST.si) * distance <= radius < distance:
-        hint = f"A pressure angle of {_deg(math.acos(radius / distance))} would fit."
-        if what == "centre distance":
-            hint += " Left out, it follows."
-    yield draft.problem(("meshes", name, "pressure_angle"), message, hint=hint)
-
-
-def _pairs(draft: Draft) -> Iterator[tuple[str, Mesh, Gear, Gear]]:
-    for name, mesh in draft.meshes.items():
-        driver, driven = draft.gears.get(mesh.driver), draft.gears.get(mesh.driven)
-        if driver is not None and driven is not None and driver is not driven:
-            yield name, mesh, driver, driven
-
-
-def _mm(length: float) -> str:
-    return f"{1e3 * length:.6g} mm"
-
-
-def _deg(angle: float) -> str:
-    return f"{math.degrees(angle):.4g} deg"
 
 
 def check_list_lengths(draft: Draft) -> Iterator[Problem]:
@@ -194,22 +44,6 @@ def check_teeth_fit(draft: Draft) -> Iterator[Problem]:
         )
         hint = "The speed ratio of a mesh is that of its base radii, and of its teeth."
         yield draft.problem(("gears", found.gear, "teeth"), message, hint=hint)
-
-
-def check_formula_laws(draft: Draft) -> Iterator[Problem]:
-    """Yield what a mesh law by formula needs of the gears and does not have."""
-    for name, mesh, driver, driven in _pairs(draft):
-        if not isinstance(mesh.law, str):
-            continue
-        if "face" in (driver.type, driven.type):
-            hint = 'Give the law in numbers, or geometry = "pair.toml".'
-            yield draft.problem(("meshes", name, "law"), "is for cylindrical gears only", "", hint)
-            continue
-        hint = f'It goes with meshes."{name}".law = "{mesh.law}".'
-        for key, gear in ((mesh.driver, driver), (mesh.driven, driven)):
-            for missing in ("module", "teeth", "face_width"):
-                if getattr(gear, missing) is None:
-                    yield draft.problem(("gears", key, missing), "is missing", hint=hint)
 
 
 def check_turning(draft: Draft) -> Iterator[Problem]:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loadshare.case import Gear
-from loadshare.case.checks.meshing import TOLERANCE
+from loadshare.case.checks.fit import TOLERANCE
 from loadshare.case.content import Sections
 from loadshare.case.line_of_action import line_of_action
 from loadshare.case.place import axis_of, centres_of
