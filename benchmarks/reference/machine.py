@@ -79,7 +79,7 @@ class _Writer:
         self.moves: dict[str, int] = {}
         names: list[str] = []
         for name, gear in train.gears.items():
-            if name != train.output:
+            if name not in train.held:
                 self.turns[name] = len(names)
                 names.append(f"gear {name} rotation")
             if gear.moves:
@@ -190,17 +190,16 @@ class _Writer:
             position = self.positions[mesh.name]
             law = self._law(mesh.law(position))
             for drive in mesh.flanks:
-                on_driver, on_driven, normal = mesh.direction(drive)
+                to = self.train.approaches[mesh.flank_name(drive)]
                 gradient: dict[int, Any] = {}
-                for gear, arm in ((mesh.driver, on_driver), (mesh.driven, on_driven)):
+                for gear, arm in to.turning.items():
                     if gear in self.turns:
                         radius = self.of(self.train.gears[gear].base_radius)
                         gradient[self.turns[gear]] = self.of(arm) / radius
-                gradient |= self._shift(mesh.driver, normal)
-                gradient |= self._shift(mesh.driven, normal, -1)
-                offsets = [self.situation.offset_of(g) for g in (mesh.driver, mesh.driven)]
-                constant = self._dot(normal, offsets[0]) - self._dot(normal, offsets[1])
-                constant -= self.of(mesh.gap(position, drive))
+                constant = -self.of(mesh.gap(position, drive))
+                for gear, along in to.shifting.items():
+                    gradient |= self._shift(gear, along)
+                    constant += self._dot(along, self.situation.offset_of(gear))
                 rows.append(
                     Row(mesh.flank_name(drive), law, gradient, constant / self.of(self.length))
                 )
@@ -291,10 +290,7 @@ class _Writer:
     def _transmitted(self, gear: str) -> dict[str, Any]:
         """Arms [m] of the contact forces whose sum is the torque that a gear's spline transmits."""
         arms: dict[str, Any] = {}
-        for mesh in self.train.meshes.values():
-            for drive in mesh.flanks:
-                on_driver, on_driven, _ = mesh.direction(drive)
-                for end, arm in ((mesh.driver, on_driver), (mesh.driven, on_driven)):
-                    if end == gear:
-                        arms[mesh.flank_name(drive)] = self.of(arm)
+        for name, to in self.train.approaches.items():
+            if gear in to.turning:
+                arms[name] = self.of(to.turning[gear])
         return arms

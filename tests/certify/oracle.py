@@ -108,8 +108,23 @@ class ClaimedState:
         return situation_of(self.train, self.answer.index)
 
     def moved(self, gear: str) -> Vector:
-        """Displacement p (3,) [m]."""
+        """Displacement p (3,) [m], of a planet that from its pin."""
         return np.asarray(self.answer.displacement[gear])
+
+    def pin(self, gear: str) -> tuple[Vector, Vector]:
+        """How far a planet's pin has moved, and by how much of that its carrier turned (3,) [m]."""
+        planet = self.train.gears[gear]
+        if planet.carrier is None:
+            return np.zeros(3), np.zeros(3)
+        carrier = self.train.gears[planet.carrier]
+        angle = carrier.sense * self.answer.rotation[carrier.name]
+        turned = np.cross(angle * carrier.axis, planet.centre - carrier.centre)
+        return self.moved(carrier.name) + turned, turned
+
+    def error(self, gear: str) -> Vector:
+        """Centre offset (3,) [m], of a planet with that of its carrier."""
+        offset, carrier = self.situation.offset_of(gear), self.train.gears[gear].carrier
+        return offset if carrier is None else offset + self.situation.offset_of(carrier)
 
     @cached_property
     def pushes(self) -> tuple[Push, ...]:
@@ -117,11 +132,12 @@ class ClaimedState:
         return (*self._flanks(), *self._ring_contacts())
 
     def _flanks(self) -> Iterator[Push]:
-        phi, offset_of = self.answer.rotation, self.situation.offset_of
+        phi = self.answer.rotation
         positions = self.train.mesh_positions(self.answer.index)
         for mesh in self.train.meshes.values():
-            errors = offset_of(mesh.driver) - offset_of(mesh.driven)
-            relative = self.moved(mesh.driver) - self.moved(mesh.driven) + errors
+            errors = self.error(mesh.driver) - self.error(mesh.driven)
+            pins = self.pin(mesh.driver)[0] - self.pin(mesh.driven)[0]
+            relative = self.moved(mesh.driver) - self.moved(mesh.driven) + errors + pins
             turned = (phi[mesh.driver], phi[mesh.driven])
             position = positions[mesh.name]
             for drive in mesh.flanks:
@@ -280,6 +296,12 @@ class ClaimedState:
                 along = 1.0 if drive else -1.0
                 moment[mesh.driver] -= along * mesh.radii[0] * force
                 moment[mesh.driven] += along * mesh.radii[1] * force
+                push = force * mesh.direction(drive)[2]
+                for end, on_it in ((mesh.driver, -push), (mesh.driven, push)):
+                    if (carrier := train.gears[end].carrier) is not None:
+                        held = train.gears[carrier]
+                        arm = train.gears[end].centre - held.centre
+                        moment[carrier] += held.sense * float(held.axis @ np.cross(arm, on_it))
         for name, shaft in train.shafts.items():
             if not math.isinf(shaft.stiffness):
                 wind = answer.rotation[shaft.first] - answer.rotation[shaft.second]
@@ -381,8 +403,10 @@ def force_balance(state: ClaimedState) -> dict[str, float]:
     total = {name: -force @ train.gears[name].frame for name, _, _, force in state.bearings()}
     for push in state.pushes:
         for gear, sign in ((push.pushed, 1.0), (push.pushing, -1.0)):
-            if gear in total:
-                total[gear] = total[gear] + sign * push.force * push.normal
+            bodies = [gear] if gear is None or push.gear else [gear, train.gears[gear].carrier]
+            for body in bodies:
+                if body in total:
+                    total[body] = total[body] + sign * push.force * push.normal
     for pull in state.pulls:
         total[pull.gear] = total[pull.gear] + pull.reaction
     return {g: float(np.linalg.norm(train.gears[g].frame @ f)) for g, f in total.items()}
@@ -393,7 +417,7 @@ def moment_balance(state: ClaimedState) -> dict[str, float]:
     train = state.train
     unbalanced = {}
     for group in state.rigid.groups:
-        if train.output not in group:
+        if not set(train.held) & set(group):
             radius = max(train.gears[g].base_radius for g in group)
             unbalanced[group[0]] = abs(math.fsum(state.moment[g] for g in group)) / radius
     return unbalanced
@@ -444,9 +468,9 @@ def deformation_law(state: ClaimedState, band: float) -> dict[str, float]:
         if gear.support is not None:
             allowed = (gear.frame @ state.moved(name)) @ gear.frame
         misfits[f"gear {name}"] = float(np.linalg.norm(state.moved(name) - allowed))
-    output = state.train.output
-    turned = state.answer.rotation[output] * state.train.gears[output].base_radius
-    misfits[f"gear {output} rotation"] = abs(turned)
+    for held in state.train.held:
+        turned = state.answer.rotation[held] * state.train.gears[held].base_radius
+        misfits[f"gear {held} rotation"] = abs(turned)
     return {name: misfit - state.resolution for name, misfit in misfits.items()}
 
 

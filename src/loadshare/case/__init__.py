@@ -1,7 +1,7 @@
 """Cases: what a user writes about a transmission, read, checked, and kept as it was written."""
 
 from loadshare.case.content import Content
-from loadshare.case.gears import Eccentricity, Errors, Gear, Offset, Polar
+from loadshare.case.gears import Eccentricity, Errors, Gear, Offset, Pin, Polar
 from loadshare.case.links import Backlashes, Bearing, Range, Ring, Shaft, Spline
 from loadshare.case.measured import Measurement
 from loadshare.case.meshes import Law, Mesh, Table
@@ -27,6 +27,7 @@ __all__ = [
     "Mesh",
     "Offset",
     "Operating",
+    "Pin",
     "Polar",
     "Quantity",
     "Range",

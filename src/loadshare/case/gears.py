@@ -36,6 +36,8 @@ OF_TEETH = (
     "rim",
 )
 """Keys of a gear that say more of its teeth, beside their number and module."""
+OF_A_GEAR = ("base_radius", "inner_radius", "outer_radius", "teeth", "module", *OF_TEETH)
+"""Keys of a gear that a carrier does not have."""
 RADIUS_TOLERANCE = 1e-3
 """How far a given base radius may be from that of the teeth, as a part of it [-]."""
 STEEPEST = Quantity("45 deg", math.radians(45))
@@ -75,10 +77,10 @@ class Polar(Element):
 
 
 class Gear(Element):
-    """A gear: a rigid body with a centre, an axis and a base circle."""
+    """A gear: a rigid body with a centre, an axis and a base circle; or a carrier of planets."""
 
-    type: Literal["external", "internal", "face"] = "external"
-    """Kind of teeth: external, internal or face."""
+    type: Literal["external", "internal", "face", "carrier"] = "external"
+    """Kind of teeth: external, internal or face; a carrier has none."""
 
     centre: Annotated[
         Components | Annotated[Polar, Tag(TABLE)],
@@ -92,6 +94,15 @@ class Gear(Element):
         shaped("x, y, z, or a list of 3 numbers"),
     ] = "z"
     """Direction of the axis: x, y, z, or three components [-]."""
+
+    carrier: str | None = None
+    """Carrier on whose pin a planet sits; the centre of other gears is held by the housing.
+
+    The planet's support, float and displacement are then counted from its pin.
+    """
+
+    held: Annotated[bool, Strict()] = False
+    """Whether the housing keeps it from turning, as the ring of most planetary sets."""
 
     base_radius: Radius | None = None
     """Base radius; of a face gear the acting radius [length]."""
@@ -154,9 +165,14 @@ class Gear(Element):
 
     def rules(self) -> Iterator[Rule]:
         """Yield what does not hold of the radii and the axis."""
+        if self.type == "carrier":
+            yield from self._carrier_rules()
+            return
         radii = self.given("inner_radius", "outer_radius")
         if self.module is not None or self.given(*OF_TEETH):
             yield from self._tooth_rules()
+        if self.carrier is not None and self.type == "face":
+            yield Rule("is for cylindrical planets only", ("carrier",))
         if radii and self.type != "face":
             yield Rule("is for face gears only", (radii[0],), hint="Give base_radius.")
         elif radii and self.base_radius is not None:
@@ -172,8 +188,18 @@ class Gear(Element):
             self.inner_radius and self.outer_radius and self.inner_radius.si >= self.outer_radius.si
         ):
             yield Rule("is not below outer_radius", ("inner_radius",))
+        yield from self._axis_rules()
+
+    def _axis_rules(self) -> Iterator[Rule]:
         if not isinstance(self.axis, str) and not any(self.axis):
             yield Rule("has no direction", ("axis",), "x, y, z, or a list of 3 numbers, not all 0")
+
+    def _carrier_rules(self) -> Iterator[Rule]:
+        for key in self.given(*OF_A_GEAR):
+            yield Rule("is for gears only: a carrier has no teeth", (key,))
+        if self.carrier is not None:
+            yield Rule("is for planets only: a carrier sits in the housing", ("carrier",))
+        yield from self._axis_rules()
 
     def _tooth_rules(self) -> Iterator[Rule]:
         if self.type == "face":
@@ -219,6 +245,11 @@ class Gear(Element):
         )
 
     @property
+    def is_carrier(self) -> bool:
+        """Whether it has no teeth."""
+        return self.type == "carrier"
+
+    @property
     def acting_radius(self) -> float:
         """Lever arm of the tooth force [m]: the base radius, of a face gear also (L1 + L2)/2."""
         if self.base_radius is not None:
@@ -253,6 +284,19 @@ class Eccentricity(Element):
     """Further angle of the eccentricity at the first position, beside its direction [angle]."""
 
 
+class Pin(Element):
+    """The position error of a planet's pin, seen from the carrier's axis."""
+
+    radial: Length = Quantity("0 um", 0.0)
+    """Outwards [length]."""
+
+    tangential: Length = Quantity("0 um", 0.0)
+    """Counter-clockwise about the carrier's axis [length]."""
+
+    angular: Angle = Quantity("0 rad", 0.0)
+    """Further angle about the carrier's axis, counter-clockwise [angle]."""
+
+
 class Errors(Element):
     """The errors of one gear; each moves its centre without costing energy."""
 
@@ -263,7 +307,13 @@ class Errors(Element):
         ]
         | None
     ) = None
-    """Fixed offset of the centre: components, or size and direction [length]."""
+    """Fixed offset of the centre: components, or size and direction [length].
+
+    Fixed in the housing; that of a planet is fixed on its carrier.
+    """
+
+    pin: Pin | None = None
+    """Position error of a planet's pin: radial, tangential [length] or angular [angle]."""
 
     eccentricity: Eccentricity | None = None
     """Offset that turns with the gear: amount [length], direction and phase [angle]."""

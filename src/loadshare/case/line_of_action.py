@@ -51,7 +51,8 @@ def line_of_action(
 ) -> LineOfAction | None:
     """Return the line of action of a mesh: what is given, else what follows.
 
-    cos α_wt = |r_b2 ± r_b1| / a. None where nothing tells the angle.
+    cos α_wt = |r_b2 ± r_b1| / a. None where nothing tells the angle. That of a planet always
+    follows: only then do the pins take exactly the torque that sun and ring leave.
 
     Parameters
     ----------
@@ -62,7 +63,9 @@ def line_of_action(
     """
     driver, driven = gears[mesh.driver], gears[mesh.driven]
     helix = mesh.helix_angle.si if mesh.helix_angle is not None else _base_helix(driver, driven)
-    if mesh.pressure_angle is not None:
+    if driver.is_carrier or driven.is_carrier:
+        return None
+    if mesh.pressure_angle is not None and not (driver.carrier or driven.carrier):
         return LineOfAction(mesh.pressure_angle.si, helix)
     if "face" in (driver.type, driven.type):
         return None

@@ -175,6 +175,11 @@ class Mesh(Element):
             yield Rule("is 90 deg or more", ("helix_angle",), ANGLE.allowed)
 
     @property
+    def ends(self) -> tuple[str, str]:
+        """Driver and driven gear."""
+        return self.driver, self.driven
+
+    @property
     def power_law(self) -> Law | None:
         """The law a + b T + c T^(2/3), if one is given in numbers."""
         return self.law if isinstance(self.law, Law) else None

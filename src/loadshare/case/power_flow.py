@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
+from loadshare.case.gears import Gear
 from loadshare.case.links import Shaft
 from loadshare.case.meshes import Mesh
 from loadshare.case.operation import Operating
@@ -11,12 +12,27 @@ from loadshare.case.operation import Operating
 Steps = list[tuple[str, str]]
 
 
-def steps(meshes: Mapping[str, Mesh], shafts: Mapping[str, Shaft]) -> Steps:
-    """Return the steps of the torque: driver to driven over meshes, either way over shafts."""
-    found = [(mesh.driver, mesh.driven) for mesh in meshes.values()]
-    for a, b in (shaft.ends for shaft in shafts.values()):
+def steps(
+    gears: Mapping[str, Gear], meshes: Mapping[str, Mesh], shafts: Mapping[str, Shaft]
+) -> Steps:
+    """Return the steps of the torque: driver to driven over meshes, either way over shafts.
+
+    In a planetary set it goes either way over meshes and pins: which member drives is no matter of
+    names.
+    """
+    found = [mesh.ends for mesh in meshes.values()]
+    both = [shaft.ends for shaft in shafts.values()]
+    both += [step for step in found if rides_on(gears, *step)]
+    both += [(name, gear.carrier) for name, gear in gears.items() if gear.carrier]
+    for a, b in both:
         found += [(a, b), (b, a)]
     return found
+
+
+def rides_on(gears: Mapping[str, Gear], *names: str) -> str | None:
+    """Return the carrier on which one of some gears rides, if any."""
+    riding = (gears[name].carrier for name in names if name in gears)
+    return next((carrier for carrier in riding if carrier), None)
 
 
 def reach(sources: Iterable[str], taken: Steps) -> set[str]:
@@ -34,21 +50,27 @@ def backwards(taken: Steps) -> Steps:
 
 
 def from_the_other_end(
-    operating: Operating, meshes: Mapping[str, Mesh], shafts: Mapping[str, Shaft]
+    operating: Operating,
+    gears: Mapping[str, Gear],
+    meshes: Mapping[str, Mesh],
+    shafts: Mapping[str, Shaft],
 ) -> bool:
     """Tell whether the input stands where the meshes' names put the output."""
-    forward = steps(meshes, shafts)
+    forward = steps(gears, meshes, shafts)
     ahead, behind = reach([operating.input], forward), reach([operating.input], backwards(forward))
     return operating.output not in ahead and operating.output in behind
 
 
 def against_the_names(
-    operating: Operating, meshes: Mapping[str, Mesh], shafts: Mapping[str, Shaft]
+    operating: Operating,
+    gears: Mapping[str, Gear],
+    meshes: Mapping[str, Mesh],
+    shafts: Mapping[str, Shaft],
 ) -> tuple[bool, ...]:
     """Tell for every input torque whether it presses the flanks that the meshes' names do not.
 
     It does where the torque is negative (the input brakes), and where the input stands at the other
     end; both together press the usual flanks.
     """
-    turned = from_the_other_end(operating, meshes, shafts)
+    turned = from_the_other_end(operating, gears, meshes, shafts)
     return tuple((torque < 0.0) != turned for torque in operating.input_torque if torque)

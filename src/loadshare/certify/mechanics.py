@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from loadshare.certify.rigid import rigid_shafts
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Names
+from loadshare.train.gear import cross
 from loadshare.train.ring import transverse
 from loadshare.train.train import Train
 
@@ -107,6 +108,15 @@ class Mechanics:
             along = 1.0 if drive else -1.0
             self.moment[driver, e] -= along * mesh.radii[0]
             self.moment[driven, e] += along * mesh.radii[1]
+            for end, push in ((mesh.driver, -normal), (mesh.driven, normal)):
+                # A pin passes the flank's force on to the carrier, with its arm about the axis.
+                if (carrier := train.gears[end].carrier) is not None:
+                    held, arm = train.gears[carrier], train.gears[end].centre
+                    arm = transverse(arm - held.centre, held.axis)
+                    moment = held.sense * float(held.axis @ cross(arm, push))
+                    self.moment[order[carrier], e] += moment
+                    self.turning[e, order[carrier]] -= moment
+                    pushing[e, order[carrier]] -= push
         self.pushing = pushing.reshape(width, 3 * count)
 
     def _put_shafts(self) -> None:
@@ -168,9 +178,14 @@ class Mechanics:
 
     @cached_property
     def turning_groups(self) -> list[list[int]]:
-        """Groups without the held output."""
-        held = self.order[self.train.output]
-        return [group for group in self.groups if held not in group]
+        """Groups without a held gear."""
+        held = set(self.held)
+        return [group for group in self.groups if not held & set(group)]
+
+    @cached_property
+    def held(self) -> list[int]:
+        """Gears that do not turn."""
+        return [self.order[gear] for gear in self.train.held]
 
     @cached_property
     def lift(self) -> Array:

@@ -89,9 +89,8 @@ def deformation_law(state: ClaimedState) -> Blocks:
         lag = np.where(held, state.moved - force / np.where(held, stiffness, 1.0), 0.0)
         blocks.append((size(lag), of.bearing_names))
     blocks.append((size(of.lift @ state.claim.displacement), of.gear_names))
-    output = of.order[of.train.output]
-    turned_to = np.abs(state.claim.rotation[output]) * of.radius[output]
-    blocks.append((turned_to[None], (f"gear {of.train.output} rotation",)))
+    turned_to = np.abs(state.claim.rotation[of.held]) * of.radius[of.held][:, None]
+    blocks.append((turned_to, tuple(f"gear {gear} rotation" for gear in of.train.held)))
     return _less_rounding(state, blocks)
 
 

@@ -17,8 +17,8 @@ class RigidShafts:
     groups : tuple of tuple of str
         Gears that turn as one.
     beyond : mapping of shaft to mapping of gear to float
-        The gears beyond every rigid shaft, seen from the held output (or any gear of a group
-        without it). Their balance gives its torque from the first gear to the second, the sum of
+        The gears beyond every rigid shaft, seen from a held gear (or any gear of a group
+        without one). Their balance gives its torque from the first gear to the second, the sum of
         their moments times these signs; clocking then works against it. A shaft that closes a loop
         of rigid ones carries none of its own.
     """
@@ -28,11 +28,11 @@ class RigidShafts:
 
 
 def rigid_shafts(train: Train) -> RigidShafts:
-    """Walk along the rigid shafts of a train, from the held output and from every gear left."""
+    """Walk along the rigid shafts of a train, from held gears and from every gear left."""
     rigid = [s for s in train.shafts.values() if math.isinf(s.stiffness)]
     groups: dict[str, dict[str, dict[str, float]]] = {}
     reached: set[str] = set()
-    for seed in (train.output, *train.gears):
+    for seed in (*train.held, *train.gears):
         if seed in reached:
             continue
         between: dict[str, dict[str, float]] = {seed: {}}

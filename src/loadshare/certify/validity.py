@@ -134,13 +134,15 @@ class Measuring:
         across = np.zeros((len(of.flanks), len(order), 3))
         for e, (mesh, drive) in enumerate(of.flanks):
             way = cross(_axis(train, mesh), mesh.direction(drive)[2])
-            across[e, order[mesh.driver]] += way
-            across[e, order[mesh.driven]] -= way
+            for end, sign in ((mesh.driver, 1.0), (mesh.driven, -1.0)):
+                for gear in (end, train.gears[end].carrier):
+                    if gear is not None:
+                        across[e, order[gear]] += sign * way
         self.across = across.reshape(len(of.flanks), -1)
         geometry = np.array([_geometry(train, m) for m in meshes]).reshape(-1, 3)[of.mesh_of]
         self.line, angle, self.height = geometry.T[:, :, None]
         self.vanishing = float(np.tan(0.5 * angle).min(initial=math.inf))
-        held = {train.output, *(g for s in train.shafts.values() for g in (s.first, s.second))}
+        held = {*train.held, *(g for s in train.shafts.values() for g in (s.first, s.second))}
         self.turnable = [k for g, k in order.items() if g not in held]
 
     @property

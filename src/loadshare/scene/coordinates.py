@@ -109,11 +109,11 @@ def coordinates_of(train: Train) -> Coordinates:
 def _rotations(
     train: Train, names: list[str], removed: list[tuple[str, str]]
 ) -> dict[str, Rotation]:
-    """One rotation coordinate per set of gears on rigid shafts; none for the output's set."""
-    offset = {train.output: 0.0}
-    sets = {train.output: train.output}
-    for seed in (train.output, *train.gears):
-        if seed in sets and seed != train.output:
+    """One rotation coordinate per set of gears on rigid shafts; none for sets that are held."""
+    offset: dict[str, float] = {}
+    sets: dict[str, str] = {}
+    for seed in (*train.held, *train.gears):
+        if seed in sets:
             continue
         sets[seed], offset[seed] = seed, 0.0
         queue = [seed]
@@ -131,10 +131,11 @@ def _rotations(
                     removed.append((f"gear {other} rotation", f"rigid shaft {shaft.name}"))
                     queue.append(other)
     removed.append((f"gear {train.output} rotation", "the output gear is held"))
+    removed += [(f"gear {name} rotation", "the housing holds it") for name in train.held[1:]]
     where: dict[str, int] = {}
     for name in train.gears:
         root = sets[name]
-        if root not in where and root != train.output:
+        if root not in where and root not in train.held:
             where[root] = len(names)
             names.append(f"gear {root} rotation")
     return {

@@ -96,7 +96,7 @@ class Scene(ContactProblem):
     def first_torques(self) -> dict[str, float]:
         """Return the whole input torque over every spline [N·m], to begin with."""
         driving, gears = self.torques[self.train.input], self.train.gears
-        return {r.name: driving / gears[r.gear].ratio for r in self.radials}
+        return {r.name: driving / (gears[r.gear].ratio or 1.0) for r in self.radials}
 
     def angle(self, gear: str, x: Array) -> float:
         """Rotation φ [rad] of a gear at the coordinates x."""

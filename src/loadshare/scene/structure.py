@@ -239,9 +239,8 @@ class Structure:
         turned = self.coordinates.rotation
         return np.array(
             [
-                on_driver * turned[mesh.driver].constant + on_driven * turned[mesh.driven].constant
-                for _, mesh, drive in self.flanks
-                for on_driver, on_driven, _ in (mesh.direction(drive),)
+                math.fsum(arm * turned[gear].constant for gear, arm in to.turning.items())
+                for to in self.train.approaches.values()
             ]
         )
 
@@ -250,9 +249,9 @@ class Structure:
         """Approach of every flank per centre offset, shape (flanks, 3 gears)."""
         order = self.train.order
         found = np.zeros((len(self.flanks), len(order), 3))
-        for e, (_, mesh, drive) in enumerate(self.flanks):
-            normal = mesh.direction(drive)[2]
-            found[e, order[mesh.driver]], found[e, order[mesh.driven]] = normal, -normal
+        for e, to in enumerate(self.train.approaches.values()):
+            for gear, along in to.shifting.items():
+                found[e, order[gear]] = along
         return found.reshape(len(self.flanks), -1)
 
     def gaps_of_flanks(self, situations: Situations) -> Array:
@@ -355,7 +354,7 @@ def structure_of(train: Train) -> Structure:
         shaft_columns,
         support_columns,
         bends,
-        [_flank(at, mesh, drive) for _, mesh, drive in flanks],
+        [_flank(at, train, mesh, drive) for _, mesh, drive in flanks],
         stops,
         [(a.name, "arc", -(n @ a.relative)) for a, n in zip(arcs, normals, strict=True)],
         [(r.name, "radial", component) for r in radials for component in r.matrix],
@@ -390,12 +389,14 @@ def structure_of(train: Train) -> Structure:
     )
 
 
-def _flank(at: Coordinates, mesh: Mesh, drive: bool) -> tuple[str, str, Array]:
+def _flank(at: Coordinates, train: Train, mesh: Mesh, drive: bool) -> tuple[str, str, Array]:
     """Name, kind and row of a flank."""
-    on_driver, on_driven, normal = mesh.direction(drive)
-    row = normal @ (at.moved(mesh.driver) - at.moved(mesh.driven))
-    row += at.turned((mesh.driver, on_driver), (mesh.driven, on_driven))
-    return mesh.flank_name(drive), "drive flank" if drive else "coast flank", row
+    name = mesh.flank_name(drive)
+    to = train.approaches[name]
+    row = at.turned(*to.turning.items())
+    for gear, along in to.shifting.items():
+        row += along @ at.moved(gear)
+    return name, "drive flank" if drive else "coast flank", row
 
 
 def _radials(train: Train, at: Coordinates) -> Iterator[RadialElement]:

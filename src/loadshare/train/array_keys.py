@@ -48,7 +48,9 @@ def array_unit(case: spec.Case, column: Column) -> str | None:
         case ("errors", gear, "installation", "amount" | "direction" as what):
             polar = isinstance(case.errors[str(gear)].installation, spec.Offset)
             return (_LENGTH if what == "amount" else "rad") if polar else None
-        case ("errors", _, "installation", int()):
+        case ("errors", _, "pin", "angular"):
+            return "rad"
+        case ("errors", _, "installation", int()) | ("errors", _, "pin", _):
             return _LENGTH
         case ("errors", _, "eccentricity", "amount"):
             # Where it is not told how far gears turn, only an eccentricity of 0 has an answer.

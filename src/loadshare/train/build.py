@@ -96,11 +96,11 @@ def train_of(
             problems.append(_ring_problem(case, name, str(error)))
             return None
 
-    held = elements(
+    supported = elements(
         "gears", lambda name, _: replace(geometry.gears[name], support=_support(case, name))
     )
     # In the order of the walk from the input gear.
-    gears = {name: held[name] for name in geometry.gears}
+    gears = {name: supported[name] for name in geometry.gears}
     meshes = elements("meshes", lambda name, mesh: _mesh(name, mesh, geometry.pairs[name]))
     rings = elements("rings", ring_of)
     if problems:
@@ -114,7 +114,7 @@ def train_of(
         splines=elements("splines", _spline),
         rings={name: ring for name, ring in rings.items() if ring is not None},
         bearings=elements("bearings", lambda name, b: _bearing(b, gears[name])),
-        offsets=elements("errors", lambda name, e: _offset(e, gears[name]), "offsets"),
+        offsets=elements("errors", lambda name, e: _offset(e, gears[name], gears), "offsets"),
         stages=tuple(
             Stage(n, tuple(s.meshes), tuple(s.groups or (s.meshes,)))
             for n, s in case.stages.items()
@@ -122,7 +122,10 @@ def train_of(
         input=operating.input,
         output=operating.output,
         input_torque=operating.input_torque,
-        external={n: t.si for n, t in operating.external.items()},
+        # A member of a planetary set may turn against the sense in which its rotation is counted.
+        external={
+            n: -t.si if gears[n].ratio < 0.0 else t.si for n, t in operating.external.items()
+        },
         positions=operating.positions,
         rotating=operating.rotation == "teeth",
         march=(case.march.gear, case.march.revolutions, case.march.steps) if case.march else None,
@@ -295,13 +298,24 @@ def _ring_problem(case: spec.Case, name: str, message: str) -> Problem:
     )
 
 
-def _offset(errors: spec.Errors, gear: Gear) -> Offset:
+def _pin(pin: spec.Pin, planet: Gear, carrier: Gear) -> Vector:
+    arm = transverse(planet.centre - carrier.centre, carrier.axis)
+    distance = float(np.linalg.norm(arm))
+    outward, round_it = arm / distance, cross(carrier.axis, arm / distance)
+    aside = pin.tangential.si + distance * pin.angular.si
+    outwards = np.multiply.outer(pin.radial.si, outward)
+    return np.asarray(outwards + np.multiply.outer(aside, round_it))
+
+
+def _offset(errors: spec.Errors, gear: Gear, gears: Mapping[str, Gear]) -> Offset:
     installation = np.zeros(3)
     if isinstance(errors.installation, spec.Offset):
         amount, direction = errors.installation.amount.si, errors.installation.direction.si
         installation = polar(amount, direction) @ gear.frame
     elif errors.installation is not None:
         installation = _vector(errors.installation)
+    if errors.pin is not None and gear.carrier is not None:
+        installation = installation + _pin(errors.pin, gear, gears[gear.carrier])
     given = errors.eccentricity
     if given is None:
         return Offset(installation, np.zeros(2))

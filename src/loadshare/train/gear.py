@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 Vector = NDArray[np.float64]
+
+ORIGIN: Vector = np.zeros(3)
+ORIGIN.flags.writeable = False
 
 
 def cross(first: Vector, second: Vector) -> Vector:
@@ -47,7 +50,7 @@ class Gear:
     ----------
     name : str
     kind : str
-        "external", "internal" or "face".
+        "external", "internal", "face" or "carrier".
     centre : ndarray, shape (3,)
         O [m].
     axis : ndarray, shape (3,)
@@ -55,16 +58,27 @@ class Gear:
     frame : ndarray, shape (2, 3)
         Unit vectors of the transverse plane; displacements are components along them.
     base_radius : float
-        r_b [m]; the acting radius of a face gear.
+        r_b [m]; the acting radius of a face gear, the distance of a carrier's outermost pin.
     sense : int
-        +1 if the gear runs counter-clockwise seen against its axis, −1 otherwise.
+        In which its rotation is counted: +1 if counter-clockwise seen against its axis, −1
+        otherwise. It is the running sense; in a planetary set the one seen from the carrier.
     teeth : float or None
         Given, or what follows from those of gears that it meshes with; None where nothing tells.
     support : ndarray, shape (2,), or None
         Stiffness along the frame's directions [N/m]; zeros for a free gear, None for a rigid
         bearing.
     ratio : float
-        Speed over the input gear's speed, ≥ 0.
+        Speed along its sense over the input gear's speed.
+    relative : float
+        The same as seen from the carrier about which it turns; the ratio outside planetary sets.
+    held : bool
+        Whether the housing keeps it from turning. That of the output is the load.
+    carrier : str or None
+        Carrier on whose pin it rides.
+    seat : ndarray, shape (3,)
+        How far its pin moves per rotation of the carrier [m].
+    frame_of : str or None
+        Carrier from which it is seen: that of the planets with which it meshes, its own, or itself.
     """
 
     name: str
@@ -77,6 +91,11 @@ class Gear:
     teeth: float | None
     support: Vector | None
     ratio: float
+    relative: float = 1.0
+    held: bool = False
+    carrier: str | None = None
+    seat: Vector = field(default_factory=lambda: ORIGIN)
+    frame_of: str | None = None
 
     @property
     def moves(self) -> bool:

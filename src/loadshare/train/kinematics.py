@@ -1,4 +1,8 @@
-"""Running senses and speed ratios, found by walking from the input gear over meshes and shafts."""
+"""Running senses and speed ratios, found by walking from the input gear over meshes and shafts.
+
+Planets and what meshes with them are walked as seen from their carrier; where no mesh or shaft
+leads, the walk begins anew, and the senses that it found are turned to those of the true speeds.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +10,12 @@ from collections import deque
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from loadshare.train.gear import Gear
+import numpy as np
+
+from loadshare.train.gear import Gear, cross
 from loadshare.train.mesh import Contact, MeshGeometryError, contact_of
+from loadshare.train.ring import transverse
+from loadshare.train.willis import Links, along
 
 RATIO_TOLERANCE = 1e-3
 """Largest relative difference between two paths' speed ratios that rounding of radii explains."""
@@ -23,11 +31,21 @@ class Conflict:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Kinematics:
-    """Gears with their senses and ratios, the contacts of the meshes, and what contradicts."""
+    """Gears with their senses and ratios, the contacts of the meshes, and what contradicts.
+
+    Attributes
+    ----------
+    gears : mapping of str to Gear
+    contacts : mapping of str to Contact
+    conflicts : tuple of Conflict
+    determined : bool
+        Whether all speeds follow from that of the input.
+    """
 
     gears: Mapping[str, Gear]
     contacts: Mapping[str, Contact]
     conflicts: tuple[Conflict, ...]
+    determined: bool = True
 
 
 def settle(
@@ -47,7 +65,9 @@ def settle(
     first : str
         The input gear.
     """
+    planetary = any(gear.kind == "carrier" or gear.held for gear in gears.values())
     settled = {first: gears[first]}
+    walks = {first: first}
     contacts: dict[str, Contact] = {}
     conflicts: list[Conflict] = []
 
@@ -67,20 +87,25 @@ def settle(
             conflicts.append(Conflict(f'meshes."{name}"', str(error)))
             return
         ratio = settled[here].ratio * settled[here].base_radius / gears[other].base_radius
-        yield replace(gears[other], sense=sense, ratio=ratio)
+        yield replace(gears[other], sense=sense, ratio=ratio, relative=ratio)
 
     def shaft_partner(name: str, here: str) -> Iterator[Gear]:
         """Settle the gear at the other end of a shaft; opposed axes reverse the sense."""
         a, b = shafts[name]
         other = b if here == a else a
         turned = -1 if settled[here].axis @ gears[other].axis < -1e-9 else 1
-        yield replace(gears[other], sense=settled[here].sense * turned, ratio=settled[here].ratio)
+        sense, ratio = settled[here].sense * turned, settled[here].ratio
+        yield replace(gears[other], sense=sense, ratio=ratio, relative=ratio)
 
     links = [(n, e, f'meshes."{n}"', mesh_partner) for n, e in meshes.items()]
     links += [(n, e, f'shafts."{n}"', shaft_partner) for n, e in shafts.items()]
     walked: set[str] = set()
     queue = deque([first])
-    while queue:
+    while queue or (planetary and len(settled) < len(gears)):
+        if not queue:
+            seed = next(name for name in gears if name not in settled)
+            settled[seed], walks[seed] = gears[seed], seed
+            queue.append(seed)
         here = queue.popleft()
         for name, ends, key, partner in links:
             if here not in ends or key in walked:
@@ -90,9 +115,14 @@ def settle(
                 known = settled.get(found.name)
                 if known is None:
                     settled[found.name] = found
+                    walks[found.name] = walks[here]
                     queue.append(found.name)
+                elif planetary:
+                    conflicts += _against(key, known, found)
                 else:
                     conflicts += _compare(key, known, found)
+    if planetary and not conflicts:
+        return _as_sets(settled, meshes, shafts, walks, first)
     for name, (driver, driven) in meshes.items():
         if name not in contacts and driver in settled and driven in settled:
             try:
@@ -102,13 +132,76 @@ def settle(
     return Kinematics(settled, contacts, tuple(conflicts))
 
 
-def _compare(key: str, known: Gear, found: Gear) -> Iterator[Conflict]:
+def _as_sets(
+    gears: Mapping[str, Gear],
+    meshes: Mapping[str, tuple[str, str]],
+    shafts: Mapping[str, tuple[str, str]],
+    walks: Mapping[str, str],
+    first: str,
+) -> Kinematics:
+    """Give the members of planetary sets their speeds, their frames, and senses that fit both."""
+    try:
+        speeds, determined = Links.of(gears, meshes, shafts).speeds(first)
+    except ValueError as error:
+        return Kinematics(gears, {}, (Conflict("operating.input", str(error)),))
+    frames = _frames(gears, meshes)
+    relative = dict(speeds)
+    for name, frame in frames.items():
+        if gears[name].kind != "carrier":
+            relative[name] -= along(gears[name], gears[frame]) * speeds[frame]
+    # A walk that began anywhere may have begun the wrong way round.
+    turned = {}
+    for seed in dict.fromkeys(walks.values()):
+        moving = (relative[name] for name, walk in walks.items() if walk == seed and relative[name])
+        turned[seed] = -1 if seed != first and next(moving, 1.0) < 0.0 else 1
+    found = {}
+    for name, gear in gears.items():
+        way = turned[walks[name]]
+        found[name] = replace(
+            gear,
+            sense=way * gear.sense,
+            ratio=way * speeds[name],
+            relative=way * relative[name],
+            frame_of=frames.get(name),
+        )
+    found |= {name: _on_pin(gear, found) for name, gear in found.items() if gear.carrier}
+    radii = [gear.base_radius for gear in gears.values() if gear.kind != "carrier"]
+    for name, gear in found.items():
+        if gear.kind == "carrier":
+            pins = [float(np.linalg.norm(g.seat)) for g in found.values() if g.carrier == name]
+            found[name] = replace(gear, base_radius=max(pins or radii))
+    contacts = {name: contact_of(found[a], found[b]) for name, (a, b) in meshes.items()}
+    return Kinematics(found, contacts, (), determined)
+
+
+def _on_pin(planet: Gear, gears: Mapping[str, Gear]) -> Gear:
+    """Return a planet with the way of its pin per rotation of its carrier."""
+    carrier = gears[planet.carrier or ""]
+    arm = transverse(planet.centre - carrier.centre, carrier.axis)
+    return replace(planet, seat=carrier.sense * cross(carrier.axis, arm))
+
+
+def _frames(gears: Mapping[str, Gear], meshes: Mapping[str, tuple[str, str]]) -> dict[str, str]:
+    """Carrier from which a member of a planetary set is seen."""
+    found = {name: name for name, gear in gears.items() if gear.kind == "carrier"}
+    for ends in meshes.values():
+        carrier = gears[ends[0]].carrier or gears[ends[1]].carrier
+        if carrier is not None:
+            found |= dict.fromkeys(ends, carrier)
+    return found
+
+
+def _against(key: str, known: Gear, found: Gear) -> Iterator[Conflict]:
     if known.sense != found.sense:
         yield Conflict(
             key,
             f"would turn gear {known.name} against the sense in which another path turns it: "
             "the train would lock",
         )
+
+
+def _compare(key: str, known: Gear, found: Gear) -> Iterator[Conflict]:
+    yield from _against(key, known, found)
     if abs(known.ratio - found.ratio) > RATIO_TOLERANCE * known.ratio:
         yield Conflict(
             key,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from loadshare.contact.law import Law
@@ -202,6 +203,36 @@ class Mesh:
         on_driver, on_driven, normal = self.direction(drive)
         turned = on_driver * rotations[0] + on_driven * rotations[1]
         return turned + float(normal @ relative_offset) - self.gap(position, drive)
+
+
+@dataclass(frozen=True, slots=True)
+class Approach:
+    """How the approach of a flank follows from bodies: driver, driven gear, and their carriers.
+
+    Attributes
+    ----------
+    turning : mapping of str to float
+        Per rotation [m].
+    shifting : mapping of str to ndarray, shape (3,)
+        Per displacement or centre offset. A planet's displacement is counted from its pin, which
+        moves with the carrier by p_c + φ_c times `Gear.seat` (formulation, section 12).
+    """
+
+    turning: Mapping[str, float]
+    shifting: Mapping[str, Vector]
+
+
+def approach_of(mesh: Mesh, drive: bool, gears: Mapping[str, Gear]) -> Approach:
+    """Return how the approach of a flank follows from the bodies of a train."""
+    on_driver, on_driven, normal = mesh.direction(drive)
+    turning = {mesh.driver: on_driver, mesh.driven: on_driven}
+    shifting = {mesh.driver: normal, mesh.driven: -normal}
+    for end, push in ((mesh.driver, normal), (mesh.driven, -normal)):
+        carrier = gears[end].carrier
+        if carrier is not None:
+            turning[carrier] = turning.get(carrier, 0.0) + float(push @ gears[end].seat)
+            shifting[carrier] = shifting.get(carrier, 0.0) + push
+    return Approach(turning, shifting)
 
 
 def contact_of(driver: Gear, driven: Gear) -> Contact:

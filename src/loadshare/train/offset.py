@@ -1,7 +1,8 @@
 """Geometric errors as centre offsets (formulation, section 1).
 
 An offset acts on approaches exactly as a displacement of the centre does, and costs no energy. An
-installation error is a fixed vector; a manufacturing eccentricity turns with its gear.
+installation error is a fixed vector, of a planet fixed on its carrier; a manufacturing
+eccentricity turns with its gear.
 """
 
 from __future__ import annotations
@@ -28,11 +29,28 @@ class Offset:
     installation: Vector
     eccentricity: Vector
 
-    def at(self, gear: Gear, rotation: float) -> Vector:
-        """Offset (3,) [m] of `gear` turned by `rotation` [rad] in its running sense."""
-        turn = gear.sense * rotation
-        turned = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
-        return np.asarray(self.installation + self.eccentricity @ (turned @ gear.frame))
+    def at(self, gear: Gear, rotation: float, frame: float = 0.0) -> Vector:
+        """Offset (3,) [m] of a gear.
+
+        Parameters
+        ----------
+        gear : Gear
+        rotation : float
+            By which it has turned in its sense [rad].
+        frame : float
+            By which the carrier from which it is seen has turned about the gear's axis [rad]: what
+            is fixed in the housing turns backwards, what is fixed on the carrier stands.
+        """
+        fixed = self.installation
+        if frame and gear.carrier is None:
+            along = (fixed @ gear.axis)[..., None] * gear.axis
+            fixed = along + (fixed @ gear.frame.T) @ (_turned(-frame) @ gear.frame)
+        turned = _turned(gear.sense * rotation - frame)
+        return np.asarray(fixed + self.eccentricity @ (turned @ gear.frame))
+
+
+def _turned(angle: float) -> Vector:
+    return np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
 
 
 def polar(amount: float, direction: float) -> Vector:

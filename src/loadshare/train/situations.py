@@ -155,14 +155,7 @@ def situations_of(train: Train, index: int) -> Situations:
     drums, rounds, meshes = train.drums, train.rounds, train.meshes
     laws = [m.law(position[n]) for n, m in meshes.items()]
     powers = [law if isinstance(law, PowerLaw) else PowerLaw(0.0) for law in laws]
-    still = np.zeros(3)
-    offset = _table(
-        [
-            train.offsets[n].at(g, rotation[n]) if n in train.offsets else still
-            for n, g in train.gears.items()
-        ],
-        3,
-    )
+    offset = _table([train.offset(n, rotation) for n in train.gears], 3)
     arrays = {
         "offset": offset,
         "torque": _table([_torque(train, g, index) for g in train.gears]),

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from loadshare.contact.radial import RadialLaw, spline_law
-from loadshare.train.gear import Gear, Vector
-from loadshare.train.mesh import Mesh
+from loadshare.train.gear import ORIGIN, Gear, Vector
+from loadshare.train.mesh import Approach, Mesh, approach_of
 from loadshare.train.offset import Offset
 from loadshare.train.ring import Bearing, DrumRing, Ring, RoundRing
 
@@ -164,6 +164,20 @@ class Train:
         return {name: k for k, name in enumerate(self.gears)}
 
     @cached_property
+    def held(self) -> tuple[str, ...]:
+        """Gears that do not turn: the output, whose load is what is left, and held ones."""
+        return (self.output, *(name for name, gear in self.gears.items() if gear.held))
+
+    @cached_property
+    def approaches(self) -> dict[str, Approach]:
+        """How the approach of every flank follows from the bodies, by name of the flank."""
+        return {
+            mesh.flank_name(drive): approach_of(mesh, drive, self.gears)
+            for mesh in self.meshes.values()
+            for drive in mesh.flanks
+        }
+
+    @cached_property
     def floating(self) -> tuple[str, ...]:
         """Gears whose rest position is reported: free ones, those on a spline, those in a ring."""
         return tuple(
@@ -220,6 +234,26 @@ class Train:
             turned = 2.0 * math.pi * revolutions * step / steps / self.gears[gear].ratio
         return {name: turned * gear.ratio for name, gear in self.gears.items()}
 
+    def offset(self, gear: str, rotation: Mapping[str, float]) -> Vector:
+        """Centre offset (3,) [m] of a gear, as seen from the carrier about which it turns.
+
+        Parameters
+        ----------
+        gear : str
+        rotation : mapping of str to float
+            By which every gear has turned [rad].
+        """
+        here = self.gears[gear]
+        errors = self.offsets.get(gear)
+        if errors is None:
+            return ORIGIN
+        if here.frame_of is None:
+            return errors.at(here, rotation[gear])
+        carrier = self.gears[here.frame_of]
+        along = 1.0 if carrier.axis @ here.axis > 0.0 else -1.0
+        turned = along * carrier.sense * rotation[carrier.name]
+        return errors.at(here, rotation[gear], turned)
+
     def mesh_positions(
         self, index: int, rotation: Mapping[str, float] | None = None
     ) -> dict[str, int]:
@@ -237,27 +271,24 @@ class Train:
         if self.cycle is None:
             return 0.0
         gear = self.gears[self.cycle]
-        return 2.0 * math.pi / ((gear.teeth or math.inf) * gear.ratio)
+        return 2.0 * math.pi / ((gear.teeth or math.inf) * gear.relative)
 
     def _mesh_position(self, mesh: str, step: int, rotation: Mapping[str, float]) -> int:
         driver = self.gears[self.meshes[mesh].driver]
         if self.march is None or driver.teeth is None:
             return step % self.positions
-        cycles = rotation[driver.name] * driver.teeth / (2.0 * math.pi)
+        turned = rotation[driver.name]
+        if driver.frame_of is not None:
+            turned = rotation[self.input] * driver.relative
+        cycles = turned * driver.teeth / (2.0 * math.pi)
         # A step that falls on a cycle's start up to round-off belongs to it, not to the end of the
         # one before.
         return math.floor((cycles % 1.0) * self.positions + 1e-9) % self.positions
 
     def levers(self, gear: str) -> dict[str, float]:
         """Torque over a gear's shaft or spline, per unit of every flank's force [m]."""
-        found: dict[str, float] = {}
-        for mesh in self.meshes.values():
-            for drive in mesh.flanks:
-                on_driver, on_driven, _ = mesh.direction(drive)
-                if gear in (mesh.driver, mesh.driven):
-                    lever = on_driver if gear == mesh.driver else on_driven
-                    found[mesh.flank_name(drive)] = lever
-        return found
+        flanks = self.approaches.items()
+        return {name: to.turning[gear] for name, to in flanks if gear in to.turning}
 
     def transmitted(self, gear: str, flank_force: Mapping[str, float]) -> float:
         """Torque [N·m] that reaches a gear other than through its meshes: over its shaft or spline.

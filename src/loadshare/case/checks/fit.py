@@ -165,7 +165,9 @@ def check_formula_laws(draft: Draft) -> Iterator[Problem]:
 def _pairs(draft: Draft) -> Iterator[tuple[str, Mesh, Gear, Gear]]:
     for name, mesh in draft.meshes.items():
         driver, driven = draft.gears.get(mesh.driver), draft.gears.get(mesh.driven)
-        if driver is not None and driven is not None and driver is not driven:
+        if driver is None or driven is None or driver is driven:
+            continue
+        if not (driver.is_carrier or driven.is_carrier):
             yield name, mesh, driver, driven
 
 

@@ -20,16 +20,19 @@ from loadshare.errors import Problem
 
 
 def check_taken_part(draft: Draft) -> Iterator[Problem]:
-    """Yield gears that are in no mesh and on no shaft."""
+    """Yield gears that are in no mesh and on no shaft, and carriers that also carry no planet."""
     if not draft.sound("meshes", "shafts"):
         return
-    joined = {gear for mesh in draft.meshes.values() for gear in (mesh.driver, mesh.driven)}
+    joined = {gear for mesh in draft.meshes.values() for gear in mesh.ends}
     joined |= {gear for shaft in draft.shafts.values() for gear in shaft.ends}
+    joined |= {gear.carrier for gear in draft.gears.values() if gear.carrier}
     gears = draft.names("gears")
     # A misspelt name would make two problems of one.
     for name in gears if joined <= set(gears) else ():
         if name not in joined:
-            yield draft.problem(("gears", name), "is in no mesh and on no shaft")
+            carries = name in draft.gears and draft.gears[name].is_carrier
+            alone = " and carries no planet" if carries else ""
+            yield draft.problem(("gears", name), f"is in no mesh and on no shaft{alone}")
 
 
 def check_output_reached(draft: Draft) -> Iterator[Problem]:
@@ -51,10 +54,11 @@ def check_loaded_meshes(draft: Draft) -> Iterator[Problem]:
     if not _known(draft) or draft.operating is None or any(check_output_reached(draft)):
         return
     taken = _steps(draft)
-    external = list(draft.operating.external)
+    # What the housing holds gives and takes as much torque as need be.
+    external = [*draft.operating.external, *(n for n, g in draft.gears.items() if g.held)]
     ahead = reach([draft.operating.input, *external], taken)
     behind = reach([draft.operating.output, *external], backwards(taken))
-    turned = from_the_other_end(draft.operating, draft.meshes, draft.shafts)
+    turned = from_the_other_end(draft.operating, draft.gears, draft.meshes, draft.shafts)
     for name, mesh in draft.meshes.items():
         first, last = (mesh.driven, mesh.driver) if turned else (mesh.driver, mesh.driven)
         if first not in ahead or last not in behind:
@@ -71,7 +75,7 @@ def check_pressed_flanks(draft: Draft) -> Iterator[Problem]:
     """
     if not _known(draft) or draft.operating is None:
         return
-    against = against_the_names(draft.operating, draft.meshes, draft.shafts)
+    against = against_the_names(draft.operating, draft.gears, draft.meshes, draft.shafts)
     told = {n for n, m in draft.meshes.items() if m.given("backlash", "normal_backlash")}
     if not any(against) or (all(against) and not told):
         return
@@ -93,9 +97,9 @@ def _known(draft: Draft) -> bool:
 
 def _steps(draft: Draft) -> Steps:
     """The steps of the torque from the input on, along the names of the meshes or against them."""
-    taken = steps(draft.meshes, draft.shafts)
+    taken = steps(draft.gears, draft.meshes, draft.shafts)
     if draft.operating is None or not from_the_other_end(
-        draft.operating, draft.meshes, draft.shafts
+        draft.operating, draft.gears, draft.meshes, draft.shafts
     ):
         return taken
     return backwards(taken)

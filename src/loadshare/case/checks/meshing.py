@@ -98,8 +98,8 @@ def _varies(mesh: Mesh) -> bool:
 
 def _counts(draft: Draft) -> tuple[dict[str, float], tuple[Misfit, ...]]:
     """Tooth counts of the gears and what contradicts; misspelt names are reported elsewhere."""
-    gears = draft.gears
-    pairs = [(m.driver, m.driven) for m in draft.meshes.values()]
+    gears = {name: gear for name, gear in draft.gears.items() if not gear.is_carrier}
+    pairs = [m.ends for m in draft.meshes.values()]
     return tooth_counts(
         {name: gear.teeth for name, gear in gears.items()},
         {name: gear.acting_radius for name, gear in gears.items()},

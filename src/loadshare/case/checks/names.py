@@ -57,7 +57,7 @@ def check_pairs(draft: Draft) -> Iterator[Problem]:
     """Yield meshes and shafts of a gear with itself, and pairs that mesh twice."""
     seen: dict[frozenset[str], str] = {}
     for name, mesh in draft.meshes.items():
-        pair = frozenset((mesh.driver, mesh.driven))
+        pair = frozenset(mesh.ends)
         if mesh.driver and len(pair) == 1:
             yield draft.problem(("meshes", name), "a gear cannot mesh with itself")
         elif pair in seen:
@@ -72,6 +72,7 @@ def check_pairs(draft: Draft) -> Iterator[Problem]:
 
 def _gears_named(draft: Draft) -> Iterator[tuple[Path, str]]:
     yield from _texts(draft, "gears", "centre", "about")
+    yield from _texts(draft, "gears", "carrier")
     for section, keys in ENDS.items():
         valid = getattr(draft, section)
         for name in draft.names(section):

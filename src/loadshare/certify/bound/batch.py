@@ -83,7 +83,8 @@ class Layout(NamedTuple):
     axis: Array  # (gears, 3)
     shaft: Numbers  # (shafts, 2): first and second gear
     rigid_shaft: Numbers
-    output: int
+    held: Numbers  # gears that do not turn
+    carrier: Numbers  # (gears,): carrier on which each rides; −1 without
     squeezed: Numbers  # drums between whose arcs nothing gives way
     neighbour: Numbers  # (2 d,)
     ends: Numbers  # (e, 2): driver and driven gear
@@ -584,7 +585,8 @@ def _layout(columns: Columns, spring: Numbers, spring_arm: Array) -> Layout:
         np.array([g.axis for g in train.gears.values()]).reshape(-1, 3),
         _pairs([(order[s.first], order[s.second]) for s in train.shafts.values()]),
         np.setdiff1d(np.arange(len(train.shafts)), columns.elastic_shafts),
-        order[train.output],
+        np.array([order[g] for g in train.held], dtype=np.intp),
+        np.array([order.get(g.carrier or "", -1) for g in train.gears.values()], dtype=np.intp),
         mechanics_of(train).squeezed,
         np.array([order[n] for r in train.drums for n in r.neighbours], dtype=np.intp),
         gear_pairs,

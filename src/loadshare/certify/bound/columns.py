@@ -151,10 +151,8 @@ class Columns:
         """Torque that each spline's gear takes over it, per flank force, (splines, flanks) [m]."""
         found = np.zeros((len(self.train.splines), self.flanks.stop))
         for k, gear in enumerate(self.train.splines):
-            for e, (mesh, drive) in enumerate(self.all_flanks):
-                on_driver, on_driven, _ = mesh.direction(drive)
-                found[k, e] += on_driver if gear == mesh.driver else 0.0
-                found[k, e] += on_driven if gear == mesh.driven else 0.0
+            for e, to in enumerate(self.train.approaches.values()):
+                found[k, e] = to.turning.get(gear, 0.0)
         return found
 
     @cached_property
@@ -180,13 +178,13 @@ class Columns:
         shafts = list(self.train.shafts.values())
         order = {m: k for k, m in enumerate(self.train.meshes)}
         on = np.zeros((len(shafts) + 3 * len(self.order), len(self.names)))
-        for e, (mesh, drive) in enumerate(self.all_flanks):
-            on_driver, on_driven, normal = mesh.direction(drive)
-            for gear, arm, sign in ((mesh.driver, on_driver, 1.0), (mesh.driven, on_driven, -1.0)):
+        for e, to in enumerate(self.train.approaches.values()):
+            for gear, arm in to.turning.items():
                 for k, lag in self.turns[gear].shafts:
                     on[k, e] -= lag * arm
+            for gear, along in to.shifting.items():
                 at = len(shafts) + 3 * self.order[gear]
-                on[at : at + 3, e] += sign * normal
+                on[at : at + 3, e] += along
         for at, k in enumerate(self.elastic_shafts, self.shafts.start):
             arm = self.train.gears[shafts[k].first].base_radius
             on[k, at] -= arm
@@ -294,15 +292,15 @@ class Columns:
 
     def _flank_rows(self) -> list[tuple[str, Twofold]]:
         rows = []
-        for mesh, drive in self.all_flanks:
+        for name, to in self.train.approaches.items():
             row = self._empty()
-            on_driver, on_driven, normal = mesh.direction(drive)
-            for gear, arm, sign in ((mesh.driver, on_driver, 1.0), (mesh.driven, on_driven, -1.0)):
+            for gear, arm in to.turning.items():
                 self._put_turn(row, gear, arm)
+            for gear, along in to.shifting.items():
                 if gear in self.places:
                     frame = self.train.gears[gear].frame
-                    self._put_place(row, self.places[gear], frame, sign * normal)
-            rows.append((mesh.flank_name(drive), row))
+                    self._put_place(row, self.places[gear], frame, along)
+            rows.append((name, row))
         return rows
 
     def _shaft_rows(self) -> list[tuple[str, Twofold]]:
@@ -379,7 +377,7 @@ def _turns(train: Train) -> tuple[dict[str, Turn], list[str]]:
     ways: dict[str, tuple[tuple[int, float], ...]] = {}
     turns: dict[str, Turn] = {}
     names: list[str] = []
-    for start in (train.output, *train.gears):
+    for start in (*train.held, *train.gears):
         if start in ways:
             continue
         ways[start], group = (), [start]
@@ -394,7 +392,7 @@ def _turns(train: Train) -> tuple[dict[str, Turn], list[str]]:
                     ways[other] = (*ways[gear], (k, 1.0 if ahead else -1.0))
                     group.append(other)
         radius = max(train.gears[g].base_radius for g in group)
-        held = start == train.output
+        held = start in train.held
         for gear in group:
             turns[gear] = Turn(None if held else len(names), radius, ways[gear])
         if not held:

@@ -92,7 +92,7 @@ def first_sets(structure: Structure, loading: Loading) -> States:
     for j, radial in enumerate(structure.radials):
         gear = structure.train.gears[radial.gear]
         driving = structure.train.gears[structure.train.input]
-        torque = np.broadcast_to(push * driving.base_radius / (gear.ratio or 1.0), (count,))
+        torque = np.broadcast_to(push * driving.base_radius / (abs(gear.ratio) or 1.0), (count,))
         law = at.graph(pick(loading.radial, everyone)[:, j], torque)
         rigid = np.isinf(law.last) & (law.reach == 0.0)
         free = (law.bound == 0.0) & (law.stick == 0.0)

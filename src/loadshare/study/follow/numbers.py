@@ -86,7 +86,8 @@ def _idle(structure: Structure, situations: Situations) -> list[int]:
     The torques of such a gear's meshes balance; their sum is round-off, whose sign says nothing.
     """
     train = situations.train
-    turned = {gear for s in train.shafts.values() for gear in (s.first, s.second)} | {train.output}
+    turned = {gear for s in train.shafts.values() for gear in (s.first, s.second)}
+    turned |= set(train.held)
     gears = list(train.gears)
     turned |= {gears[k] for k in np.flatnonzero(np.any(situations.torque, axis=0))}
     return [j for j, radial in enumerate(structure.radials) if radial.gear not in turned]

@@ -39,6 +39,10 @@ def put_places(of, here, claim, s, work, v, found):  # type: ignore[no-untyped-d
             shift[3 * g + i, v] = moving[s, g, i] + offset
             offsets, square = max(offsets, abs(offset)), square + offset * offset
         furthest = max(furthest, square)
+    for g in range(len(of.carrier)):
+        if of.carrier[g] >= 0:
+            for i in range(3):
+                shift[3 * g + i, v] += shift[3 * of.carrier[g] + i, v]
     found.width[s], found.deflection[s] = widest + offsets, np.sqrt(furthest)
 
 

@@ -93,9 +93,11 @@ def _strayed(of, here, claim, s):  # type: ignore[no-untyped-def]
         wound = claim.rotation[s, g] - claim.rotation[s, of.shaft[w, 1]] - here.clocking[r, w]
         length = max(length, abs(wound) * of.radius[g])
         total += wound + claim.shaft_torque[s, w]
-    turned = claim.rotation[s, of.output]
+    for g in of.held:
+        turned = claim.rotation[s, g]
+        length, total = max(length, abs(turned) * of.radius[g]), total + turned
     # The largest may have passed over what is not a number.
-    return max(length, abs(turned) * of.radius[of.output]) + 0.0 * (total + turned)
+    return length + 0.0 * total
 
 
 @inlined

@@ -1,0 +1,179 @@
+"""Planets must fit their carriers, and what the housing holds must not be asked to turn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from loadshare.case.checks.fit import SQUARE
+from loadshare.case.draft import Draft
+from loadshare.case.gears import Gear
+from loadshare.case.keys import Path
+from loadshare.case.line_of_action import centre_distance
+from loadshare.case.place import Vector, axis_of, centres_of, dot, minus
+from loadshare.case.power_flow import rides_on
+from loadshare.case.words import choices
+from loadshare.errors import Problem
+
+NEGLECT = 'With operating.rotation = "neglected" all positions are solved as the set stands first.'
+
+
+def check_carriers(draft: Draft) -> Iterator[Problem]:
+    """Yield carriers that are none, and planets that cannot ride on theirs."""
+    centres = centres_of(draft.gears)
+    for name, gear in draft.gears.items():
+        carrier = draft.gears.get(gear.carrier or "")
+        if carrier is None:
+            continue
+        path: Path = ("gears", name, "carrier")
+        if not carrier.is_carrier:
+            known = [n for n, g in draft.gears.items() if g.is_carrier]
+            allowed = choices(known) if known else 'a gear of type = "carrier"'
+            yield draft.problem(path, f'"{gear.carrier}" is not a carrier', allowed)
+        elif not _parallel(gear, carrier):
+            yield draft.problem(path, "its axis is not parallel to that of the planet")
+        elif name in centres and gear.carrier in centres:
+            apart = minus(centres[name], centres[gear.carrier])
+            if centre_distance(carrier, apart) <= SQUARE * gear.acting_radius:
+                yield draft.problem(path, "the planet stands on the carrier's axis")
+
+
+def check_planet_shafts(draft: Draft) -> Iterator[Problem]:
+    """Yield shafts that join a planet to what does not go round with it."""
+    for name, shaft in draft.shafts.items():
+        riding = {end: draft.gears[end].carrier for end in shaft.ends if end in draft.gears}
+        carriers = [draft.gears.get(carrier) for carrier in riding.values() if carrier]
+        known = all(carrier is not None and carrier.is_carrier for carrier in carriers)
+        if known and len(set(riding.values())) > 1:
+            planet = next(end for end, carrier in riding.items() if carrier)
+            what = f"planet {planet} goes round with {riding[planet]}, the other end does not"
+            hint = "What shares a planet's shaft rides on the same carrier."
+            yield draft.problem(("shafts", name), what, hint=hint)
+
+
+def check_planet_meshes(draft: Draft) -> Iterator[Problem]:
+    """Yield meshes of carriers, and partners that a planet cannot mesh with as it goes round."""
+    centres = centres_of(draft.gears)
+    for name, mesh in draft.meshes.items():
+        ends = [draft.gears.get(mesh.driver), draft.gears.get(mesh.driven)]
+        path: Path = ("meshes", name)
+        for end, gear in zip(mesh.ends, ends, strict=True):
+            if gear is not None and gear.is_carrier:
+                yield draft.problem(path, f"{end} is a carrier and has no teeth")
+        carrier = rides_on(draft.gears, *mesh.ends) or ""
+        holder = draft.gears.get(carrier)
+        if holder is None or not holder.is_carrier:
+            continue
+        for end, gear in zip(mesh.ends, ends, strict=True):
+            if gear is None or gear.is_carrier or gear.carrier == carrier:
+                continue
+            if gear.carrier is not None:
+                what = f"a planet of carrier {carrier} cannot mesh with one of {gear.carrier}"
+                yield draft.problem(path, what)
+            elif not {end, carrier} <= centres.keys():
+                continue
+            elif not _coaxial(holder, gear, minus(centres[end], centres[carrier])):
+                what = f"gear {end} is not on the axis of carrier {carrier}"
+                hint = "A planet meshes with what rides on its carrier or turns about its axis."
+                yield draft.problem(path, what, hint=hint)
+
+
+def check_held(draft: Draft) -> Iterator[Problem]:
+    """Yield held gears that are asked to turn, or that rigid shafts hold a second time."""
+    held = {name for name, gear in draft.gears.items() if gear.held}
+    operating, march = draft.operating, draft.march
+    turning = {operating.input: "the input", operating.output: "the output"} if operating else {}
+    if march is not None:
+        turning.setdefault(march.gear, "the gear whose revolutions are counted")
+    for name in sorted(held & turning.keys()):
+        at_output = operating is not None and name == operating.output
+        hint = "What it drives takes its torque." if at_output else ""
+        what = f"is {turning[name]}, which turns"
+        yield draft.problem(("gears", name, "held"), what, "false, or left out", hint)
+    if operating is None:
+        return
+    fixed = held | {operating.output}
+    for name in sorted(held):
+        others = _on_rigid_shafts(draft, name) & fixed - {name}
+        if others:
+            what = f"rigid shafts join it to {choices(sorted(others))}, held as well"
+            yield draft.problem(("gears", name, "held"), what, hint="One of them is enough.")
+
+
+def check_planet_errors(draft: Draft) -> Iterator[Problem]:
+    """Yield pin errors of gears that sit on no pin, and drums about what goes round."""
+    for name, errors in draft.errors.items():
+        gear = draft.gears.get(name)
+        if errors.pin is not None and gear is not None and gear.carrier is None:
+            hint = f"Give gears.{name}.carrier, or the error as installation."
+            yield draft.problem(("errors", name, "pin"), "is for planets only", hint=hint)
+    for name, ring in draft.rings.items():
+        for other in (name, *(ring.neighbours or ())):
+            if ring.neighbours and rides_on(draft.gears, other):
+                what = f"gear {other} rides on a carrier: rings about planets are round"
+                yield draft.problem(("rings", name), what, hint="Give a radius.")
+
+
+def check_turning_frames(draft: Draft) -> Iterator[Problem]:
+    """Yield what does not look the same from a carrier that turns.
+
+    A planetary set is solved as seen from its carrier, and the housing turns backwards about it:
+    what holds the set's other members must be the same in all directions.
+    """
+    operating = draft.operating
+    turns = draft.march is not None or (
+        operating is not None
+        and operating.positions > 1
+        and operating.rotation == "teeth"
+        and any(gear.teeth for gear in draft.gears.values())
+    )
+    if not turns or not draft.sound("gears", "meshes"):
+        return
+    for name, frames in _frames(draft).items():
+        gear, path = draft.gears[name], ("gears", name)
+        if None not in frames and len(frames) == 1:
+            support = gear.support if isinstance(gear.support, tuple) else ()
+            if len({k.si for k in support}) > 1:
+                what = "differs in its two directions, but the housing turns about the set"
+                yield draft.problem((*path, "support"), what, "one stiffness", NEGLECT)
+            for section in ("rings", "bearings"):
+                limit = getattr(draft, section).get(name)
+                if limit is None:
+                    continue
+                if any(part.si for part in limit.offset) or getattr(limit, "neighbours", None):
+                    what = "is not centred on the axis about which the housing turns"
+                    yield draft.problem((section, name), what, hint=NEGLECT)
+        elif gear.support not in (None, "rigid") or draft.floats(name) or name in draft.errors:
+            others = choices(sorted(c for c in frames if c))
+            what = f"moves or has errors, and meshes with planets of {others} and with other gears"
+            yield draft.problem(path, what, hint=NEGLECT)
+
+
+def _frames(draft: Draft) -> dict[str, set[str | None]]:
+    """Carriers whose planets a gear meshes with; None beside them for any other gear."""
+    found: dict[str, set[str | None]] = {
+        name: {name} for name, gear in draft.gears.items() if gear.is_carrier
+    }
+    for mesh in draft.meshes.values():
+        carrier = rides_on(draft.gears, *mesh.ends)
+        for end in mesh.ends:
+            if end in draft.gears and not draft.gears[end].carrier:
+                found.setdefault(end, set()).add(carrier)
+    return {name: frames for name, frames in found.items() if frames != {None}}
+
+
+def _on_rigid_shafts(draft: Draft, start: str) -> set[str]:
+    reached, fresh = {start}, {start}
+    while fresh:
+        ends = [set(s.ends) for s in draft.shafts.values() if s.stiffness == "rigid"]
+        fresh = set().union(*(pair for pair in ends if pair & fresh)) - reached
+        reached |= fresh
+    return reached
+
+
+def _coaxial(carrier: Gear, gear: Gear, offset: Vector) -> bool:
+    near = centre_distance(carrier, offset) <= SQUARE * gear.acting_radius
+    return near and _parallel(carrier, gear)
+
+
+def _parallel(one: Gear, other: Gear) -> bool:
+    return 1 - abs(dot(axis_of(one), axis_of(other))) <= SQUARE

@@ -1,0 +1,116 @@
+r"""Planetary sets: how fast every member turns, and which flanks its torque presses.
+
+In a set the speeds are those relative to the carrier c (Willis), the members' own less the
+carrier's about their axes; rigid links of any other kind are the same in a set at rest,
+
+.. math:: r_i (\omega_i - \omega_c) = r_j (\omega_j - \omega_c), \qquad \omega_a = \omega_b,
+
+each along the sense in which the member's rotation is counted. Written as :math:`C \omega = 0` the
+torques that links pass on balance the load by the transpose, :math:`C^T f = T`. Source:
+formulation, section 12.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.train.gear import Gear
+
+Array = NDArray[np.float64]
+Ends = tuple[str, str]
+
+LOCKED = 1e-3
+"""How far speeds may contradict each other for rounding of radii, over the input's [-]."""
+NOISE = 1e-9
+"""Share of the largest force, or of the input's speed, that is round-off [-]."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Links:
+    """The links of a train as rows over the speeds of its members.
+
+    Attributes
+    ----------
+    gears : mapping of str to Gear
+    names : tuple of str
+        Meshes, then shafts.
+    matrix : ndarray, shape (links, gears)
+        C; in base radii [m] for meshes.
+    """
+
+    gears: Mapping[str, Gear]
+    names: tuple[str, ...]
+    matrix: Array
+
+    @classmethod
+    def of(
+        cls, gears: Mapping[str, Gear], meshes: Mapping[str, Ends], shafts: Mapping[str, Ends]
+    ) -> Links:
+        """Write the links of a train whose senses are settled."""
+        order = {name: k for k, name in enumerate(gears)}
+        rows = []
+        for driver, driven in meshes.values():
+            row = np.zeros(len(order))
+            for name, sign in ((driver, 1.0), (driven, -1.0)):
+                row[order[name]] += sign * gears[name].base_radius
+            carrier = gears[driver].carrier or gears[driven].carrier
+            if carrier is not None:
+                row[order[carrier]] -= sum(
+                    row[order[name]] * along(gears[name], gears[carrier])
+                    for name in (driver, driven)
+                )
+            rows.append(row)
+        for ends in shafts.values():
+            row = np.zeros(len(order))
+            row[order[ends[0]]], row[order[ends[1]]] = 1.0, -1.0
+            rows.append(row)
+        matrix = np.array(rows).reshape(-1, len(order))
+        return cls(gears, (*meshes, *shafts), matrix)
+
+    def speeds(self, driving: str) -> tuple[dict[str, float], bool]:
+        """Return the speeds over that of the input, and whether they follow from it.
+
+        Raises
+        ------
+        ValueError
+            If nothing can turn.
+        """
+        names = list(self.gears)
+        fixed = [k for k, name in enumerate(names) if self.gears[name].held]
+        scale = np.abs(self.matrix).max(axis=1, initial=0.0)[:, None]
+        unit = np.eye(len(names))
+        matrix = np.concatenate([self.matrix / scale, unit[fixed], unit[[names.index(driving)]]])
+        due = np.zeros(len(matrix))
+        due[-1] = 1.0
+        found, _, rank, _ = np.linalg.lstsq(matrix, due, rcond=1e-9)
+        if np.abs(matrix @ found - due).max() > LOCKED:
+            raise ValueError("the train would lock: its gears hold one another")
+        still = np.abs(found) <= NOISE
+        speeds = np.where(still, 0.0, found / found[names.index(driving)]).tolist()
+        return dict(zip(names, speeds, strict=True)), bool(rank == len(names))
+
+    def pressed(self, torques: Mapping[str, float], free: Iterable[str]) -> dict[str, int]:
+        """Tell which flank of every mesh the load presses: 1 drive, −1 coast, 0 neither.
+
+        Parameters
+        ----------
+        torques : mapping of str to float
+            External torques [N·m].
+        free : iterable of str
+            Gears that turn, without those that the housing or the load holds.
+        """
+        order = {name: k for k, name in enumerate(self.gears)}
+        turning = [order[name] for name in free]
+        load = np.array([torques.get(name, 0.0) for name in self.gears])[turning]
+        force = np.linalg.lstsq(self.matrix[:, turning].T, load, rcond=1e-9)[0]
+        force[np.abs(force) <= NOISE * np.abs(force).max(initial=0.0)] = 0.0
+        return dict(zip(self.names, np.sign(force).astype(int).tolist(), strict=True))
+
+
+def along(gear: Gear, carrier: Gear) -> float:
+    """Speed along a gear's sense of what turns with a carrier, over that of the carrier: ±1."""
+    return gear.sense * carrier.sense * (1.0 if gear.axis @ carrier.axis > 0.0 else -1.0)
