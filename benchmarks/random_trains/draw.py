@@ -8,7 +8,7 @@ stiffnesses apart by up to nine decades; clearances that end exactly where frict
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Any
 
@@ -29,18 +29,22 @@ TRIES = 50
 """Structures that are drawn until one fits; a bent chain may leave no room for its last gear."""
 
 
-def draw(seed: int, number: int) -> Case:
+def draw(
+    seed: int, number: int, layouts: Mapping[str, Callable[[Dice], Layout]] = LAYOUTS
+) -> Case:
     """Return a random train.
 
     Parameters
     ----------
     seed, number : int
-        The train depends on nothing else.
+        The train depends on nothing else but the layouts.
+    layouts : mapping of str to callable
+        Structures to draw from.
     """
     dice = Dice(seed, number)
     for _ in range(TRIES):
-        name = dice.pick(tuple(LAYOUTS))
-        layout = LAYOUTS[name](dice)
+        name = dice.pick(tuple(layouts))
+        layout = layouts[name](dice)
         if dice.chance(0.15):
             layout = layout.reversed()
         try:
@@ -98,7 +102,9 @@ class _Drawing:
                 "external": {layout.input: f"{-torque!r} N*m"},
             }
         elif dice.chance(0.08):
-            gear = dice.pick([g for g in layout.gears if g not in (layout.input, layout.output)])
+            held = [name for name, gear in layout.gears.items() if gear.get("held")]
+            ends = (layout.input, layout.output, *held)
+            gear = dice.pick([g for g in layout.gears if g not in ends])
             share = dice.between(-0.5, 0.5) * RATED * self.load * layout.radius[gear]
             operating["external"] = {gear: f"{share!r} N*m"}
         self.turned_back = operating["torque"] == "0 N*m"
@@ -279,4 +285,6 @@ class _Drawing:
     def _count_teeth(self) -> None:
         """Give the input gear teeth: they say how far gears turn over the mesh cycle."""
         if self.positions > 1:
-            self.data["gears"][self.layout.input]["teeth"] = 23
+            gears = self.data["gears"]
+            toothed = (n for n in (self.layout.input, *gears) if "base_radius" in gears[n])
+            gears[next(toothed)]["teeth"] = 23

@@ -113,6 +113,8 @@ def _strings(train: Train, index: int, exact: Reference) -> Iterator[_String]:
         name: here.offset_of(name) + exact.displacement.get(name, still) @ gear.frame
         for name, gear in train.gears.items()
     }
+    # Seen from its carrier, whose turning moves a whole set alike.
+    moved |= {n: moved[n] + moved[g.carrier] for n, g in train.gears.items() if g.carrier}
     for mesh, drive, _ in _pressed(train, exact):
         first, second = train.gears[mesh.driver], train.gears[mesh.driven]
         if "face" not in (first.kind, second.kind):

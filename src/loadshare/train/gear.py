@@ -98,6 +98,11 @@ class Gear:
     frame_of: str | None = None
 
     @property
+    def running(self) -> int:
+        """Sense in which it runs in the housing, 0 if it does not turn."""
+        return self.sense * ((self.ratio > 0.0) - (self.ratio < 0.0))
+
+    @property
     def moves(self) -> bool:
         """Whether the centre can be displaced."""
         return self.support is not None

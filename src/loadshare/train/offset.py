@@ -43,10 +43,15 @@ class Offset:
         """
         fixed = self.installation
         if frame and gear.carrier is None:
-            along = (fixed @ gear.axis)[..., None] * gear.axis
-            fixed = along + (fixed @ gear.frame.T) @ (_turned(-frame) @ gear.frame)
+            fixed = turned_about(gear, fixed, -frame)
         turned = _turned(gear.sense * rotation - frame)
         return np.asarray(fixed + self.eccentricity @ (turned @ gear.frame))
+
+
+def turned_about(gear: Gear, vector: Vector, angle: float) -> Vector:
+    """Vectors (…, 3) turned about a gear's axis by an angle [rad]."""
+    along = (vector @ gear.axis)[..., None] * gear.axis
+    return np.asarray(along + (vector @ gear.frame.T) @ (_turned(angle) @ gear.frame))
 
 
 def _turned(angle: float) -> Vector:

@@ -243,16 +243,26 @@ class Train:
         rotation : mapping of str to float
             By which every gear has turned [rad].
         """
-        here = self.gears[gear]
         errors = self.offsets.get(gear)
         if errors is None:
             return ORIGIN
+        return errors.at(self.gears[gear], rotation[gear], self.frame_angle(gear, rotation))
+
+    def frame_angle(self, gear: str, rotation: Mapping[str, float]) -> float:
+        """Angle [rad] by which the carrier from which a gear is seen has turned about its axis.
+
+        Parameters
+        ----------
+        gear : str
+        rotation : mapping of str to float
+            By which every gear has turned [rad].
+        """
+        here = self.gears[gear]
         if here.frame_of is None:
-            return errors.at(here, rotation[gear])
+            return 0.0
         carrier = self.gears[here.frame_of]
         along = 1.0 if carrier.axis @ here.axis > 0.0 else -1.0
-        turned = along * carrier.sense * rotation[carrier.name]
-        return errors.at(here, rotation[gear], turned)
+        return along * carrier.sense * rotation[carrier.name]
 
     def mesh_positions(
         self, index: int, rotation: Mapping[str, float] | None = None

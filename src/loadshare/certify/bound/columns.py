@@ -233,8 +233,8 @@ class Columns:
 
     @cached_property
     def arms(self) -> Array:
-        """Driver's base radius of every flank [m]."""
-        return np.array([m.radii[0] for m, _ in self.all_flanks])
+        """Base radius at which the torque of every flank is told [m]."""
+        return np.array([m.told_radius for m, _ in self.all_flanks])
 
     def over_meshes(self, torques: Array) -> Array:
         """Sums of what belongs to the flanks, (…, flanks), of both flanks of every mesh."""

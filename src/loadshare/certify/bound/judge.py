@@ -54,7 +54,7 @@ class Bounds:
 
 
 def _torques(columns: Columns, force: Array, claimed: Array) -> Array:
-    """Errors of the torques of all flanks on their drivers, (…, flanks) [N·m].
+    """Errors of the torques of all flanks, as they are told, (…, flanks) [N·m].
 
     From the errors of all columns' forces and the claimed forces of the flanks: a torque is itself
     rounded.

@@ -15,6 +15,7 @@ from loadshare.case.line_of_action import line_of_action
 from loadshare.case.place import axis_of, centres_of
 from loadshare.train import Train
 from loadshare.train.gear import Vector, transverse_frame
+from loadshare.train.ring import transverse
 
 FLOATS, ELASTIC, FIXED = "floats", "on an elastic bearing", "on a rigid bearing"
 
@@ -33,11 +34,12 @@ class Body:
     rims : tuple of float
         Inner and outer radius of a face gear's teeth [m], if given.
     sense : int
-        +1 counter-clockwise against the axis, −1 clockwise, 0 where it is not known.
+        +1 counter-clockwise against the axis, −1 clockwise, 0 where it does not turn or that is not
+        known.
     held : str
         What holds the centre.
     role : str
-        "input", "output" or empty.
+        "input", "output", "held" or empty.
     """
 
     name: str
@@ -153,12 +155,26 @@ def _body(case: Sections, name: str, gear: Gear, centre: Vector, train: Train | 
         kind=gear.type,
         centre=centre,
         axis=np.array(axis_of(gear)),
-        base_radius=gear.acting_radius,
+        base_radius=_radius(case, name, gear, centre),
         rims=rims,
-        sense=train.gears[name].sense if train else 0,
+        sense=train.gears[name].running if train else 0,
         held=held,
-        role=roles.get(name, ""),
+        role="held" if gear.held else roles.get(name, ""),
     )
+
+
+def _radius(case: Sections, name: str, gear: Gear, centre: Vector) -> float:
+    """Acting radius; of a carrier the distance of its outermost pin, or that of a middling gear."""
+    if not gear.is_carrier:
+        return gear.acting_radius
+    centres, axis = centres_of(case.gears), np.array(axis_of(gear))
+    pins = [
+        float(np.linalg.norm(transverse(np.array(centres[n]) - centre, axis)))
+        for n, g in case.gears.items()
+        if g.carrier == name and n in centres
+    ]
+    others = sorted(g.acting_radius for g in case.gears.values() if not g.is_carrier)
+    return max(pins, default=others[len(others) // 2] if others else 1.0)
 
 
 def _pairs(

@@ -212,6 +212,8 @@ class _View(Panel):
             rims = dict(zip(("inner", "outer"), body.rims, strict=False))
             acting = {"acting radius": body.base_radius}
             return (rims, acting) if rims else (acting, {})
+        if body.kind == "carrier":
+            return {}, {"pin circle": body.base_radius}
         found: dict[str, float] = {}
         for radii in (p.radii for p in self.layout.pairs if body.name in p.radii):
             radius = radii.pop(body.name)
@@ -304,7 +306,8 @@ class _View(Panel):
 
     def _centre(self, body: Body) -> Row:
         ((x, y),) = self._flat(body.centre)
-        turns = {1: "counter-clockwise", -1: "clockwise", 0: "unknown"}[body.sense]
+        still = "not" if body.role == "held" else "unknown"
+        turns = {1: "counter-clockwise", -1: "clockwise", 0: still}[body.sense]
         return {
             "x": x,
             "y": y,
