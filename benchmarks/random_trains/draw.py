@@ -29,9 +29,7 @@ TRIES = 50
 """Structures that are drawn until one fits; a bent chain may leave no room for its last gear."""
 
 
-def draw(
-    seed: int, number: int, layouts: Mapping[str, Callable[[Dice], Layout]] = LAYOUTS
-) -> Case:
+def draw(seed: int, number: int, layouts: Mapping[str, Callable[[Dice], Layout]] = LAYOUTS) -> Case:
     """Return a random train.
 
     Parameters

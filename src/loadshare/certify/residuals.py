@@ -34,16 +34,22 @@ def force_balance(state: ClaimedState) -> Blocks:
     balance = -(of.bearing_pushing @ state.claim.flank_force).reshape(-1, 2, state.count)
     balance -= state.support[1]
     if len(of.drum) or of.pulls:
-        pushed = np.zeros((len(of.order), 3, state.count))
-        for gear, force in zip(of.pulled, state.reaction if of.pulls else (), strict=True):
-            pushed[gear] += force
-        for d, gear in enumerate(of.drum):
-            pushed[gear] += state.stop_push[d]
-            for push, neighbour in zip(state.arc_push[d], of.neighbours[d], strict=True):
-                pushed[gear] += push
-                pushed[neighbour] -= push
-        balance += of.frames @ pushed[of.moving]
+        balance += of.frames @ pushed_by_rings(state)[of.moving]
     return [(size(balance), of.bearings)]
+
+
+def pushed_by_rings(state: ClaimedState) -> Array:
+    """Force [N] of rings, bearings with clearance and splines on every gear, (gears, 3, S)."""
+    of = state.of
+    pushed = np.zeros((len(of.order), 3, state.count))
+    for gear, force in zip(of.pulled, state.reaction if of.pulls else (), strict=True):
+        pushed[gear] += force
+    for d, gear in enumerate(of.drum):
+        pushed[gear] += state.stop_push[d]
+        for push, neighbour in zip(state.arc_push[d], of.neighbours[d], strict=True):
+            pushed[gear] += push
+            pushed[neighbour] -= push
+    return pushed
 
 
 def moment_balance(state: ClaimedState) -> Blocks:

@@ -37,6 +37,10 @@ def run(
     no_reduce: Annotated[
         bool, typer.Option("--no-reduce", help="Solve the whole scene, leaving nothing out.")
     ] = False,
+    loads: Annotated[
+        bool,
+        typer.Option("--loads", help="Tell what gears, bearings or pins, and shafts carry."),
+    ] = False,
     explain: Annotated[
         bool,
         typer.Option(
@@ -72,7 +76,7 @@ def run(
     how = {"solver": solver, "method": method, "reduce": not no_reduce, "tolerance": tolerance}
     result, refusal = _solved(loaded, wanted, how)
     if result is not None:
-        print_result(result, len(wanted))
+        print_result(result, len(wanted), loads=loads)
         if search:
             there = [p.position for p in result.positions]
             _print_search(loaded, there if position else there[:1])

@@ -227,6 +227,40 @@ def rest(position: Position, gear: str, places: int) -> Record:
     }
 
 
+def loads(result: Result) -> Iterator[Record]:
+    """What gears and shafts carry, each the largest over the positions; what carries nothing not.
+
+    Of a gear the torque from outside, a load or what balances it, and the force on its bearing.
+    """
+    positions = result.positions
+    torques = [t for p in positions for t in (*p.loads.gears.values(), *p.loads.shafts.values())]
+    bearings = {
+        p.position: {g: math.hypot(*f) for g, f in p.loads.bearings.items()} for p in positions
+    }
+    forces = [force for found in bearings.values() for force in found.values()]
+    places, digits = decimals(torques), decimals(forces)
+    least = [1e-9 * max(map(abs, values), default=0.0) for values in (torques, forces)]
+    for gear in positions[0].loads.gears:
+        torque = max((p.loads.gears[gear] for p in positions), key=abs)
+        at = max(bearings, key=lambda position: bearings[position][gear])
+        force = bearings[at][gear]
+        if abs(torque) > least[0] or force > least[1]:
+            yield {
+                "part": Cell(f"gear {gear}"),
+                "torque": Cell(fixed(torque, places) if abs(torque) > least[0] else NONE, torque),
+                "bearing": Cell(fixed(force, digits) if force > least[1] else NONE, force),
+                "position": Cell(str(at) if force > least[1] else NONE, at),
+            }
+    for shaft in positions[0].loads.shafts:
+        torque = max((p.loads.shafts[shaft] for p in positions), key=abs)
+        yield {
+            "part": Cell(f"shaft {shaft}"),
+            "torque": Cell(fixed(torque, places), torque),
+            "bearing": Cell(NONE),
+            "position": Cell(NONE),
+        }
+
+
 def measures(result: Result) -> Iterator[Record]:
     """Largest figures of the displacements over the positions, and their bounds."""
     for name, measure, position in result.validity:

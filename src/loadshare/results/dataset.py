@@ -61,6 +61,27 @@ VARIABLES = {
     "pair_share": Variable(
         ("mesh",), "1", "load-sharing coefficient, group mean", lambda p, m: p.pair_share.get(m)
     ),
+    "mesh_force": Variable(
+        ("mesh",), "N", "force along the line of action", lambda p, m: p.loads.meshes[m]
+    ),
+    "shaft_torque": Variable(
+        ("shaft",),
+        "N·m",
+        "torque from the first gear to the second",
+        lambda p, s: p.loads.shafts[s],
+    ),
+    "gear_torque": Variable(
+        ("gear",),
+        "N·m",
+        "torque from outside, counter-clockwise about the gear's axis",
+        lambda p, g: p.loads.gears[g],
+    ),
+    "bearing_force": Variable(
+        ("gear", "component"),
+        "N",
+        "force on the bearing or the pin in the gear's transverse frame",
+        lambda p, g: p.loads.bearings[g],
+    ),
     "rotation": Variable(("gear",), "rad", "elastic rotation", lambda p, g: p.rotation[g]),
     "displacement": Variable(
         ("gear", "component"),
@@ -126,7 +147,7 @@ def dataset(result: Result) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Dimensions position, mesh, gear, component, end, float, figure and measure; every variable
+        Dimensions position, mesh, gear, shaft, component, end, float, figure and measure; every variable
         carries its unit.
     """
     import xarray as xr
@@ -136,6 +157,7 @@ def dataset(result: Result) -> xr.Dataset:
     names: dict[str, list[str]] = {
         "mesh": list(first.torque),
         "gear": list(first.rotation),
+        "shaft": list(first.loads.shafts),
         "component": list(COMPONENTS),
         "end": ["least", "largest"],
         "float": list(first.floats),

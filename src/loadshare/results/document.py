@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from loadshare.certify import Certificate
     from loadshare.results.result import Position, Result
 
-FORMAT = 3
+FORMAT = 4
 """Of the files that are written; it changes with what a file holds."""
 _TOLD = (
     "position",
@@ -29,6 +29,8 @@ _TOLD = (
     "claim",
 )
 """Of a position, as it is; certificate, validity and uniqueness in more words."""
+
+_LOADS = ("meshes", "shafts", "gears", "bearings")
 
 
 def to_document(result: Result) -> dict[str, Any]:
@@ -64,6 +66,7 @@ def _told(p: Position) -> dict[str, Any]:
     told = {name: as_data(getattr(p, name)) for name in _TOLD}
     told["validity"] = {"verdict": p.validity.verdict} | as_data(p.validity)
     told["uniqueness"] = as_data(p.uniqueness) | {"told": p.uniqueness.told}
+    told["loads"] = {name: as_data(getattr(p.loads, name)) for name in _LOADS}
     return told | _judged(p.certificate)
 
 

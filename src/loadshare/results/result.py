@@ -14,6 +14,7 @@ from loadshare.certify.uniqueness import TOLD, Uniqueness, uniqueness
 from loadshare.certify.validity import Measure, Validity, validity
 from loadshare.pictures import picture
 from loadshare.results.claim import Claim, Pair, claim_of
+from loadshare.results.loads import Loads
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.train import Train
@@ -172,6 +173,11 @@ class Position:
         gears, moved = self.train.gears, self.claim.displacement
         plane = {name: gears[name].frame @ p for name, p in moved.items()}
         return {name: (float(p[0]), float(p[1])) for name, p in plane.items()}
+
+    @cached_property
+    def loads(self) -> Loads:
+        """Forces of meshes and on bearings, torques of shafts and from outside."""
+        return Loads(self.train, self.equilibrium)
 
     @property
     def undetermined(self) -> Mapping[str, Pair]:

@@ -26,8 +26,8 @@ from loadshare.study.memory import stepped
 from loadshare.study.positions import loaded
 from loadshare.train import Train, build_train
 from loadshare.train.gear import Vector
-from loadshare.train.offset import turned_about
 from loadshare.train.memory import slip_of
+from loadshare.train.offset import turned_about
 from loadshare.train.train import Spline
 
 if TYPE_CHECKING:

@@ -26,7 +26,7 @@ RESTS = "Floating gears: displacement x, y and margin [µm], reaction of the rin
 WORDS = ("figure", "unit", "where")
 
 
-def print_result(result: Result, wanted: int) -> None:
+def print_result(result: Result, wanted: int, *, loads: bool = False) -> None:
     """Print load sharing, coefficients, floats, displacements and the certificate.
 
     Parameters
@@ -35,6 +35,8 @@ def print_result(result: Result, wanted: int) -> None:
         Of what was certified.
     wanted : int
         Number of positions that were asked for.
+    loads : bool
+        Whether to print what gears, bearings and shafts carry.
     """
     certified = [p.position for p in result.positions]
     if len(certified) < wanted:
@@ -42,6 +44,8 @@ def print_result(result: Result, wanted: int) -> None:
     print_sharing(result)
     print_omega(result)
     print_floats(result)
+    if loads:
+        print_loads(result)
     print_validity(result)
     print_certificate(result, wanted)
 
@@ -57,6 +61,13 @@ def print_omega(result: Result) -> None:
     for column, head in zip(made.columns, heads, strict=True):
         column.header = head
     show("Load-sharing coefficient Ω: largest over branches and positions", made)
+
+
+def print_loads(result: Result) -> None:
+    """Print torques from outside and of shafts, and forces on bearings, the largest of each."""
+    fields = _fields(result, "part", "torque", "bearing")
+    made = texts(records.loads(result), fields, words=("part",))
+    show("Loads: torque from outside or of a shaft [N·m], force on a bearing or pin [N]", made)
 
 
 def print_validity(result: Result) -> None:

@@ -14,6 +14,11 @@ OMEGAS = dict.fromkeys(("over stage", "Ω stage"), "Ω over stage mean") | dict.
     ("over group", "Ω pair"), "Ω over group mean"
 )
 """Titles of the columns of both coefficients."""
+LOADS = {
+    "torque": "torque [N·m]",
+    "bearing": "force on the bearing or pin [N]",
+    "position": "at position",
+}
 FOLDED = 24
 """Rows from which a table is shown only when asked for."""
 
@@ -90,6 +95,19 @@ def _undetermined(result: Result) -> list[str]:
     notes = [f"{told[0].upper()}{told[1:]}." for told in undetermined_told(result.positions)]
     return notes + (
         ["Of what is not determined, the least displacement is given."] if notes else []
+    )
+
+
+def load_table(result: Result) -> Table:
+    """Torques from outside, force on bearings, torques of shafts, the largest of each."""
+    return table(
+        "Loads of gears, bearings and shafts: the largest",
+        records.loads(result),
+        ("part",),
+        ("torque", "bearing", "position"),
+        LOADS,
+        ["The torque of a gear is that from outside, counter-clockwise about its axis."],
+        FOLDED,
     )
 
 

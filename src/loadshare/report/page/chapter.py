@@ -182,6 +182,7 @@ def _tables(result: Result) -> Iterator[Table]:
         yield answers.position_table(result)
     if result.positions[0].floats:
         yield answers.float_table(result)
+    yield answers.load_table(result)
     yield answers.validity_table(result)
     yield answers.certificate_table(result)
 
