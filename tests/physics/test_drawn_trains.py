@@ -14,7 +14,7 @@ import loadshare as ls
 from benchmarks.kept import known
 from benchmarks.random_trains.draw import LAYOUTS, draw
 from benchmarks.random_trains.judge import AGREES, judged
-from benchmarks.random_trains.run import PROBLEMS, STRESS, failures, one, run
+from benchmarks.random_trains.run import PROBLEMS, SETS, STRESS, failures, one, run
 from benchmarks.random_trains.table import text
 from loadshare.job.hot import HOT, SEARCHED
 
@@ -55,6 +55,11 @@ def test_every_structure_and_element_is_drawn():
 
 def test_drawn_trains_are_solved_as_the_reference_has_them():
     assert not faults(range(25))
+
+
+def test_drawn_planetary_sets_are_solved_as_the_reference_has_them():
+    found = ({"seed": SETS, "number": k, **one(SETS, k)} for k in range(25))
+    assert not [f"{row['name']}: {line}" for row in found for line in failures(row)]
 
 
 @pytest.mark.parametrize("number", [2752, 2924])

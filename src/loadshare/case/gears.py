@@ -38,6 +38,8 @@ OF_TEETH = (
 """Keys of a gear that say more of its teeth, beside their number and module."""
 OF_A_GEAR = ("base_radius", "inner_radius", "outer_radius", "teeth", "module", *OF_TEETH)
 """Keys of a gear that a carrier does not have."""
+COPIES = range(2, 33)
+"""How many copies a gear may have."""
 RADIUS_TOLERANCE = 1e-3
 """How far a given base radius may be from that of the teeth, as a part of it [-]."""
 STEEPEST = Quantity("45 deg", math.radians(45))
@@ -94,6 +96,25 @@ class Gear(Element):
         shaped("x, y, z, or a list of 3 numbers"),
     ] = "z"
     """Direction of the axis: x, y, z, or three components [-]."""
+
+    copies: (
+        Annotated[
+            Annotated[int, Strict(), Field(ge=COPIES.start, lt=COPIES.stop), Tag(VALUE)]
+            | Annotated[
+                tuple[Angle, ...],
+                Field(min_length=COPIES.start, max_length=COPIES.stop - 1),
+                Tag(LIST),
+            ],
+            shaped("a number of copies, or a list of angles"),
+        ]
+        | None
+    ) = None
+    """Gears that this one stands for: their number, or the angles by which each is turned [angle].
+
+    The gear p stands for p1, p2 and so on, turned about its pole; a mesh s-p for s-p1, s-p2, and
+    likewise shafts, splines, rings, bearings, errors and what stages name. What is written of
+    single copies counts first.
+    """
 
     carrier: str | None = None
     """Carrier on whose pin a planet sits; the centre of other gears is held by the housing.
@@ -165,6 +186,9 @@ class Gear(Element):
 
     def rules(self) -> Iterator[Rule]:
         """Yield what does not hold of the radii and the axis."""
+        if self.copies is not None:
+            hint = "Their angles count from that of the centre, about its pole."
+            yield Rule("goes with a centre by distance and angle", ("copies",), hint=hint)
         if self.type == "carrier":
             yield from self._carrier_rules()
             return

@@ -13,6 +13,7 @@ from pydantic import PrivateAttr
 
 from loadshare.case.checks import check
 from loadshare.case.content import ABOUT, Content
+from loadshare.case.copies import with_copies
 from loadshare.case.draft import as_data, read_draft
 from loadshare.case.keys import covers, parse
 from loadshare.case.origin import Origin
@@ -57,7 +58,7 @@ class Case(Content):
         **sections: Any,
     ) -> None:
         data = as_data({**(content or {}), **sections})
-        origin = origin or Origin(name or "case", outside=True)
+        data, origin = with_copies(data, origin or Origin(name or "case", outside=True))
         draft = read_draft(data, origin)
         problems = [*draft.problems, *check(draft)]
         if problems:

@@ -11,6 +11,7 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from loadshare.case.checks import check
+from loadshare.case.copies import with_copies
 from loadshare.case.draft import Draft, as_data, read_draft
 from loadshare.case.keys import Path, parse, walk
 from loadshare.case.model import Case
@@ -91,7 +92,8 @@ def load_draft(path: str | FilePath, changes: Mapping[str, Any] | None = None) -
     path = FilePath(path)
     origin = _origin(path)
     data, files, problems = _read(path, (), origin)
-    data, origin = revise(as_data(data), replace(origin, files=files), changes or {})
+    data, origin = with_copies(as_data(data), replace(origin, files=files))
+    data, origin = revise(data, origin, changes or {})
     draft = read_draft(data, origin)
     draft.problems[:] = [*problems, *draft.problems, *check(draft)]
     return draft

@@ -147,8 +147,8 @@ def dataset(result: Result) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Dimensions position, mesh, gear, shaft, component, end, float, figure and measure; every variable
-        carries its unit.
+        Dimensions position, mesh, gear, shaft, component, end, float, figure and measure; every
+        variable carries its unit.
     """
     import xarray as xr
 

@@ -1,0 +1,211 @@
+"""Branches that are written once: a gear's `copies`, and with it all that names the gear.
+
+A gear p with three copies stands for p1, p2 and p3; a mesh s-p for s-p1, s-p2 and s-p3; its
+bearing, ring, spline and errors for theirs. What is written of a single copy, such as errors.p2,
+counts before what is written of all.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+from loadshare.case.gears import COPIES
+from loadshare.case.keys import Path, dotted, ends_of, parse
+from loadshare.case.origin import Origin
+from loadshare.case.quantity import ANGLE, Quantity
+
+BY_GEAR = ("splines", "rings", "bearings", "errors")
+"""Sections whose elements are named after a gear."""
+BY_PAIR = {"meshes": ("driver", "driven"), "shafts": ("ends",)}
+"""Sections whose elements join two gears, and the keys that tell them if the name does not."""
+Data = dict[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
+class _Pattern:
+    """Angles [rad] by which the copies of each gear are turned."""
+
+    turns: Mapping[str, tuple[float, ...]]
+
+    def count(self, *names: str) -> int | None:
+        """Copies of an element that names gears; None where it names none that has copies."""
+        counts = {len(self.turns[name]) for name in names if name in self.turns}
+        return counts.pop() if len(counts) == 1 else None
+
+    def of(self, name: str, k: int) -> str:
+        """Name of a gear's copy number k, counted from 1; that of a gear without as it is."""
+        return f"{name}{k}" if name in self.turns else name
+
+
+def with_copies(data: Data, origin: Origin) -> tuple[Data, Origin]:
+    """Return a case's plain data with all copies written out, and where each was written.
+
+    What is wrong with `copies` stays as it is, to be told when the gear is read.
+    """
+    gears = data.get("gears")
+    turns = dict(_turns(gears)) if isinstance(gears, Mapping) else {}
+    if not turns:
+        return data, origin
+    pattern, names = _Pattern(turns), list(data["gears"])
+    made = {**data, "gears": {}}
+    moved: list[tuple[Path, Path]] = []
+
+    def spread(section: str, ends: Callable[[str, Any], tuple[str, ...]]) -> dict[str, list[str]]:
+        """Write out a section; returns the names that each element came to."""
+        before = data.get(section)
+        if not isinstance(before, Mapping):
+            return {}
+        after: Data = {}
+        became: dict[str, list[str]] = {}
+        for name, element in before.items():
+            count = pattern.count(*ends(name, element))
+            if count is None:
+                _lay(after, name, element)
+                continue
+            became[name] = []
+            for k in range(1, count + 1):
+                known = ends(name, element)
+                new = _renamed(name, known, pattern, k)
+                _lay(after, new, _copied(section, element, pattern, known, k), under=True)
+                became[name].append(new)
+                moved.append(((section, name), (section, new)))
+        made[section] = after
+        return became
+
+    became = {"gears": spread("gears", lambda name, _: (name,))}
+    for section in BY_GEAR:
+        became[section] = spread(section, lambda name, _: (name,))
+    for section, keys in BY_PAIR.items():
+        became[section] = spread(section, partial(_ends, keys=keys, gears=names))
+    _rename_in_stages(made, became["meshes"])
+    if isinstance(made.get("assumed"), list):
+        made["assumed"] = [p for given in made["assumed"] for p in _patterns(given, became)]
+    files = dict(origin.files)
+    for old, new in moved:
+        inside = {k: f for k, f in origin.files.items() if k[: len(old)] == old}
+        files |= {
+            new + k[len(old) :]: f for k, f in inside.items() if new + k[len(old) :] not in files
+        }
+    return made, replace(origin, files=files)
+
+
+def _turns(gears: Mapping[str, Any]) -> Iterator[tuple[str, tuple[float, ...]]]:
+    """Gears with copies that can be written out, and the angles of these [rad]."""
+    for name, gear in gears.items():
+        centre = gear.get("centre") if isinstance(gear, Mapping) else None
+        if not isinstance(centre, Mapping) or _angle(centre.get("angle")) is None:
+            continue
+        given = gear.get("copies")
+        if isinstance(given, int) and not isinstance(given, bool) and given in COPIES:
+            yield name, tuple(2.0 * math.pi * k / given for k in range(given))
+        elif isinstance(given, list) and len(given) in COPIES:
+            angles = [_angle(angle) for angle in given]
+            if None not in angles:
+                yield name, tuple(angle for angle in angles if angle is not None)
+
+
+def _angle(given: object) -> float | None:
+    try:
+        read = ANGLE.read(given)
+    except ValueError:
+        return None
+    return read.si if isinstance(read, Quantity) else None
+
+
+def _ends(name: str, element: Any, keys: tuple[str, ...], gears: list[str]) -> tuple[str, ...]:
+    """The two gears of a mesh or shaft, as far as they can be told."""
+    told = [element.get(key) for key in keys] if isinstance(element, Mapping) else [None]
+    if len(keys) == 1 and isinstance(told[0], list):
+        told = told[0]
+    by_name = ends_of(name, gears) or (None, None)
+    ends = [t if t is not None else n for t, n in zip([*told, None][:2], by_name, strict=True)]
+    return tuple(end for end in ends if isinstance(end, str))
+
+
+def _renamed(name: str, ends: tuple[str, ...], pattern: _Pattern, k: int) -> str:
+    """Name of an element's copy number k."""
+    if ends == (name,) or "-".join(ends) == name:
+        return "-".join(pattern.of(end, k) for end in ends)
+    return f"{name}{k}"
+
+
+def _copied(section: str, element: Any, pattern: _Pattern, ends: tuple[str, ...], k: int) -> Any:
+    """An element's copy number k."""
+    made = copy.deepcopy(element)
+    if not isinstance(made, dict):
+        return made
+    for key in BY_PAIR.get(section, ()):
+        given = made.get(key)
+        if isinstance(given, str):
+            made[key] = pattern.of(given, k)
+        elif isinstance(given, list):
+            made[key] = [pattern.of(e, k) if isinstance(e, str) else e for e in given]
+    if section == "gears":
+        del made["copies"]
+        centre = made["centre"]
+        turned = math.degrees((_angle(centre["angle"]) or 0.0) + pattern.turns[ends[0]][k - 1])
+        centre["angle"] = f"{round(turned, 12):.15g} deg"
+        if isinstance(centre.get("about"), str):
+            centre["about"] = pattern.of(centre["about"], k)
+    return made
+
+
+def _lay(table: Data, name: str, element: Any, *, under: bool = False) -> None:
+    """Put an element in a table; where one of its name stands, key by key, over it or under it."""
+    there = table.get(name)
+    if isinstance(there, dict) and isinstance(element, Mapping):
+        low, high = (element, there) if under else (there, element)
+        table[name] = _merged(low, high)
+    elif name not in table or not under:
+        table[name] = element
+
+
+def _merged(low: Mapping[str, Any], high: Mapping[str, Any]) -> Data:
+    found = dict(low)
+    for key, value in high.items():
+        below = found.get(key)
+        both = isinstance(value, Mapping) and isinstance(below, Mapping)
+        found[key] = _merged(below, value) if both else value  # type: ignore[arg-type]
+    return found
+
+
+def _rename_in_stages(data: Data, meshes: Mapping[str, list[str]]) -> None:
+    """Name every copy of a mesh where a stage names the mesh."""
+
+    def named(given: Any) -> Any:
+        if not isinstance(given, list):
+            return given
+        found: list[Any] = []
+        for item in given:
+            if isinstance(item, list):
+                found.append(named(item))
+            else:
+                found += meshes.get(item, [item]) if isinstance(item, str) else [item]
+        return found
+
+    stages = data.get("stages")
+    if isinstance(stages, Mapping):
+        data["stages"] = {
+            name: {
+                **stage,
+                **{key: named(stage[key]) for key in ("meshes", "groups") if key in stage},
+            }
+            if isinstance(stage, Mapping)
+            else stage
+            for name, stage in stages.items()
+        }
+
+
+def _patterns(given: Any, became: Mapping[str, Mapping[str, list[str]]]) -> list[Any]:
+    """A pattern of what is assumed, once for every copy that it speaks of."""
+    try:
+        path = parse(given) if isinstance(given, str) else ()
+    except ValueError:
+        return [given]
+    copies = became.get(str(path[0]), {}).get(str(path[1])) if len(path) > 1 else None
+    return [dotted((path[0], name, *path[2:])) for name in copies] if copies else [given]

@@ -1,0 +1,118 @@
+"""Copies of gears are the same as every one of them written out."""
+
+from __future__ import annotations
+
+import copy
+from typing import Any
+
+import pytest
+
+from loadshare.case import Case, load_case
+from loadshare.case.writer import toml_text
+from loadshare.errors import CaseError
+
+SET: dict[str, Any] = {
+    "assumed": ["gears.planet.support", "meshes.sun-planet"],
+    "operating": {"input": "sun", "output": "carrier", "torque": "100 N*m"},
+    "gears": {
+        "sun": {"teeth": 18, "module": "5 mm", "centre": ["0 mm", "0 mm"]},
+        "planet": {
+            "copies": 3,
+            "teeth": 36,
+            "module": "5 mm",
+            "carrier": "carrier",
+            "support": "1e9 N/m",
+            "centre": {"distance": "135 mm", "angle": "10 deg"},
+        },
+        "ring": {"type": "internal", "teeth": 90, "module": "5 mm", "held": True}
+        | {"centre": ["0 mm", "0 mm"]},
+        "carrier": {"type": "carrier", "centre": ["0 mm", "0 mm"]},
+    },
+    "meshes": {
+        "sun-planet": {"stiffness": "2e7 N*m/rad"},
+        "outer": {"driver": "planet", "driven": "ring", "stiffness": "9e7 N*m/rad"},
+        "sun-planet2": {"gap": "1e-5 rad"},
+    },
+    "errors": {
+        "planet2": {"pin": {"radial": "5 um"}},
+        "planet": {"pin": {"tangential": "1 um"}},
+    },
+    "stages": {"I": {"meshes": ["sun-planet"], "groups": [["sun-planet"]]}},
+}
+
+
+def changed(**sections: Any) -> dict[str, Any]:
+    return copy.deepcopy(SET) | sections
+
+
+def test_copies_are_written_out() -> None:
+    case = Case(SET)
+    assert list(case.gears) == ["sun", "planet1", "planet2", "planet3", "ring", "carrier"]
+    angles = [case.gears[f"planet{k}"].centre.angle.text for k in (1, 2, 3)]
+    assert angles == ["10 deg", "130 deg", "250 deg"]
+    assert list(case.meshes) == [
+        *(f"sun-planet{k}" for k in (1, 2, 3)),
+        "outer1",
+        "outer2",
+        "outer3",
+    ]
+    assert case.meshes["outer2"].ends == ("planet2", "ring")
+    assert case.meshes["sun-planet2"].gap is not None
+    assert case.meshes["sun-planet1"].gap is None
+    pins = [case.errors[f"planet{k}"].pin for k in (1, 2, 3)]
+    assert [pin.tangential.text for pin in pins] == ["1 um"] * 3
+    assert [pin.radial.si for pin in pins] == pytest.approx([0.0, 5e-6, 0.0])
+    assert case.stages["I"].groups == (("sun-planet1", "sun-planet2", "sun-planet3"),)
+    assert case.is_assumed("gears.planet3.support")
+    assert case.is_assumed("meshes.sun-planet1.stiffness")
+    assert Case(case.to_dict()) == case
+
+
+def test_angles_may_be_given_one_by_one() -> None:
+    data = changed()
+    data["gears"]["planet"]["copies"] = ["0 deg", "1.5 rad", "240 deg"]
+    case = Case(data)
+    assert case.gears["planet2"].centre.angle.si == pytest.approx(1.5 + 0.17453292519943295)
+
+
+def test_gears_on_one_pin_are_copied_together() -> None:
+    data = changed(errors={}, stages={}, assumed=[])
+    wheel = data["gears"]["planet"]
+    data["gears"]["pinion"] = wheel | {"centre": {"about": "planet", "distance": "0 mm"}}
+    data["gears"]["pinion"]["centre"] |= {"angle": "0 deg", "height": "60 mm"}
+    data["shafts"] = {"planet-pinion": {"stiffness": "rigid"}}
+    data["meshes"] = {
+        "sun-planet": {"stiffness": "2e7 N*m/rad"},
+        "pinion-ring": {"stiffness": "9e7 N*m/rad"},
+    }
+    case = Case(data)
+    assert list(case.shafts) == [f"planet{k}-pinion{k}" for k in (1, 2, 3)]
+    assert case.gears["pinion3"].centre.about == "planet3"
+
+
+def test_what_is_wrong_with_copies_is_told_once() -> None:
+    for given, told in ((1, "copies"), ("three", "copies"), (["0 mm", "5 mm"], "copies")):
+        data = changed()
+        data["gears"]["planet"]["copies"] = given
+        with pytest.raises(CaseError) as caught:
+            Case(data)
+        assert f"gears.planet.{told}" in str(caught.value)
+    data = changed()
+    data["gears"]["sun"]["copies"] = 3
+    with pytest.raises(CaseError, match="goes with a centre by distance and angle"):
+        Case(data)
+
+
+def test_a_problem_names_the_file_in_which_all_copies_stand(tmp_path) -> None:
+    Case(SET).to_toml(tmp_path / "whole.toml")
+    base, own = tmp_path / "base.toml", tmp_path / "own.toml"
+
+    base.write_text(
+        toml_text(changed(meshes={**SET["meshes"], "sun-planet": {"stiffness": "2 kg"}}))
+    )
+    own.write_text('extends = "base.toml"\n[gears.planet]\ncopies = 4\n')
+    with pytest.raises(CaseError) as caught:
+        load_case(own)
+    told = str(caught.value).splitlines()
+    assert len(told) == 4
+    assert all("base.toml" in line and "sun-planet" in line for line in told)
