@@ -38,19 +38,22 @@ def planetary(
     **changes: Any,
 ) -> ls.Case:
     """Return a set of equal planets; `changes` are keys of the case with dots as `__`."""
-    wheel = {"module": f"{MODULE} mm", "centre": ["0 mm", "0 mm"]}
+    # By radii: real teeth could not be put together in every number.
+    radius = [
+        f"{0.5 * MODULE * teeth * math.cos(math.radians(20.0)):.17g} mm"
+        for teeth in (SUN, PLANET, RING)
+    ]
+    centre = ["0 mm", "0 mm"]
     gears: dict[str, Any] = {
-        "sun": {"teeth": SUN, **wheel},
-        "ring": {"type": "internal", "teeth": RING, **wheel},
-        "carrier": {"type": "carrier", "centre": ["0 mm", "0 mm"]},
+        "sun": {"base_radius": radius[0], "centre": centre},
+        "ring": {"type": "internal", "base_radius": radius[2], "centre": centre},
+        "carrier": {"type": "carrier", "centre": centre},
     }
     gears[held]["held"] = True
     meshes = {}
     for k in range(planets):
         at = {"distance": f"{ARM} m", "angle": f"{2.0 * math.pi * k / planets:.17g} rad"}
-        gears[f"p{k}"] = {"teeth": PLANET, "module": f"{MODULE} mm", "carrier": "carrier"} | {
-            "centre": at
-        }
+        gears[f"p{k}"] = {"base_radius": radius[1], "carrier": "carrier", "centre": at}
         meshes[f"sun-p{k}"] = {"stiffness": "2e7 N*m/rad"}
         meshes[f"p{k}-ring"] = {"stiffness": "9e7 N*m/rad"}
     case = ls.Case(

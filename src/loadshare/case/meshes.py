@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import Annotated, Literal
 
-from pydantic import Field, Tag
+from pydantic import Field, Strict, Tag
 
 from loadshare.case.element import (
     LIST,
@@ -148,6 +148,10 @@ class Mesh(Element):
 
     gap: PerPosition[Angle] | None = None
     """Unloaded gap at the driver that opens the mesh [angle], one value or one per position."""
+
+    phase: Annotated[float, Strict(), Field(ge=0, lt=1, allow_inf_nan=False)] | None = None
+    """Part of its cycle at which it stands at the first position [-]; by `operating.phases` when
+    left out."""
 
     backlash: Distance | None = None
     """Circumferential working backlash [length]; without any backlash the coast flank is free."""

@@ -43,6 +43,13 @@ class Operating(Element):
     positions: Positions = 1
     """Number of meshing positions in a mesh cycle [-]."""
 
+    phases: Literal["together", "layout"] = "together"
+    """Where meshes stand in their cycles at the first position.
+
+    All at their first one; or each where its teeth are, by their numbers and by where gears stand:
+    the first position of a law is then that of contact at the pitch point.
+    """
+
     rotation: Literal["teeth", "neglected"] = "teeth"
     """How far gears turn over a mesh cycle: by their `teeth`, or not at all.
 

@@ -61,6 +61,9 @@ VARIABLES = {
     "pair_share": Variable(
         ("mesh",), "1", "load-sharing coefficient, group mean", lambda p, m: p.pair_share.get(m)
     ),
+    "mesh_position": Variable(
+        ("mesh",), "1", "position of the mesh in its own cycle", lambda p, m: p.mesh_position[m]
+    ),
     "mesh_force": Variable(
         ("mesh",), "N", "force along the line of action", lambda p, m: p.loads.meshes[m]
     ),

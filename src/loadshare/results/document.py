@@ -19,6 +19,7 @@ _TOLD = (
     "position",
     "torque",
     "coast_torque",
+    "mesh_position",
     "share",
     "pair_share",
     "rotation",

@@ -175,6 +175,12 @@ class Position:
         return {name: (float(p[0]), float(p[1])) for name, p in plane.items()}
 
     @cached_property
+    def mesh_position(self) -> Mapping[str, int]:
+        """Position in its own cycle at which every mesh stands, from 1."""
+        index = self.equilibrium.index
+        return {mesh: k + 1 for mesh, k in self.train.mesh_positions(index).items()}
+
+    @cached_property
     def loads(self) -> Loads:
         """Forces of meshes and on bearings, torques of shafts and from outside."""
         return Loads(self.train, self.equilibrium)

@@ -101,7 +101,10 @@ def train_of(
     )
     # In the order of the walk from the input gear.
     gears = {name: supported[name] for name in geometry.gears}
-    meshes = elements("meshes", lambda name, mesh: _mesh(name, mesh, geometry.pairs[name]))
+    by_layout = case.operating.phases == "layout"
+    meshes = elements(
+        "meshes", lambda name, mesh: _mesh(name, mesh, geometry.pairs[name], by_layout)
+    )
     rings = elements("rings", ring_of)
     if problems:
         raise CaseError(problems)
@@ -156,7 +159,7 @@ def _each(
     return value if isinstance(value, tuple) else (value,)
 
 
-def _mesh(name: str, mesh: spec.Mesh, pair: Pair) -> Mesh:
+def _mesh(name: str, mesh: spec.Mesh, pair: Pair, by_layout: bool) -> Mesh:
     if mesh.normal_backlash is not None:
         backlash = mesh.normal_backlash.si
     elif mesh.backlash is not None:
@@ -179,6 +182,7 @@ def _mesh(name: str, mesh: spec.Mesh, pair: Pair) -> Mesh:
         gaps=(0.0,) if gap is None else tuple(r * g.si for g in _each(gap)),
         backlash=backlash,
         turned=pair.turned,
+        phase=pair.phase if mesh.phase is None and by_layout else mesh.phase or 0.0,
     )
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,10 +16,11 @@ from loadshare.case.line_of_action import LineOfAction, line_of_action
 from loadshare.case.place import axis_of, centres_of
 from loadshare.case.power_flow import against_the_names, rides_on
 from loadshare.case.teeth import tooth_counts
-from loadshare.errors import CaseError
+from loadshare.errors import CaseError, Problem
 from loadshare.train.gear import Gear, Vector, transverse_frame
 from loadshare.train.kinematics import Kinematics, settle
 from loadshare.train.mesh import Contact, contact_of
+from loadshare.train.phases import Meeting, Misfit, phases
 from loadshare.train.willis import Links
 
 
@@ -35,6 +36,8 @@ class Pair:
     turned : bool
         See `Mesh`.
     line : LineOfAction
+    phase : float
+        Part of its cycle at which it stands at the first position, where teeth tell it [-].
     """
 
     driver: Gear
@@ -42,6 +45,7 @@ class Pair:
     normals: tuple[Vector, Vector]
     turned: bool
     line: LineOfAction
+    phase: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,7 +80,59 @@ def geometry_of(case: spec.Case) -> Geometry:
         problems.append(case.problem("operating.input", message, hint=hint))
     if problems:
         raise CaseError(problems)
-    return Geometry(kinematics.gears, _pairs(case, kinematics.gears, kinematics.contacts))
+    pairs = _pairs(case, kinematics.gears, kinematics.contacts)
+    return Geometry(kinematics.gears, _in_phase(case, pairs))
+
+
+def _in_phase(case: spec.Case, pairs: Mapping[str, Pair]) -> dict[str, Pair]:
+    """Return the meshes with their phases.
+
+    Raises
+    ------
+    CaseError
+        If teeth that are told whole do not meet.
+    """
+
+    def half(gear: Gear, pair: Pair) -> float:
+        tooth = case.gears[gear.name].tooth
+        if tooth is None:
+            return math.pi / (2.0 * (gear.teeth or math.inf))
+        return tooth.half_angle_at(pair.line.pressure_angle)
+
+    meetings = {
+        name: Meeting(p.driver, p.driven, (half(p.driver, p), half(p.driven, p)))
+        for name, p in pairs.items()
+    }
+    found, misfits = phases(meetings)
+    told = [
+        _misfit_told(case, pairs[m.mesh], m)
+        for m in misfits
+        if all(case.gears[g].tooth is not None for g in case.meshes[m.mesh].ends)
+    ]
+    if told:
+        raise CaseError(told)
+    return {name: replace(pair, phase=found.get(name, 0.0)) for name, pair in pairs.items()}
+
+
+def _misfit_told(case: spec.Case, pair: Pair, misfit: Misfit) -> Problem:
+    """Say by how much teeth miss each other, and where a planet between two gears would fit."""
+    message = (
+        f"cannot be put together: its teeth miss each other by {abs(misfit.pitches):.2g} of a "
+        "pitch where all others meet"
+    )
+    ends = {pair.driver.name, pair.driven.name}
+    hint = ""
+    for planet in (pair.driver, pair.driven):
+        others = {n for m in case.meshes.values() if planet.name in m.ends for n in m.ends}
+        teeth = [case.gears[n].teeth or 0 for n in sorted(others - {planet.name})]
+        kinds = sorted(case.gears[n].type for n in others - {planet.name})
+        if planet.kind == "external" and kinds == ["external", "internal"] and ends <= others:
+            step = 360.0 / sum(teeth)
+            hint = (
+                f"Gears that stand about the same axis fit at angles {step:.6g} deg apart, and "
+                f"evenly spaced if their number divides {sum(teeth)}."
+            )
+    return case.problem(("meshes", misfit.mesh), message, hint=hint)
 
 
 def _kinematics(case: spec.Case) -> Kinematics:

@@ -132,6 +132,8 @@ class Mesh:
     turned : bool
         Whether the case names the driven gear first: torque runs against the name of a mesh that
         has one flank only, and that flank is the one it presses.
+    phase : float
+        Part of its cycle at which it stands at the first position [-].
     """
 
     name: str
@@ -144,6 +146,7 @@ class Mesh:
     gaps: tuple[float, ...]
     backlash: float
     turned: bool = False
+    phase: float = 0.0
 
     @property
     def told_radius(self) -> float:

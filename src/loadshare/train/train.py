@@ -269,8 +269,9 @@ class Train:
     ) -> dict[str, int]:
         """Position in its cycle (0-based) at which every mesh stands at position `index` (1-based).
 
-        In a mesh cycle every mesh stands at the same one. In a march a mesh whose teeth are known
-        stands at the position that its rotation reaches; others have one law for all positions.
+        In a mesh cycle all meshes go through theirs together, each from its own phase. In a march a
+        mesh whose teeth are known stands at the position that its rotation reaches; others have one
+        law for all positions.
         """
         rotation = rotation or self.rotations(index)
         return {m: self._mesh_position(m, index - 1, rotation) for m in self.meshes}
@@ -284,13 +285,14 @@ class Train:
         return 2.0 * math.pi / ((gear.teeth or math.inf) * gear.relative)
 
     def _mesh_position(self, mesh: str, step: int, rotation: Mapping[str, float]) -> int:
-        driver = self.gears[self.meshes[mesh].driver]
+        driver, phase = self.gears[self.meshes[mesh].driver], self.meshes[mesh].phase
         if self.march is None or driver.teeth is None:
-            return step % self.positions
+            # In whole numbers as far as it goes: a position is not to be missed by round-off.
+            return (step + math.floor(phase * self.positions + 1e-9)) % self.positions
         turned = rotation[driver.name]
         if driver.frame_of is not None:
             turned = rotation[self.input] * driver.relative
-        cycles = turned * driver.teeth / (2.0 * math.pi)
+        cycles = turned * driver.teeth / (2.0 * math.pi) + phase
         # A step that falls on a cycle's start up to round-off belongs to it, not to the end of the
         # one before.
         return math.floor((cycles % 1.0) * self.positions + 1e-9) % self.positions

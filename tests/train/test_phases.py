@@ -1,0 +1,149 @@
+"""Phases of meshes against Parker and Lin, and against teeth that are turned and looked at."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import loadshare as ls
+from loadshare.case import Case
+from loadshare.errors import CaseError
+from loadshare.train import build_train
+
+
+def planetary(sun: int, planet: int, ring: int, angles: list[str], **changes: object) -> Case:
+    """A set without profile shift."""
+    wheel = {"module": "2 mm", "centre": ["0 mm", "0 mm"]}
+    case = Case(
+        operating={
+            "input": "sun",
+            "output": "carrier",
+            "torque": "10 N*m",
+            "positions": 1000,
+            "phases": "layout",
+        },
+        gears={
+            "sun": {"teeth": sun, **wheel},
+            "ring": {"type": "internal", "teeth": ring, **wheel, "held": True},
+            "carrier": {"type": "carrier", "centre": ["0 mm", "0 mm"]},
+            "p": {
+                "copies": angles,
+                "teeth": planet,
+                "module": "2 mm",
+                "carrier": "carrier",
+                "centre": {"distance": f"{sun + planet} mm", "angle": "0 deg"},
+            },
+        },
+        meshes={"sun-p": {"stiffness": "1e6 N*m/rad"}, "p-ring": {"stiffness": "1e6 N*m/rad"}},
+    )
+    return case.replace(changes)
+
+
+def apart(one: float, other: float) -> float:
+    """Distance of two phases, round the cycle."""
+    return abs((one - other + 0.5) % 1.0 - 0.5)
+
+
+@pytest.mark.parametrize(
+    ("sun", "planet", "angles"),
+    [
+        (18, 36, ["0 deg", "120 deg", "240 deg"]),
+        (21, 20, ["0 deg", "90 deg"]),
+        (20, 33, [f"{k * 360 / 106!r} deg" for k in (0, 21, 53, 80)]),
+        (17, 36, [f"{k * 360 / 106!r} deg" for k in (0, 26, 51, 77)]),
+    ],
+)
+@pytest.mark.parametrize("running", ["counter-clockwise", "clockwise"])
+def test_planets_follow_one_another_as_parker_and_lin_have_it(sun, planet, angles, running) -> None:
+    """Sun z_s ψ/2π, ring −z_r ψ/2π, and half a cycle between them for even planets."""
+    ring = sun + 2 * planet
+    if (sun + ring) % 4 and len(angles) == 2:
+        angles = ["0 deg", f"{90 // (360 / (sun + ring)) * 360 / (sun + ring)!r} deg"]
+    case = planetary(sun, planet, ring, angles, **{"operating.running": running})
+    meshes = build_train(case).meshes
+    way = -1.0 if running == "counter-clockwise" else 1.0
+    for k, angle in enumerate(angles, start=1):
+        turn = math.radians(float(angle.split()[0])) / (2.0 * math.pi)
+        sunny, outer = meshes[f"sun-p{k}"].phase, meshes[f"p{k}-ring"].phase
+        assert apart(sunny - meshes["sun-p1"].phase, way * sun * turn) < 1e-9
+        assert apart(outer - meshes["p1-ring"].phase, -way * ring * turn) < 1e-9
+        # Both flanks of a tooth of half a pitch, on opposite sides of the planet.
+        assert apart(outer - sunny, 0.5 * (planet + 1) if k == 1 else outer - sunny) < 1e-9
+
+
+def test_a_gear_train_of_idlers_keeps_step() -> None:
+    """The flanks of the idler, drawn by hand, pass its two pitch points one after the other."""
+    case = Case(
+        operating={
+            "input": "a",
+            "output": "c",
+            "torque": "10 N*m",
+            "phases": "layout",
+        },
+        gears={
+            "a": {"teeth": 19, "module": "3 mm", "centre": ["0 mm", "0 mm"]},
+            "b": {
+                "teeth": 30,
+                "module": "3 mm",
+                "profile_shift": 0.0,
+                "centre": {"about": "a", "distance": "73.5 mm", "angle": "17 deg"},
+            },
+            "c": {
+                "teeth": 41,
+                "module": "3 mm",
+                "centre": {"about": "b", "distance": "106.5 mm", "angle": "-64 deg"},
+            },
+        },
+        meshes={"a-b": {"stiffness": "1e6 N*m/rad"}, "b-c": {"stiffness": "1e6 N*m/rad"}},
+    )
+    train = build_train(case)
+    pitch = 2.0 * math.pi / 30
+    # A tooth of b stands at the angle t; its trailing flank, as b runs clockwise, at t + pitch/4,
+    # meets a at 197°, its leading flank at t − pitch/4 meets c at −64°.
+    sense = train.gears["b"].sense
+    assert sense == -1
+    for tooth in np.linspace(0.0, pitch, 7):
+        from_a = sense * (tooth - sense * pitch / 4 - math.radians(197.0)) / pitch
+        to_c = sense * (tooth + sense * pitch / 4 - math.radians(-64.0)) / pitch
+        expected = train.meshes["b-c"].phase - train.meshes["a-b"].phase
+        assert apart(to_c - from_a, expected) < 1e-9
+
+
+def test_sets_that_cannot_be_put_together_are_told_where_they_would_fit() -> None:
+    case = planetary(18, 36, 90, ["0 deg", "120 deg", "241 deg"])
+    with pytest.raises(CaseError) as caught:
+        ls.solve(case, positions=[1])
+    told = str(caught.value)
+    assert "p3-ring" in told
+    assert "miss each other by 0.3 of a pitch" in told
+    assert "3.33333 deg apart" in told
+    assert "divides 108" in told
+
+
+def test_a_law_is_read_at_each_meshs_own_place() -> None:
+    case = planetary(18, 36, 90, ["0 deg", "120 deg", "240 deg"])
+    stiffness = [f"{1.0 + 0.01 * k!r}e6 N*m/rad" for k in range(20)]
+    changes = {f"meshes.sun-p{k}.stiffness": stiffness for k in (1, 2, 3)}
+    case = case.replace({"operating.positions": 20, **changes, "meshes.sun-p2.phase": 0.35})
+    train = build_train(case)
+    assert train.meshes["sun-p2"].phase == 0.35
+    for position in ls.solve(case, positions=[1, 7, 20]).positions:
+        step = position.position - 1
+        assert position.mesh_position["sun-p1"] == step + 1
+        assert position.mesh_position["sun-p2"] == (step + 7) % 20 + 1
+    together = build_train(case.replace({"operating.phases": None, "meshes.sun-p2.phase": None}))
+    assert {m.phase for m in together.meshes.values()} == {0.0}
+
+
+def test_in_a_march_meshes_of_a_set_pass_by_the_relative_speed() -> None:
+    """A turn of the sun takes 15 of its 18 teeth past a planet; each mesh has its own phase."""
+    case = planetary(18, 36, 90, ["0 deg", "120 deg", "240 deg"])
+    case = case.replace({"march": {"gear": "sun", "revolutions": 1.0, "steps": 7}})
+    train = build_train(case)
+    for index in range(1, 8):
+        passed = 15.0 * (index - 1) / 7
+        for name, mesh in train.meshes.items():
+            place = math.floor((mesh.phase + passed) % 1.0 * 1000 + 1e-6) % 1000
+            assert train.mesh_positions(index)[name] == place
