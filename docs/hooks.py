@@ -43,6 +43,7 @@ TABLES = (
     ("Errors", "Errors", "[errors.GEAR]"),
     ("Installation error by size and direction", "Offset", "installation = { … }"),
     ("Eccentricity", "Eccentricity", "eccentricity = { … }"),
+    ("Position error of a pin", "Pin", "pin = { … }"),
     ("Stages", "Stage", "[stages.NAME]"),
     ("Measurements", "Measurement", "[measured.NAME]"),
     ("Studies", "Study", "[study.NAME]"),
@@ -216,6 +217,8 @@ def _kind_table() -> str:
 
 
 def _plain(field: Schema) -> str:
+    if field["type"] == "boolean":
+        return "`true` or `false`"
     name = {"string": "text", "integer": "whole number", "number": "number"}[field["type"]]
     limits = {
         "minimum": "at least",
@@ -231,6 +234,8 @@ def _default(field: Schema) -> str:
     if "default" not in field:
         return "–"
     default = field["default"]
+    if isinstance(default, bool):
+        return f"`{str(default).lower()}`"
     if default in ("", [], {}):
         return "none"
     if isinstance(default, list | tuple):

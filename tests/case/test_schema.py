@@ -2,7 +2,9 @@ import jsonschema
 import pytest
 
 from benchmarks.families import SHIPPED, shipped_text, split_torque, star
+from loadshare import solve
 from loadshare.case import case_schema, load_case, starter_case
+from loadshare.case.starter import KINDS
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +50,15 @@ def test_the_starter_runs_as_it_stands(tmp_path):
     path.write_text(starter_case('My "drive"'))
     case = load_case(path)
     assert case.title == 'My "drive"'
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_runs_as_it_stands(tmp_path, kind):
+    path = tmp_path / "mine.toml"
+    path.write_text(starter_case("mine", kind))
+    result = solve(path)
+    assert result.passed
+    assert set(result.positions[0].share.values()) != {None}
 
 
 def test_what_the_starter_comments_out_can_be_used(tmp_path):

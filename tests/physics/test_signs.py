@@ -79,6 +79,7 @@ def test_the_output_takes_the_sum_of_the_loads(name):
             for drive in mesh.flanks
             if mesh.driven == train.output
         )
+        taken += on_carrier(train, found, train.output)
         given = situation_of(train, found.index).torques[train.input] / output.ratio
         # Radii are written with seven digits, so two paths' ratios differ in the seventh.
         assert taken == pytest.approx(given, rel=1e-6)
@@ -90,8 +91,23 @@ def test_the_first_stage_takes_the_input_torque(name):
     train = build_train(shipped(name))
     for position in result.positions:
         first = sum(position.torque[m] for m in result.stages["I"])
+        if train.gears[train.input].kind == "carrier":
+            first = -on_carrier(train, position.equilibrium, train.input)
         given = situation_of(train, position.position).torques[train.input]
         assert first == pytest.approx(given, rel=SUM)
+
+
+def on_carrier(train: Train, found: Equilibrium, carrier: str) -> float:
+    """Moment of its planets' meshes on a carrier [N·m], in its running sense."""
+    held, total = train.gears[carrier], 0.0
+    for mesh in train.meshes.values():
+        for drive in mesh.flanks:
+            push = found.flank_force[mesh.flank_name(drive)] * mesh.direction(drive)[2]
+            for end, force in ((mesh.driver, -push), (mesh.driven, push)):
+                if train.gears[end].carrier == carrier:
+                    arm = train.gears[end].centre - held.centre
+                    total += held.sense * float(held.axis @ np.cross(arm, force))
+    return total
 
 
 @every_case
@@ -107,7 +123,10 @@ def test_forces_on_a_float_balance(name):
             for mesh in train.meshes.values():
                 for drive in mesh.flanks:
                     push = found.flank_force[mesh.flank_name(drive)] * mesh.direction(drive)[2]
-                    total = total + push * ((gear == mesh.driven) - (gear == mesh.driver))
+                    for end, force in ((mesh.driver, -push), (mesh.driven, push)):
+                        # What pushes a planet reaches its carrier over the pin.
+                        if gear in (end, train.gears[end].carrier):
+                            total = total + force
             for ring in train.rings.values():
                 total = total + ring_force(train, found, ring, gear)
             for element in (f"spline {gear}", f"ring {gear}"):

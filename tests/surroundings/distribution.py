@@ -16,7 +16,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 NEEDED = (
-    *("py.typed", "case/starter.toml"),
+    *("py.typed", "case/starters/planetary.toml"),
     *(f"report/page/templates/{name}" for name in ("report.html", "page.css", "page.js")),
 )
 """What of the package is no Python."""

@@ -1,23 +1,30 @@
-"""A case to start from."""
+"""Cases to start from."""
 
 from __future__ import annotations
 
 import json
 from importlib.resources import files
+from typing import Literal, get_args
+
+Kind = Literal["split-path", "four-branch", "star", "planetary", "two-stage-planetary"]
+KINDS: tuple[Kind, ...] = get_args(Kind)
+"""Kinds of transmissions, a file each in `starters/`."""
 
 
-def starter_case(name: str) -> str:
-    """Return a commented case file that runs: a small split-path drive.
+def starter_case(name: str, kind: Kind = "split-path") -> str:
+    """Return a commented case file that runs.
 
     Parameters
     ----------
     name : str
         Title of the case.
+    kind : {"split-path", "four-branch", "star", "planetary", "two-stage-planetary"}
 
     Returns
     -------
     str
-        TOML, with the blocks that the drive does not need commented out.
+        TOML; that of the split-path drive shows, commented out, what else there is.
     """
-    text = files("loadshare.case").joinpath("starter.toml").read_text(encoding="utf-8")
+    folder = files("loadshare.case").joinpath("starters")
+    text = folder.joinpath(f"{kind}.toml").read_text(encoding="utf-8")
     return text.replace('"TITLE"', json.dumps(name, ensure_ascii=False), 1)

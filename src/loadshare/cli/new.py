@@ -18,18 +18,27 @@ def new(
     file: Annotated[
         Path | None, output("-o", "--output", what="File to write; NAME.toml by default.")
     ] = None,
+    kind: Annotated[
+        str,
+        typer.Option(
+            metavar="KIND",
+            help="split-path, four-branch, star, planetary or two-stage-planetary.",
+        ),
+    ] = "split-path",
     force: Annotated[
         bool, typer.Option("--force", help="Overwrite the file if it exists.")
     ] = False,
 ) -> None:
     """Write a commented case file that runs, to change into your own."""
-    from loadshare.case import starter_case
+    from loadshare.case.starter import KINDS, starter_case
 
+    if kind not in KINDS:
+        raise typer.BadParameter(f"is none of {', '.join(KINDS)}", param_hint="--kind")
     title = Path(name.removesuffix(".toml")).name
     if not title:
         raise typer.BadParameter("a case needs a name", param_hint="NAME")
     target = file or Path(name).with_name(f"{title}.toml")
     if target.exists() and not force:
         fail([f"{target}: exists already; --force overwrites it"], UNUSABLE)
-    save_text(target, starter_case(title))
+    save_text(target, starter_case(title, kind))
     tell_written(target, f". Solve it with: loadshare run {quote(str(target))}")
