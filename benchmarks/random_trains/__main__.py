@@ -25,7 +25,7 @@ SETS_ABOUT = """# Random planetary sets
 
 Planetary sets are drawn, simple, stepped and with planets that mesh with one another, every member
 held, driven and driving, floating, on splines, in rings or on elastic mounts, and every position of
-each is solved and compared with a reference in 50 digits, as [random trains](random_trains.md) are.
+each is solved and compared with a reference in 50 digits, as [random trains](random-trains.md) are.
 """
 MAP = """# Stability map in 50 digits
 

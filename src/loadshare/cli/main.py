@@ -22,6 +22,7 @@ from loadshare.cli.check import check
 from loadshare.cli.command import Command
 from loadshare.cli.draw import draw
 from loadshare.cli.exits import room_told
+from loadshare.cli.importing import import_machine
 from loadshare.cli.ltca import ltca
 from loadshare.cli.new import new
 from loadshare.cli.outside import reads_cases
@@ -50,6 +51,7 @@ STUDIES = (sweep, critical, sensitivity, tolerance, march, compare, fit, study)
 CASES = (run, batch, report, draw, check, *STUDIES)
 for command in (run, batch, report, draw, check, schema, new, ltca, *STUDIES):
     app.command(cls=Command)(reads_cases(command) if command in CASES else command)
+app.command("import", cls=Command)(import_machine)
 
 
 def _tell_version(wanted: bool) -> None:

@@ -1,0 +1,54 @@
+"""`loadshare import`: a case from the file of another program."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from shlex import quote
+from typing import Annotated
+
+import typer
+
+from loadshare.cli.console import say
+from loadshare.cli.exits import UNUSABLE, counted, fail, problems_told
+from loadshare.cli.files import keep_inputs, save_text, tell_written
+from loadshare.cli.options import output
+from loadshare.output import STANDARD
+
+
+def import_machine(
+    unit: Annotated[
+        Path, typer.Argument(metavar="UNIT", help="REXS file: .rexs, .rexsj or .rexsz.")
+    ],
+    to: Annotated[
+        Path | None,
+        output(
+            "-o", "--output", what="Case file to write; by default that of the unit with .toml."
+        ),
+    ] = None,
+    force: Annotated[
+        bool, typer.Option("--force", help="Overwrite the case file if it exists.")
+    ] = False,
+) -> None:
+    """Turn a gear unit from a REXS file into a case, and tell what was assumed and left out."""
+    from loadshare.errors import CaseError
+    from loadshare.exchange.rexs import import_rexs
+
+    target = to or Path(unit.name).with_suffix(".toml")
+    if target != STANDARD and target.exists() and not force:
+        fail([f"{target}: exists already; --force overwrites it"], UNUSABLE)
+    keep_inputs([unit])
+    with problems_told():
+        imported = import_rexs(unit)
+    save_text(target, imported.text)
+    if target != STANDARD:
+        say(f"Took {', '.join(imported.taken)}.")
+        for what, lines in (("Assumed", imported.assumed), ("Left out", imported.left_out)):
+            for line in lines:
+                say(f"{what}: {line}", whole=True)
+    try:
+        imported.case()
+    except CaseError as error:
+        tell_written(target, ". It is no case yet:", err=True)
+        told = [str(problem) for problem in error.problems]
+        fail([*told, f"{counted(len(told), 'problem')}."], UNUSABLE)
+    tell_written(target, f". Solve it with: loadshare run {quote(str(target))}")

@@ -1,0 +1,1 @@
+"""Machines from and for other programs."""

@@ -1,0 +1,113 @@
+"""What holds a body across its axis: the bearings of its shaft, seen from its place on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from loadshare.exchange.rexs.model import Component, Model
+
+BEARINGS = (
+    "concept_bearing",
+    "rolling_bearing_with_catalog_geometry",
+    "rolling_bearing_with_detailed_geometry",
+    "plain_bearing",
+    "radial_plain_bearing",
+)
+STIFF = 1e15
+"""Stiffness from which on a bearing counts as rigid [N/m]."""
+
+
+@dataclass(frozen=True)
+class Holding:
+    """What holds a body.
+
+    Attributes
+    ----------
+    support : dict
+        Of a gear of a case.
+    clearance : dict
+        Its bearing with clearance, if any.
+    offset : tuple of float
+        By which its bearings are out of place (3,) [m].
+    """
+
+    support: dict[str, Any]
+    clearance: dict[str, Any]
+    offset: tuple[float, float, float]
+
+
+def holding_of(
+    model: Model, shafts: list[Component], at: float, name: str, assumed: list[str]
+) -> Holding:
+    """Return what holds a body at a place along its shaft [m].
+
+    The shaft is a rigid beam on the stiffnesses k of its bearings at u; at a place x it yields by
+
+    (1, x) S⁻¹ (1, x)ᵀ with S = Σ k (1, u)ᵀ (1, u).
+
+    Other bodies on the same shaft are not seen.
+    """
+    found = []
+    for bearing, inner, outer in model.related("side", "assembly", "inner_part", "outer_part"):
+        if bearing.type not in BEARINGS:
+            continue
+        for shaft, side in ((inner, "inner"), (outer, "outer")):
+            if shaft in shafts:
+                place = bearing.number(f"u_coordinate_on_shaft_{side}_side") or 0.0
+                found.append((bearing, place))
+    if not found:
+        return Holding({"support": "free" if shafts else "rigid"}, {}, (0.0, 0.0, 0.0))
+    stiffness = [_stiffness(bearing, name, assumed) for bearing, _ in found]
+    places = np.array([place for _, place in found])
+    held = _seen_from(at, np.array(stiffness), places)
+    if len(found) > 1 or held is not None:
+        assumed.append("supports: each gear by the bearings of its shaft, as a rigid beam")
+    rigid = held is None or held >= STIFF
+    bearings = [bearing for bearing, _ in found]
+    told_by = ("operating_radial_bearing_clearance", "radial_clearance")
+    gaps = [bearing.number(*told_by) or 0.0 for bearing in bearings]
+    offset = _offset(bearings)
+    gap = sum(gaps) / len(gaps)
+    if gap > 0.0:
+        assumed.append(f"{name}: half of its bearings' mean radial clearance to every side")
+        told = "rigid" if rigid else f"{held:.12g} N/m"
+        return Holding({}, {"clearance": f"{0.5e6 * gap:.12g} um", "stiffness": told}, offset)
+    return Holding({"support": "rigid" if rigid else f"{held:.12g} N/m"}, {}, offset)
+
+
+def _stiffness(bearing: Component, name: str, assumed: list[str]) -> float:
+    found = bearing.number("radial_stiffness")
+    if found is None or found <= 0.0:
+        assumed.append(f"{name}: a bearing of its shaft tells no radial stiffness and is rigid")
+        return STIFF
+    return min(found, STIFF)
+
+
+def _seen_from(at: float, stiffness: np.ndarray, places: np.ndarray) -> float | None:
+    """Stiffness at a place [N/m]; None where all is rigid."""
+    if stiffness.min() >= STIFF:
+        return None
+    if np.ptp(places) < 1e-9:
+        return float(stiffness.sum())
+    # About the middle of the bearings, in units of their distance: better numbers.
+    middle, size = float(places.mean()), float(np.ptp(places))
+    arms = np.column_stack([np.ones(len(places)), (places - middle) / size])
+    here = np.array([1.0, (at - middle) / size])
+    beam = arms.T @ (stiffness[:, None] * arms)
+    return float(1.0 / (here @ np.linalg.solve(beam, here)))
+
+
+def _offset(bearings: list[Component]) -> tuple[float, float, float]:
+    """Mean of what bearings are out of place (3,) [m]."""
+    total = np.zeros(3)
+    for bearing in bearings:
+        u = np.array(bearing.vector("u_axis_vector") or (1.0, 0.0, 0.0))
+        w = np.array(bearing.vector("w_axis_vector") or (0.0, 0.0, 1.0))
+        u, w = (a / np.linalg.norm(a) if a.any() else a for a in (u, w))
+        v = bearing.number("misalignment_in_v_direction") or 0.0
+        total += v * np.cross(w, u) + (bearing.number("misalignment_in_w_direction") or 0.0) * w
+    x, y, z = (total / len(bearings)).tolist()
+    return (x, y, z)

@@ -1,0 +1,396 @@
+"""A case from a REXS model: what was taken, what was assumed, what was left out."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter, deque
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from loadshare.case import Case
+from loadshare.case.writer import toml_text
+from loadshare.errors import CaseError, Problem
+from loadshare.exchange.rexs.gearing import GEARS, READ, Gearing, Vector
+from loadshare.exchange.rexs.holding import Holding, holding_of
+from loadshare.exchange.rexs.model import Component, read_model
+from loadshare.exchange.rexs.shafts import torsion_between
+
+Data: TypeAlias = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Imported:
+    """A case as it was imported.
+
+    Attributes
+    ----------
+    data : dict
+        The sections of a case file.
+    text : str
+        The case file, headed by what was assumed and left out.
+    taken, assumed, left_out : tuple of str
+    """
+
+    data: Data
+    text: str
+    taken: tuple[str, ...]
+    assumed: tuple[str, ...]
+    left_out: tuple[str, ...]
+
+    def case(self) -> Case:
+        """Return the case.
+
+        Raises
+        ------
+        CaseError
+            If what the file says makes no case that can be used.
+        """
+        return Case(self.data)
+
+
+def import_rexs(path: str | Path) -> Imported:
+    """Import a REXS file.
+
+    Parameters
+    ----------
+    path : str or pathlib.Path
+        XML (.rexs), JSON (.rexsj) or an archive with one of them (.rexsz).
+
+    Returns
+    -------
+    Imported
+
+    Raises
+    ------
+    CaseError
+        If the file cannot be read, or lacks what a case needs: teeth, places, a load.
+    """
+    path = Path(path)
+    return _Importer(path, Gearing(read_model(path))).imported()
+
+
+@dataclass
+class _Importer:
+    """A model on its way to a case."""
+
+    path: Path
+    of: Gearing
+    assumed: list[str] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
+    problems: list[Problem] = field(default_factory=list)
+
+    def imported(self) -> Imported:
+        """Return the case."""
+        self.assumed += self.of.model.notes
+        if not self.of.stages:
+            self._lacks("", "has no cylindrical stage that joins two gears")
+        gears = {self.of.names[g.id]: self._gear(g) for g in self.of.gears}
+        gears |= {self.of.names[c.id]: self._carrier(c) for c in self.of.carriers}
+        flow = self._flow()
+        if self.problems:
+            raise CaseError(self.problems)
+        assert flow is not None
+        first, last, torque, running = flow
+        held = self._held()
+        for name in held:
+            gears[name]["held"] = True
+        data: Data = {
+            "title": f"{self.path.stem}, from REXS {self.of.model.version}",
+            "source": f"REXS file {self.path.name}",
+            "notes": "; ".join(self._told_names()),
+            "operating": {
+                "input": first,
+                "output": last,
+                "running": running,
+                "torque": f"{torque:.12g} N*m",
+            },
+            "gears": gears,
+            "meshes": self._meshes(first),
+            "shafts": self._shafts(),
+        }
+        if bearings := self._bearings():
+            data["bearings"] = bearings
+        if errors := self._errors():
+            data["errors"] = errors
+        data["stages"] = self._stages(data["meshes"])
+        data = {key: value for key, value in data.items() if value not in ("", {})}
+        self._count_left_out()
+        taken = tuple(
+            f"{len(part)} {what}"
+            for what, part in (
+                ("gears", self.of.gears),
+                ("carriers", self.of.carriers),
+                ("meshes", data["meshes"]),
+                ("shafts between gears", data.get("shafts", {})),
+                ("bearings with clearance", data.get("bearings", {})),
+            )
+            if part
+        )
+        assumed, left = dict.fromkeys(self.assumed), dict.fromkeys(self.left_out)
+        text = _commented(data, assumed, left)
+        return Imported(data, text, taken, tuple(assumed), tuple(left))
+
+    # Bodies ---------------------------------------------------------------------------------------
+
+    def _gear(self, gear: Component) -> Data:
+        name = self.of.names[gear.id]
+        teeth, module = gear.number("number_of_teeth"), gear.number("normal_module")
+        if teeth is None or module is None or not round(abs(teeth)):
+            self._lacks(gear, "has no number_of_teeth or normal_module")
+            return {}
+        made: Data = {"teeth": round(abs(teeth)), "module": _mm(abs(module))}
+        if gear.type == "ring_gear" or teeth < 0.0:
+            made["type"] = "internal"
+        flanks = self.of.flanks(gear)
+        shift = _first(
+            [gear, *flanks],
+            "profile_shift_coefficient",
+            "addendum_modification_coefficient",
+        )
+        if shift is None:
+            self.assumed.append(f"{name}: no profile shift is told, 0 is taken")
+        elif shift:
+            made["profile_shift"] = shift
+        angle = _first([*flanks, gear], "normal_pressure_angle")
+        if angle is None:
+            self.assumed.append(f"{name}: no pressure angle is told, 20 deg is taken")
+        else:
+            made["pressure_angle"] = _deg(angle)
+        if helix := gear.number("helix_angle_reference_diameter"):
+            made["helix_angle"] = _deg(helix)
+        if width := gear.number("face_width"):
+            made["face_width"] = _mm(width)
+        self.assumed.append("teeth: the rack's addendum is one module, tips are not altered")
+        shaft = self.of.shaft_of.get(gear.id)
+        made |= self._placed(gear, shaft)
+        if gear.id in self.of.carrier_of:
+            made["carrier"] = self.of.names[self.of.carrier_of[gear.id].id]
+        made |= self._holding(gear).support
+        return made
+
+    def _carrier(self, carrier: Component) -> Data:
+        shafts = [s for s, c in self.of.carrier_shafts.items() if c is carrier]
+        held = [self.of.model.components[s] for s in shafts]
+        made: Data = {"type": "carrier"}
+        places = [
+            (g, self.of.place(g)) for g in self.of.gears if self.of.carrier_of.get(g.id) is carrier
+        ]
+        around = [p for _, p in places if p is not None]
+        for body in (*held, carrier):
+            if self.of.place(body) is not None and "centre" not in made:
+                made |= self._placed(body, None)
+        if "centre" not in made and len(around) >= 2:
+            middle = tuple(sum(parts) / len(around) for parts in zip(*around, strict=True))
+            made["centre"] = [_mm(v) for v in middle]
+            made["axis"] = _axis(self.of.axis(places[0][0]))
+            self.assumed.append(f"{self.of.names[carrier.id]}: its axis is amid its planets")
+        elif "centre" not in made:
+            self._lacks(carrier, "has no place")
+        name = self.of.names[carrier.id]
+        return made | holding_of(self.of.model, held, 0.0, name, self.assumed).support
+
+    def _placed(self, body: Component, shaft: Component | None) -> Data:
+        place = self.of.place(body)
+        axis = self.of.axis(body)
+        if place is None and shaft is not None and (start := self.of.place(shaft)) is not None:
+            along = self.of.along(body)
+            x, y, z = (p + along * a for p, a in zip(start, axis, strict=True))
+            place = (x, y, z)
+        if place is None:
+            self._lacks(body, "has no place: no support_vector of three numbers")
+            return {}
+        return {"centre": [_mm(v) for v in place], "axis": _axis(axis)}
+
+    def _holding(self, gear: Component) -> Holding:
+        name, shaft = self.of.names[gear.id], self.of.shaft_of.get(gear.id)
+        shafts = [] if shaft is None else [shaft]
+        return holding_of(self.of.model, shafts, self.of.along(gear), name, self.assumed)
+
+    def _bearings(self) -> Data:
+        found = {self.of.names[g.id]: self._holding(g).clearance for g in self.of.gears}
+        return {name: bearing for name, bearing in found.items() if bearing}
+
+    def _errors(self) -> Data:
+        found = {}
+        for gear in self.of.gears:
+            offset = self._holding(gear).offset
+            if any(offset):
+                found[self.of.names[gear.id]] = {
+                    "installation": [f"{1e6 * v:.12g} um" for v in offset]
+                }
+        return found
+
+    # Load and links -----------------------------------------------------------------------------
+
+    def _flow(self) -> tuple[str, str, float, str] | None:
+        """Input, output, torque [N·m] and running sense."""
+        loads = self.of.loads()
+        driving = [(s, e) for s, e in loads if e.number("torque_around_u_axis")]
+        driving.sort(key=lambda pair: not pair[1].holds("defines_torque"))
+        if not driving:
+            self._lacks(
+                "", "has no external_load with a torque_around_u_axis on a shaft with gears"
+            )
+            return None
+        shaft, load = driving[0]
+        others = [pair for pair in loads if pair[0] is not shaft]
+        others.sort(key=lambda pair: bool(pair[1].number("torque_around_u_axis")))
+        if not others:
+            self._lacks("", "has no second shaft with an external_load: the output is not told")
+            return None
+        self.left_out += [f"load {e.name or e.id}" for _, e in others[1:]]
+        torque = load.number("torque_around_u_axis") or 0.0
+        speed = shaft.number("rotational_speed") or torque
+        first, last = self._nearest(shaft, load), self._nearest(*others[0])
+        running = "counter-clockwise" if speed > 0.0 else "clockwise"
+        return first, last, torque if speed > 0.0 else -torque, running
+
+    def _nearest(self, shaft: Component, load: Component) -> str:
+        """The body on a shaft that is nearest to a load."""
+        at = load.number("u_coordinate_on_shaft") or 0.0
+        return min(self.of.on_shaft(shaft), key=lambda body: abs(body[0] - at))[1]
+
+    def _held(self) -> list[str]:
+        """Bodies that a coupling joins to the casing."""
+        casing = {c.id for c in self.of.model.of_type("gear_casing", "gear_unit")}
+        found = []
+        for coupling, one, other in self.of.coupled():
+            for shaft, fixed in ((one, other), (other, one)):
+                if fixed.id in casing and (bodies := self.of.on_shaft(shaft)):
+                    found.append(bodies[0][1])
+                    if coupling.number("rotational_stiffness"):
+                        self.assumed.append(f"{bodies[0][1]}: its coupling to the casing is rigid")
+        for whole, part in self.of.model.related("assembly", "assembly", "part"):
+            if whole.id in casing and part in self.of.gears:
+                found.append(self.of.names[part.id])
+        return list(dict.fromkeys(found))
+
+    def _meshes(self, first: str) -> Data:
+        """Meshes, the driver first as the torque comes from the input."""
+        reached = self._reached(first)
+        made = {}
+        for stage, one, other in self.of.stages:
+            names = self.of.names[one.id], self.of.names[other.id]
+            forward = reached[names[0]] <= reached[names[1]]
+            driver, driven = (one, other) if forward else (other, one)
+            law: Data = {"law": "iso"}
+            density = stage.number("mesh_stiffness_for_load_distribution_along_face_width")
+            width = stage.number("common_face_width") or min(
+                one.number("face_width") or 0.0, other.number("face_width") or 0.0
+            )
+            angle = _first([*self.of.flanks(driver), driver], "normal_pressure_angle")
+            radius = _base_radius(driver, angle or math.radians(20.0))
+            if density and width and radius:
+                law = {"stiffness": f"{density * width * radius**2:.12g} N*m/rad"}
+            else:
+                self.assumed.append('meshes: their law is "iso", ISO 6336-1 method B')
+            made[f"{self.of.names[driver.id]}-{self.of.names[driven.id]}"] = law
+        return made
+
+    def _reached(self, first: str) -> dict[str, int]:
+        """Steps from the input to every body."""
+        links = [[self.of.names[a.id], self.of.names[b.id]] for _, a, b in self.of.stages]
+        links += [name.split("-") for name in self._shafts()]
+        steps, queue = {first: 0}, deque([first])
+        while queue:
+            here = queue.popleft()
+            for pair in links:
+                if here in pair:
+                    other = pair[1] if here == pair[0] else pair[0]
+                    if other not in steps:
+                        steps[other] = steps[here] + 1
+                        queue.append(other)
+        return {name: steps.get(name, len(self.of.names)) for name in self.of.names.values()}
+
+    def _shafts(self) -> Data:
+        """Torsion between neighbours on a shaft, and couplings between shafts."""
+        made: Data = {}
+        for shaft in self.of.model.of_type("shaft"):
+            bodies = self.of.on_shaft(shaft)
+            for (u, one), (v, other) in pairwise(bodies):
+                stiffness = torsion_between(self.of.model, shaft, u, v)
+                if stiffness is None:
+                    self.assumed.append(f"shaft {one}-{other}: rigid, its sections do not tell")
+                made[f"{one}-{other}"] = {"stiffness": _torsion(stiffness)}
+        for coupling, inner, outer in self.of.coupled():
+            ends = [self.of.on_shaft(shaft) for shaft in (inner, outer)]
+            if all(ends) and ends[0][0][1] != ends[1][0][1]:
+                stiffness = coupling.number("rotational_stiffness")
+                made[f"{ends[0][0][1]}-{ends[1][0][1]}"] = {"stiffness": _torsion(stiffness)}
+        return made
+
+    def _stages(self, meshes: Data) -> Data:
+        """Where a gear drives, or is driven by, several others: there the load is shared."""
+        made = {}
+        for side, what in ((0, "from"), (1, "to")):
+            ends = Counter(name.split("-")[side] for name in meshes)
+            for gear, count in ends.items():
+                if count > 1:
+                    branches = [name for name in meshes if name.split("-")[side] == gear]
+                    made[f"{what}_{gear}"] = {"meshes": branches}
+        return made
+
+    # What is told ---------------------------------------------------------------------------------
+
+    def _told_names(self) -> list[str]:
+        bodies = [*self.of.gears, *self.of.carriers]
+        return [
+            f"{self.of.names[b.id]} is {' '.join(b.name.split())[:80]}" for b in bodies if b.name
+        ]
+
+    def _count_left_out(self) -> None:
+        kinds = Counter(c.type for c in self.of.model.components.values() if c.type not in READ)
+        self.left_out += [f"{count} {kind}" for kind, count in sorted(kinds.items())]
+        idle = [g for g in self.of.model.of_type(*GEARS) if g.id not in self.of.names]
+        self.left_out += [f"gear {g.name or g.id}: it meshes with nothing" for g in idle]
+        self.left_out.append("axial forces, tilting and bending of shafts: the model is plane")
+
+    def _lacks(self, what: Component | str, message: str) -> None:
+        where = what if isinstance(what, str) else f"{what.type} {what.id}"
+        self.problems.append(Problem(str(self.path), where, "", message))
+
+
+def _first(components: list[Component], *names: str) -> float | None:
+    found = (component.number(*names) for component in components)
+    return next((value for value in found if value is not None), None)
+
+
+def _base_radius(gear: Component, angle: float) -> float | None:
+    """Base radius [m] from teeth."""
+    teeth, module = gear.number("number_of_teeth"), gear.number("normal_module")
+    helix = gear.number("helix_angle_reference_diameter") or 0.0
+    if not teeth or not module or abs(helix) >= 0.5 * math.pi:
+        return None
+    transverse = math.atan(math.tan(angle) / math.cos(helix))
+    return abs(teeth) * abs(module) / (2.0 * math.cos(helix)) * math.cos(transverse)
+
+
+def _mm(length: float) -> str:
+    return f"{1e3 * length:.12g} mm"
+
+
+def _deg(angle: float) -> str:
+    return f"{math.degrees(angle):.12g} deg"
+
+
+def _axis(axis: Vector) -> Any:
+    for name, unit in (("x", (1.0, 0.0, 0.0)), ("y", (0.0, 1.0, 0.0)), ("z", (0.0, 0.0, 1.0))):
+        if max(abs(a - b) for a, b in zip(axis, unit, strict=True)) < 1e-12:
+            return name
+    return list(axis)
+
+
+def _torsion(stiffness: float | None) -> str:
+    rigid = stiffness is None or not 0.0 < stiffness < 1e15
+    return "rigid" if rigid else f"{stiffness:.12g} N*m/rad"
+
+
+def _commented(data: Data, assumed: dict[str, None], left: dict[str, None]) -> str:
+    """The case file, headed by what was assumed and left out."""
+    lines = []
+    for title, told in (("Assumed:", assumed), ("Left out:", left)):
+        if told:
+            lines += [f"# {title}", *(f"#   {' '.join(line.split())}" for line in told)]
+    return "\n".join([*lines, "", toml_text(data)])

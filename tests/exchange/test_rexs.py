@@ -1,0 +1,189 @@
+"""Units from REXS files: what is taken, what is assumed, and files that are none."""
+
+from __future__ import annotations
+
+import math
+import random
+import zipfile
+from pathlib import Path
+
+import pytest
+from tests.exchange.units import planetary, rexsj, two_stages, xml
+
+import loadshare as ls
+from loadshare.errors import CaseError, Refused
+from loadshare.exchange.rexs import import_rexs
+
+
+@pytest.fixture
+def written(tmp_path):
+    """Return how a file is written."""
+
+    def write(content: bytes, name: str = "unit.rexs") -> Path:
+        path = tmp_path / name
+        path.write_bytes(content)
+        return path
+
+    return write
+
+
+def test_a_planetary_set_is_the_set_that_it_says(written) -> None:
+    """Torques by Willis; planets ride on the carrier, the ring is held, a pin bearing is off."""
+    found = import_rexs(written(xml(*planetary())))
+    case = found.case()
+    assert case.gears["carrier_3"].type == "carrier"
+    assert case.gears["gear_58"].held
+    assert {case.gears[f"gear_{k}"].carrier for k in (247, 248, 249)} == {"carrier_3"}
+    assert case.operating.input == "gear_53"
+    assert case.operating.output == "carrier_3"
+    assert case.gears["gear_53"].support == "free"
+    assert [v.si for v in case.errors["gear_248"].installation] == pytest.approx([0.0, 15e-6, 0.0])
+    assert any("lubricant" in line for line in found.left_out)
+    assert any("iso" in line for line in found.assumed)
+    result = ls.solve(case)
+    loads = result.positions[0].loads.gears
+    assert loads["gear_58"] == pytest.approx(1591.549 * 61 / 17, rel=1e-9)
+    assert loads["carrier_3"] == pytest.approx(-1591.549 * 78 / 17, rel=1e-9)
+    assert {len(stage) for stage in result.stages.values()} == {3}
+
+
+def test_all_forms_say_the_same(written, tmp_path) -> None:
+    parts = planetary()
+    whole = import_rexs(written(xml(*parts))).data
+    coded = import_rexs(written(xml(*parts, coded=True), "coded.rexs")).data
+    json = import_rexs(written(rexsj(*parts, "2.0"), "unit.rexsj")).data
+    with zipfile.ZipFile(tmp_path / "unit.rexsz", "w") as archive:
+        archive.writestr("unit.rexs", xml(*parts))
+    packed = import_rexs(tmp_path / "unit.rexsz").data
+    for other in (coded, json, packed):
+        assert other["gears"] == whole["gears"]
+        assert other["meshes"] == whole["meshes"]
+
+
+def test_shafts_bearings_and_stiffness_are_taken_by_their_formulas(written) -> None:
+    case = import_rexs(written(xml(*two_stages()))).case()
+    polar = math.pi / 32.0 * (0.04**4 - 0.02**4)
+    assert case.shafts["gear_21-gear_22"].stiffness.si == pytest.approx(79.3e9 * polar / 0.1)
+    # Gears at 25 mm and 125 mm, the middles of their widths, between bearings 200 mm apart.
+    for gear, at in (("gear_21", 0.025), ("gear_22", 0.125)):
+        yields = ((0.2 - at) / 0.2) ** 2 / 1e8 + (at / 0.2) ** 2 / 3e8
+        assert case.gears[gear].support.si == pytest.approx(1.0 / yields)
+    assert case.gears["gear_20"].support == "rigid"
+    assert case.bearings["gear_23"].clearance.si == pytest.approx(20e-6)
+    assert case.bearings["gear_23"].stiffness.si == pytest.approx(5e8)
+    radius = 0.5 * 2e-3 * 20 * math.cos(math.radians(20.0))
+    stiffness = case.meshes["gear_22-gear_23"].stiffness
+    assert stiffness.si == pytest.approx(20e9 * 0.05 * radius**2)
+    assert case.operating.running == "clockwise"
+    assert ls.solve(case).positions[0].loads.gears["gear_23"] == pytest.approx(600.0, rel=1e-9)
+
+
+def test_the_first_load_case_counts(written) -> None:
+    components, relations = two_stages()
+    cases = [
+        [(30, "external_load", "", {"torque_around_u_axis": (torque, "N m")})]
+        for torque in (70.0, 80.0)
+    ]
+    found = import_rexs(written(xml(components, relations, cases=cases)))
+    assert found.case().operating.torque.si == 70.0
+    assert any("first of 2 load cases" in line for line in found.assumed)
+
+
+def test_the_written_case_says_what_it_is_worth(written, tmp_path) -> None:
+    found = import_rexs(written(xml(*planetary())))
+    path = tmp_path / "unit.toml"
+    path.write_text(found.text, encoding="utf-8")
+    assert ls.load_case(path).to_dict() == found.case().to_dict()
+    assert found.text.startswith("# Assumed:")
+    assert "# Left out:" in found.text
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (b"", "not valid XML"),
+        (b"<model/>", "no components"),
+        (b"<html/>", "first element is html"),
+        (b'{"model": 3}', "no model"),
+        (b"{", "not valid JSON"),
+        (b"PK\x03\x04junk", "damaged archive"),
+        (b'<!DOCTYPE a [<!ENTITY b "c">]><model>&b;</model>', "document type"),
+        (b"<a>" * 1000 + b"</a>" * 1000, "nested too deeply"),
+        (xml([(1, "gear_unit", "", {})], []), "no cylindrical stage"),
+    ],
+)
+def test_what_is_no_unit_is_told(written, content, told) -> None:
+    with pytest.raises(CaseError) as caught:
+        import_rexs(written(content))
+    assert told in str(caught.value)
+
+
+def test_what_a_unit_lacks_is_told_all_at_once(written) -> None:
+    components, relations = two_stages()
+    poorer = [
+        (i, kind, name, {k: v for k, v in a.items() if k not in dropped})
+        for i, kind, name, a in components
+        for dropped in [
+            {
+                20: ("number_of_teeth",),
+                23: ("support_vector",),
+                12: ("support_vector",),
+                30: ("torque_around_u_axis",),
+            }.get(i, ())
+        ]
+    ]
+    with pytest.raises(CaseError) as caught:
+        import_rexs(written(xml(poorer, relations)))
+    told = str(caught.value)
+    assert "cylindrical_gear 20: has no number_of_teeth" in told
+    assert "cylindrical_gear 23: has no place" in told
+    assert "torque_around_u_axis" in told
+
+
+def mutated(content: bytes, dice: random.Random) -> bytes:
+    """Change a few bytes, drop or repeat a piece, or put other values in the place of numbers."""
+    data = bytearray(content)
+    for _ in range(dice.randint(1, 4)):
+        kind, here = dice.randrange(4), dice.randrange(len(data))
+        if kind == 0:
+            data[here] = dice.randrange(256)
+        elif kind == 1:
+            del data[here : here + dice.randint(1, 200)]
+        elif kind == 2:
+            there = dice.randrange(len(data))
+            data[here:here] = data[there : there + dice.randint(1, 200)]
+        else:
+            values = (b"1e308", b"-1", b"0", b"nan", b"inf", b"true", b"1e-320", b"", b"9" * 400)
+            word = dice.choice([b"4.0", b"17", b"125.0", b"1e9", b"1000000000.0", b"0.0", b"61"])
+            at = data.find(word, here)
+            if at >= 0:
+                data[at : at + len(word)] = dice.choice(values)
+        if not data:
+            data = bytearray(b" ")
+    return bytes(data)
+
+
+@pytest.mark.parametrize("start", range(4))
+def test_changed_files_are_told_or_solved(written, start) -> None:
+    """No change of a file ends in anything but a case, a list of problems, or a refusal."""
+    forms = [
+        xml(*planetary()),
+        rexsj(*planetary(), "2.0"),
+        xml(*two_stages()),
+        rexsj(*two_stages(), "1.4"),
+    ]
+    dice = random.Random(start)
+    outcomes = set()
+    for _ in range(60):
+        path = written(mutated(dice.choice(forms), dice))
+        try:
+            case = import_rexs(path).case()
+        except CaseError:
+            outcomes.add("told")
+            continue
+        try:
+            ls.solve(case)
+            outcomes.add("solved")
+        except Refused:
+            outcomes.add("refused")
+    assert {"told", "solved"} <= outcomes
