@@ -27,6 +27,7 @@ blocks = _load("blocks")
     [
         "docs/index.md",
         "docs/tutorial.md",
+        "docs/gearbox.md",
         "docs/pictures.md",
         "docs/studies.md",
         "docs/results.md",
@@ -42,7 +43,7 @@ def test_page(page: str):
             assert blocks.differences(block.text, real) == []
             shown += 1
     assert blocks.blocks_of(text), "the page has no block that was found"
-    if page in ("docs/tutorial.md", "docs/pictures.md", "README.md"):
+    if page in ("docs/tutorial.md", "docs/gearbox.md", "docs/pictures.md", "README.md"):
         assert shown > 0
 
 
