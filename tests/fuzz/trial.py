@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from tests.exchange import units
 from tests.fuzz.mutations import (
     NAMES,
     NUMBERS,
@@ -261,6 +262,18 @@ def _pair(random: Random, folder: Path) -> tuple[str, ...]:
     return ("pair", str(folder / "pair.toml"))
 
 
+def _rexs(random: Random, folder: Path) -> tuple[str, ...]:
+    """Write a gear unit with values or bytes changed."""
+    parts = pick(random, (units.planetary, units.two_stages))()
+    file = folder / "unit.rexs"
+    if random.integers(2):
+        file.write_bytes(garbled(random, units.xml(*parts)))
+    else:
+        data = json.loads(units.rexsj(*parts, "2.0"))
+        file.write_text(json.dumps(mutated(random, data)), encoding="utf-8")
+    return ("import", str(file), "-o", str(folder / "case.toml"))
+
+
 def _read(words: tuple[str, ...], folder: Path) -> tuple[int, str]:
     """Read tooth data: they make two bodies, or are refused by name."""
     try:
@@ -304,12 +317,13 @@ KINDS: dict[str, Callable[[Random, Path], tuple[str, ...]]] = {
     "study": _study,
     "words": _words,
     "pair": _pair,
+    "rexs": _rexs,
     "result": _result,
 }
 JUDGES = {"pair": _read, "result": _loaded}
 SHARES = (
     *(("case",) * 14 + ("numbers",) * 4 + ("bytes",) * 8 + ("words",) * 6 + ("study",) * 2),
-    *(("pair",) * 6 + ("result",) * 4),
+    *(("pair",) * 4 + ("rexs",) * 2 + ("result",) * 4),
 )
 """How often each kind is drawn: studies take ten times as long as all others."""
 
