@@ -10,12 +10,9 @@ from collections import deque
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from loadshare.train.gear import Gear, cross
+from loadshare.train.gear import Gear
 from loadshare.train.mesh import Contact, MeshGeometryError, contact_of
-from loadshare.train.ring import transverse
-from loadshare.train.willis import Links, along
+from loadshare.train.planetary import members
 
 RATIO_TOLERANCE = 1e-3
 """Largest relative difference between two paths' speed ratios that rounding of radii explains."""
@@ -122,7 +119,7 @@ def settle(
                 else:
                     conflicts += _compare(key, known, found)
     if planetary and not conflicts:
-        return _as_sets(settled, meshes, shafts, walks, first)
+        return _of_sets(settled, meshes, shafts, walks, first)
     for name, (driver, driven) in meshes.items():
         if name not in contacts and driver in settled and driven in settled:
             try:
@@ -132,63 +129,20 @@ def settle(
     return Kinematics(settled, contacts, tuple(conflicts))
 
 
-def _as_sets(
+def _of_sets(
     gears: Mapping[str, Gear],
     meshes: Mapping[str, tuple[str, str]],
     shafts: Mapping[str, tuple[str, str]],
     walks: Mapping[str, str],
     first: str,
 ) -> Kinematics:
-    """Give the members of planetary sets their speeds, their frames, and senses that fit both."""
+    """Settle a train with planetary sets, whose senses were walked."""
     try:
-        speeds, determined = Links.of(gears, meshes, shafts).speeds(first)
+        found, determined = members(gears, meshes, shafts, walks, first)
     except ValueError as error:
         return Kinematics(gears, {}, (Conflict("operating.input", str(error)),))
-    frames = _frames(gears, meshes)
-    relative = dict(speeds)
-    for name, frame in frames.items():
-        if gears[name].kind != "carrier":
-            relative[name] -= along(gears[name], gears[frame]) * speeds[frame]
-    # A walk that began anywhere may have begun the wrong way round.
-    turned = {}
-    for seed in dict.fromkeys(walks.values()):
-        moving = (relative[name] for name, walk in walks.items() if walk == seed and relative[name])
-        turned[seed] = -1 if seed != first and next(moving, 1.0) < 0.0 else 1
-    found = {}
-    for name, gear in gears.items():
-        way = turned[walks[name]]
-        found[name] = replace(
-            gear,
-            sense=way * gear.sense,
-            ratio=way * speeds[name],
-            relative=way * relative[name],
-            frame_of=frames.get(name),
-        )
-    found |= {name: _on_pin(gear, found) for name, gear in found.items() if gear.carrier}
-    radii = [gear.base_radius for gear in gears.values() if gear.kind != "carrier"]
-    for name, gear in found.items():
-        if gear.kind == "carrier":
-            pins = [float(np.linalg.norm(g.seat)) for g in found.values() if g.carrier == name]
-            found[name] = replace(gear, base_radius=max(pins or radii))
     contacts = {name: contact_of(found[a], found[b]) for name, (a, b) in meshes.items()}
     return Kinematics(found, contacts, (), determined)
-
-
-def _on_pin(planet: Gear, gears: Mapping[str, Gear]) -> Gear:
-    """Return a planet with the way of its pin per rotation of its carrier."""
-    carrier = gears[planet.carrier or ""]
-    arm = transverse(planet.centre - carrier.centre, carrier.axis)
-    return replace(planet, seat=carrier.sense * cross(carrier.axis, arm))
-
-
-def _frames(gears: Mapping[str, Gear], meshes: Mapping[str, tuple[str, str]]) -> dict[str, str]:
-    """Carrier from which a member of a planetary set is seen."""
-    found = {name: name for name, gear in gears.items() if gear.kind == "carrier"}
-    for ends in meshes.values():
-        carrier = gears[ends[0]].carrier or gears[ends[1]].carrier
-        if carrier is not None:
-            found |= dict.fromkeys(ends, carrier)
-    return found
 
 
 def _against(key: str, known: Gear, found: Gear) -> Iterator[Conflict]:
