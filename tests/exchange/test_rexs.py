@@ -12,7 +12,8 @@ from tests.exchange.units import planetary, rexsj, two_stages, xml
 
 import loadshare as ls
 from loadshare.errors import CaseError, Refused
-from loadshare.exchange.rexs import import_rexs
+from loadshare.exchange.rexs import export_rexs, import_rexs
+from loadshare.exchange.rexs.model import read_model
 
 
 @pytest.fixture
@@ -96,6 +97,33 @@ def test_the_written_case_says_what_it_is_worth(written, tmp_path) -> None:
     assert ls.load_case(path).to_dict() == found.case().to_dict()
     assert found.text.startswith("# Assumed:")
     assert "# Left out:" in found.text
+
+
+@pytest.mark.parametrize("form", ["xml", "json"])
+def test_what_is_written_back_is_read_again_as_the_same_case(written, form) -> None:
+    parts = planetary()
+    unit = written(xml(*parts) if form == "xml" else rexsj(*parts, "2.0"), f"unit.{form}")
+    case = import_rexs(unit).case().replace({"operating.positions": 2})
+    result = ls.solve(case)
+    copy = written(export_rexs(result, unit).encode(), f"copy.{form}")
+    again = import_rexs(copy)
+    for section in ("operating", "gears", "meshes", "errors", "stages"):
+        assert again.data[section] == import_rexs(unit).data[section]
+    stage = read_model(copy).components["211"]
+    share = max(p.share["gear_53-gear_247"] for p in result.positions)
+    assert stage.number("mesh_load_factor_iso_6336_2019") == pytest.approx(share)
+    law = result.positions[0].train.meshes["gear_53-gear_247"].laws[0]
+    stiffness = stage.attributes["meshing_stiffness_characteristic"]
+    assert stiffness == pytest.approx((1.0 / law.b, 1.0 / law.b))
+    # A second time there is one of each attribute.
+    assert export_rexs(result, copy) == copy.read_text()
+
+
+def test_a_unit_of_another_case_is_refused(written) -> None:
+    cases = Path(__file__).parents[2] / "cases"
+    result = ls.solve(cases / "planetary" / "four_planets.toml")
+    with pytest.raises(CaseError, match="has no mesh of this case"):
+        export_rexs(result, written(xml(*planetary())))
 
 
 @pytest.mark.parametrize(

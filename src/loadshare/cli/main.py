@@ -22,6 +22,7 @@ from loadshare.cli.check import check
 from loadshare.cli.command import Command
 from loadshare.cli.draw import draw
 from loadshare.cli.exits import room_told
+from loadshare.cli.exporting import export
 from loadshare.cli.importing import import_machine
 from loadshare.cli.ltca import ltca
 from loadshare.cli.new import new
@@ -48,8 +49,8 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 STUDIES = (sweep, critical, sensitivity, tolerance, march, compare, fit, study)
-CASES = (run, batch, report, draw, check, *STUDIES)
-for command in (run, batch, report, draw, check, schema, new, ltca, *STUDIES):
+CASES = (run, batch, report, draw, check, export, *STUDIES)
+for command in (run, batch, report, draw, check, schema, new, ltca, export, *STUDIES):
     app.command(cls=Command)(reads_cases(command) if command in CASES else command)
 app.command("import", cls=Command)(import_machine)
 

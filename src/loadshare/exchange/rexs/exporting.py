@@ -1,0 +1,108 @@
+"""What was found, written back into a copy of the REXS file from which the case was imported."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+from loadshare.errors import CaseError, Problem
+from loadshare.exchange.rexs.gearing import Gearing
+from loadshare.exchange.rexs.model import read_model
+from loadshare.input import read_file
+from loadshare.results import Result
+from loadshare.settings import ALLOWED
+
+FACTOR = "mesh_load_factor_iso_6336_2019"
+STIFFNESS = "meshing_stiffness_characteristic"
+Values = Mapping[str, Mapping[str, tuple[float | list[float], str]]]
+
+
+def export_rexs(result: Result, unit: str | Path) -> str:
+    """Return a REXS file with what was found, all else as it was.
+
+    Of every cylindrical stage the mesh load factor K_γ, the largest Ω of its mesh over the
+    positions, where the mesh is in a stage of the case; and the stiffness over the positions of the
+    mesh cycle, force over compression along the line of action.
+
+    Parameters
+    ----------
+    result : Result
+        Of a case with the gears that `import_rexs` names.
+    unit : str or pathlib.Path
+        The REXS file, XML or JSON; it is read only.
+
+    Raises
+    ------
+    CaseError
+        If the file cannot be read, is an archive, or has no mesh of the case.
+    """
+    unit = Path(unit)
+    found = _found(result, Gearing(read_model(unit)))
+    if not found:
+        why = "has no mesh of this case: gears must be named as the import names them"
+        raise CaseError([Problem(str(unit), "", "", why)])
+    content = read_file(unit, ALLOWED.bytes)
+    if content[:2] == b"PK":
+        raise CaseError([Problem(str(unit), "", "", "is an archive: unpack it first")])
+    if content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{":
+        return _into_json(json.loads(content.decode("utf-8-sig")), found)
+    parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
+    return _into_xml(ElementTree.fromstring(content, parser), found)
+
+
+def _found(result: Result, gearing: Gearing) -> Values:
+    """Attributes by id of the component: values and units."""
+    made: dict[str, dict[str, tuple[float | list[float], str]]] = {}
+    meshes = result.positions[0].train.meshes
+    for stage, one, other in gearing.stages:
+        ends = gearing.names[one.id], gearing.names[other.id]
+        name = next((n for n in map("-".join, (ends, ends[::-1])) if n in meshes), None)
+        if name is None:
+            continue
+        shares = [p.share.get(name) for p in result.positions]
+        known = [share for share in shares if share is not None]
+        made[stage.id] = {STIFFNESS: (_stiffness(result, name), "N / mm")}
+        if known:
+            made[stage.id][FACTOR] = (max(known), "none")
+    return made
+
+
+def _stiffness(result: Result, name: str) -> list[float]:
+    """Force over compression of a mesh at every position [N/mm]; 0 where it carries nothing."""
+    values = []
+    for position in result.positions:
+        force = abs(position.loads.meshes[name])
+        law = position.train.meshes[name].law(position.mesh_position[name] - 1)
+        yielded = law.compression(force)
+        values.append(1e-3 * force / yielded if yielded > 0.0 else 0.0)
+    return values
+
+
+def _into_xml(root: ElementTree.Element, found: Values) -> str:
+    for component in root.iterfind("components/component"):
+        for key, (value, unit) in found.get(component.get("id", ""), {}).items():
+            for old in [a for a in component.iterfind("attribute") if a.get("id") == key]:
+                component.remove(old)
+            attribute = ElementTree.SubElement(component, "attribute", id=key, unit=unit)
+            if isinstance(value, list):
+                array = ElementTree.SubElement(attribute, "array")
+                for one in value:
+                    ElementTree.SubElement(array, "c").text = repr(one)
+            else:
+                attribute.text = repr(value)
+    ElementTree.indent(root)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + ElementTree.tostring(root, "unicode") + "\n"
+
+
+def _into_json(root: dict[str, Any], found: Values) -> str:
+    for component in root["model"]["components"]:
+        new = found.get(str(component.get("id", "")), {})
+        kept = [a for a in component.get("attributes", []) if a.get("id") not in new]
+        for key, (value, unit) in new.items():
+            kind = "floating_point_array" if isinstance(value, list) else "floating_point"
+            kept.append({"id": key, "unit": unit, kind: value})
+        component["attributes"] = kept
+    return json.dumps(root, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
