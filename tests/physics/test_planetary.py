@@ -12,6 +12,7 @@ from scipy.linalg import eigh
 from tests.physics.planetary_model import Set
 
 import loadshare as ls
+from loadshare.errors import CaseError
 from loadshare.scene.loading import loading_of
 from loadshare.scene.structure import structure_of
 from loadshare.train import build_train
@@ -334,3 +335,63 @@ def test_a_set_that_turns_is_the_same_set_placed_anew(load: str, output: str, he
             changes[f"gears.p{k}.centre.angle"] = f"{angle:.17g} rad"
         again = ls.solve(case.replace(changes)).positions[0]
         assert position.torque == pytest.approx(again.torque, rel=1e-9)
+
+
+def test_a_march_counts_the_turns_of_what_turns() -> None:
+    """A ring on an elastic mount stands; the carrier of a double set runs against its sun."""
+    case = planetary().replace(
+        {
+            "gears.ring.held": None,
+            "gears.housing": {"type": "carrier", "centre": ["0 mm", "0 mm"], "held": True},
+            'shafts."ring-housing"': {"stiffness": "1e8 N*m/rad"},
+        }
+    )
+    march = {"gear": "ring", "revolutions": 1.0, "steps": 3}
+    with pytest.raises(CaseError, match=r"march\.gear"):
+        ls.solve(case.replace({"march": march}))
+    train = build_train(case.replace({"march": {**march, "gear": "carrier"}}))
+    assert train.rotations(2)["carrier"] == pytest.approx(2.0 * math.pi / 3.0)
+
+
+def test_two_planets_that_mesh_turn_the_carrier_the_other_way() -> None:
+    """Sun 30, planets 20 and 20, ring 92 by radii: i = 1 − z_r/z_s."""
+    alpha = math.cos(math.radians(20.0))
+    sun, planet = 30.0 * alpha, 20.0 * alpha
+    gears: dict[str, Any] = {
+        "sun": {"base_radius": f"{sun:.17g} mm", "teeth": 30, "centre": ["0 mm", "0 mm"]},
+        "carrier": {"type": "carrier", "centre": ["0 mm", "0 mm"]},
+    }
+    meshes: dict[str, Any] = {}
+    reach = 0.0
+    for k in range(3):
+        turn = 2.0 * math.pi * k / 3.0
+        inner = 50.0 * np.array([math.cos(turn), math.sin(turn)])
+        outer = inner + 40.0 * np.array([math.cos(turn + 0.9), math.sin(turn + 0.9)])
+        reach = float(np.hypot(*outer))
+        for name, place in ((f"p{k}", inner), (f"q{k}", outer)):
+            gears[name] = {
+                "base_radius": f"{planet:.17g} mm",
+                "carrier": "carrier",
+                "centre": [f"{v:.17g} mm" for v in place],
+            }
+        for pair in (f"sun-p{k}", f"p{k}-q{k}", f"q{k}-ring"):
+            meshes[pair] = {"stiffness": "1e7 N*m/rad"}
+    ring = reach * alpha + planet
+    gears["ring"] = {
+        "type": "internal",
+        "base_radius": f"{ring:.17g} mm",
+        "centre": ["0 mm", "0 mm"],
+        "held": True,
+    }
+    case = ls.Case(
+        operating={"input": "sun", "output": "carrier", "torque": "100 N*m", "positions": 4},
+        gears=gears,
+        meshes=meshes,
+    )
+    train = build_train(case)
+    speed = {name: g.sense * g.ratio for name, g in train.gears.items()}
+    assert 1.0 / speed["carrier"] == pytest.approx(1.0 - ring / sun, rel=1e-12)
+    assert speed["carrier"] < 0.0
+    assert train.rotations(2)["sun"] > 0.0
+    loads = ls.solve(case).positions[1].loads.gears
+    assert loads["carrier"] == pytest.approx(-100.0 * (1.0 - ring / sun), rel=1e-9)

@@ -78,6 +78,9 @@ def geometry_of(case: spec.Case) -> Geometry:
         message = "does not tell how fast all gears turn: a differential has two speeds"
         hint = 'Hold a member, or solve one position, or give rotation = "neglected".'
         problems.append(case.problem("operating.input", message, hint=hint))
+    march = case.march
+    if march is not None and not problems and not kinematics.gears[march.gear].ratio:
+        problems.append(case.problem("march.gear", "does not turn", "a gear that turns"))
     if problems:
         raise CaseError(problems)
     pairs = _pairs(case, kinematics.gears, kinematics.contacts)

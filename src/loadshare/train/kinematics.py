@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from loadshare.train.gear import Gear
@@ -96,6 +97,8 @@ def settle(
 
     links = [(n, e, f'meshes."{n}"', mesh_partner) for n, e in meshes.items()]
     links += [(n, e, f'shafts."{n}"', shaft_partner) for n, e in shafts.items()]
+    # In a set speeds are those of Willis, and follow later.
+    compare = _against if planetary else _compare
     walked: set[str] = set()
     queue = deque([first])
     while queue or (planetary and len(settled) < len(gears)):
@@ -114,18 +117,14 @@ def settle(
                     settled[found.name] = found
                     walks[found.name] = walks[here]
                     queue.append(found.name)
-                elif planetary:
-                    conflicts += _against(key, known, found)
                 else:
-                    conflicts += _compare(key, known, found)
+                    conflicts += compare(key, known, found)
     if planetary and not conflicts:
         return _of_sets(settled, meshes, shafts, walks, first)
     for name, (driver, driven) in meshes.items():
         if name not in contacts and driver in settled and driven in settled:
-            try:
+            with suppress(MeshGeometryError):
                 contacts[name] = contact_of(settled[driver], settled[driven])
-            except MeshGeometryError:
-                continue
     return Kinematics(settled, contacts, tuple(conflicts))
 
 

@@ -210,7 +210,7 @@ class Train:
         The input gear, or else the first on the way from it whose teeth are known. In a march it
         decides nothing.
         """
-        known = (name for name, gear in self.gears.items() if gear.teeth is not None)
+        known = (n for n, g in self.gears.items() if g.teeth is not None and g.relative)
         return next(known, None) if self.rotating else None
 
     def rotations(self, index: int) -> dict[str, float]:
@@ -231,7 +231,7 @@ class Train:
             turned = self._pitch * step / self.positions
         else:
             gear, revolutions, steps = self.march
-            turned = 2.0 * math.pi * revolutions * step / steps / self.gears[gear].ratio
+            turned = 2.0 * math.pi * revolutions * step / steps / abs(self.gears[gear].ratio)
         return {name: turned * gear.ratio for name, gear in self.gears.items()}
 
     def offset(self, gear: str, rotation: Mapping[str, float]) -> Vector:
@@ -282,7 +282,7 @@ class Train:
         if self.cycle is None:
             return 0.0
         gear = self.gears[self.cycle]
-        return 2.0 * math.pi / ((gear.teeth or math.inf) * gear.relative)
+        return 2.0 * math.pi / ((gear.teeth or math.inf) * abs(gear.relative))
 
     def _mesh_position(self, mesh: str, step: int, rotation: Mapping[str, float]) -> int:
         driver, phase = self.gears[self.meshes[mesh].driver], self.meshes[mesh].phase
