@@ -116,3 +116,11 @@ def test_a_problem_names_the_file_in_which_all_copies_stand(tmp_path) -> None:
     told = str(caught.value).splitlines()
     assert len(told) == 4
     assert all("base.toml" in line and "sun-planet" in line for line in told)
+
+
+def test_a_pin_without_an_error_can_be_given_one() -> None:
+    data = changed()
+    del data["errors"]
+    case = Case(data).replace({"errors.planet3.pin.angular": "0.1 mrad"})
+    assert case.errors["planet3"].pin.angular.si == pytest.approx(1e-4)
+    assert list(case.errors) == ["planet3"]

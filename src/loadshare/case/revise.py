@@ -86,8 +86,10 @@ def change(data: dict[str, Any], path: Path, value: Any) -> str | None:
     if value is not None and len(path) > 1 and path[0] in Content.model_fields:
         section = data.setdefault(str(path[0]), {})
         if path[0] == "errors" and len(path) > 2:
-            # A gear without errors has no table of them; every key of one is optional.
-            section.setdefault(path[1], {})
+            # A gear without errors has no table of them, nor of its pin; their keys are optional.
+            errors = section.setdefault(path[1], {})
+            if path[2] == "pin" and isinstance(errors, dict):
+                errors.setdefault("pin", {})
     holder: Any = look_up(data, path[:-1])
     step: Any = path[-1]
     if value is None:
