@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import random
 import zipfile
@@ -13,7 +14,7 @@ from tests.exchange.units import planetary, rexsj, two_stages, xml
 import loadshare as ls
 from loadshare.errors import CaseError, Refused
 from loadshare.exchange.rexs import export_rexs, import_rexs
-from loadshare.exchange.rexs.model import read_model
+from loadshare.exchange.rexs.reading import read_model
 
 
 @pytest.fixture
@@ -144,6 +145,51 @@ def test_what_is_no_unit_is_told(written, content, told) -> None:
     with pytest.raises(CaseError) as caught:
         import_rexs(written(content))
     assert told in str(caught.value)
+
+
+def test_a_carriers_bearing_keeps_its_clearance(written) -> None:
+    components, relations = planetary()
+    bearing = {"radial_stiffness": (2e9, "N / m"), "radial_clearance": (60.0, "mum")}
+    bearing |= {"misalignment_in_w_direction": (7.0, "mum")}
+    components.append((400, "concept_bearing", "", bearing))
+    relations.append(("side", {"assembly": 400, "inner_part": 4, "outer_part": 2}))
+    case = import_rexs(written(xml(components, relations))).case()
+    assert case.bearings["carrier_3"].clearance.si == pytest.approx(30e-6)
+    assert case.bearings["carrier_3"].stiffness.si == pytest.approx(2e9)
+    assert case.errors["carrier_3"].installation[2].si == pytest.approx(7e-6)
+
+
+def test_places_told_from_other_components_are_told_of(written) -> None:
+    components, relations = two_stages()
+    moved = [
+        (i, kind, name, a | {"reference_component_for_position": (11, "none")} if i == 22 else a)
+        for i, kind, name, a in components
+    ]
+    found = import_rexs(written(xml(moved, relations)))
+    assert found.data["gears"]["gear_22"]["centre"][1] == "120 mm"
+    assert any("told from other components" in line for line in found.assumed)
+
+
+@pytest.mark.parametrize("packed", [zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
+def test_damaged_archives_are_told_or_read(written, tmp_path, packed) -> None:
+    with zipfile.ZipFile(tmp_path / "good.rexsz", "w", packed) as archive:
+        archive.writestr("unit.rexs", xml(*planetary()))
+    good, dice = (tmp_path / "good.rexsz").read_bytes(), random.Random(3)
+    for _ in range(150):
+        path = written(mutated(good, dice), "unit.rexsz")
+        try:
+            import_rexs(path)
+        except CaseError:
+            continue
+
+
+def test_what_is_odd_in_a_file_is_no_hindrance_to_writing_back(written) -> None:
+    held = json.loads(rexsj(*planetary(), "2.0"))
+    held["model"]["components"] += [3, {"id": 900, "attributes": "none"}, {"id": 901}]
+    held["model"]["about"] = math.nan
+    unit = written(json.dumps(held).encode(), "odd.rexsj")
+    result = ls.solve(import_rexs(unit).case())
+    assert "mesh_load_factor_iso_6336_2019" in export_rexs(result, unit)
 
 
 def test_what_a_unit_lacks_is_told_all_at_once(written) -> None:

@@ -24,6 +24,8 @@ ABOUT = ("title", "source", "notes", "assumed", "measured", "study")
 """The keys that say something about a case and nothing about the machine."""
 FLOATS = ("splines", "rings", "bearings")
 """The sections of what lets a gear float, by gear."""
+ENDS = {"meshes": ("driver", "driven"), "shafts": ("ends",)}
+"""Keys of what joins two gears that tell them; left out, the element's name does."""
 
 
 class Sections(Element):

@@ -14,15 +14,12 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
+from loadshare.case.content import ENDS, FLOATS
 from loadshare.case.gears import COPIES
-from loadshare.case.keys import Path, dotted, ends_of, parse
+from loadshare.case.keys import Path, dotted, ends_of, merge, parse
 from loadshare.case.origin import Origin
 from loadshare.case.quantity import ANGLE, Quantity
 
-BY_GEAR = ("splines", "rings", "bearings", "errors")
-"""Sections whose elements are named after a gear."""
-BY_PAIR = {"meshes": ("driver", "driven"), "shafts": ("ends",)}
-"""Sections whose elements join two gears, and the keys that tell them if the name does not."""
 Data = dict[str, Any]
 
 
@@ -78,9 +75,9 @@ def with_copies(data: Data, origin: Origin) -> tuple[Data, Origin]:
         return became
 
     became = {"gears": spread("gears", lambda name, _: (name,))}
-    for section in BY_GEAR:
+    for section in (*FLOATS, "errors"):
         became[section] = spread(section, lambda name, _: (name,))
-    for section, keys in BY_PAIR.items():
+    for section, keys in ENDS.items():
         became[section] = spread(section, partial(_ends, keys=keys, gears=names))
     _rename_in_stages(made, became["meshes"])
     if isinstance(made.get("assumed"), list):
@@ -139,7 +136,7 @@ def _copied(section: str, element: Any, pattern: _Pattern, ends: tuple[str, ...]
     made = copy.deepcopy(element)
     if not isinstance(made, dict):
         return made
-    for key in BY_PAIR.get(section, ()):
+    for key in ENDS.get(section, ()):
         given = made.get(key)
         if isinstance(given, str):
             made[key] = pattern.of(given, k)
@@ -160,18 +157,10 @@ def _lay(table: Data, name: str, element: Any, *, under: bool = False) -> None:
     there = table.get(name)
     if isinstance(there, dict) and isinstance(element, Mapping):
         low, high = (element, there) if under else (there, element)
-        table[name] = _merged(low, high)
+        table[name] = copy.deepcopy(dict(low))
+        merge(table[name], high)
     elif name not in table or not under:
         table[name] = element
-
-
-def _merged(low: Mapping[str, Any], high: Mapping[str, Any]) -> Data:
-    found = dict(low)
-    for key, value in high.items():
-        below = found.get(key)
-        both = isinstance(value, Mapping) and isinstance(below, Mapping)
-        found[key] = _merged(below, value) if both else value  # type: ignore[arg-type]
-    return found
 
 
 def _rename_in_stages(data: Data, meshes: Mapping[str, list[str]]) -> None:

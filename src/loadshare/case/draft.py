@@ -9,7 +9,7 @@ from typing import Any, get_origin
 from pydantic import ConfigDict, PrivateAttr, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
-from loadshare.case.content import Content, Sections
+from loadshare.case.content import ENDS, Content, Sections
 from loadshare.case.element import Element, elements_in, written
 from loadshare.case.keys import Path, ends_of
 from loadshare.case.origin import Origin
@@ -150,7 +150,7 @@ def _read(draft: Draft, path: Path, value: Any, kind: Any) -> Any:
 
 def _with_ends(draft: Draft, path: Path, item: Any) -> Any:
     """Return an element with the gears that its name tells, or None where it tells none."""
-    keys = {"meshes": ("driver", "driven"), "shafts": ("ends",)}.get(str(path[0]))
+    keys = ENDS.get(str(path[0]))
     if keys is None or not isinstance(item, Mapping) or all(key in item for key in keys):
         return item
     ends = ends_of(str(path[1]), draft.names("gears"))

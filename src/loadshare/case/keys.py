@@ -96,6 +96,16 @@ def look_up(data: Any, path: Path) -> Any:
     return data
 
 
+def merge(data: dict[str, Any], over: Mapping[str, Any]) -> None:
+    """Lay keys over those of nested tables, in place; what is no table is replaced."""
+    for key, value in over.items():
+        below = data.get(key)
+        if isinstance(value, Mapping) and isinstance(below, dict):
+            merge(below, value)
+        else:
+            data[key] = value
+
+
 def walk(data: Mapping[str, Any], above: Path = ()) -> Iterator[Path]:
     """Yield the path of every key, each table before what it holds.
 

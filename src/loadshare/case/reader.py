@@ -13,7 +13,7 @@ from typing import Any
 from loadshare.case.checks import check
 from loadshare.case.copies import with_copies
 from loadshare.case.draft import Draft, as_data, read_draft
-from loadshare.case.keys import Path, parse, walk
+from loadshare.case.keys import Path, merge, parse, walk
 from loadshare.case.model import Case
 from loadshare.case.origin import Origin
 from loadshare.case.revise import change, revise
@@ -131,7 +131,7 @@ def _read(
             problems.append(Problem(str(path), f"remove[{number}]", as_given(key), *wrong))
     # What the base assumes stays assumed: a case may only add to it.
     inherited, added = data.get("assumed", []), own.get("assumed", [])
-    _merge(data, own)
+    merge(data, own)
     if isinstance(inherited, list) and isinstance(added, list) and (inherited or added):
         data["assumed"] = [*inherited, *(item for item in added if item not in inherited)]
         files |= {("assumed", number): files[("assumed",)] for number in range(len(inherited))}
@@ -153,16 +153,6 @@ def _remove(data: dict[str, Any], files: dict[Path, str], key: object) -> tuple[
     for known in [known for known in files if known[: len(path)] == path]:
         del files[known]
     return ()
-
-
-def _merge(data: dict[str, Any], own: Mapping[str, Any]) -> None:
-    """Lay a file's own keys over the inherited ones, in place."""
-    for key, value in own.items():
-        inherited = data.get(key)
-        if isinstance(value, Mapping) and isinstance(inherited, dict):
-            _merge(inherited, value)
-        else:
-            data[key] = value
 
 
 def _base_of(path: FilePath, base: object, chain: tuple[FilePath, ...], origin: Origin) -> FilePath:

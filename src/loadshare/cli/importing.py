@@ -46,7 +46,7 @@ def import_machine(
             for line in lines:
                 say(f"{what}: {line}", whole=True)
     try:
-        imported.case()
+        imported.case(str(target))
     except CaseError as error:
         tell_written(target, ". It is no case yet:", err=True)
         told = [str(problem) for problem in error.problems]

@@ -9,7 +9,7 @@ import numpy as np
 
 from loadshare.train.gear import Gear, cross
 from loadshare.train.ring import transverse
-from loadshare.train.willis import Links, along
+from loadshare.train.willis import Links, along, seen_from
 
 
 def members(
@@ -83,7 +83,7 @@ def _frames(gears: Mapping[str, Gear], meshes: Mapping[str, tuple[str, str]]) ->
     """Carrier from which a member of a planetary set is seen."""
     found = {name: name for name, gear in gears.items() if gear.kind == "carrier"}
     for ends in meshes.values():
-        carrier = gears[ends[0]].carrier or gears[ends[1]].carrier
+        carrier = seen_from(gears, *ends)
         if carrier is not None:
             found |= dict.fromkeys(ends, carrier)
     return found

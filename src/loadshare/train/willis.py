@@ -57,7 +57,7 @@ class Links:
             row = np.zeros(len(order))
             for name, sign in ((driver, 1.0), (driven, -1.0)):
                 row[order[name]] += sign * gears[name].base_radius
-            carrier = gears[driver].carrier or gears[driven].carrier
+            carrier = seen_from(gears, driver, driven)
             if carrier is not None:
                 row[order[carrier]] -= sum(
                     row[order[name]] * along(gears[name], gears[carrier])
@@ -109,6 +109,11 @@ class Links:
         force = np.linalg.lstsq(self.matrix[:, turning].T, load, rcond=1e-9)[0]
         force[np.abs(force) <= NOISE * np.abs(force).max(initial=0.0)] = 0.0
         return dict(zip(self.names, np.sign(force).astype(int).tolist(), strict=True))
+
+
+def seen_from(gears: Mapping[str, Gear], driver: str, driven: str) -> str | None:
+    """Return the carrier whose planets are in a mesh, if any."""
+    return gears[driver].carrier or gears[driven].carrier
 
 
 def along(gear: Gear, carrier: Gear) -> float:

@@ -5,16 +5,13 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 
-from loadshare.case.content import ABOUT, FLOATS
+from loadshare.case.content import ABOUT, ENDS, FLOATS
 from loadshare.case.draft import Draft
 from loadshare.case.gears import Polar
 from loadshare.case.keys import Path, covers, dotted, look_up, parse, walk
 from loadshare.case.measured import COEFFICIENTS
 from loadshare.case.words import choices, did_you_mean
 from loadshare.errors import Problem
-
-ENDS = {"meshes": ("driver", "driven"), "shafts": ("ends",)}
-"""Keys that tell gears, or else leave it to the element's name."""
 
 
 def check_gear_names(draft: Draft) -> Iterator[Problem]:

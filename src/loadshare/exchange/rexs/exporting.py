@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 
 from loadshare.errors import CaseError, Problem
 from loadshare.exchange.rexs.gearing import Gearing
-from loadshare.exchange.rexs.model import read_model
+from loadshare.exchange.rexs.reading import read_model, tables
 from loadshare.input import read_file
 from loadshare.results import Result
 from loadshare.settings import ALLOWED
@@ -98,11 +98,11 @@ def _into_xml(root: ElementTree.Element, found: Values) -> str:
 
 
 def _into_json(root: dict[str, Any], found: Values) -> str:
-    for component in root["model"]["components"]:
+    for component in tables(root["model"]["components"]):
         new = found.get(str(component.get("id", "")), {})
-        kept = [a for a in component.get("attributes", []) if a.get("id") not in new]
+        kept = [a for a in tables(component.get("attributes")) if a.get("id") not in new]
         for key, (value, unit) in new.items():
             kind = "floating_point_array" if isinstance(value, list) else "floating_point"
             kept.append({"id": key, "unit": unit, kind: value})
         component["attributes"] = kept
-    return json.dumps(root, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    return json.dumps(root, indent=1, ensure_ascii=False) + "\n"

@@ -135,6 +135,12 @@ class Gearing:
             gear.number("face_width") or 0.0
         )
 
+    def shafts_of(self, body: Component) -> list[Component]:
+        """Shaft of a gear, or the shafts of a carrier."""
+        if body.id in self.shaft_of:
+            return [self.shaft_of[body.id]]
+        return [self.model.components[s] for s, c in self.carrier_shafts.items() if c is body]
+
     def flanks(self, gear: Component) -> list[Component]:
         """Flanks of a gear."""
         related = self.model.related("flank", "gear", "left", "right")
@@ -142,16 +148,23 @@ class Gearing:
 
     def place(self, body: Component, depth: int = 0) -> Vector | None:
         """Where a component is [m], its reference's place added if that is another's."""
-        here = body.vector("support_vector")
-        reference = body.attributes.get("reference_component_for_position")
-        number = isinstance(reference, float) and reference.is_integer()
-        other = self.model.components.get(f"{reference:.0f}" if number else str(reference))
-        if here is None or other is None or other is body or other.type == "gear_unit":
+        here, other = body.vector("support_vector"), self._reference(body)
+        if here is None or other is None:
             return here
         start = self.place(other, depth + 1) if depth < LONG else None
         if start is None:
             return here
         return (start[0] + here[0], start[1] + here[1], start[2] + here[2])
+
+    def is_referred(self, body: Component) -> bool:
+        """Whether a component's place is told from another one than the unit."""
+        return self._reference(body) is not None
+
+    def _reference(self, body: Component) -> Component | None:
+        told = body.attributes.get("reference_component_for_position")
+        number = isinstance(told, float) and told.is_integer()
+        other = self.model.components.get(f"{told:.0f}" if number else str(told))
+        return None if other is None or other is body or other.type == "gear_unit" else other
 
     def axis(self, body: Component) -> Vector:
         """Direction of a body's axis, of length 1; its shaft's, or x, where it tells none."""

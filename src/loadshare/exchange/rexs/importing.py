@@ -5,16 +5,19 @@ from __future__ import annotations
 import math
 from collections import Counter, deque
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from loadshare.case import Case
+from loadshare.case.origin import Origin
 from loadshare.case.writer import toml_text
 from loadshare.errors import CaseError, Problem
 from loadshare.exchange.rexs.gearing import GEARS, READ, Gearing, Vector
 from loadshare.exchange.rexs.holding import Holding, holding_of
-from loadshare.exchange.rexs.model import Component, read_model
+from loadshare.exchange.rexs.model import Component
+from loadshare.exchange.rexs.reading import read_model
 from loadshare.exchange.rexs.shafts import torsion_between
 
 Data: TypeAlias = dict[str, Any]
@@ -39,15 +42,20 @@ class Imported:
     assumed: tuple[str, ...]
     left_out: tuple[str, ...]
 
-    def case(self) -> Case:
+    def case(self, file: str = "case") -> Case:
         """Return the case.
+
+        Parameters
+        ----------
+        file : str
+            To be named in messages.
 
         Raises
         ------
         CaseError
             If what the file says makes no case that can be used.
         """
-        return Case(self.data)
+        return Case(self.data, origin=Origin(file))
 
 
 def import_rexs(path: str | Path) -> Imported:
@@ -84,6 +92,8 @@ class _Importer:
     def imported(self) -> Imported:
         """Return the case."""
         self.assumed += self.of.model.notes
+        if any(self.of.is_referred(body) for body in (*self.of.gears, *self.of.carriers)):
+            self.assumed.append("places told from other components are turned like these")
         if not self.of.stages:
             self._lacks("", "has no cylindrical stage that joins two gears")
         gears = {self.of.names[g.id]: self._gear(g) for g in self.of.gears}
@@ -167,12 +177,11 @@ class _Importer:
         made |= self._placed(gear, shaft)
         if gear.id in self.of.carrier_of:
             made["carrier"] = self.of.names[self.of.carrier_of[gear.id].id]
-        made |= self._holding(gear).support
+        made |= self.holding[gear.id].support
         return made
 
     def _carrier(self, carrier: Component) -> Data:
-        shafts = [s for s, c in self.of.carrier_shafts.items() if c is carrier]
-        held = [self.of.model.components[s] for s in shafts]
+        held = self.of.shafts_of(carrier)
         made: Data = {"type": "carrier"}
         places = [
             (g, self.of.place(g)) for g in self.of.gears if self.of.carrier_of.get(g.id) is carrier
@@ -188,8 +197,7 @@ class _Importer:
             self.assumed.append(f"{self.of.names[carrier.id]}: its axis is amid its planets")
         elif "centre" not in made:
             self._lacks(carrier, "has no place")
-        name = self.of.names[carrier.id]
-        return made | holding_of(self.of.model, held, 0.0, name, self.assumed).support
+        return made | self.holding[carrier.id].support
 
     def _placed(self, body: Component, shaft: Component | None) -> Data:
         place = self.of.place(body)
@@ -203,24 +211,33 @@ class _Importer:
             return {}
         return {"centre": [_mm(v) for v in place], "axis": _axis(axis)}
 
-    def _holding(self, gear: Component) -> Holding:
-        name, shaft = self.of.names[gear.id], self.of.shaft_of.get(gear.id)
-        shafts = [] if shaft is None else [shaft]
-        return holding_of(self.of.model, shafts, self.of.along(gear), name, self.assumed)
+    @cached_property
+    def holding(self) -> dict[str, Holding]:
+        """What holds every gear and carrier, by id."""
+        return {
+            body.id: holding_of(
+                self.of.model,
+                self.of.shafts_of(body),
+                self.of.along(body),
+                self.of.names[body.id],
+                self.assumed,
+            )
+            for body in (*self.of.gears, *self.of.carriers)
+        }
 
     def _bearings(self) -> Data:
-        found = {self.of.names[g.id]: self._holding(g).clearance for g in self.of.gears}
-        return {name: bearing for name, bearing in found.items() if bearing}
+        return {
+            self.of.names[id_]: held.clearance
+            for id_, held in self.holding.items()
+            if held.clearance
+        }
 
     def _errors(self) -> Data:
-        found = {}
-        for gear in self.of.gears:
-            offset = self._holding(gear).offset
-            if any(offset):
-                found[self.of.names[gear.id]] = {
-                    "installation": [f"{1e6 * v:.12g} um" for v in offset]
-                }
-        return found
+        return {
+            self.of.names[id_]: {"installation": [f"{1e6 * v:.12g} um" for v in held.offset]}
+            for id_, held in self.holding.items()
+            if any(held.offset)
+        }
 
     # Load and links -----------------------------------------------------------------------------
 

@@ -1,0 +1,284 @@
+"""REXS files: XML, JSON, or an archive with one of them, read into a model."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import json
+import lzma
+import math
+import struct
+import zipfile
+import zlib
+from collections.abc import Mapping
+from io import BytesIO
+from pathlib import Path
+from typing import Any, NoReturn
+from xml.etree import ElementTree
+from xml.parsers import expat
+
+from loadshare.errors import CaseError, Problem
+from loadshare.exchange.rexs.model import Component, Model, Relation, Value
+from loadshare.input import Unreadable, read_file
+from loadshare.settings import ALLOWED
+
+UNITS = {
+    "mm": 1e-3,
+    "mum": 1e-6,
+    "deg": math.pi / 180.0,
+    "°": math.pi / 180.0,
+    "rad": 1.0,
+    "N": 1.0,
+    "kN": 1e3,
+    "N m": 1.0,
+    "N / m": 1.0,
+    "N / mm": 1e3,
+    "N mm / rad": 1e-3,
+    "N m / rad": 1.0,
+    "N / (mm mum)": 1e9,
+    "N / mm^2": 1e6,
+    "1 / min": math.pi / 30.0,
+    "kW": 1e3,
+    "W": 1.0,
+    "none": 1.0,
+}
+"""SI value of the units of the attributes that are read."""
+CODES = {"float64": "d", "float32": "f"}
+"""Arrays as bytes, by the code that the file tells."""
+
+DAMAGED = (
+    zipfile.BadZipFile,
+    zlib.error,
+    lzma.LZMAError,
+    NotImplementedError,
+    EOFError,
+    ValueError,
+)
+"""What reading an archive raises that is damaged, or packed in a way that Python does not know."""
+ENCRYPTED = 1
+"""Flag of a file in an archive."""
+
+
+def read_model(path: Path) -> Model:
+    """Read a REXS file: XML, JSON, or either in a zip archive.
+
+    Raises
+    ------
+    CaseError
+        If it cannot be read or is no REXS.
+    """
+    try:
+        content = read_file(path, ALLOWED.bytes)
+        if content[:4] == b"PK\x03\x04":
+            content = _unpacked(path, content)
+    except OSError as error:
+        _refuse(path, (error.strerror or "cannot be read").lower())
+    except Unreadable as error:
+        _refuse(path, str(error))
+    is_json = content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{"
+    try:
+        model = _from_json(content) if is_json else _from_xml(content)
+    except _NoRexs as error:
+        _refuse(path, str(error))
+    except RecursionError:
+        _refuse(path, "is nested too deeply")
+    if not model.components:
+        _refuse(path, "is no REXS: it has no components")
+    return model
+
+
+class _NoRexs(Exception):  # noqa: N818 -- told as a problem, never raised to a user
+    """Why a text is no REXS."""
+
+
+def _refuse(path: Path, why: str) -> NoReturn:
+    raise CaseError([Problem(str(path), "", "", why)])
+
+
+def _unpacked(path: Path, content: bytes) -> bytes:
+    try:
+        with zipfile.ZipFile(BytesIO(content)) as archive:
+            inside = [i for i in archive.infolist() if i.filename.endswith((".rexs", ".rexsj"))]
+            if len(inside) != 1:
+                _refuse(path, f"is an archive with {len(inside)} REXS files, not 1")
+            if inside[0].flag_bits & ENCRYPTED:
+                _refuse(path, "is an encrypted archive")
+            if inside[0].file_size > ALLOWED.bytes:
+                raise Unreadable(f"is larger than {ALLOWED.bytes // 2**20} MiB")
+            with archive.open(inside[0]) as file:
+                return file.read(ALLOWED.bytes)
+    except DAMAGED:
+        _refuse(path, "is a damaged archive")
+
+
+def _from_xml(content: bytes) -> Model:
+    root = _parsed(content)
+    if root.tag != "model":
+        raise _NoRexs(f"is no REXS: its first element is {root.tag}, not model")
+    relations = [
+        Relation(
+            r.get("type", ""), {ref.get("role", ""): ref.get("id", "") for ref in r.iter("ref")}
+        )
+        for r in root.iterfind("relations/relation")
+    ]
+    whole = {c.get("id", ""): _component(c) for c in root.iterfind("components/component")}
+    cases = [
+        {c.get("id", ""): _component(c) for c in case.iter("component")}
+        for case in root.iterfind("load_spectrum/load_case")
+    ]
+    return _loaded(root.get("version", ""), whole, relations, cases)
+
+
+def _parsed(content: bytes) -> ElementTree.Element:
+    """Parse XML that declares no document type: entities are a way to make much of little."""
+    builder = ElementTree.TreeBuilder()
+    parser = expat.ParserCreate()
+
+    def refuse(*_: Any) -> NoReturn:
+        raise _NoRexs("declares a document type, as no REXS does")
+
+    depth = 0
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal depth
+        depth += 1
+        if depth > ALLOWED.depth:
+            raise _NoRexs("is nested too deeply")
+        builder.start(tag, attributes)
+
+    def end(tag: str) -> None:
+        nonlocal depth
+        depth -= 1
+        builder.end(tag)
+
+    parser.StartDoctypeDeclHandler = refuse
+    parser.StartElementHandler = start
+    parser.EndElementHandler = end
+    parser.CharacterDataHandler = builder.data
+    try:
+        parser.Parse(content, True)
+        return builder.close()
+    except (expat.ExpatError, AssertionError, ValueError, LookupError) as error:
+        raise _NoRexs(f"is not valid XML: {error}") from None
+
+
+def _component(element: ElementTree.Element) -> Component:
+    attributes = {}
+    for attribute in element.iterfind("attribute"):
+        array = attribute.find("array")
+        if array is None:
+            value = _scalar((attribute.text or "").strip())
+        elif array.get("code"):
+            value = _decoded(array.text or "", array.get("code", ""))
+        else:
+            value = _numbers([(c.text or "").strip() for c in array.iterfind("c")])
+        attributes[attribute.get("id", "")] = _in_si(value, attribute.get("unit", "none"))
+    return Component(
+        element.get("id", ""), element.get("type", ""), element.get("name", ""), attributes
+    )
+
+
+def _scalar(text: str) -> Value:
+    if text in ("true", "false"):
+        return text == "true"
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def _numbers(texts: list[Any]) -> Value:
+    try:
+        return tuple(float(text) for text in texts)
+    except (TypeError, ValueError, OverflowError):
+        return ""
+
+
+def _decoded(text: str, code: str) -> Value:
+    letter = CODES.get(code)
+    if letter is None:
+        return ""
+    try:
+        held = base64.b64decode("".join(text.split()), validate=True)
+        return struct.unpack(f"<{len(held) // struct.calcsize(letter)}{letter}", held)
+    except (binascii.Error, struct.error, ValueError):
+        return ""
+
+
+def _in_si(value: Value, unit: str) -> Value:
+    factor = UNITS.get(unit.replace("Nm", "N m") if unit.startswith("Nm") else unit)
+    if factor is None or factor == 1.0 or isinstance(value, bool | str):
+        return value
+    return tuple(factor * v for v in value) if isinstance(value, tuple) else factor * value
+
+
+def _from_json(content: bytes) -> Model:
+    try:
+        held = json.loads(content.decode("utf-8-sig"))
+    except (UnicodeDecodeError, ValueError) as error:
+        raise _NoRexs(f"is not valid JSON: {error}") from None
+    model = held.get("model") if isinstance(held, Mapping) else None
+    if not isinstance(model, Mapping):
+        raise _NoRexs("is no REXS: it has no model")
+    relations = [
+        Relation(
+            str(r.get("type", "")),
+            {str(ref.get("role", "")): str(ref.get("id", "")) for ref in tables(r.get("refs"))},
+        )
+        for r in tables(model.get("relations"))
+    ]
+    whole = {c.id: c for c in map(_json_component, tables(model.get("components")))}
+    spectrum = model.get("load_spectrum")
+    cases = [
+        {c.id: c for c in map(_json_component, tables(case.get("components")))}
+        for case in tables(spectrum.get("load_cases") if isinstance(spectrum, Mapping) else None)
+    ]
+    return _loaded(str(model.get("version", "")), whole, relations, cases)
+
+
+def tables(given: Any) -> list[dict[str, Any]]:
+    """Return the tables of a list; nothing of what is no list."""
+    return [t for t in given if isinstance(t, dict)] if isinstance(given, list) else []
+
+
+def _json_component(given: Mapping[str, Any]) -> Component:
+    attributes = {}
+    for attribute in tables(given.get("attributes")):
+        told = [v for k, v in attribute.items() if k not in ("id", "unit")]
+        unit = attribute.get("unit", "none")
+        value = _json_value(told[0]) if len(told) == 1 else ""
+        attributes[str(attribute.get("id", ""))] = _in_si(value, str(unit))
+    return Component(
+        str(given.get("id", "")), str(given.get("type", "")), str(given.get("name", "")), attributes
+    )
+
+
+def _json_value(given: Any) -> Value:
+    if isinstance(given, bool | str):
+        return given
+    if isinstance(given, int | float):
+        try:
+            return float(given)
+        except OverflowError:
+            return ""
+    if isinstance(given, Mapping):
+        return _decoded(str(given.get("value", "")), str(given.get("code", "")))
+    return _numbers(given) if isinstance(given, list) else ""
+
+
+def _loaded(
+    version: str,
+    whole: dict[str, Component],
+    relations: list[Relation],
+    cases: list[dict[str, Component]],
+) -> Model:
+    """Return a model with what its first load case says of components laid over them."""
+    notes: tuple[str, ...] = ()
+    if cases:
+        notes = (f"loads are those of the first of {len(cases)} load cases",)
+        for id_, changed in cases[0].items():
+            if id_ in whole:
+                one = whole[id_]
+                attributes = {**one.attributes, **changed.attributes}
+                whole[id_] = Component(one.id, one.type, one.name, attributes)
+    return Model(version, whole, tuple(relations), notes)
