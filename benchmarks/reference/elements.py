@@ -6,11 +6,15 @@ that nothing is lost in 50 digits.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 Gradient = dict[int, Any]
 Curvature = dict[tuple[int, int], Any]
+
+BEGUN = 1e-9
+"""Way beyond a reach, in lengths of the train, at which a wall that begins without slope begins."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,6 +120,10 @@ class Graph:
         Friction bound over the force that the spline transmits; 0 where the bound is fixed.
     torque_of : dict of contact name to number
         Transmitted force from contact forces.
+    root : callable or None
+        What a way beyond the reach is multiplied with where the force grows with a power of it.
+    power : number
+        That power.
     """
 
     name: str
@@ -128,6 +136,17 @@ class Graph:
     bound: Any
     per_torque: Any
     torque_of: dict[str, Any]
+    root: Callable[[Any], Any] | None = None
+    power: Any = 1
+
+    def wall(self, radius: Any) -> tuple[Any, Any]:
+        """Force beyond the reach, without that of the level, and its slope."""
+        gap = radius - self.reach
+        if self.root is None:
+            return self.stiffness * gap, self.stiffness
+        gap = gap if gap > 0 else (0 * gap + 1) * BEGUN
+        slope = self.stiffness * self.root(gap)
+        return slope * gap, self.power * slope
 
     def stick_end(self, bound: Any) -> Any:
         """Radius where sticking ends."""
@@ -159,6 +178,6 @@ class Graph:
             options.append((abs(radius - self.reach) + max(bound - force, 0), "wall"))
         else:
             beyond = max(radius, self.reach)
-            excess = bound + self.stiffness * (beyond - self.reach)
+            excess = bound + (self.wall(beyond)[0] if beyond > self.reach else 0)
             options.append((abs(radius - beyond) + abs(force - excess), "stop"))
         return min(options, key=lambda o: float(o[0]))[1]

@@ -202,10 +202,10 @@ def on_piece(
     if place == "stick":
         k = graph.stiffness
         return [k * v for v in q], [[k, zero], [zero, k]], [zero, zero]
-    rise = graph.stiffness if place == "stop" else zero
+    beyond, rise = graph.wall(radius) if place == "stop" else (zero, zero)
     if not radius:
         return [zero, zero], [[rise, zero], [zero, rise]], [zero, zero]
-    size = bound + rise * (radius - graph.reach) if place == "stop" else bound
+    size = bound + beyond
     e = [v / radius for v in q]
     tangent = [
         [rise * e[i] * e[j] + size / radius * ((1 if i == j else 0) - e[i] * e[j]) for j in (0, 1)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,6 +14,9 @@ from loadshare.contact.law import Law, PowerLaw, TableLaw
 from loadshare.train.ring import DrumRing
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
+
+POWERS = {1.0: (1, 1), 1.5: (3, 2), 10.0 / 9.0: (10, 9)}
+"""Powers of walls, as fractions."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -270,22 +274,33 @@ class _Writer:
         for ring in self.train.rounds:
             frame, at = self.train.gears[ring.gear].frame, self.moves[ring.gear]
             middle = [self._dot(frame[k], ring.offset) / self.of(self.length) for k in (0, 1)]
-            rigid = math.isinf(ring.stiffness)
+            rigid, power = math.isinf(ring.stiffness), ring.power
             found.append(
                 Graph(
                     name=ring.name,
                     gear=ring.gear,
                     indices=(at, at + 1),
                     centre=(middle[0], middle[1]),
-                    stiffness=None if rigid else self._stiffness(ring.stiffness),
+                    stiffness=None if rigid else self._wall_of(ring.stiffness, power),
                     stick=None if rigid else self.of(0),
                     reach=self._lengths(ring.radius),
                     bound=self.of(0),
                     per_torque=self.of(0),
                     torque_of={},
+                    root=None if power == 1.0 else self._root(power),
+                    power=self.of(POWERS[power][0]) / self.of(POWERS[power][1]),
                 )
             )
         return found
+
+    def _root(self, power: float) -> Callable[[Any], Any]:
+        """x^(power − 1)."""
+        sqrt, cbrt = self.arithmetic.sqrt, self.arithmetic.cbrt
+        return {1.5: sqrt, 10.0 / 9.0: lambda x: cbrt(cbrt(x))}[power]
+
+    def _wall_of(self, stiffness: float, power: float) -> Any:
+        linear = self._stiffness(stiffness)
+        return linear if power == 1.0 else linear * self._root(power)(self.of(self.length))
 
     def _transmitted(self, gear: str) -> dict[str, Any]:
         """Arms [m] of the contact forces whose sum is the torque that a gear's spline transmits."""

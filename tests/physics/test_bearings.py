@@ -1,6 +1,6 @@
 """Bearings with radial clearance: closed forms, what they are without clearance, 50 digits.
 
-Source: formulation, section 14; linear from where the clearance ends.
+Source: formulation, section 14.
 """
 
 import math
@@ -37,11 +37,21 @@ def pair(**bearing: object) -> ls.Case:
     )
 
 
-def planets_in_bearings(clearance: str, stiffness: str = "5e8 N/m") -> ls.Case:
+LAWS = [
+    ("stiffness", "5e8 N/m", 1.0),
+    ("ball_stiffness", "6e10 N/m^1.5", 1.5),
+    ("roller_stiffness", "2e9 N/m^(10/9)", 10.0 / 9.0),
+]
+"""Keys, values, and powers of the way beyond the clearance."""
+
+
+def planets_in_bearings(
+    clearance: str, stiffness: str = "5e8 N/m", key: str = "stiffness"
+) -> ls.Case:
     """A star of four whose planets stand in bearings, and whose sun floats."""
     case = families.star(4)
     planets = [g for g in case.gears if g.startswith("planet")]
-    bearing = {"clearance": clearance, "stiffness": stiffness}
+    bearing = {"clearance": clearance, key: stiffness}
     return case.replace(
         {
             "bearings": dict.fromkeys(planets, bearing),
@@ -67,6 +77,21 @@ def test_a_loaded_gear_in_a_round_gap(stiffness, offset):
     assert rest.reaction == pytest.approx(tuple(-FORCE * ALONG), rel=1e-12)
 
 
+@pytest.mark.parametrize("engine", ["vectorised", "compiled"])
+@pytest.mark.parametrize("solver", ["auto", "clarabel"])
+@pytest.mark.parametrize(("key", "power"), [("ball_stiffness", 1.5), ("roller_stiffness", 10 / 9)])
+@pytest.mark.parametrize("clearance", [0.0, 20e-6])
+def test_a_loaded_gear_in_a_rolling_bearing(key, power, solver, engine, clearance):
+    """It goes on by (F / K)^(1/power) from the end of the gap."""
+    unit = {1.5: "N/m^1.5"}.get(power, "N/m^(10/9)")
+    bearing = {key: f"3e9 {unit}", "clearance": f"{clearance!r} m", "stiffness": None}
+    case = pair().replace({f"bearings.a.{k}": v for k, v in bearing.items()})
+    found = ls.solve(case, solver=solver, engine=engine).positions[0]
+    expected = (clearance + (FORCE / 3e9) ** (1.0 / power)) * ALONG
+    assert found.displacement["a"] == pytest.approx(tuple(expected), rel=1e-12)
+    assert found.certificate.proved < 1e-12
+
+
 def test_a_bearing_without_clearance_is_an_elastic_or_a_rigid_one():
     without = {k: v for k, v in planets_in_bearings("0 um").to_dict().items() if k != "bearings"}
     gears = without["gears"]
@@ -80,9 +105,9 @@ def test_a_bearing_without_clearance_is_an_elastic_or_a_rigid_one():
 
 
 @pytest.mark.parametrize("clearance", ["0 um", "0.3 um", "5 um", "40 um"])
-@pytest.mark.parametrize("stiffness", ["5e8 N/m", "rigid"])
-def test_shares_of_planets_in_bearings_agree_with_50_digits(clearance, stiffness):
-    case = planets_in_bearings(clearance, stiffness)
+@pytest.mark.parametrize(("key", "stiffness"), [*(law[:2] for law in LAWS), ("stiffness", "rigid")])
+def test_shares_of_planets_in_bearings_agree_with_50_digits(clearance, key, stiffness):
+    case = planets_in_bearings(clearance, stiffness, key)
     found, exact = ls.solve(case).positions[0], reference(build_train(case))
     assert found.torque == pytest.approx(dict(exact.torque), rel=1e-11)
     assert found.certificate.proved < 1e-11
@@ -124,6 +149,45 @@ def test_clearances_of_bearings_are_samples_of_one_machine():
             assert here == pytest.approx(expected, rel=1e-10, abs=1e-9)
 
 
+@pytest.mark.parametrize("engine", ["vectorised", "compiled"])
+@pytest.mark.parametrize(("key", "stiffness", "power"), LAWS[1:])
+def test_laws_of_rolling_bearings_are_samples_of_one_machine(key, stiffness, power, engine):
+    """Loads from next to nothing, where a bearing is soft, to ten times as much."""
+    case = planets_in_bearings("5 um", stiffness, key)
+    torque = np.array([1e-3, 1.0, 30.0, 300.0, 3000.0])
+    samples = {
+        "operating.torque [N*m]": torque,
+        f"bearings.{next(iter(case.bearings))}.clearance [um]": np.array([0, 1, 7, 3, 30.0]),
+    }
+    batch = ls.solve_many(case, samples, engine=engine)
+    assert batch.certified.all()
+    for sample, key_values in enumerate(zip(*samples.values(), strict=True)):
+        texts = zip(samples, key_values, strict=True)
+        alone = case.replace(
+            {k.split(" [")[0]: f"{v} {k[k.index('[') + 1 : -1]}" for k, v in texts}
+        )
+        exact = reference(build_train(alone)).torque
+        for mesh, expected in exact.items():
+            here = float(batch.torque.sel(sample=sample, mesh=mesh).values[0])
+            assert here == pytest.approx(float(expected), rel=1e-9, abs=1e-11 * torque[sample])
+
+
+@pytest.mark.parametrize(("key", "stiffness", "power"), LAWS[1:])
+def test_a_rolling_bearing_yields_by_its_tangent(key, stiffness, power):
+    """Of δ = (F/K)^(1/power) by torque and by K; a set of elements keeps its rates."""
+    bearing = {"bearings.a.stiffness": None, f"bearings.a.{key}": stiffness}
+    case = pair().replace(bearing)
+    coefficient = case.bearings["a"].wall[0]
+    further = (FORCE / coefficient) ** (1.0 / power)
+    found = ls.sensitivity(case, ["operating.torque", f"bearings.a.{key}"])
+    for what, rate in (
+        ("operating.torque", further / power / 100.0),
+        (f"bearings.a.{key}", -further / power / coefficient),
+    ):
+        rates = found.rates[1, what, "rising"]
+        assert rates.displacement["a"] == pytest.approx(tuple(rate * ALONG), rel=1e-6)
+
+
 def test_a_gear_moves_with_its_clearance():
     """The sensitivity of the closed form: a micrometre of clearance is one of displacement."""
     found = ls.sensitivity(pair(), "bearings.a.clearance")
@@ -145,6 +209,7 @@ def test_a_turned_train_shares_alike(frame):
     [
         ({"bearings.a.clearance": "-1 um"}, "bearings.a.clearance"),
         ({"bearings.a.stiffness": None}, "bearings.a.stiffness"),
+        ({"bearings.a.ball_stiffness": "1e9 N/m^1.5"}, "bearings.a.ball_stiffness"),
         ({"bearings.c": {"clearance": "1 um", "stiffness": "rigid"}}, "bearings.c"),
         ({"gears.a.support": "rigid"}, "gears.a.support"),
     ],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Annotated, Literal
 
@@ -18,8 +19,10 @@ from loadshare.case.element import (
     without_default,
 )
 from loadshare.case.quantity import (
+    BALL_STIFFNESS,
     FORCE,
     LENGTH,
+    ROLLER_STIFFNESS,
     STIFFNESS,
     TORSIONAL_STIFFNESS,
     Angle,
@@ -30,6 +33,8 @@ from loadshare.case.quantity import (
     Radius,
 )
 
+BEARING_LAWS = {"stiffness": 1.0, "ball_stiffness": 1.5, "roller_stiffness": 10.0 / 9.0}
+"""Keys of the law of a bearing beyond its clearance, with the power of the way there."""
 Load = Annotated[Quantity, FORCE.bounded(at_least=0)]
 
 
@@ -189,8 +194,31 @@ class Bearing(Element):
     clearance: Distance
     """Radial clearance [length]: how far the centre moves before the bearing holds it."""
 
-    stiffness: Annotated[Quantity | Literal["rigid"], STIFFNESS.bounded(above=0).or_words("rigid")]
+    stiffness: (
+        Annotated[Quantity | Literal["rigid"], STIFFNESS.bounded(above=0).or_words("rigid")] | None
+    ) = None
     """Stiffness from there on [force/length], or rigid."""
+
+    ball_stiffness: Annotated[Quantity, BALL_STIFFNESS.bounded(above=0)] | None = None
+    """K of a ball bearing, F = K δ^(3/2) from there on [force/length^(3/2)]."""
+
+    roller_stiffness: Annotated[Quantity, ROLLER_STIFFNESS.bounded(above=0)] | None = None
+    """K of a roller bearing, F = K δ^(10/9) from there on [force/length^(10/9)]."""
 
     offset: tuple[Length, Length] = (Quantity("0 mm", 0.0), Quantity("0 mm", 0.0))
     """Middle of the bearing, from the gear's centre [length]."""
+
+    def rules(self) -> Iterator[Rule]:
+        """Yield what does not hold of the laws."""
+        given = self.given(*BEARING_LAWS)
+        if not given:
+            yield Rule("is missing", ("stiffness",), f"one of {', '.join(BEARING_LAWS)}")
+        elif len(given) > 1:
+            yield Rule(f"stands beside {given[0]}: give one or the other", (given[1],))
+
+    @property
+    def wall(self) -> tuple[float, float]:
+        """K [N/m^power] from the clearance on, infinite for a rigid bearing, and its power."""
+        (key,) = self.given(*BEARING_LAWS)
+        value = getattr(self, key)
+        return math.inf if isinstance(value, str) else value.si, BEARING_LAWS[key]

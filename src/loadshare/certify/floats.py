@@ -147,8 +147,7 @@ def _ring_touches(
         radius, force = pull.radius, frame @ pull.reaction
         size = float(np.linalg.norm(force))
         outward = frame @ pull.offset / radius if radius > 0.0 else np.zeros(2)
-        inside = pull.law.pieces[0]
-        margin = (inside.length if inside.name == "inside" else 0.0) - radius
+        margin = pull.play - radius
         touching = rests.touching(margin, size)
         yield Touch(pull.name, margin, size, _pair(outward), touching), force
 

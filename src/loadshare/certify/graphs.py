@@ -38,6 +38,25 @@ class Graph(NamedTuple):
     last: Array
 
 
+def wall(reach: Array, stiffness: Array, power: Array, radius: Array) -> tuple[Array, Array]:
+    """Where the tangent of a wall F = K (R − reach)^power begins [m], and its slope [N/m].
+
+    Inside the reach it begins there, and rises as a wall that is pressed by next to nothing.
+
+    Parameters
+    ----------
+    reach, stiffness, power : ndarray
+        [m], K [N/m^power], [-].
+    radius : ndarray
+        R where it touches [m].
+    """
+    bent = power != 1.0
+    least = np.where(reach > 0.0, reach, 1.0) * np.finfo(float).eps
+    gap = np.where(bent, np.maximum(radius - reach, least), 1.0)
+    begin = np.where(bent, reach + gap * (1.0 - 1.0 / power), reach)
+    return begin, np.where(bent, power * stiffness * gap ** (power - 1.0), stiffness)
+
+
 def interval(graph: Graph, radius: Array, band: Array) -> tuple[Array, Array]:
     """Forces [N] that graphs admit within the band [m] about radii [m]."""
     first, stick, bound, reach, last = graph

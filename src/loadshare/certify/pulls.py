@@ -29,6 +29,8 @@ class Pull:
     reaction : ndarray, shape (3,)
         Force on the gear [N], as claimed.
     is_ring : bool
+    play : float
+        How far the gear moves freely [m].
     """
 
     name: str
@@ -38,6 +40,7 @@ class Pull:
     offset: Array
     reaction: Array
     is_ring: bool
+    play: float = 0.0
 
     @property
     def radius(self) -> float:
@@ -58,13 +61,16 @@ def pulls_of(state: ClaimedState) -> tuple[Pull, ...]:
     ValueError
         If a spline has no law at the torque that it transmits; the message names the numbers.
     """
-    train, of = state.of.train, state.of
-    laws = [*_spline_laws(state), *(round_ring_law(r.radius, r.stiffness) for r in train.rounds)]
-    rings = len(laws) - len(train.rounds)
+    of = state.of
+    splines = _spline_laws(state)
+    of_rounds = (float(v[0]) for v in state.here.round_radius)
+    plays = [*(0.0 for _ in splines), *of_rounds]
+    walls = zip(state.graph.reach[:, 0], state.graph.last[:, 0], strict=True)
+    rings = [round_ring_law(float(r), float(k)) for r, k in walls][len(splines) :]
     return tuple(
         Pull(name, of.gears[of.pulled[q]], q, law, state.offset[q, :, 0], state.reaction[q, :, 0],
-             q >= rings)
-        for q, (name, law) in enumerate(zip(of.pulls, laws, strict=True))
+             q >= len(splines), plays[q])
+        for q, (name, law) in enumerate(zip(of.pulls, [*splines, *rings], strict=True))
     )  # fmt: skip
 
 

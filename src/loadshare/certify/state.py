@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.certify.graphs import Graph
+from loadshare.certify.graphs import Graph, wall
 from loadshare.certify.laws import area, interpolated, strain_energy
 from loadshare.certify.mechanics import Mechanics
 from loadshare.settings import CERTIFY, LAWS
@@ -219,8 +219,13 @@ class ClaimedState:
     @cached_property
     def graph(self) -> Graph:
         """Graphs of the radial elements."""
-        zero = np.zeros((len(self.of.train.rounds), 1))
-        rings = Graph(zero, zero, zero, self.here.round_radius, self.here.round_stiffness)
+        rounds = len(self.of.train.rounds)
+        zero, here = np.zeros((rounds, 1)), self.here
+        reach, stiffness = here.round_radius, here.round_stiffness
+        if (here.round_power != 1.0).any():
+            radius = self.radius[len(self.radius) - rounds :]
+            reach, stiffness = wall(reach, stiffness, here.round_power, radius)
+        rings = Graph(zero, zero, zero, reach, stiffness)
         graphs = [*self._spline_graphs[0], rings]
         return Graph(
             *(

@@ -142,7 +142,7 @@ def residuals(
         for row, d, f in zip(rows, approach, forces.tolist(), strict=True)
     ]
     graphs = [
-        _off_graph(r.matrix @ x - r.centre, pulls[r.name], r.law(r.torque(force)), unit, length)
+        _off_graph(r.matrix @ x - r.centre, pulls[r.name], r.law(r.torque(force), x), unit, length)
         for r in problem.radials
     ]
     return Residuals(

@@ -26,7 +26,7 @@ from loadshare.contact.law import Law, PowerLaw
 from loadshare.contact.plan import Linearisation, Plan, Role, Units, programme
 from loadshare.contact.problem import ContactProblem
 from loadshare.contact.programme import Array, Point
-from loadshare.contact.radial import RadialLaw
+from loadshare.contact.radial import RadialLaw, RollingLaw
 from loadshare.contact.record import Iteration, Options
 from loadshare.settings import CONTACT
 
@@ -97,7 +97,7 @@ def settle(
     warm: Inner | None = None
     history: list[Iteration] = []
     while len(history) < options.max_iterations and not _stuck(history):
-        laws = {r.name: r.law(state.torques[r.name]) for r in problem.radials}
+        laws = {r.name: r.law(state.torques[r.name], state.x) for r in problem.radials}
         compliances = _compliances(problem, state.forces, method)
         at = Linearisation(state.x, compliances, laws, wide=not history)
         written, units = programme(problem, plan, at, exact_hertz=method == "power")
@@ -105,7 +105,9 @@ def settle(
         x = units.condensation.expand(warm.point.x * units.length)
         forces = _forces(written.names, warm.point, units)
         torques = {r.name: r.torque(forces) for r in problem.radials}
-        law_misfit = _law_misfit(problem, at, forces, method)
+        law_misfit = max(
+            _law_misfit(problem, at, forces, method), _wall_misfit(problem, laws, x, state.x)
+        )
         face_misfit = _face_misfit(problem, plan, at, x, forces)
         friction_misfit = _friction_misfit(problem, state.torques, torques)
         step = 1.0
@@ -121,7 +123,7 @@ def settle(
                     c.name: f * units.force
                     for c, f in zip(written.cones, warm.point.cone_forces, strict=True)
                 },
-                {r.name: r.law(torques[r.name]) for r in problem.radials},
+                {r.name: r.law(torques[r.name], x) for r in problem.radials},
                 written.kind,
                 tuple(history),
             )
@@ -181,6 +183,22 @@ def _law_misfit(
             continue
         b, offset = at.compliance[row.name]
         worst = max(worst, abs(row.law.compression(force) - b * force - offset))
+    return worst / problem.length_unit()
+
+
+def _wall_misfit(
+    problem: ContactProblem, laws: dict[str, RadialLaw], x: Array, before: Array
+) -> float:
+    """Largest difference between a bearing's law and its tangent, where it is [deflections]."""
+    worst = 0.0
+    for radial in problem.radials:
+        if isinstance(radial.source, RollingLaw):
+            here, there = radial.radius(x), radial.radius(before)
+            if here <= radial.source.clearance:
+                continue
+            wall, touched = laws[radial.name].pieces[-1], radial.law(0.0, x).pieces[-1]
+            off = touched.stiffness / wall.stiffness - 1.0
+            worst = max(worst, abs(off * (here - there)))
     return worst / problem.length_unit()
 
 

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from loadshare.contact.arc import Arc
 from loadshare.contact.condense import Condensation, condense
 from loadshare.contact.law import Law
-from loadshare.contact.radial import RadialLaw
+from loadshare.contact.radial import RadialLaw, RollingLaw
 from loadshare.settings import CONTACT
 
 Array = NDArray[np.float64]
@@ -109,7 +109,7 @@ class Radial:
         P.
     centre : ndarray, shape (2,)
         m.
-    source : RadialLaw or FollowingLaw
+    source : RadialLaw, RollingLaw or FollowingLaw
     levers : mapping of row name to float
         Torque over the element per unit of the row's force, for a law that follows it.
     """
@@ -117,13 +117,15 @@ class Radial:
     name: str
     matrix: Array
     centre: Array
-    source: RadialLaw | FollowingLaw
+    source: RadialLaw | RollingLaw | FollowingLaw
     levers: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def follows_torque(self) -> bool:
         """Whether the law must be settled in the outer loop."""
-        return not isinstance(self.source, RadialLaw) and self.source.friction_force is None
+        if isinstance(self.source, RadialLaw | RollingLaw):
+            return False
+        return self.source.friction_force is None
 
     @property
     def at_rest(self) -> RadialLaw | None:
@@ -143,13 +145,19 @@ class Radial:
         """Torque over the element; a row that is not named carries nothing."""
         return sum(lever * forces.get(name, 0.0) for name, lever in self.levers.items())
 
-    def law(self, torque: float) -> RadialLaw:
-        """Law at a torque over the element."""
+    def radius(self, x: Array) -> float:
+        """How far it is from its centre at coordinates x [m]."""
+        return float(np.linalg.norm(self.matrix @ x - self.centre))
+
+    def law(self, torque: float, x: Array | None = None) -> RadialLaw:
+        """Law at a torque over the element; what is a power touches it at coordinates x."""
+        if isinstance(self.source, RollingLaw):
+            return self.source.touching(0.0 if x is None else self.radius(x))
         return self.source if isinstance(self.source, RadialLaw) else self.source.law(torque)
 
     def friction_change(self, before: float, after: float) -> float:
         """Change of the friction from one torque to another."""
-        if isinstance(self.source, RadialLaw) or not self.follows_torque:
+        if isinstance(self.source, RadialLaw | RollingLaw) or not self.follows_torque:
             return 0.0
         return self.source.bound(after) - self.source.bound(before)
 

@@ -9,8 +9,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from loadshare.settings import LAWS
+
+Figure = TypeVar("Figure", float, NDArray[np.float64])
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,3 +201,48 @@ def round_ring_law(radius: float, stiffness: float) -> RadialLaw:
         return RadialLaw((free,))
     wall = Piece(0.0, stiffness, math.inf, "on boundary")
     return RadialLaw((free, wall) if radius > 0.0 else (wall,))
+
+
+def tangent_wall(
+    reach: Figure, stiffness: Figure, power: Figure, radius: Figure, faint: float
+) -> tuple[Figure, Figure]:
+    """Tangent of a wall F = K (R − reach)^power: where it begins [m], its stiffness [N/m].
+
+    Parameters
+    ----------
+    reach, stiffness, power : float or ndarray
+        [m], K [N/m^power], above 1.
+    radius : float or ndarray
+        R at which the tangent touches [m].
+    faint : float
+        Least force of the point where it touches [N]: there is none without stiffness.
+    """
+    gap = np.maximum(radius - reach, (faint / stiffness) ** (1.0 / power))
+    return reach + gap * (1.0 - 1.0 / power), power * stiffness * gap ** (power - 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class RollingLaw:
+    """A bearing of balls (power 3/2) or rollers (10/9): F = K (R − clearance)^power.
+
+    Parameters
+    ----------
+    clearance : float
+        [m].
+    stiffness : float
+        K [N/m^power].
+    power : float
+        Above 1.
+    faint : float
+        Force [N] that is next to nothing.
+    """
+
+    clearance: float
+    stiffness: float
+    power: float
+    faint: float
+
+    def touching(self, radius: float) -> RadialLaw:
+        """Law whose wall touches this one at a radius [m]."""
+        begin, slope = tangent_wall(self.clearance, self.stiffness, self.power, radius, self.faint)
+        return round_ring_law(float(begin), float(slope))

@@ -168,10 +168,11 @@ def formulate(
     scene, found, record = answer.scene, answer.equilibrium, answer.record
     forces = {**found.flank_force, **found.ring_force}
     least = JOB.least * scene.force_unit()
+    x = coordinates_of(scene, found)
     at = Linearisation(
-        coordinates_of(scene, found),
+        x,
         tangents(scene, {n: f or least for n, f in forces.items()}),
-        {r.name: r.law(r.torque(forces)) for r in scene.radials},
+        {r.name: r.law(r.torque(forces), x) for r in scene.radials},
     )
     written, units = programme(scene, record.plan, at, exact_hertz=exact_hertz)
     return Formulation(written, units, record.removed, scene, record.plan, at, answer)

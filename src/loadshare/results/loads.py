@@ -71,7 +71,10 @@ class Loads:
 
     @cached_property
     def bearings(self) -> dict[str, Pair]:
-        """Force of every gear on its bearing, of a planet on its pin [N], in its frame."""
+        """Force of every gear on its bearing, of a planet on its pin [N], in its frame.
+
+        Supports and bearings with clearance together; those of splines and rings stand apart.
+        """
         of, state = self._state.of, self._state
         pushing = of.pushing.reshape(-1, len(of.order), 3)
         pushed = -np.einsum("egk,e->gk", pushing, state.claim.flank_force[:, 0])
@@ -83,5 +86,8 @@ class Loads:
                 if gear.support is None
                 else state.claim.support_force[k, :, 0]
             )
+            bearing = self.train.bearings.get(name)
+            if bearing is not None:
+                own = own - gear.frame @ state.reaction[of.pulls.index(bearing.name), :, 0]
             found[name] = (float(own[0]), float(own[1]))
         return found

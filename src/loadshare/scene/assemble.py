@@ -9,10 +9,11 @@ import numpy as np
 
 from loadshare.contact.law import Law, PowerLaw, TableLaw
 from loadshare.contact.problem import ArcRow, FollowingLaw, Row
-from loadshare.contact.radial import RadialLaw, round_ring_law
+from loadshare.contact.radial import RadialLaw, RollingLaw, round_ring_law
 from loadshare.scene.loading import Loading, loading_of
 from loadshare.scene.scene import GearRadial, Scene
 from loadshare.scene.structure import ArcElement, RadialElement, Structure, structure_of
+from loadshare.settings import LAWS
 from loadshare.train.memory import SlipFriction, SlipStop
 from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Spline, Train
@@ -62,8 +63,8 @@ def scene_of(structure: Structure, situation: Situations, loading: Loading | Non
                 r.name,
                 r.matrix,
                 r.centre,
-                source := _source(structure.train, situation, r),
-                {} if isinstance(source, RadialLaw) else levers(r.gear),
+                source := _source(structure, situation, r),
+                {} if isinstance(source, RadialLaw | RollingLaw) else levers(r.gear),
                 gear=r.gear,
             )
             for r in structure.radials
@@ -92,11 +93,17 @@ def _arc(situation: Situations, element: ArcElement, law: Law) -> ArcRow:
     return ArcRow(element.name, arc, element.relative, law, sagitta)
 
 
-def _source(train: Train, here: Situations, radial: RadialElement) -> RadialLaw | FollowingLaw:
+def _source(
+    structure: Structure, here: Situations, radial: RadialElement
+) -> RadialLaw | RollingLaw | FollowingLaw:
     """Law of a radial element, or what it follows from."""
-    k = radial.number
+    k, train = radial.number, structure.train
     if radial.kind == "ring":
-        return round_ring_law(float(here.round_radius[0, k]), float(here.round_stiffness[0, k]))
+        arrays = here.round_radius, here.round_stiffness, here.round_power
+        reach, stiffness, power = (float(v[0, k]) for v in arrays)
+        if power != 1.0:
+            return RollingLaw(reach, stiffness, power, LAWS.begun * structure.force)
+        return round_ring_law(reach, stiffness)
     spline = _spline(train.splines[radial.gear], *here.spline[0, k].tolist())
     parts: dict[str, FollowingLaw] = {
         "spline": spline,

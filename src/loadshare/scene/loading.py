@@ -40,7 +40,7 @@ class Loading:
     clearance : ndarray, shape (S or 1, arcs)
     relative : ndarray, shape (arcs, 3, n)
         Relative displacement of an arc's centres from the coordinates.
-    radial : ndarray, shape (S or 1, radials, 6)
+    radial : ndarray, shape (S or 1, radials, 7)
         First stiffness (K_w; 0 inside a ring), S1 (NaN for F_m/K_w), S2 or the ring's radius, F_m
         (NaN where it follows the torque), τ/radius [1/m], stiffness beyond S2.
     carried : ndarray, shape (radials, m)
@@ -179,13 +179,16 @@ def _radials(structure: Structure, situations: Situations) -> Array:
     """Numbers of every radial law, in the units of the force method."""
     here, radials = situations, structure.radials
     count = max(map(len, (here.spline, here.round_radius, here.round_stiffness)))
-    table = np.zeros((count, len(radials), 6))
+    table = np.zeros((count, len(radials), 7))
+    table[:, :, 6] = 1.0
     stiffness, stick, reach, bound, per_torque = np.moveaxis(here.spline, 2, 0)
     for j, radial in enumerate(radials):
         k, row = radial.number, table[:, j]
         match radial.kind:
             case "ring":
                 row[:, 2], row[:, 5] = here.round_radius[:, k], here.round_stiffness[:, k]
+                row[:, 6] = power = here.round_power[0, k]
+                row[:, 5] *= structure.length ** (power - 1.0)
             case "spline":
                 row[:, 0] = row[:, 5] = stiffness[:, k]
                 row[:, 1], row[:, 2], row[:, 3] = stick[:, k], reach[:, k], bound[:, k]
@@ -198,5 +201,5 @@ def _radials(structure: Structure, situations: Situations) -> Array:
                 room = reach[:, k] - bound[:, k] / stiffness[:, k]
                 row[:, 2], row[:, 5] = np.maximum(room, 0.0), np.inf
     stiff = structure.force / structure.length
-    table /= np.array([stiff, structure.length, structure.length, structure.force, 1.0, stiff])
+    table /= [stiff, structure.length, structure.length, structure.force, 1.0, stiff, 1.0]
     return table

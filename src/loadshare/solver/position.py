@@ -227,7 +227,7 @@ def of_least_norm(scene: Scene, found: Equilibrium) -> Equilibrium:
     forces = {**found.flank_force, **found.ring_force}
     pulls = {r.name: -gears[r.gear].frame @ found.radial_reaction[r.name] for r in scene.radials}
     laws = {
-        r.name: r.law(scene.train.transmitted(r.gear, found.flank_force)) for r in scene.radials
+        r.name: r.law(scene.train.transmitted(r.gear, found.flank_force), x) for r in scene.radials
     }
     least = places(free_set(scene, x, forces, pulls, laws))
     if least.x is x:

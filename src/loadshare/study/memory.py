@@ -140,19 +140,20 @@ def _searched(train: Train, index: int) -> Answer | None:
         return None
     structure, situation = structure_of(train), situation_of(train, index)
     scene, loading = scene_of(structure, situation), loading_of(structure, situation)
-    try:
-        laws = {r.name: r.law(0.0) for r in scene.radials}
-    except ValueError:
-        # A spline has no law with memory; the general programme says why.
-        return None
     iterate, found = search(structure, loading)
     if not found.solved[0]:
+        return None
+    x = iterate.x[0] * structure.length
+    try:
+        laws = {r.name: r.law(0.0, x) for r in scene.radials}
+    except ValueError:
+        # A spline has no law with memory; the general programme says why.
         return None
     force, row = iterate.force[0] * structure.force, structure.springs
     forces = dict(zip(structure.row_names, force[row:].tolist(), strict=False))
     columns = {r.name: structure.radial_column(j) for j, r in enumerate(scene.radials)}
     settled = Settled(
-        x=iterate.x[0] * structure.length,
+        x=x,
         forces=forces,
         radial_forces={name: force[k : k + 2] for name, k in columns.items()},
         laws=laws,

@@ -67,6 +67,10 @@ def array_unit(case: spec.Case, column: Column) -> str | None:
         case ("bearings", bearing, "stiffness"):
             words = isinstance(case.bearings[str(bearing)].stiffness, str)
             return "N/m" if column.is_positive and not words else None
+        case ("bearings", _, "ball_stiffness"):
+            return "N/m^1.5" if column.is_positive else None
+        case ("bearings", _, "roller_stiffness"):
+            return "N/m^(10/9)" if column.is_positive else None
         case ("splines", _, key):
             return _SPLINE.get(str(key))
         case ("meshes", mesh, *tail):

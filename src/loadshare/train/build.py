@@ -262,7 +262,7 @@ def _ring(name: str, ring: spec.Ring, gears: Mapping[str, Gear], meshes: dict[st
 
 def _bearing(bearing: spec.Bearing, gear: Gear) -> Bearing:
     offset = np.array([q.si for q in bearing.offset]) @ gear.frame
-    return Bearing(gear.name, bearing.clearance.si, offset, _stiffness(bearing.stiffness))
+    return Bearing(gear.name, bearing.clearance.si, offset, *bearing.wall)
 
 
 def _float_range(

@@ -62,13 +62,16 @@ class RoundRing:
     offset : ndarray, shape (3,)
         Centre of the ring relative to O [m].
     stiffness : float
-        [N/m]; infinite for a rigid ring.
+        [N/m^power]; infinite for a rigid ring.
+    power : float
+        Of the way beyond the radius with which the force grows [-].
     """
 
     gear: str
     radius: float
     offset: Vector
     stiffness: float
+    power: float = 1.0
 
     @property
     def name(self) -> str:

@@ -60,8 +60,8 @@ class Situations:
         c_x towards each neighbour; h1 and h2 [m].
     wall : ndarray, shape (S or 1, drums)
         Compliance of a drum's contacts [m/N]; 0 for a rigid ring.
-    round_radius, round_stiffness : ndarray, shape (S or 1, rounds)
-        [m], [N/m].
+    round_radius, round_stiffness, round_power : ndarray, shape (S or 1, rounds)
+        [m], [N/m^power], [-].
     spline : ndarray, shape (S or 1, splines, 5)
         K_w [N/m], S1 [m] (NaN for F_m/K_w), S2 [m], fixed F_m [N] (NaN if it follows the torque),
         τ/radius [1/m].
@@ -86,6 +86,7 @@ class Situations:
     wall: Array
     round_radius: Array
     round_stiffness: Array
+    round_power: Array
     spline: Array
 
     def take(self, rows: NDArray[np.intp] | slice) -> Situations:
@@ -173,6 +174,7 @@ def situations_of(train: Train, index: int) -> Situations:
         "wall": _table([0.0 if math.isinf(r.stiffness) else 1.0 / r.stiffness for r in drums]),
         "round_radius": _table([r.radius for r in rounds]),
         "round_stiffness": _table([r.stiffness for r in rounds]),
+        "round_power": _table([r.power for r in rounds]),
         "spline": _splines(train),
     }
     count = max(map(len, arrays.values()))

@@ -295,6 +295,9 @@ class _Enclosure(Part):
             turned = np.where(claimed > 0.0, 2.0 * np.maximum(torques - claimed, 0.0), torques)
             turned, torques = turned @ self.splined.T, torques @ self.splined.T
             turn += found.follows[where] * turned
+            bent = found.bent[where]
+            spread = np.where(2.0 * pushed < size, 0.5 * bent * pushed**2, np.inf)
+            bow += np.where(bent > 0.0, spread, 0.0)
             bow += found.shrinks[where] * (turned + torques * np.where(lined, moved / near, 0.0))
             for k in (0, 1):
                 gap[:, self.at + k] += bow

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.twofold import Twofold, exact, minus, plus, product, quotient
+from loadshare.certify.graphs import wall
 from loadshare.settings import LAWS
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
@@ -232,18 +233,29 @@ class Claim:
         return np.asarray(self.answers.flank_force @ self.columns.moments.T)
 
     @cached_property
+    def rolls(self) -> bool:
+        """Whether the wall of a bearing is a power."""
+        return bool((self.situations.round_power != 1.0).any())
+
+    @cached_property
     def graphs(self) -> Array:
         """Graphs of the radial elements, shape (S, radials, 5).
 
         First stiffness, stick radius S1 (infinite without slip), level F_m, reach S2, last
-        stiffness (infinite for a rigid stop); not a number where a law has no meaning.
+        stiffness (infinite for a rigid stop); not a number where a law has no meaning. A wall that
+        is a power stands as its tangent at the claim.
         """
         train, here = self.columns.train, self.situations
         found = np.zeros((self.count, len(self.radial_gears), 5))
-        for q in range(len(train.rounds)):
-            found[:, q, 3] = here.round_radius[:, q]
-            found[:, q, 4] = here.round_stiffness[:, q]
         first = len(train.rounds)
+        found[:, :first, 3] = here.round_radius
+        found[:, :first, 4] = here.round_stiffness
+        if self.rolls:
+            at = self.columns.radials.start
+            where = self.lengths[0].value[:, at : at + 2 * first].reshape(self.count, first, 2)
+            radius = np.sqrt((where**2).sum(axis=2))
+            law = here.round_radius, here.round_stiffness, here.round_power
+            found[:, :first, 3], found[:, :first, 4] = wall(*law, radius)
         for k in range(len(train.splines)):
             stiffness, given, reach, fixed, per_torque = self._each(here.spline[:, k]).T
             torque = np.abs(self.torque_on_splines[:, k])

@@ -82,6 +82,8 @@ class Elements:
         u, |d| [m] and the force along it [N].
     along : ndarray, shape (S, pairs)
         Compliance along the line [m/N].
+    bent : ndarray, shape (S, pairs)
+        Largest change of the compliance along the line per force [m/N²], from half to twice it.
     stiff_error : ndarray, shape (S, pairs)
         Lateral stiffness that `soft` and `skew` leave out or add [N/m].
     follows, shrinks : ndarray, shape (S, pairs)
@@ -105,6 +107,7 @@ class Elements:
     distance: Array
     size: Array
     along: Array
+    bent: Array
     stiff_error: Array
     follows: Array
     shrinks: Array
@@ -218,7 +221,7 @@ def elements(
     scalar = slice(0, columns.first_pair)
     width[:, scalar] += EPS * np.abs(misfit[:, scalar]) + TINY * sizes[:, scalar]
     force[:, scalar] = np.where(active[:, scalar], force[:, scalar], 0.0)
-    lines = [np.zeros((count, k)) for k in (*[pairs] * 5, len(claim.radial_gears))]
+    lines = [np.zeros((count, k)) for k in (*[pairs] * 6, len(claim.radial_gears))]
     found = Elements(
         act,
         active,
@@ -412,6 +415,8 @@ def _pairs(claim: Claim, act: Acts, found: Elements, softest: float) -> None:
     found.active[:, first:] = np.repeat(on, 2, axis=1)
     found.line[:], found.distance[:], found.size[:] = line, distance, size
     found.along[:] = yields
+    if claim.rolls:
+        _bends(claim, acts, found, arcs)
     true = np.where(size > 0.0, sign / across, 0.0)
     wrong = np.abs(true - 1.0 / lateral) * (1.0 + EPS) + np.where(act == Act.SLIP, 1.0 / along, 0.0)
     found.stiff_error[:] = np.where(lined, np.maximum(wrong, np.finfo(float).tiny), 0.0)
@@ -422,6 +427,24 @@ def _pairs(claim: Claim, act: Acts, found: Elements, softest: float) -> None:
         lost = torque @ columns.splined.T
         found.rounding[:, first:] += np.repeat(found.follows * lost, 2, axis=1)
         found.width[:, first:] += np.repeat(found.shrinks * lost, 2, axis=1)
+
+
+def _bends(claim: Claim, acts: Acts, found: Elements, arcs: int) -> None:
+    """Curvature of the walls that are powers, and what their tangents leave at the claim."""
+    power = claim.situations.round_power
+    rounds = slice(arcs, arcs + power.shape[1])
+    acting = (power != 1.0) & (acts[:, : power.shape[1]] != Act.OPEN)
+    size = np.abs(found.size[:, rounds])
+    compliance = found.along[:, rounds]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        # The compliance goes with F^(1/power − 1); at half the force it bends four times more.
+        bent = np.where(acting, 4.0 * (1.0 - 1.0 / power) * compliance / size, 0.0)
+    found.bent[:, rounds] = np.where(np.isnan(bent), np.inf, bent)
+    first = claim.columns.radials.start
+    begin = claim.graphs[:, : power.shape[1], 3]
+    touched = (found.distance[:, rounds] - begin) / np.where(acting, compliance, 1.0)
+    left = np.where(acting, found.bent[:, rounds] * (size - touched) ** 2, 0.0)
+    found.width[:, first : first + 2 * power.shape[1]] += np.repeat(left, 2, axis=1)
 
 
 def _put_aside(claim: Claim, acts: Acts) -> tuple[Array, Array]:

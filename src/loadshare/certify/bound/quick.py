@@ -51,8 +51,13 @@ def quick_boxes(claim: Claim, act: Acts, scale: Array, rounded: bool = False) ->
     box = Box.unproved(claim, act)
     act, doubled = _with_near(claim, act)
     found = elements(claim, act, scale, None)
-    if found.shrinks.any() or (claim.columns.train.slip is not None and found.follows.any()):
-        # With memory, what follows the torque is the room of a stop, a length and no force.
+    if (
+        _rolls(claim, act)
+        or found.shrinks.any()
+        or (claim.columns.train.slip is not None and found.follows.any())
+    ):
+        # With memory, what follows the torque is the room of a stop, a length and no force. What
+        # rolls has no least compliance.
         return box
     left, rounding = claim.balance(found.force)
     arms = np.abs(claim.columns.moments).sum(axis=1)
@@ -72,6 +77,15 @@ def quick_boxes(claim: Claim, act: Acts, scale: Array, rounded: bool = False) ->
             if not len(rows):
                 break
     return box
+
+
+def _rolls(claim: Claim, act: Acts) -> bool:
+    """Whether a bearing acts whose wall is a power."""
+    if not claim.rolls:
+        return False
+    first = act.shape[1] - len(claim.radial_gears)
+    bent = (claim.situations.round_power != 1.0).any(axis=0)
+    return bool((act[:, first : first + len(bent)][:, bent] != Act.OPEN).any())
 
 
 def _with_near(claim: Claim, act: Acts) -> tuple[Acts, Flags]:

@@ -5,6 +5,7 @@ An active set is one such number for every row and every radial element.
 A radial law is a chain of at most three pieces (:mod:`loadshare.contact.radial`), told by five
 numbers: it rises with `first` up to `stick`, jumps to `bound`, stays level up to `reach`, and rises
 with `last` beyond. A round ring has first = stick = bound = 0; a rigid one has an infinite `last`.
+A last piece that is a power stands as its tangent where the element is.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from loadshare.contact.radial import tangent_wall
 from loadshare.scene.scene import Array
 from loadshare.settings import LAWS
 
@@ -43,15 +45,17 @@ class Graph(NamedTuple):
     valid: np.ndarray
 
 
-def graph(numbers: Array, torque: Array) -> Graph:
+def graph(numbers: Array, torque: Array, radius: Array | float = 0.0) -> Graph:
     """Return the radial laws of one element.
 
     Parameters
     ----------
-    numbers : ndarray, shape (S or 1, 6)
+    numbers : ndarray, shape (S or 1, 7)
         See :class:`loadshare.scene.loading.Loading`.
     torque : ndarray, shape (S,)
         Torque over force unit [m] that the element transmits.
+    radius : ndarray, shape (S,), or float
+        Where the element is, over the length unit.
 
     Returns
     -------
@@ -68,7 +72,22 @@ def graph(numbers: Array, torque: Array) -> Graph:
     valid = (first * asked <= bound * (1.0 + LAWS.written)) & (np.isnan(given) | (reach >= stick))
     throughout = (reach < stick) & np.isnan(given)
     stick = np.where(throughout, np.inf, stick)
+    power = numbers[:, 6]
+    if (power != 1.0).any():
+        begin, slope = tangent_wall(reach, last, power, radius + 0.0 * reach, LAWS.begun)
+        reach, last = (np.where(power != 1.0, v, w) for v, w in ((begin, reach), (slope, last)))
     found = (first, stick, bound, reach, last, valid)
     if any(v.shape != torque.shape for v in found):
         return Graph(*(np.broadcast_to(v, torque.shape) for v in found))
     return Graph(*found)
+
+
+def reached(numbers: Array, size: Array) -> Array:
+    """Radius at which the last pieces of radial laws carry forces of these sizes.
+
+    Parameters
+    ----------
+    numbers : ndarray, shape (k, 7)
+    size : ndarray, shape (k,)
+    """
+    return np.asarray(numbers[:, 2] + (size / numbers[:, 5]) ** (1.0 / numbers[:, 6]))

@@ -47,7 +47,9 @@ class Laws:
         self.slopes_of = np.diff(self.forces_of, axis=1) / np.diff(self.ends, axis=1)
         self.last_piece = (~np.isnan(self.ends)).sum(axis=1) - 2
         self.lean = np.repeat([softer, pull], [self.scalar, len(force) - self.scalar]) * force
-        self.graph = law = at.graph(loading.radial[0], loading.carried @ force)
+        size = np.hypot(force[self.scalar :: 2], force[self.scalar + 1 :: 2])
+        radius = at.reached(loading.radial[0], size)
+        self.graph = law = at.graph(loading.radial[0], loading.carried @ force, radius)
         with np.errstate(invalid="ignore"):
             self.rise = np.where(law.first > 0.0, law.stick * (1.0 + pull * law.first), 0.0)
             self.first = law.first / (1.0 + pull * law.first)

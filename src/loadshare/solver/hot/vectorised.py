@@ -347,12 +347,13 @@ class _Passes:
             if j in self.linear:
                 blocks.append(self.linear[j])
                 continue
-            law = self._graph(j)
-            self.refused |= ~law.valid
             columns = slice(k, k + 2)
             x, force = self.lean
+            offset = self._offset(j, x)
+            law = self._graph(j, offset)
+            self.refused |= ~law.valid
             size = np.maximum(self.push, 1e-300)
-            found = block(columns, status, law, self._offset(j, x), force[:, columns], size)
+            found = block(columns, status, law, offset, force[:, columns], size)
             if status in (at.STICK, at.PINNED) and j in self.fixed:
                 self.linear[j] = found
             blocks.append(found)
@@ -365,7 +366,8 @@ class _Passes:
         stop goes on holding inward, this way and that.
         """
         for j, status, k in self.radial:
-            offset, law = self._offset(j), self._graph(j)
+            offset = self._offset(j)
+            law = self._graph(j, offset)
             if status == at.SLIP:
                 radius = np.sqrt((offset**2).sum(axis=1))
                 left = (radius > HOT.beyond * law.reach) | (law.bound <= HOT.sign * self.push)
@@ -376,15 +378,16 @@ class _Passes:
             self.outside[:, j] = np.where(left, self.outside[:, j] + 1, 0)
         return np.asarray((self.outside >= self.patience).any(axis=1))
 
-    def _graph(self, j: int) -> at.Graph:
-        """Law of a radial element; found once where no torque moves its friction bound."""
+    def _graph(self, j: int, offset: Array) -> at.Graph:
+        """Law of a radial element at an offset; found once where it is the same everywhere."""
         known = self.fixed.get(j)
         if known is not None:
             return known
         numbers = pick(self.loading.radial, self.rows)[:, j]
         carried = self.force @ self.loading.carried[j, self.basis.columns]
-        found = at.graph(numbers, carried)
-        if not np.isnan(numbers[:, 3]).any():
+        radius = np.sqrt((offset * offset).sum(axis=1))
+        found = at.graph(numbers, carried, radius)
+        if not np.isnan(numbers[:, 3]).any() and (numbers[:, 6] == 1.0).all():
             self.fixed[j] = found
         return found
 
@@ -430,10 +433,11 @@ class _Passes:
         for j in range(structure.switches - structure.rows):
             s, k = structure.rows + j, acting.get(j)
             force = self.force[:, k : k + 2] if k is not None else np.zeros((len(self.rows), 2))
+            offset = self._offset(j)
             wrong[:, s], moved[:, s] = misplaced(
                 int(self.states[s]),
-                self._graph(j),
-                self._offset(j),
+                self._graph(j, offset),
+                offset,
                 force,
                 force_band,
                 length_band,
@@ -494,7 +498,8 @@ class _Passes:
         ends = [way]
         for j in range(structure.switches - structure.rows):
             column = structure.radial_column(j)
-            law, offset = self._graph(j), self._offset(j)
+            offset = self._offset(j)
+            law = self._graph(j, offset)
             velocity = drift @ structure.vectors[column : column + 2].T
             reached = until(offset, velocity, law.reach, fast[:, 0])
             free = self.states[structure.rows + j] == at.OPEN
@@ -542,7 +547,8 @@ class _Passes:
         for j in np.flatnonzero(self.states[rows:] == at.OPEN).tolist():
             column = structure.radial_column(j)
             matrix = structure.vectors[column : column + 2] @ loose
-            discs.append((matrix, self._offset(j)[k], float(self._graph(j).reach[k])))
+            offset = self._offset(j)
+            discs.append((matrix, offset[k], float(self._graph(j, offset).reach[k])))
         closes = vectors @ loose
         finite = np.isfinite(room)
         return closes[finite], room[finite], discs

@@ -89,7 +89,7 @@ def read_states(structure: Structure, numbers: Numbers, found: Equilibrium, x: A
         both = slice(column, column + 2)
         radius = float(np.linalg.norm(numbers.vectors[0, both] @ x - numbers.gap[0, both]))
         size = float(np.linalg.norm(found.radial_reaction[radial.name])) / structure.force
-        law = at.graph(numbers.radial[:, j], transmitted[[j]])
+        law = at.graph(numbers.radial[:, j], transmitted[[j]], radius)
         states[structure.rows + j] = _nearest(law, radius, size)
     return states
 

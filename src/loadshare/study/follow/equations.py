@@ -190,7 +190,11 @@ class Equations:
         force[:, self.rigid] = z[:, self.rigid_at]
         transmitted = (numbers.carried[:, :, : self.scalars] @ force[:, :, None])[:, :, 0]
         laws = {
-            k: at.graph(np.broadcast_to(numbers.radial[:, j], (len(z), 6)), transmitted[:, j])
+            k: at.graph(
+                np.broadcast_to(numbers.radial[:, j], (len(z), numbers.radial.shape[2])),
+                transmitted[:, j],
+                np.sqrt((self._offset(k, z, numbers) ** 2).sum(axis=1)),
+            )
             for j, k in enumerate(self.radials)
         }
         polars, margin = {}, {}
@@ -220,9 +224,13 @@ class Equations:
         along = offset / radius[:, None]
         return Polar(matrix, offset, radius, along, size, slope, beyond, sense=-1.0), margin
 
+    def _offset(self, k: int, z: Array, numbers: Numbers) -> Array:
+        moved = (self.matrix(k, numbers) @ z[:, : self.n, None])[:, :, 0]
+        return np.asarray(moved - numbers.gap[:, self._columns(k)])
+
     def _radial(self, k: int, law: at.Graph, z: Array, numbers: Numbers) -> Polar:
         matrix, states, where = self.matrix(k, numbers), self.states[k], self.polar_at.get(k)
-        offset = (matrix @ z[:, : self.n, None])[:, :, 0] - numbers.gap[:, self._columns(k)]
+        offset = self._offset(k, z, numbers)
         radius = np.sqrt((offset * offset).sum(axis=1))
         along = offset / np.where(radius > 0.0, radius, 1.0)[:, None]
         size, slope = np.zeros_like(radius), np.zeros_like(radius)
@@ -289,7 +297,7 @@ class Equations:
     def _follow(self, k: int, state: Evaluation, numbers: Numbers) -> Array:
         """Derivative (S, size) of a friction bound that follows the torque; zero for others."""
         j, count = k - self.radials.start, len(state.transmitted)
-        number = np.broadcast_to(numbers.radial[:, j], (count, 6))
+        number = np.broadcast_to(numbers.radial[:, j], (count, numbers.radial.shape[2]))
         follows = np.isnan(number[:, 3])
         if not follows.any():
             return np.zeros((count, self.size))

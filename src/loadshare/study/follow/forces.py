@@ -285,6 +285,9 @@ def _push(s: Stretches, k: int, where: int | None, dev: Array, bound: Bound | No
     if e.states[k] == at.SLIP:
         value = bound.value
         return Push(value, value.rate, value.spread, follows, still, still)
+    power = s.numbers.radial[0, k - e.radials.start, 6]
+    if power != 1.0:
+        return _rolling_push(s, k, dev, value, give, float(power))
     reach = s.sampled(s.state.laws[k].reach)
     past = np.abs(radius - reach.middle) + around + reach.off
     rate = bound.value.rate + give.rate * (radius - reach.middle) - give.middle * reach.rate
@@ -292,3 +295,24 @@ def _push(s: Stretches, k: int, where: int | None, dev: Array, bound: Bound | No
     spread += np.abs(give.rate) * (around + reach.off) + give.off * np.abs(reach.rate)
     extra = follows + give.most * (s.felt(k, dev) + sagitta)
     return Push(value, rate, spread, extra, give.most, give.off)
+
+
+def _rolling_push(
+    s: Stretches, k: int, dev: Array, value: Range, give: Range, power: float
+) -> Push:
+    """Force of a bearing's wall, K (R − clearance)^power."""
+    around, radius, _ = s.around(k, dev)
+    felt = s.felt(k, dev) + around**2 / radius
+    numbers = s.numbers.radial[:, k - s.equations.radials.start]
+    reach, stiffness = s.sampled(numbers[:, 2]), s.sampled(numbers[:, 5])
+    gap = s.sampled(s.state.polars[k].radius).low - felt - reach.high
+    # Off the chord the slope varies as well: it grows with the gap's power − 1.
+    bends = np.where(gap > 0.0, (power - 1.0) * give.most / gap, np.inf) * felt
+    off, most = give.off + bends, give.most + bends
+    extra = most * felt
+    stiffer = stiffness.rate / stiffness.middle
+    rate = value.middle * stiffer - give.middle * reach.rate
+    spread = (value.off + extra) * np.abs(stiffer) + off * np.abs(reach.rate) + most * reach.spread
+    varies = stiffness.spread + np.abs(stiffer) * stiffness.off
+    spread += (value.most + extra) * varies / np.abs(stiffness.middle - stiffness.off)
+    return Push(value, rate, spread, extra, most, off)

@@ -31,7 +31,7 @@ class Numbers:
     tables : ndarray, shape (S or 1, tables, 2, points)
     nominal, shift, clearance : ndarray, shape (S or 1, arcs, 3), (S or 1, arcs, 3), (S or 1, arcs)
     relative : ndarray, shape (S or 1, arcs, 3, n)
-    radial : ndarray, shape (S or 1, radials, 6)
+    radial : ndarray, shape (S or 1, radials, 7)
     carried : ndarray, shape (S or 1, radials, m)
     """
 

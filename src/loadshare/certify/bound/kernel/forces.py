@@ -111,8 +111,6 @@ def put_pulls(of, here, claim, s, work, v, found, top, widest):  # type: ignore[
     longest, lawful, covered = 0.0, True, True
     for q in range(len(of.pull_gear)):
         g, j, rate = of.pull_gear[q], of.first_pull + 2 * q, 0.0
-        law = law_of(of, here, claim, s, q)
-        stick, level, reach = law[1], law[2], law[3]
         x, y = work.length[j, v] - of.centre[q, 0], work.length[j + 1, v] - of.centre[q, 1]
         fx, fy, lifting = 0.0, 0.0, 0.0
         for i in range(3):
@@ -121,6 +119,8 @@ def put_pulls(of, here, claim, s, work, v, found, top, widest):  # type: ignore[
             lifting += of.axis[g, i] * claim.radial_reaction[s, q, i]
         claimed_x, claimed_y, away_x, away_y = fx, fy, x, y
         distance, force = np.sqrt(x * x + y * y), np.sqrt(fx * fx + fy * fy)
+        law = law_of(of, here, claim, s, q, distance)
+        stick, level, reach = law[1], law[2], law[3]
         lawful &= force < np.inf and distance < np.inf
         lawful &= stick >= 0.0 and level >= 0.0 and reach >= 0.0
         noise = BOUND.noise * top
@@ -138,6 +138,7 @@ def put_pulls(of, here, claim, s, work, v, found, top, widest):  # type: ignore[
                 fx, fy = along * x / distance, along * y / distance
                 longest = max(longest, distance + near)
                 slips = 1.0 / distance if along == level else 0.0
+            covered &= q >= of.rounds or here.round_power[0, q] == 1.0
             if q >= of.rounds:
                 rate = rate_of(of, here, s, q)
                 covered &= rate == 0.0 or found.aside[s] == 0.0

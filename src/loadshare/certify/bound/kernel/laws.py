@@ -36,14 +36,21 @@ def _level(of, here, claim, s, q):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def law_of(of, here, claim, s, q):  # type: ignore[no-untyped-def]
+def law_of(of, here, claim, s, q, distance):  # type: ignore[no-untyped-def]
     """Graph of a radial element; not a number where it has no meaning.
 
-    First stiffness, S1, level, S2, last stiffness, and the force at the end of the first piece.
+    First stiffness, S1, level, S2, last stiffness, and the force at the end of the first piece. A
+    wall that is a power stands as its tangent at the distance (see `graphs.wall`).
     """
     if q < of.rounds:
         reach = here.round_radius[row_of(here.round_radius, s), q]
-        return 0.0, 0.0, 0.0, reach, here.round_stiffness[row_of(here.round_stiffness, s), q], 0.0
+        last = here.round_stiffness[row_of(here.round_stiffness, s), q]
+        power = here.round_power[0, q]
+        if power != 1.0:
+            gap = max(distance - reach, (reach if reach > 0.0 else 1.0) * 2.0**-52)
+            reach += gap * (1.0 - 1.0 / power)
+            last *= power * gap ** (power - 1.0)
+        return 0.0, 0.0, 0.0, reach, last, 0.0
     r, k = row_of(here.spline, s), q - of.rounds
     level = _level(of, here, claim, s, q)
     stiffness, given, reach = here.spline[r, k, 0], here.spline[r, k, 1], here.spline[r, k, 2]

@@ -25,7 +25,7 @@ from loadshare.solver.hot.kernel.work import (
 
 
 @bare
-def graph(s, i, j, torque):  # type: ignore[no-untyped-def]
+def graph(s, i, j, torque, radius):  # type: ignore[no-untyped-def]
     """Five numbers of a radial law, and whether it has a meaning; see `contact_states.graph`."""
     here = i if s.radial.shape[0] > 1 else 0
     first, given, reach = s.radial[here, j, 0], s.radial[here, j, 1], s.radial[here, j, 2]
@@ -39,7 +39,12 @@ def graph(s, i, j, torque):  # type: ignore[no-untyped-def]
     else:
         stick = min(given, continuous)
         valid = first * given <= bound * (1.0 + LAWS.written) and reach >= stick
-    return first, stick, bound, reach, s.radial[here, j, 5], valid
+    last, power = s.radial[here, j, 5], s.radial[here, j, 6]
+    if power != 1.0:
+        gap = max(radius - reach, (LAWS.begun / last) ** (1.0 / power))
+        reach += gap * (1.0 - 1.0 / power)
+        last *= power * gap ** (power - 1.0)
+    return first, stick, bound, reach, last, valid
 
 
 @bare
@@ -57,11 +62,13 @@ def torque_of(follows, carried, force, width, torque):  # type: ignore[no-untype
 
 @bare
 def renew_bound(s, work, t, width):  # type: ignore[no-untyped-def]
-    """Law of a radial element that turns, with the friction that the forces allow."""
+    """Law of a radial element that turns, where it is, with the friction that forces allow."""
     j = s.turning_radials[t]
     torque_of(s.follows[j], s.carried[j], work.force, width, work.one)
     for m in range(width):
-        _, stick, bound, reach, last, _ = graph(s, work.samples[m], j, work.one[m])
+        u, v = work.radial[t, U, m], work.radial[t, V, m]
+        radius = np.sqrt(u * u + v * v)
+        _, stick, bound, reach, last, _ = graph(s, work.samples[m], j, work.one[m], radius)
         work.radial[t, FIRST_END, m], work.radial[t, BOUND, m] = stick, bound
         work.radial[t, REACH, m], work.radial[t, LAST, m] = reach, last
 
@@ -140,12 +147,13 @@ def follow_radials(s, work, misfit, width):  # type: ignore[no-untyped-def]
         status = s.states[s.first_radial - s.first_column + j]
         law = work.radial[t]
         p, q = work.force[2 * t], work.force[2 * t + 1]
-        if s.follows[j]:
+        for m in range(width):
+            law[U, m] = work.stretch[2 * t, m] - work.gap[2 * t, m]
+            law[V, m] = work.stretch[2 * t + 1, m] - work.gap[2 * t + 1, m]
+        if s.follows[j] or s.radial[0, j, 6] != 1.0:
             renew_bound(s, work, t, width)
         for m in range(width):
-            u = work.stretch[2 * t, m] - work.gap[2 * t, m]
-            v = work.stretch[2 * t + 1, m] - work.gap[2 * t + 1, m]
-            law[U, m], law[V, m] = u, v
+            u, v = law[U, m], law[V, m]
             radius, size = np.sqrt(u * u + v * v), np.sqrt(p[m] * p[m] + q[m] * q[m])
             scale = work.largest[m] if work.largest[m] > radius else radius
             scale = scale if scale > 0.0 else 1.0

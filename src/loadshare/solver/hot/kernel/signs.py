@@ -141,7 +141,8 @@ def look_at_radials(s, work, width):  # type: ignore[no-untyped-def]
         for m in range(width):
             work.better[j, m] = status
             sign = work.each[BAND, m]
-            law = graph(s, work.samples[m], j, torque[m])
+            radius = np.sqrt(u[m] * u[m] + v[m] * v[m])
+            law = graph(s, work.samples[m], j, torque[m], radius)
             if e >= 0 and not law[5]:
                 work.each[BAND, m] = 0.0
             if sign == 0.0:
@@ -232,7 +233,7 @@ def stopped(s, work, m, width, proposal, place_of):  # type: ignore[no-untyped-d
         square, along = du * du + dv * dv, u * du + v * dv
         if square > fast * fast:
             torque_of(s.follows[j], s.carried[j], work.force, width, work.one)
-            law = graph(s, i, j, work.one[m])
+            law = graph(s, i, j, work.one[m], np.sqrt(u * u + v * v))
             inside = max(law[3] * law[3] - u * u - v * v, 0.0)
             way = max((np.sqrt(along * along + square * inside) - along) / square, 0.0)
             if way < nearest:
