@@ -16,8 +16,10 @@ from loadshare.case.quantity import (
     LENGTH,
     STIFFNESS,
     Angle,
+    Density,
     Distance,
     Length,
+    Mass,
     PositiveStiffness,
     Quantity,
     Radius,
@@ -34,6 +36,8 @@ OF_TEETH = (
     "tip_alteration",
     "web",
     "rim",
+    "bore",
+    "density",
 )
 """Keys of a gear that say more of its teeth, beside their number and module."""
 OF_A_GEAR = ("base_radius", "inner_radius", "outer_radius", "teeth", "module", *OF_TEETH)
@@ -60,6 +64,11 @@ class Tooth(InvoluteTooth):
     addendum: float
     dedendum: float
     internal: bool
+
+    @property
+    def root(self) -> float:
+        """Root radius, as the rack leaves it [m]."""
+        return self.radius - self.kind * (self.dedendum - self.profile_shift) * self.module
 
 
 class Polar(Element):
@@ -167,6 +176,16 @@ class Gear(Element):
     rim: Radius | None = None
     """Thickness of the rim below the teeth on a thin web, for `law = "iso"` [length]."""
 
+    bore: Radius | None = None
+    """Diameter of the bore of an external gear; solid when left out [length]."""
+
+    density: Density | None = None
+    """Density of the body, from which with the teeth its mass follows; 7850 kg/m^3 when left out
+    [mass/length^3]."""
+
+    mass: Mass | None = None
+    """Mass of the body, in place of what follows from teeth, face width and bore [mass]."""
+
     support: (
         Annotated[
             Annotated[
@@ -245,6 +264,11 @@ class Gear(Element):
             if abs(given - follows) > RADIUS_TOLERANCE * follows:
                 teeth = f"that of the teeth is {1e3 * follows:.8g} mm"
                 yield Rule(f"contradicts module and teeth: {teeth}", ("base_radius",))
+        if self.bore is not None and self.type != "external":
+            yield Rule("is for external gears only", ("bore",), hint="An internal gear has a rim.")
+        elif self.bore is not None and self.bore.si >= 2.0 * tooth.root:
+            root = f"the root diameter is {2e3 * tooth.root:.6g} mm"
+            yield Rule(f"leaves no body below the teeth: {root}", ("bore",))
         if tooth.tip <= tooth.base_radius:
             tip, base = 1e3 * tooth.tip, 1e3 * tooth.base_radius
             key = next(iter(self.given("tip_alteration", "addendum", "profile_shift")), "module")

@@ -52,6 +52,7 @@ COMMON = (
     *("rad", "mrad", "urad", "deg", "arcmin", "arcsec", "rev", "rpm", "Hz"),
     *("N", "kN", "MN", "lbf", "W", "kW", "MW", "hp", "Pa", "MPa", "GPa"),
     *("N*m", "kN*m", "N*mm", "N/m", "N/mm", "N/um", "N*m/rad", "rad/(N*m)", "rad/(N*m)^(2/3)"),
+    *("kg/m^3", "g/cm^3"),
 )
 
 # The SI unit in which each kind of quantity is kept, by the name that messages use.
@@ -59,6 +60,7 @@ KINDS = {
     "a length": "m",
     "an angle": "rad",
     "a mass": "kg",
+    "a density": "kg/m^3",
     "a time": "s",
     "a speed": "m/s",
     "an angular speed": "rad/s",
