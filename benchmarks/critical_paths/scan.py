@@ -70,11 +70,11 @@ def states_by_name(
     radials = line.structure.radials
     for k, (name, gear) in enumerate(names.radials):
         j = next(i for i, r in enumerate(radials) if r.name == name)
-        given = np.broadcast_to(numbers.radial[:, j], (len(values), 6))
-        law = at.graph(given, torque[:, k] / push)
+        given = np.broadcast_to(numbers.radial[:, j], (len(values), numbers.radial.shape[2]))
         frame = train.gears[gear].frame
         moved = answers.displacement[:, names.gears.index(gear)] @ frame.T - radials[j].centre
         radius = np.linalg.norm(moved, axis=1) / length
+        law = at.graph(given, torque[:, k] / push, radius)
         force = np.linalg.norm(answers.radial_reaction[:, k], axis=1) / push
         if name.startswith("ring"):
             told = np.where(force > BAND, "on boundary", "inside")

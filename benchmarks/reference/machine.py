@@ -91,7 +91,7 @@ class _Writer:
                 names += [f"gear {name} x", f"gear {name} y"]
         self.names = tuple(names)
         pushes = [abs(t) / train.gears[g].base_radius for g, t in situation.torques.items()]
-        self.force = max(pushes, default=0.0) or 1.0
+        self.force = max(*pushes, float(np.abs(situation.push).max())) or 1.0
         self.positions = train.mesh_positions(situation.position)
         yields = [
             m.law(self.positions[m.name]).compression(self.force) for m in train.meshes.values()
@@ -156,6 +156,17 @@ class _Writer:
             if gear in self.turns:
                 radius = self.of(self.train.gears[gear].base_radius)
                 load[self.turns[gear]] = self.of(torque) / radius / self.of(self.force)
+        for push, (name, gear) in zip(
+            self.situation.push[0], self.train.gears.items(), strict=True
+        ):
+            parts = self._shift(name, push)
+            if gear.carrier is not None:
+                parts |= self._shift(gear.carrier, push)
+                if gear.carrier in self.turns:
+                    radius = self.of(self.train.gears[gear.carrier].base_radius)
+                    parts[self.turns[gear.carrier]] = self._dot(gear.seat, push) / radius
+            for at, part in parts.items():
+                load[at] = load.get(at, self.of(0)) + part / self.of(self.force)
         return load
 
     def _shafts(self) -> tuple[list[tuple[dict[int, Any], Any, Any]], list[Any]]:

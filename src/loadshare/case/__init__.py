@@ -3,6 +3,7 @@
 from loadshare.case.content import Content
 from loadshare.case.gears import Eccentricity, Errors, Gear, Offset, Pin, Polar
 from loadshare.case.links import Backlashes, Bearing, Range, Ring, Shaft, Spline
+from loadshare.case.mass import mass_of
 from loadshare.case.measured import Measurement
 from loadshare.case.meshes import Law, Mesh, Table
 from loadshare.case.model import Case
@@ -39,5 +40,6 @@ __all__ = [
     "Table",
     "case_schema",
     "load_case",
+    "mass_of",
     "starter_case",
 ]

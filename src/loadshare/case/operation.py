@@ -16,7 +16,7 @@ from loadshare.case.element import (
     Turns,
     values,
 )
-from loadshare.case.quantity import ANGULAR_SPEED, Power, Quantity, Torque
+from loadshare.case.quantity import ANGULAR_SPEED, Acceleration, Force, Power, Quantity, Torque
 
 
 class Operating(Element):
@@ -60,6 +60,14 @@ class Operating(Element):
 
     external: dict[str, Torque] = Field(default_factory=dict)
     """Further torques on gears [torque], positive in the gear's sense of rotation."""
+
+    forces: dict[str, Annotated[tuple[Force, ...], Field(min_length=2, max_length=3)]] = Field(
+        default_factory=dict
+    )
+    """Further forces on the centres of gears, fixed in the housing: x, y and z [force]."""
+
+    gravity: Annotated[tuple[Acceleration, ...], Field(min_length=2, max_length=3)] | None = None
+    """Gravity as it pulls: x, y and z [acceleration]; every gear then needs a mass."""
 
     def rules(self) -> Iterator[Rule]:
         """Yield what does not hold of torque, power and speed."""

@@ -225,6 +225,7 @@ ROLLER_STIFFNESS = Dimension("N/m^(10/9)", "a roller bearing's stiffness", "4e9 
 TORSIONAL_STIFFNESS = Dimension("N*m/rad", "a torsional stiffness", "5e5 N*m/rad")
 TORSIONAL_COMPLIANCE = Dimension("rad/(N*m)", "a torsional compliance", "2e-7 rad/(N*m)")
 HERTZ_COMPLIANCE = Dimension("rad/(N*m)^(2/3)", "a Hertz compliance", "1e-6 rad/(N*m)^(2/3)")
+ACCELERATION = Dimension("m/s^2", "an acceleration", "9.81 m/s^2")
 MASS = Dimension("kg", "a mass", "12.5 kg")
 DENSITY = Dimension("kg/m^3", "a density", "7850 kg/m^3")
 
@@ -241,5 +242,6 @@ PositiveStiffness = Annotated[Quantity, STIFFNESS.bounded(above=0)]
 TorsionalStiffness = Annotated[Quantity, TORSIONAL_STIFFNESS]
 TorsionalCompliance = Annotated[Quantity, TORSIONAL_COMPLIANCE]
 HertzCompliance = Annotated[Quantity, HERTZ_COMPLIANCE]
+Acceleration = Annotated[Quantity, ACCELERATION]
 Mass = Annotated[Quantity, MASS.bounded(above=0)]
 Density = Annotated[Quantity, DENSITY.bounded(above=0)]

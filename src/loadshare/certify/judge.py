@@ -64,12 +64,12 @@ class Judge:
             With Numba, one answer after another, instead of NumPy: the same verdicts, several
             times as fast once it is compiled. The residuals are then those behind the bound, and
             the energy gap, which follows from them, is left to single answers. Splines with memory
-            are judged with NumPy all the same.
+            and forces from outside are judged with NumPy all the same.
         bounded : bool
             Whether errors are bounded with every effort; without a bound nothing passes, and with
             Numba nothing but what is bounded at once.
         """
-        if compiled and is_covered(self.columns):
+        if compiled and is_covered(self.columns) and not situations.push.any():
             return self._compiled(situations, answers, tolerance, bounded)
         limits = bounds(self.columns, situations, answers) if bounded else None
         return self._by_numpy(situations, answers, tolerance, limits)

@@ -152,6 +152,21 @@ class Mechanics:
         self.pulls = tuple(named[k][0] for k in self.claimed)
         self.pulled = np.array([self.order[named[k][1]] for k in self.claimed], dtype=np.intp)
 
+    def loaded(self, push: Array) -> tuple[Array, Array]:
+        """Moments [N·m] and forces [N] of forces from outside on gears, (gears, S), (gears, 3, S).
+
+        A pin passes what pushes its planet on to the carrier, with its arm about the axis.
+        """
+        moment, force = np.zeros((len(push), push.shape[2])), push.copy()
+        for name, gear in self.train.gears.items():
+            if gear.carrier is None:
+                continue
+            held, k, c = self.train.gears[gear.carrier], self.order[name], self.order[gear.carrier]
+            arm = transverse(gear.centre - held.centre, held.axis)
+            moment[c] += held.sense * (cross(held.axis, arm) @ push[k])
+            force[c] += push[k]
+        return moment, force
+
     @cached_property
     def bearing_pushing(self) -> Array:
         """Approach of flanks per displacement in the frames, shape (2 moving, flanks)."""

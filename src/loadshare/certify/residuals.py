@@ -33,6 +33,8 @@ def force_balance(state: ClaimedState) -> Blocks:
         return []
     balance = -(of.bearing_pushing @ state.claim.flank_force).reshape(-1, 2, state.count)
     balance -= state.support[1]
+    if state.pushed is not None:
+        balance += of.frames @ state.pushed[1][of.moving]
     if len(of.drum) or of.pulls:
         balance += of.frames @ pushed_by_rings(state)[of.moving]
     return [(size(balance), of.bearings)]
@@ -181,6 +183,9 @@ def energy_gap(state: ClaimedState) -> Blocks:
     of, here, claim = state.of, state.here, state.claim
     stored = [*state.energies]
     work = [here.torque * claim.rotation, state.force * state.at_rest]
+    if state.pushed is not None:
+        moment, force = state.pushed
+        work += [moment * claim.rotation, (force * claim.displacement).sum(axis=1)]
     if len(of.shaft):
         torsion = here.torsion[of.elastic]
         stored.append(0.5 * torsion * state.wind[of.elastic] ** 2)

@@ -134,6 +134,7 @@ class ClaimedState:
         deflection; bounds on forces hold all the same.
         """
         pushed = (np.abs(self.here.torque) / self.of.radius[:, None]).max(axis=0, initial=0.0)
+        pushed = np.maximum(pushed, np.abs(self.here.push).max(axis=(0, 1), initial=0.0))
         load = np.maximum(np.abs(self.force).max(axis=0, initial=0.0), pushed)
         self.load = np.where(load == 0.0, 1.0, load)
         lengths = np.maximum(self.compression, np.abs(self.at_rest))
@@ -150,11 +151,18 @@ class ClaimedState:
         self.resolution = CERTIFY.resolution * (furthest + errors + limits)
 
     @cached_property
+    def pushed(self) -> tuple[Array, Array] | None:
+        """Moments [N·m] and forces [N] that forces from outside bring on gears, if there are."""
+        return self.of.loaded(self.here.push) if self.here.push.any() else None
+
+    @cached_property
     def moment(self) -> Array:
         """Moment of the load, flanks and elastic shafts on each gear [N·m], shape (gears, S)."""
         of, claim = self.of, self.claim
         moment = of.moment @ claim.flank_force
         moment += self.here.torque
+        if self.pushed is not None:
+            moment += self.pushed[0]
         if len(of.elastic):
             moment += of.shaft_moment @ claim.shaft_torque
         return np.asarray(moment)

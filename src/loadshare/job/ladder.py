@@ -179,7 +179,8 @@ def _under_less(train: Train, index: int, tolerance: float) -> _Part | None:
     for share in JOB.lighter if train.drums and train.slip is None else ():
         torque = tuple(share * t for t in train.input_torque)
         external = {g: share * t for g, t in train.external.items()}
-        lighter = Machine(replace(train, input_torque=torque, external=external))
+        forces = {g: share * f for g, f in train.forces.items()}
+        lighter = Machine(replace(train, input_torque=torque, external=external, forces=forces))
         for answer in hot_answers(lighter, [index], tolerance).values():
             return _Part(share, answer.validity)
     return None

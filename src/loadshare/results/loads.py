@@ -79,6 +79,8 @@ class Loads:
         pushing = of.pushing.reshape(-1, len(of.order), 3)
         pushed = -np.einsum("egk,e->gk", pushing, state.claim.flank_force[:, 0])
         pushed += pushed_by_rings(state)[:, :, 0]
+        if state.pushed is not None:
+            pushed += state.pushed[1][:, :, 0]
         found = {}
         for k, (name, gear) in enumerate(self.train.gears.items()):
             own = (

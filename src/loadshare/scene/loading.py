@@ -132,10 +132,13 @@ def loading_of(structure: Structure, situations: Situations) -> Loading:
     tabulated = np.full(len(structure.names), -1)
     if situations.table.shape[-1]:
         tabulated[columns.flanks] = np.where(situations.table[0, m, 0, 1] > 0.0, m, -1)
+    load = situations.torque @ to_load
+    if situations.push.any():
+        load = load + situations.push.reshape(len(situations.push), -1) @ structure.pushed
     nominal = [situations.arc(a.ring, a.side).nominal for a in arcs]
     return Loading(
         count=situations.count,
-        load=situations.torque @ to_load / force,
+        load=load / force,
         gap=_side_by_side(structure, gaps, 1.0 / length),
         bending=_side_by_side(structure, bends, force / length),
         hertz=_side_by_side(

@@ -78,7 +78,8 @@ class Scene(ContactProblem):
     def force_unit(self) -> float:
         """Force that the scene is measured by [N]: the largest external push, or 1 N at rest."""
         pushes = [abs(t) / self.train.gears[g].base_radius for g, t in self.torques.items()]
-        return max(pushes, default=0.0) or 1.0
+        pushes.append(float(np.abs(self.situation.push).max(initial=0.0)))
+        return max(pushes) or 1.0
 
     def length_unit(self) -> float:
         """Length that the scene is measured by [m]: what flanks yield, or 1/1000 of their gaps.

@@ -254,6 +254,22 @@ class Structure:
                 found[e, order[gear]] = along
         return found.reshape(len(self.flanks), -1)
 
+    @cached_property
+    def pushed(self) -> Array:
+        """Load on the coordinates per force on the gears, shape (3 gears, n).
+
+        A pin passes what pushes its planet on to the carrier.
+        """
+        at, gears = self.coordinates, self.train.gears
+        found = []
+        for name, gear in gears.items():
+            moved = at.moved(name)
+            if gear.carrier is not None:
+                moved = moved + at.moved(gear.carrier)
+                moved += np.outer(gear.seat, at.turned((gear.carrier, 1.0)))
+            found.append(moved)
+        return np.concatenate(found)
+
     def gaps_of_flanks(self, situations: Situations) -> Array:
         """Gap of every flank with errors and clockings [m], shape (S or 1, flanks)."""
         m = np.array([number for number, *_ in self.flanks], dtype=np.intp)
@@ -421,7 +437,8 @@ def _units(structure: Structure, here: Situations) -> tuple[float, float]:
     """Force and length that a scene is measured by (see `Scene`)."""
     train, flanks = structure.train, structure.flanks
     radius = [g.base_radius for g in train.gears.values()]
-    force = float((np.abs(here.torque[0]) / radius).max(initial=0.0)) or 1.0
+    force = float((np.abs(here.torque[0]) / radius).max(initial=0.0))
+    force = max(force, float(np.abs(here.push[0]).max(initial=0.0))) or 1.0
     positions = train.mesh_positions(here.position)
     gaps = structure.gaps_of_flanks(here)[0]
     drive = [(e, mesh) for e, (_, mesh, drives) in enumerate(flanks) if drives]

@@ -43,6 +43,10 @@ def array_unit(case: spec.Case, column: Column) -> str | None:
     match column.path:
         case ("operating", "external", _):
             return "N*m"
+        case ("operating", "forces", _, int()):
+            return "N"
+        case ("operating", "gravity", int()):
+            return "m/s^2"
         case ("operating", "torque" | "power" as what):
             return None if _changes_flanks(case, column) else {"torque": "N*m", "power": "W"}[what]
         case ("errors", gear, "installation", "amount" | "direction" as what):

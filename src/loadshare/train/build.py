@@ -129,6 +129,7 @@ def train_of(
         external={
             n: -t.si if gears[n].ratio < 0.0 else t.si for n, t in operating.external.items()
         },
+        forces=_forces(case),
         positions=operating.positions,
         rotating=operating.rotation == "teeth",
         march=(case.march.gear, case.march.revolutions, case.march.steps) if case.march else None,
@@ -139,6 +140,18 @@ def _vector(lengths: tuple[spec.Quantity, ...]) -> Vector:
     """Three components, the last of them 0 where it is not given."""
     components = [*(q.si for q in lengths), 0.0][:3]
     return np.stack(np.broadcast_arrays(*components), axis=-1)
+
+
+def _forces(case: spec.Case) -> dict[str, Vector]:
+    """Forces from outside and weights."""
+    operating = case.operating
+    forces = {name: _vector(force) for name, force in operating.forces.items()}
+    if operating.gravity is not None:
+        pulls = _vector(operating.gravity)
+        for name, gear in case.gears.items():
+            weight = np.multiply.outer(spec.mass_of(gear) or 0.0, pulls)
+            forces[name] = forces[name] + weight if name in forces else weight
+    return forces
 
 
 def _support(case: spec.Case, name: str) -> Vector | None:

@@ -44,6 +44,8 @@ class Situations:
         Centre offsets c [m].
     torque : ndarray, shape (S or 1, gears)
         External torques [N·m].
+    push : ndarray, shape (S or 1, gears, 3)
+        External forces [N].
     gap, backlash : ndarray, shape (S or 1, meshes)
         Of the drive and the coast flank along the line of action [m].
     bending, hertz : ndarray, shape (S or 1, meshes)
@@ -72,6 +74,7 @@ class Situations:
     index: NDArray[np.intp]
     offset: Array
     torque: Array
+    push: Array
     gap: Array
     backlash: Array
     bending: Array
@@ -160,6 +163,7 @@ def situations_of(train: Train, index: int) -> Situations:
     arrays = {
         "offset": offset,
         "torque": _table([_torque(train, g, index) for g in train.gears]),
+        "push": _table([train.push(n, rotation) for n in train.gears], 3),
         "gap": _table([m.gap(position[n], True) for n, m in meshes.items()]),
         "backlash": _table([m.backlash for m in meshes.values()]),
         "bending": _table([p.b for p in powers]),

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from loadshare.contact.radial import RadialLaw, spline_law
 from loadshare.train.gear import ORIGIN, Gear, Vector
 from loadshare.train.mesh import Approach, Mesh, approach_of
-from loadshare.train.offset import Offset
+from loadshare.train.offset import Offset, turned_about
 from loadshare.train.ring import Bearing, DrumRing, Ring, RoundRing
 
 
@@ -126,6 +126,8 @@ class Train:
         Whether gears turn over the mesh cycle.
     march : tuple of (str, float, int) or None
         Reference gear, its revolutions and the number of steps.
+    forces : mapping of gear to ndarray (3,)
+        Forces from outside, weights among them, fixed in the housing [N].
     slip : mapping of gear to ndarray (3,), or None
         Slip s₀ [m] of every spline at the position before, for friction with memory; None where
         friction has none.
@@ -147,6 +149,7 @@ class Train:
     positions: int
     rotating: bool
     march: tuple[str, float, int] | None
+    forces: Mapping[str, Vector] = field(default_factory=dict)
     slip: Mapping[str, Vector] | None = None
 
     def remembering(self, slip: Mapping[str, Vector]) -> Train:
@@ -247,6 +250,21 @@ class Train:
         if errors is None:
             return ORIGIN
         return errors.at(self.gears[gear], rotation[gear], self.frame_angle(gear, rotation))
+
+    def push(self, gear: str, rotation: Mapping[str, float]) -> Vector:
+        """Force from outside on a gear (3,) [N], as seen from the carrier about which it turns.
+
+        Parameters
+        ----------
+        gear : str
+        rotation : mapping of str to float
+            By which every gear has turned [rad].
+        """
+        force = self.forces.get(gear)
+        if force is None:
+            return ORIGIN
+        turned = self.frame_angle(gear, rotation)
+        return turned_about(self.gears[gear], force, -turned) if turned else force
 
     def frame_angle(self, gear: str, rotation: Mapping[str, float]) -> float:
         """Angle [rad] by which the carrier from which a gear is seen has turned about its axis.

@@ -49,6 +49,7 @@ def graph(
                 friction,
                 per_torque,
                 stiffness if last is None else last,
+                1.0,
             ]
         ]
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from loadshare.case.checks import carriers, fit, floats, flow, meshing, names
+from loadshare.case.checks import carriers, fit, floats, flow, loads, meshing, names
 from loadshare.case.draft import Draft
 from loadshare.errors import Problem
 
@@ -17,6 +17,7 @@ CHECKS = (
     fit.check_tooth_kinds,
     fit.check_fit,
     fit.check_formula_laws,
+    loads.check_masses,
     carriers.check_carriers,
     carriers.check_planet_meshes,
     carriers.check_planet_shafts,

@@ -92,6 +92,8 @@ def _gears_named(draft: Draft) -> Iterator[tuple[Path, str]]:
     yield from _texts_at(draft, ("operating", "output"))
     for name in draft.operating.external if draft.operating is not None else ():
         yield ("operating", "external", name), name
+    for name in draft.operating.forces if draft.operating is not None else ():
+        yield ("operating", "forces", name), name
     yield from _texts_at(draft, ("march", "gear"))
 
 

@@ -208,6 +208,11 @@ class Claim:
             at = turn.coordinate
             here = Twofold(total.high[:, at], total.low[:, at])
             total.high[:, at], total.low[:, at] = plus(here, part)
+        if self.situations.push.any():
+            push = self.situations.push.reshape(len(self.situations.push), -1)
+            from_push, sizes = product(push, self.columns.pushed)
+            # Arms over radii are rounded, which sums in twice the precision do not see.
+            return plus(total, from_push), np.abs(total.high) + sizes * (EPS / TINY)
         return total, np.abs(total.high)
 
     @cached_property

@@ -147,6 +147,24 @@ class Columns:
         return part
 
     @cached_property
+    def pushed(self) -> Array:
+        """Part of every force from outside in f, shape (3 gears, n).
+
+        A pin passes what pushes its planet on to the carrier.
+        """
+        gears = self.train.gears
+        part = np.zeros((len(self.order), 3, len(self.coordinates)))
+        for name, k in self.order.items():
+            carrier = gears[name].carrier
+            for body in (name,) if carrier is None else (name, carrier):
+                if (at := self.places.get(body)) is not None:
+                    part[k, :, at : at + 2] += gears[body].frame.T
+            turn = self.turns[carrier] if carrier is not None else None
+            if turn is not None and turn.coordinate is not None:
+                part[k, :, turn.coordinate] += gears[name].seat / turn.radius
+        return part.reshape(-1, len(self.coordinates))
+
+    @cached_property
     def moments(self) -> Array:
         """Torque that each spline's gear takes over it, per flank force, (splines, flanks) [m]."""
         found = np.zeros((len(self.train.splines), self.flanks.stop))

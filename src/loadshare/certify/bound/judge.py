@@ -127,6 +127,7 @@ def _boxes(claim: Claim, rigorous: bool) -> Bounds:
     radius = np.array([g.base_radius for g in columns.train.gears.values()])
     flanks = np.abs(answers.flank_force)
     pushed = (np.abs(torque) / radius).max(axis=1, initial=0.0)
+    pushed = np.maximum(pushed, np.abs(claim.situations.push).max(axis=(1, 2), initial=0.0))
     scale = np.maximum(flanks.max(axis=1, initial=0.0), pushed)
     largest = (flanks * columns.arms).max(axis=1, initial=0.0)
     largest = np.maximum(largest, np.abs(torque).max(axis=1, initial=0.0))
