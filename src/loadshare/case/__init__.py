@@ -1,7 +1,7 @@
 """Cases: what a user writes about a transmission, read, checked, and kept as it was written."""
 
 from loadshare.case.content import Content
-from loadshare.case.gears import Eccentricity, Errors, Gear, Offset, Pin, Polar
+from loadshare.case.gears import STEEL_EXPANSION, Eccentricity, Errors, Gear, Offset, Pin, Polar
 from loadshare.case.links import Backlashes, Bearing, Range, Ring, Shaft, Spline
 from loadshare.case.mass import mass_of
 from loadshare.case.measured import Measurement
@@ -15,6 +15,7 @@ from loadshare.case.starter import starter_case
 from loadshare.case.study import Study
 
 __all__ = [
+    "STEEL_EXPANSION",
     "Backlashes",
     "Bearing",
     "Case",

@@ -18,11 +18,13 @@ from loadshare.case.quantity import (
     Angle,
     Density,
     Distance,
+    Expansion,
     Length,
     Mass,
     PositiveStiffness,
     Quantity,
     Radius,
+    Temperature,
 )
 from loadshare.involute import InvoluteTooth
 
@@ -42,6 +44,8 @@ OF_TEETH = (
 """Keys of a gear that say more of its teeth, beside their number and module."""
 OF_A_GEAR = ("base_radius", "inner_radius", "outer_radius", "teeth", "module", *OF_TEETH)
 """Keys of a gear that a carrier does not have."""
+STEEL_EXPANSION = 11.5e-6
+"""Thermal expansion where none is given [1/K]."""
 COPIES = range(2, 33)
 """How many copies a gear may have."""
 RADIUS_TOLERANCE = 1e-3
@@ -185,6 +189,12 @@ class Gear(Element):
 
     mass: Mass | None = None
     """Mass of the body, in place of what follows from teeth, face width and bore [mass]."""
+
+    temperature: Temperature | None = None
+    """Rise of the body's temperature above that at which it was made [temperature]."""
+
+    expansion: Expansion | None = None
+    """Thermal expansion of the body; 11.5e-6 /K, that of steel, when left out [1/temperature]."""
 
     support: (
         Annotated[

@@ -208,6 +208,9 @@ class Bearing(Element):
     offset: tuple[Length, Length] = (Quantity("0 mm", 0.0), Quantity("0 mm", 0.0))
     """Middle of the bearing, from the gear's centre [length]."""
 
+    diameter: Radius | None = None
+    """Mean diameter, by which its clearance changes as shaft and housing grow [length]."""
+
     def rules(self) -> Iterator[Rule]:
         """Yield what does not hold of the laws."""
         given = self.given(*BEARING_LAWS)

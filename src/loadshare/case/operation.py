@@ -16,7 +16,16 @@ from loadshare.case.element import (
     Turns,
     values,
 )
-from loadshare.case.quantity import ANGULAR_SPEED, Acceleration, Force, Power, Quantity, Torque
+from loadshare.case.quantity import (
+    ANGULAR_SPEED,
+    Acceleration,
+    Expansion,
+    Force,
+    Power,
+    Quantity,
+    Temperature,
+    Torque,
+)
 
 
 class Operating(Element):
@@ -68,6 +77,12 @@ class Operating(Element):
 
     gravity: Annotated[tuple[Acceleration, ...], Field(min_length=2, max_length=3)] | None = None
     """Gravity as it pulls: x, y and z [acceleration]; every gear then needs a mass."""
+
+    temperature: Temperature | None = None
+    """Rise of the housing's temperature above that at which it was made [temperature]."""
+
+    expansion: Expansion | None = None
+    """Thermal expansion of the housing; that of steel when left out [1/temperature]."""
 
     def rules(self) -> Iterator[Rule]:
         """Yield what does not hold of torque, power and speed."""

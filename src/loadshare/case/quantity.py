@@ -226,6 +226,8 @@ TORSIONAL_STIFFNESS = Dimension("N*m/rad", "a torsional stiffness", "5e5 N*m/rad
 TORSIONAL_COMPLIANCE = Dimension("rad/(N*m)", "a torsional compliance", "2e-7 rad/(N*m)")
 HERTZ_COMPLIANCE = Dimension("rad/(N*m)^(2/3)", "a Hertz compliance", "1e-6 rad/(N*m)^(2/3)")
 ACCELERATION = Dimension("m/s^2", "an acceleration", "9.81 m/s^2")
+TEMPERATURE = Dimension("K", "a rise of temperature", "40 K")
+EXPANSION = Dimension("1/K", "a thermal expansion", "11.5e-6 /K")
 MASS = Dimension("kg", "a mass", "12.5 kg")
 DENSITY = Dimension("kg/m^3", "a density", "7850 kg/m^3")
 
@@ -243,5 +245,7 @@ TorsionalStiffness = Annotated[Quantity, TORSIONAL_STIFFNESS]
 TorsionalCompliance = Annotated[Quantity, TORSIONAL_COMPLIANCE]
 HertzCompliance = Annotated[Quantity, HERTZ_COMPLIANCE]
 Acceleration = Annotated[Quantity, ACCELERATION]
+Temperature = Annotated[Quantity, TEMPERATURE]
+Expansion = Annotated[Quantity, EXPANSION.bounded(at_least=0)]
 Mass = Annotated[Quantity, MASS.bounded(above=0)]
 Density = Annotated[Quantity, DENSITY.bounded(above=0)]

@@ -28,6 +28,7 @@ inch = 0.0254 * meter = in
 foot = 0.3048 * meter = ft
 gram = [mass] = g
 second = [time] = s
+kelvin = [temperature] = K
 minute = 60 * second = min
 hour = 3600 * second = h
 radian = [angle] = rad
@@ -52,7 +53,7 @@ COMMON = (
     *("rad", "mrad", "urad", "deg", "arcmin", "arcsec", "rev", "rpm", "Hz"),
     *("N", "kN", "MN", "lbf", "W", "kW", "MW", "hp", "Pa", "MPa", "GPa"),
     *("N*m", "kN*m", "N*mm", "N/m", "N/mm", "N/um", "N*m/rad", "rad/(N*m)", "rad/(N*m)^(2/3)"),
-    *("kg/m^3", "g/cm^3"),
+    *("kg/m^3", "g/cm^3", "K", "/K", "m/s^2"),
 )
 
 # The SI unit in which each kind of quantity is kept, by the name that messages use.
@@ -62,6 +63,8 @@ KINDS = {
     "a mass": "kg",
     "a density": "kg/m^3",
     "a time": "s",
+    "a rise of temperature": "K",
+    "an acceleration": "m/s^2",
     "a speed": "m/s",
     "an angular speed": "rad/s",
     "a frequency": "1/s",
@@ -174,6 +177,7 @@ def _parse(unit: str) -> pint.Quantity[float]:
     import pint
 
     text = unit.replace("·", "*").replace("⋅", "*").replace("^", "**")
+    text = f"1{text}" if text.startswith("/") else text
     # A power of a power, or of a large number, would take for ever.
     powers = [abs(float(up) / float(down or 1.0)) for up, down in _POWER.findall(text)]
     if (

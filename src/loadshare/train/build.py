@@ -21,6 +21,7 @@ from loadshare.train.geometry import Geometry, Pair, geometry_of
 from loadshare.train.mesh import Mesh
 from loadshare.train.offset import Offset, polar
 from loadshare.train.ring import Bearing, DrumRing, Ring, RoundRing, transverse
+from loadshare.train.thermal import fitted, flank_growth, grows, with_growth
 from loadshare.train.train import Shaft, Spline, Stage, Train
 
 Element = TypeVar("Element")
@@ -101,14 +102,23 @@ def train_of(
     )
     # In the order of the walk from the input gear.
     gears = {name: supported[name] for name in geometry.gears}
-    by_layout = case.operating.phases == "layout"
-    meshes = elements(
-        "meshes", lambda name, mesh: _mesh(name, mesh, geometry.pairs[name], by_layout)
-    )
+    by_layout, warm = case.operating.phases == "layout", grows(case)
+
+    def mesh_of(name: str, mesh: spec.Mesh) -> Mesh:
+        pair = geometry.pairs[name]
+        made = _mesh(name, mesh, pair, by_layout)
+        return made.closer(flank_growth(case, pair)) if warm else made
+
+    def bearing_of(name: str, bearing: spec.Bearing) -> Bearing:
+        made = _bearing(bearing, gears[name])
+        return fitted(case, made, gears[name]) if warm else made
+
+    meshes = elements("meshes", mesh_of)
     rings = elements("rings", ring_of)
     if problems:
         raise CaseError(problems)
     operating = case.operating
+    offsets = elements("errors", lambda name, e: _offset(e, gears[name], gears), "offsets")
     return Train(
         name=case.name,
         gears=gears,
@@ -116,8 +126,8 @@ def train_of(
         shafts=elements("shafts", _shaft),
         splines=elements("splines", _spline),
         rings={name: ring for name, ring in rings.items() if ring is not None},
-        bearings=elements("bearings", lambda name, b: _bearing(b, gears[name])),
-        offsets=elements("errors", lambda name, e: _offset(e, gears[name], gears), "offsets"),
+        bearings=elements("bearings", bearing_of),
+        offsets=with_growth(case, gears, offsets) if warm else offsets,
         stages=tuple(
             Stage(n, tuple(s.meshes), tuple(s.groups or (s.meshes,)))
             for n, s in case.stages.items()

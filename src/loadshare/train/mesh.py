@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from loadshare.contact.law import Law
 from loadshare.train.gear import Gear, Vector, cross
@@ -156,6 +156,10 @@ class Mesh:
     def lever(self, drive: bool) -> float:
         """Torque per flank force [m] on the gear named first, positive where it drives."""
         return self.told_radius if drive != self.turned else -self.told_radius
+
+    def closer(self, by: float) -> Mesh:
+        """Return the mesh with both flanks closer along the line of action [m]."""
+        return replace(self, gaps=tuple(g - by for g in self.gaps), backlash=self.backlash - by)
 
     @property
     def flanks(self) -> tuple[bool, ...]:

@@ -18,6 +18,7 @@ CHECKS = (
     fit.check_fit,
     fit.check_formula_laws,
     loads.check_masses,
+    loads.check_temperatures,
     carriers.check_carriers,
     carriers.check_planet_meshes,
     carriers.check_planet_shafts,

@@ -1,10 +1,11 @@
-"""Loads from outside: what gravity needs."""
+"""Loads from outside and warmth: what gravity needs, and which gears grow."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from loadshare.case.draft import Draft
+from loadshare.case.keys import Path
 from loadshare.case.mass import mass_of
 from loadshare.case.quantity import MASS
 from loadshare.errors import Problem
@@ -20,3 +21,15 @@ def check_masses(draft: Draft) -> Iterator[Problem]:
             if not gear.is_carrier:
                 hint += " It also follows from module, teeth and face_width, of a ring and its rim."
             yield draft.problem(("gears", name, "mass"), "is missing", MASS.allowed, hint)
+
+
+def check_temperatures(draft: Draft) -> Iterator[Problem]:
+    """Growth is counted at the pitch points of cylindrical gears."""
+    warm: list[Path] = [
+        ("gears", name, "temperature") for name, g in draft.gears.items() if g.temperature
+    ]
+    if draft.operating is not None and draft.operating.temperature is not None:
+        warm.insert(0, ("operating", "temperature"))
+    if any(gear.type == "face" for gear in draft.gears.values()):
+        for path in warm:
+            yield draft.problem(path, "is for trains of cylindrical gears only")

@@ -1,0 +1,102 @@
+"""Thermal growth: bodies that are warmer than they were made, as errors of known size.
+
+A body grows evenly by α ΔT. What a gear's flank gains at the pitch point is what the approach gains
+if the gear is moved that far towards it; the housing and carriers move the gears that sit in them.
+Source: formulation, section 14.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from loadshare import case as spec
+from loadshare.errors import CaseError
+from loadshare.train.gear import ORIGIN, Gear, Vector
+from loadshare.train.geometry import Pair
+from loadshare.train.offset import Offset
+from loadshare.train.ring import Bearing, transverse
+
+
+def growth_of(case: spec.Case, gear: str | None) -> float:
+    """Relative growth of a gear, or of the housing [-]."""
+    body = case.operating if gear is None else case.gears[gear]
+    if body.temperature is None:
+        return 0.0
+    return body.temperature.si * (body.expansion.si if body.expansion else spec.STEEL_EXPANSION)
+
+
+def grows(case: spec.Case) -> bool:
+    """Whether anything is warmer than it was made."""
+    return any(growth_of(case, body) for body in (None, *case.gears))
+
+
+def flank_growth(case: spec.Case, pair: Pair) -> float:
+    """By how much both flanks of a mesh come closer as its gears grow [m].
+
+    Parameters
+    ----------
+    case : spec.Case
+    pair : Pair
+    """
+    driver, driven, normal = pair.driver, pair.driven, pair.normals[0]
+    way = transverse(driven.centre - driver.centre, driver.axis)
+    way = way / np.linalg.norm(way)
+    # From a centre to the pitch point: in an internal mesh both point away from the ring's centre.
+    to_pitch = {"driver": way, "driven": -way}
+    if driven.kind == "internal":
+        to_pitch["driver"] = -way
+    elif driver.kind == "internal":
+        to_pitch["driven"] = way
+    total = 0.0
+    for gear, toward, sign in ((driver, "driver", 1.0), (driven, "driven", -1.0)):
+        radius = gear.base_radius / np.cos(pair.line.pressure_angle)
+        total += sign * growth_of(case, gear.name) * radius * float(normal @ to_pitch[toward])
+    return total
+
+
+def with_growth(
+    case: spec.Case, gears: Mapping[str, Gear], offsets: Mapping[str, Offset]
+) -> dict[str, Offset]:
+    """Return centre offsets with what housing and carriers grow.
+
+    Parameters
+    ----------
+    case : spec.Case
+    gears : mapping of str to Gear
+    offsets : mapping of gear to Offset
+    """
+    origin = gears[case.operating.input].centre
+    found = dict(offsets)
+    for name, gear in gears.items():
+        pole = gears[gear.carrier].centre if gear.carrier is not None else origin
+        moved: Vector = growth_of(case, gear.carrier) * (gear.centre - pole)
+        if moved.any():
+            before = found.get(name, Offset(ORIGIN, np.zeros(2)))
+            found[name] = replace(before, installation=before.installation + moved)
+    return found
+
+
+def fitted(case: spec.Case, bearing: Bearing, gear: Gear) -> Bearing:
+    """Return a bearing with the clearance that warm bodies leave it.
+
+    A gear's shaft grows in the housing, a planet about the pin of its carrier.
+
+    Raises
+    ------
+    CaseError
+        If none is left: a bearing that is pressed on all sides is none of these laws.
+    """
+    given = case.bearings[gear.name]
+    if given.diameter is None:
+        return bearing
+    inner, outer = growth_of(case, gear.name), growth_of(case, None)
+    if gear.carrier is not None:
+        inner, outer = growth_of(case, gear.carrier), inner
+    left = bearing.radius + 0.5 * given.diameter.si * (outer - inner)
+    if np.any(left < 0.0):
+        message = f"is used up as the bodies grow: {1e6 * float(np.min(left)):.4g} um are left"
+        raise CaseError([case.problem(("bearings", gear.name, "clearance"), message)])
+    return replace(bearing, radius=left)
