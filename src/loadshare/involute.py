@@ -139,12 +139,26 @@ def working_angle_without_backlash(one: InvoluteTooth, two: InvoluteTooth) -> fl
     Raises
     ------
     ValueError
-        If the profile shifts bring the gears closer than their base circles allow.
+        If the profile shifts bring the gears closer than their base circles allow, or an internal
+        gear has no more teeth than the other.
     """
     teeth = one.kind * one.teeth + two.kind * two.teeth
+    if one.kind * two.kind < 0 and teeth >= 0:
+        raise ValueError("an internal gear has more teeth than its pinion")
     shift = one.profile_shift + two.profile_shift
     change = 2.0 * math.tan(one.pressure_angle) * shift / teeth
     return inverse_inv(inv(one.transverse_angle) + change)
+
+
+def distance_without_backlash(one: InvoluteTooth, two: InvoluteTooth) -> float:
+    """Centre distance at which both flanks touch, a_w = |r_b2 + σ r_b1| / cos α_wt [m].
+
+    Raises
+    ------
+    ValueError
+        As `working_angle_without_backlash`.
+    """
+    return base_distance(one, two) / math.cos(working_angle_without_backlash(one, two))
 
 
 def contact_ratio(one: InvoluteTooth, two: InvoluteTooth, distance: float) -> float:

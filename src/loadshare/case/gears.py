@@ -77,8 +77,12 @@ class Polar(Element):
     about: str | None = None
     """Gear whose centre is the pole; the origin when left out."""
 
-    distance: Distance
-    """Distance from the pole in the x-y plane [length]."""
+    distance: Distance | None = None
+    """Distance from the pole in the x-y plane [length].
+
+    Left out, it is that at which the teeth mesh without backlash: with the pole, or with a gear on
+    its axis.
+    """
 
     angle: Angle
     """Direction from the pole, counter-clockwise from the x axis [angle]."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from loadshare import case as spec
 from loadshare.case.line_of_action import LineOfAction, line_of_action
-from loadshare.case.place import axis_of, centres_of
+from loadshare.case.place import axis_of
 from loadshare.case.power_flow import against_the_names, rides_on
 from loadshare.case.teeth import tooth_counts
 from loadshare.errors import CaseError, Problem
@@ -140,7 +140,7 @@ def _misfit_told(case: spec.Case, pair: Pair, misfit: Misfit) -> Problem:
 
 def _kinematics(case: spec.Case) -> Kinematics:
     running = 1 if case.operating.running == "counter-clockwise" else -1
-    centres = centres_of(case.gears)
+    centres = case.centres()
     pairs = {n: m.ends for n, m in case.meshes.items()}
     # What follows from the counts that are given is a count as well.
     toothed = {n: g for n, g in case.gears.items() if not g.is_carrier}
@@ -205,7 +205,7 @@ def _pairs(
     flows = against_the_names(case.operating, case.gears, case.meshes, case.shafts)
     against = all(flows or (False,))
     pressed = _pressed(case, gears)
-    found, centres = {}, centres_of(case.gears)
+    found, centres = {}, case.centres()
     for name, mesh in case.meshes.items():
         line = line_of_action(mesh, case.gears, centres)
         if line is None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from loadshare.case.checks import carriers, fit, floats, flow, meshing, names
+from loadshare.case.checks import carriers, fit, floats, flow, layout, meshing, names
 from loadshare.case.draft import Draft
 from loadshare.errors import Problem
 
@@ -14,6 +14,7 @@ CHECKS = (
     names.check_about_circles,
     names.check_pairs,
     meshing.check_list_lengths,
+    layout.check_distances,
     fit.check_tooth_kinds,
     fit.check_fit,
     fit.check_formula_laws,

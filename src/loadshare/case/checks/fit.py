@@ -11,10 +11,10 @@ from loadshare.case.gears import STEEPEST, Gear, Tooth
 from loadshare.case.keys import Path
 from loadshare.case.line_of_action import centre_distance, tangent_distance
 from loadshare.case.meshes import Mesh
-from loadshare.case.place import Vector, axis_of, centres_of, dot, minus
+from loadshare.case.place import Vector, axis_of, dot, minus
 from loadshare.case.quantity import ANGLE
 from loadshare.errors import Problem
-from loadshare.involute import base_distance, normal_backlash, working_angle_without_backlash
+from loadshare.involute import distance_without_backlash, normal_backlash
 
 TOLERANCE = 1e-3
 """How far base radii may miss the centre distance, as a part of it [-]."""
@@ -39,7 +39,7 @@ def check_tooth_kinds(draft: Draft) -> Iterator[Problem]:
 
 def check_fit(draft: Draft) -> Iterator[Problem]:
     """Yield pairs whose axes, base radii and pressure angle do not fit where they stand."""
-    centres = centres_of(draft.gears)
+    centres = draft.centres()
     for name, mesh, driver, driven in _pairs(draft):
         kinds = {driver.type, driven.type}
         if mesh.driver in centres and mesh.driven in centres and "external" in kinds:
@@ -101,8 +101,7 @@ def _teeth_fit(
     if backlash < -OVERLAP * one.module:
         hint = ""
         with suppress(ValueError):
-            angle = working_angle_without_backlash(one, two)
-            fits = base_distance(one, two) / math.cos(angle)
+            fits = distance_without_backlash(one, two)
             hint = f"Without backlash it would be {_mm(fits)}."
         what = f"at the centre distance {_mm(distance)} the teeth overlap by {_mm(-backlash)}"
         yield draft.problem(path, what, hint=hint)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from loadshare.errors import CaseError, Problem
-from loadshare.involute import base_distance, inv, working_angle_without_backlash
+from loadshare.involute import base_distance, distance_without_backlash, inv
 from loadshare.tooth.cylindrical.checks import gear_problems
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.cylindrical.pair import (
@@ -59,10 +59,9 @@ def helicoid_pair(
     base = base_distance(driver, driven)
     if centre_distance is None:
         try:
-            angle = working_angle_without_backlash(driver, driven)
+            centre_distance = distance_without_backlash(driver, driven)
         except ValueError as error:
             raise CaseError([_no_working_angle(driver, driven)]) from error
-        centre_distance = base / math.cos(angle)
     pair = HelicoidPair(driver, driven, centre_distance, misalignment)
     if pair.actual_distance <= base:
         none = "at this centre distance the gears have no line of action"
