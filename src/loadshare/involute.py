@@ -182,3 +182,41 @@ def normal_backlash(one: InvoluteTooth, two: InvoluteTooth, distance: float) -> 
     left = one.base_radius * (math.pi / one.teeth - one.half_angle_at(angle))
     left -= two.base_radius * two.half_angle_at(angle)
     return 2.0 * left * math.cos(one.base_helix_angle)
+
+
+def tip_limit(gear: InvoluteTooth, other: InvoluteTooth, distance: float) -> float:
+    """Radius of the other gear where the involute of an external gear begins, at its base [m].
+
+    r = √(r_b² + (a sin α_wt)²): a tip of an external gear must not reach beyond it, one of an
+    internal gear must stay outside of it, or teeth interfere.
+    """
+    return math.hypot(other.base_radius, distance * math.sin(working_angle(gear, other, distance)))
+
+
+def root_clearance(
+    gear: InvoluteTooth, root: float, other: InvoluteTooth, distance: float
+) -> float:
+    """Clearance between the root of a gear, at a radius [m], and the tip of another [m]."""
+    if other.internal:
+        # Inside an internal gear the centres are nearer one another than the circles.
+        return other.tip - distance - root
+    return gear.kind * (distance - root) - other.tip
+
+
+def tips_pass(pinion: InvoluteTooth, ring: InvoluteTooth, distance: float) -> bool:
+    """Tell whether the tips of a pinion and an internal gear pass beside the line of action.
+
+    Where the tip circles cross, at polar angles θ1 and θ2 from the line of centres, the pinion's
+    tip must have passed the ring's (trimming, fouling):
+    z1 (inv α_a1 + θ1) − z2 (inv α_a2 + θ2) + (z2 − z1) inv α_wt ≥ 0.
+    """
+    r1, r2 = pinion.tip, ring.tip
+    cosine = (r2**2 - r1**2 - distance**2) / (2.0 * distance * r1)
+    if abs(cosine) >= 1.0:
+        return True
+    theta_1 = math.acos(cosine)
+    theta_2 = math.acos((distance**2 + r2**2 - r1**2) / (2.0 * distance * r2))
+    passed = pinion.teeth * (inv(math.atan(pinion.tip_roll)) + theta_1)
+    passed -= ring.teeth * (inv(math.atan(ring.tip_roll)) + theta_2)
+    more = ring.teeth - pinion.teeth
+    return passed + more * inv(working_angle(pinion, ring, distance)) >= 0.0

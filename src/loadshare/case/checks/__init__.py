@@ -18,6 +18,8 @@ CHECKS = (
     fit.check_tooth_kinds,
     fit.check_fit,
     fit.check_formula_laws,
+    layout.check_tips,
+    layout.check_neighbours,
     carriers.check_carriers,
     carriers.check_planet_meshes,
     carriers.check_planet_shafts,

@@ -60,15 +60,15 @@ def _parallel_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterat
     radius = tangent_distance(driver, driven)
     if "internal" in (driver.type, driven.type):
         inner, outer = sorted((driver, driven), key=lambda gear: gear.type == "internal")
-        sum_ = f"{_mm(outer.acting_radius)} − {_mm(inner.acting_radius)}"
+        sum_ = f"{mm(outer.acting_radius)} − {mm(inner.acting_radius)}"
     else:
-        sum_ = f"{_mm(driver.acting_radius)} + {_mm(driven.acting_radius)}"
-    where = f"the base radii {sum_} = {_mm(radius)}"
+        sum_ = f"{mm(driver.acting_radius)} + {mm(driven.acting_radius)}"
+    where = f"the base radii {sum_} = {mm(radius)}"
     if mesh.pressure_angle is None:
         if not math.cos(STEEPEST.si) * distance <= radius < distance:
-            what = f"{where} leave no line of action at the centre distance {_mm(distance)}"
+            what = f"{where} leave no line of action at the centre distance {mm(distance)}"
             most = radius / math.cos(STEEPEST.si)
-            allowed = f"a centre distance above {_mm(radius)} and up to {_mm(most)}"
+            allowed = f"a centre distance above {mm(radius)} and up to {mm(most)}"
             yield draft.problem(("meshes", name), what, allowed)
             return
     else:
@@ -83,7 +83,7 @@ def _teeth_fit(
     """Yield what keeps the teeth of two gears from meshing."""
     path: Path = ("meshes", name)
     if not math.isclose(one.module, two.module, rel_tol=TEETH_ALIKE):
-        modules = f"{_mm(one.module)} and {_mm(two.module)}"
+        modules = f"{mm(one.module)} and {mm(two.module)}"
         yield draft.problem(path, f"the gears have different modules, {modules}")
         return
     if not math.isclose(one.pressure_angle, two.pressure_angle, rel_tol=TEETH_ALIKE):
@@ -102,9 +102,35 @@ def _teeth_fit(
         hint = ""
         with suppress(ValueError):
             fits = distance_without_backlash(one, two)
-            hint = f"Without backlash it would be {_mm(fits)}."
-        what = f"at the centre distance {_mm(distance)} the teeth overlap by {_mm(-backlash)}"
+            hint = f"Without backlash it would be {mm(fits)}."
+        what = f"at the centre distance {mm(distance)} the teeth overlap by {mm(-backlash)}"
         yield draft.problem(path, what, hint=hint)
+
+
+def toothed_pairs(
+    draft: Draft,
+) -> Iterator[tuple[str, tuple[str, str], tuple[Tooth, Tooth], float]]:
+    """Yield meshes whose gears both tell their teeth, with ends, teeth and centre distance [m].
+
+    Gears that could not mesh at any distance are left out, as that is told already.
+    """
+    centres = draft.centres()
+    for name, mesh, driver, driven in _pairs(draft):
+        one, two = driver.tooth, driven.tooth
+        if one is None or two is None or not {mesh.driver, mesh.driven} <= centres.keys():
+            continue
+        if (one.internal and two.internal) or not _alike(one, two):
+            continue
+        if 1 - abs(dot(axis_of(driver), axis_of(driven))) <= SQUARE:
+            offset = minus(centres[mesh.driven], centres[mesh.driver])
+            yield name, mesh.ends, (one, two), centre_distance(driver, offset)
+
+
+def _alike(one: Tooth, two: Tooth) -> bool:
+    """Tell whether two gears come from the same rack."""
+    return math.isclose(one.module, two.module, rel_tol=TEETH_ALIKE) and math.isclose(
+        one.pressure_angle, two.pressure_angle, rel_tol=TEETH_ALIKE
+    )
 
 
 def _face_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterator[Problem]:
@@ -122,7 +148,7 @@ def _face_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterator[P
         yield draft.problem(("meshes", name, "pressure_angle"), "is missing", ANGLE.allowed, hint)
         return
     radius = pinion.acting_radius
-    where = f"the pinion's base radius {_mm(radius)} does"
+    where = f"the pinion's base radius {mm(radius)} does"
     height = abs(dot(offset, axis))
     yield from _compare(draft, name, mesh, where, radius, height, "height over the face gear")
 
@@ -136,7 +162,7 @@ def _compare(
     reach = distance * math.cos(mesh.pressure_angle.si)
     if abs(reach - radius) <= TOLERANCE * distance:
         return
-    message = f"{where} not fit the {what} {_mm(distance)}, which times the cosine is {_mm(reach)}"
+    message = f"{where} not fit the {what} {mm(distance)}, which times the cosine is {mm(reach)}"
     hint = ""
     if math.cos(STEEPEST.si) * distance <= radius < distance:
         hint = f"A pressure angle of {_deg(math.acos(radius / distance))} would fit."
@@ -170,7 +196,8 @@ def _pairs(draft: Draft) -> Iterator[tuple[str, Mesh, Gear, Gear]]:
             yield name, mesh, driver, driven
 
 
-def _mm(length: float) -> str:
+def mm(length: float) -> str:
+    """Return a length in mm, as messages tell it."""
     return f"{1e3 * length:.6g} mm"
 
 
