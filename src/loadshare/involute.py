@@ -57,6 +57,9 @@ class InvoluteTooth:
         Height of the tip above the datum line, in modules, alteration of the tip included.
     internal : bool
         Whether the teeth point to the axis.
+    thickness_allowance : float
+        By how much the tooth is thicker than its rack makes it, negative where it is thinner, along
+        the reference circle in the normal section, E_sn [m].
     """
 
     module: float
@@ -66,6 +69,7 @@ class InvoluteTooth:
     addendum: float
     helix_angle: float = 0.0
     internal: bool = False
+    thickness_allowance: float = 0.0
 
     @property
     def kind(self) -> int:
@@ -101,6 +105,7 @@ class InvoluteTooth:
     def base_half_angle(self) -> float:
         """Half the angle of a tooth where its involutes, prolonged, meet the base circle [rad]."""
         thickness = 0.5 * math.pi + 2.0 * self.profile_shift * math.tan(self.pressure_angle)
+        thickness += self.thickness_allowance / self.module
         return thickness / self.teeth + self.kind * inv(self.transverse_angle)
 
     def addendum_to(self, radius: float) -> float:
@@ -176,7 +181,9 @@ def normal_backlash(one: InvoluteTooth, two: InvoluteTooth, distance: float) -> 
     """Backlash along the line of action at a centre distance [m]; negative where teeth overlap.
 
     What the teeth leave of the pitch on the working pitch circles, 2 r_w (π/z − ψ) − 2 r_w2 ψ_2
-    with the half angles ψ of the teeth there, times cos α_wt cos β_b.
+    with the half angles ψ of the teeth there, times cos α_wt cos β_b. Thickness allowances add
+    −(E_sn1 + E_sn2) cos α_n (ISO/TR 10064-2), a centre distance above that without backlash the
+    rest.
     """
     angle = working_angle(one, two, distance)
     left = one.base_radius * (math.pi / one.teeth - one.half_angle_at(angle))

@@ -105,6 +105,7 @@ def test_external_meshes_decide_before_internal_ones():
     assert normal_backlash(planet, ring, distance) > 1e-4
 
 
+LOW = {"profile_shift": -2.0, "addendum": 3.0}
 ALONG_Y = {"axis": "y"}
 
 
@@ -115,7 +116,7 @@ ALONG_Y = {"axis": "y"}
         ({}, {"centre": about(None, 90.0), "module": "3 mm"}, "different modules"),
         ({"centre": ["1 mm", "0 mm"]}, {"centre": about(None, 0.0)}, "meshes with a gear on the"),
         (ALONG_Y, {"centre": about("a", 0.0), **ALONG_Y}, "where axes are along z"),
-        ({"profile_shift": -3.5, "addendum": 4.0}, {"centre": about("a", 0.0)}, "at any distance"),
+        (LOW, {"centre": about("a", 0.0), **LOW}, "at any distance"),
         (gear(50), {"centre": about("a", 0.0), **gear(45, type="internal")}, "at any distance"),
     ],
 )

@@ -24,7 +24,7 @@ from loadshare.case.quantity import (
     Quantity,
     Radius,
 )
-from loadshare.involute import InvoluteTooth
+from loadshare.involute import InvoluteTooth, inv
 
 OF_TEETH = (
     "pressure_angle",
@@ -34,6 +34,7 @@ OF_TEETH = (
     "addendum",
     "dedendum",
     "tip_alteration",
+    "thickness_allowance",
     "web",
     "rim",
     "bore",
@@ -64,6 +65,7 @@ class Tooth(InvoluteTooth):
     addendum: float
     dedendum: float
     internal: bool
+    thickness_allowance: float = 0.0
 
     @property
     def root(self) -> float:
@@ -174,6 +176,12 @@ class Gear(Element):
     tip_alteration: Length | None = None
     """Alteration of the tooth's height at its tip, negative where it is shortened [length]."""
 
+    thickness_allowance: (
+        Annotated[Quantity, LENGTH.bounded(at_most=Quantity("0 um", 0.0))] | None
+    ) = None
+    """Allowance of the tooth thickness along the reference circle in the normal section, negative
+    or 0, for `backlash = "teeth"` [length]."""
+
     web: Radius | None = None
     """Thickness of the web of a gear with a thin one, for `law = "iso"` [length]."""
 
@@ -268,6 +276,9 @@ class Gear(Element):
             if abs(given - follows) > RADIUS_TOLERANCE * follows:
                 teeth = f"that of the teeth is {1e3 * follows:.8g} mm"
                 yield Rule(f"contradicts module and teeth: {teeth}", ("base_radius",))
+        if tooth.base_half_angle <= tooth.kind * inv(tooth.transverse_angle):
+            key = next(iter(self.given("thickness_allowance", "profile_shift")), "module")
+            yield Rule("leaves no tooth at the reference circle", (key,))
         if self.bore is not None and self.type != "external":
             yield Rule("is for external gears only", ("bore",), hint="An internal gear has a rim.")
         elif self.bore is not None and self.bore.si >= 2.0 * tooth.root:
@@ -294,6 +305,7 @@ class Gear(Element):
             addendum=(self.addendum or 1.0) + altered,
             dedendum=self.dedendum or 1.25,
             internal=self.type == "internal",
+            thickness_allowance=self.thickness_allowance.si if self.thickness_allowance else 0.0,
         )
 
     @property

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from loadshare import case as spec
-from loadshare.case.line_of_action import LineOfAction, line_of_action
+from loadshare.case.line_of_action import LineOfAction, backlash_of_teeth, line_of_action
 from loadshare.case.place import axis_of
 from loadshare.case.power_flow import against_the_names, rides_on
 from loadshare.case.teeth import tooth_counts
@@ -38,6 +38,8 @@ class Pair:
     line : LineOfAction
     phase : float
         Part of its cycle at which it stands at the first position, where teeth tell it [-].
+    backlash : float
+        Along the line of action, where the mesh has it follow from its teeth [m].
     """
 
     driver: Gear
@@ -46,6 +48,7 @@ class Pair:
     turned: bool
     line: LineOfAction
     phase: float = 0.0
+    backlash: float = math.inf
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -217,5 +220,9 @@ def _pairs(
             driver, driven = driven, driver
             contact = contact_of(driver, driven)
         normals = [contact.normal(line.pressure_angle, drive) for drive in (True, False)]
-        found[name] = Pair(driver, driven, (normals[0], normals[1]), turned, line)
+        pair = Pair(driver, driven, (normals[0], normals[1]), turned, line)
+        if mesh.backlash == "teeth":
+            left = backlash_of_teeth(mesh, case.gears, centres)
+            pair = replace(pair, backlash=math.inf if left is None else left)
+        found[name] = pair
     return found

@@ -18,6 +18,7 @@ CHECKS = (
     fit.check_tooth_kinds,
     fit.check_fit,
     fit.check_formula_laws,
+    fit.check_backlash_of_teeth,
     layout.check_tips,
     layout.check_neighbours,
     carriers.check_carriers,

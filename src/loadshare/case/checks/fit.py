@@ -12,7 +12,7 @@ from loadshare.case.keys import Path
 from loadshare.case.line_of_action import centre_distance, tangent_distance
 from loadshare.case.meshes import Mesh
 from loadshare.case.place import Vector, axis_of, dot, minus
-from loadshare.case.quantity import ANGLE
+from loadshare.case.quantity import ANGLE, LENGTH
 from loadshare.errors import Problem
 from loadshare.involute import distance_without_backlash, normal_backlash
 
@@ -185,6 +185,18 @@ def check_formula_laws(draft: Draft) -> Iterator[Problem]:
             for missing in ("module", "teeth", "face_width"):
                 if getattr(gear, missing) is None:
                     yield draft.problem(("gears", key, missing), "is missing", hint=hint)
+
+
+def check_backlash_of_teeth(draft: Draft) -> Iterator[Problem]:
+    """Yield backlashes that are to follow from teeth which are not told."""
+    for name, mesh, driver, driven in _pairs(draft):
+        if mesh.backlash != "teeth":
+            continue
+        bare = [end for end, g in zip(mesh.ends, (driver, driven), strict=True) if g.tooth is None]
+        if bare:
+            what = f"the teeth of {' and '.join(bare)} are not told"
+            hint = "It goes with teeth and module of both gears, which are cylindrical."
+            yield draft.problem(("meshes", name, "backlash"), what, LENGTH.allowed, hint)
 
 
 def _pairs(draft: Draft) -> Iterator[tuple[str, Mesh, Gear, Gear]]:
