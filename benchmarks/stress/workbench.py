@@ -10,7 +10,6 @@ import numpy as np
 
 from benchmarks import families
 from loadshare.case import Case
-from loadshare.case.place import centres_of
 
 Number = float | int
 
@@ -33,7 +32,7 @@ class Workbench:
         self.data: dict[str, Any] = case.to_dict()
         for key in ("assumed", "title", "source", "notes"):
             self.data.pop(key, None)
-        self.centres = centres_of(case.gears)
+        self.centres = case.centres()
         if "power" in self.data["operating"]:
             self.torque(case.operating.input_torque[0])
 

@@ -57,6 +57,9 @@ class InvoluteTooth:
         Height of the tip above the datum line, in modules, alteration of the tip included.
     internal : bool
         Whether the teeth point to the axis.
+    thickness_allowance : float
+        By how much the tooth is thicker than its rack makes it, negative where it is thinner, along
+        the reference circle in the normal section, E_sn [m].
     """
 
     module: float
@@ -66,6 +69,7 @@ class InvoluteTooth:
     addendum: float
     helix_angle: float = 0.0
     internal: bool = False
+    thickness_allowance: float = 0.0
 
     @property
     def kind(self) -> int:
@@ -101,6 +105,7 @@ class InvoluteTooth:
     def base_half_angle(self) -> float:
         """Half the angle of a tooth where its involutes, prolonged, meet the base circle [rad]."""
         thickness = 0.5 * math.pi + 2.0 * self.profile_shift * math.tan(self.pressure_angle)
+        thickness += self.thickness_allowance / self.module
         return thickness / self.teeth + self.kind * inv(self.transverse_angle)
 
     def addendum_to(self, radius: float) -> float:
@@ -139,12 +144,26 @@ def working_angle_without_backlash(one: InvoluteTooth, two: InvoluteTooth) -> fl
     Raises
     ------
     ValueError
-        If the profile shifts bring the gears closer than their base circles allow.
+        If the profile shifts bring the gears closer than their base circles allow, or an internal
+        gear has no more teeth than the other.
     """
     teeth = one.kind * one.teeth + two.kind * two.teeth
+    if one.kind * two.kind < 0 and teeth >= 0:
+        raise ValueError("an internal gear has more teeth than its pinion")
     shift = one.profile_shift + two.profile_shift
     change = 2.0 * math.tan(one.pressure_angle) * shift / teeth
     return inverse_inv(inv(one.transverse_angle) + change)
+
+
+def distance_without_backlash(one: InvoluteTooth, two: InvoluteTooth) -> float:
+    """Centre distance at which both flanks touch, a_w = |r_b2 + σ r_b1| / cos α_wt [m].
+
+    Raises
+    ------
+    ValueError
+        As `working_angle_without_backlash`.
+    """
+    return base_distance(one, two) / math.cos(working_angle_without_backlash(one, two))
 
 
 def contact_ratio(one: InvoluteTooth, two: InvoluteTooth, distance: float) -> float:
@@ -162,9 +181,49 @@ def normal_backlash(one: InvoluteTooth, two: InvoluteTooth, distance: float) -> 
     """Backlash along the line of action at a centre distance [m]; negative where teeth overlap.
 
     What the teeth leave of the pitch on the working pitch circles, 2 r_w (π/z − ψ) − 2 r_w2 ψ_2
-    with the half angles ψ of the teeth there, times cos α_wt cos β_b.
+    with the half angles ψ of the teeth there, times cos α_wt cos β_b. Thickness allowances add
+    −(E_sn1 + E_sn2) cos α_n (ISO/TR 10064-2), a centre distance above that without backlash the
+    rest.
     """
     angle = working_angle(one, two, distance)
     left = one.base_radius * (math.pi / one.teeth - one.half_angle_at(angle))
     left -= two.base_radius * two.half_angle_at(angle)
     return 2.0 * left * math.cos(one.base_helix_angle)
+
+
+def tip_limit(gear: InvoluteTooth, other: InvoluteTooth, distance: float) -> float:
+    """Radius of the other gear where the involute of an external gear begins, at its base [m].
+
+    r = √(r_b² + (a sin α_wt)²): a tip of an external gear must not reach beyond it, one of an
+    internal gear must stay outside of it, or teeth interfere.
+    """
+    return math.hypot(other.base_radius, distance * math.sin(working_angle(gear, other, distance)))
+
+
+def root_clearance(
+    gear: InvoluteTooth, root: float, other: InvoluteTooth, distance: float
+) -> float:
+    """Clearance between the root of a gear, at a radius [m], and the tip of another [m]."""
+    if other.internal:
+        # Inside an internal gear the centres are nearer one another than the circles.
+        return other.tip - distance - root
+    return gear.kind * (distance - root) - other.tip
+
+
+def tips_pass(pinion: InvoluteTooth, ring: InvoluteTooth, distance: float) -> bool:
+    """Tell whether the tips of a pinion and an internal gear pass beside the line of action.
+
+    Where the tip circles cross, at polar angles θ1 and θ2 from the line of centres, the pinion's
+    tip must have passed the ring's (trimming, fouling):
+    z1 (inv α_a1 + θ1) − z2 (inv α_a2 + θ2) + (z2 − z1) inv α_wt ≥ 0.
+    """
+    r1, r2 = pinion.tip, ring.tip
+    cosine = (r2**2 - r1**2 - distance**2) / (2.0 * distance * r1)
+    if abs(cosine) >= 1.0:
+        return True
+    theta_1 = math.acos(cosine)
+    theta_2 = math.acos((distance**2 + r2**2 - r1**2) / (2.0 * distance * r2))
+    passed = pinion.teeth * (inv(math.atan(pinion.tip_roll)) + theta_1)
+    passed -= ring.teeth * (inv(math.atan(ring.tip_roll)) + theta_2)
+    more = ring.teeth - pinion.teeth
+    return passed + more * inv(working_angle(pinion, ring, distance)) >= 0.0

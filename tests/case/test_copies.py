@@ -70,9 +70,9 @@ def test_copies_are_written_out() -> None:
 
 def test_angles_may_be_given_one_by_one() -> None:
     data = changed()
-    data["gears"]["planet"]["copies"] = ["0 deg", "1.5 rad", "240 deg"]
+    data["gears"]["planet"]["copies"] = ["0 deg", "1.7 rad", "240 deg"]
     case = Case(data)
-    assert case.gears["planet2"].centre.angle.si == pytest.approx(1.5 + 0.17453292519943295)
+    assert case.gears["planet2"].centre.angle.si == pytest.approx(1.7 + 0.17453292519943295)
 
 
 def test_gears_on_one_pin_are_copied_together() -> None:

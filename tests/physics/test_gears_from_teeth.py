@@ -11,7 +11,6 @@ import loadshare as ls
 from loadshare.case import Case
 from loadshare.case.gears import Tooth
 from loadshare.case.line_of_action import line_of_action
-from loadshare.case.place import centres_of
 from loadshare.involute import (
     base_distance,
     contact_ratio,
@@ -67,7 +66,7 @@ def test_derived_geometry_is_that_of_the_report(row):
     # Half a unit of the last printed digit, and that of the centre distance: 0.5 mm of 863.
     assert 2e3 * a.acting_radius == pytest.approx(row[4][3], abs=5.1e-4)
     assert 2e3 * b.acting_radius == pytest.approx(row[5][3], abs=5.1e-4)
-    line = line_of_action(case.meshes["a-b"], case.gears, centres_of(case.gears))
+    line = line_of_action(case.meshes["a-b"], case.gears, case.centres())
     assert math.degrees(line.pressure_angle) == pytest.approx(angle, abs=1.1e-3)
     assert contact_ratio(a.tooth, b.tooth, distance) == pytest.approx(ratio, abs=6e-4)
     # The shifts have four digits: at the printed distance there is no more play than they leave.
@@ -159,7 +158,7 @@ def test_backlash_begins_where_both_flanks_touch(z1, z2, x1, x2, helix, internal
 
 def test_a_star_from_teeth_is_the_one_from_typed_numbers():
     star = ls.load_case(CASES / "nrel_5mw" / "stage_2.toml")
-    centres = centres_of(star.gears)
+    centres = star.centres()
     typed = {}
     for name, gear in star.gears.items():
         typed |= {f"gears.{name}.base_radius": f"{gear.acting_radius!r} m"}

@@ -16,6 +16,7 @@ from loadshare.case.measured import Measurement
 from loadshare.case.meshes import Mesh
 from loadshare.case.operation import March, Operating, Stage
 from loadshare.case.origin import Origin
+from loadshare.case.place import Vector, centres_of
 from loadshare.case.study import Study
 from loadshare.case.words import as_given
 from loadshare.errors import Problem
@@ -85,6 +86,10 @@ class Sections(Element):
     def floats(self, gear: str) -> bool:
         """Tell whether something lets a gear float that says nothing of its support."""
         return any(gear in getattr(self, section) for section in FLOATS)
+
+    def centres(self) -> dict[str, Vector]:
+        """Return the centres of the gears [m], of those for which they are told or follow."""
+        return centres_of(self.gears, self.meshes)
 
     def outside_problem(self, key: str, named: FilePath) -> Problem | None:
         """Return a problem if the file that a key names must not be read, else None."""

@@ -26,7 +26,7 @@ from loadshare.case.quantity import (
     Radius,
     Temperature,
 )
-from loadshare.involute import InvoluteTooth
+from loadshare.involute import InvoluteTooth, inv
 
 OF_TEETH = (
     "pressure_angle",
@@ -36,6 +36,7 @@ OF_TEETH = (
     "addendum",
     "dedendum",
     "tip_alteration",
+    "thickness_allowance",
     "web",
     "rim",
     "bore",
@@ -68,6 +69,7 @@ class Tooth(InvoluteTooth):
     addendum: float
     dedendum: float
     internal: bool
+    thickness_allowance: float = 0.0
 
     @property
     def root(self) -> float:
@@ -81,8 +83,12 @@ class Polar(Element):
     about: str | None = None
     """Gear whose centre is the pole; the origin when left out."""
 
-    distance: Distance
-    """Distance from the pole in the x-y plane [length]."""
+    distance: Distance | None = None
+    """Distance from the pole in the x-y plane [length].
+
+    Left out, it is that at which the teeth mesh without backlash: with the pole, or with a gear on
+    its axis.
+    """
 
     angle: Angle
     """Direction from the pole, counter-clockwise from the x axis [angle]."""
@@ -173,6 +179,12 @@ class Gear(Element):
 
     tip_alteration: Length | None = None
     """Alteration of the tooth's height at its tip, negative where it is shortened [length]."""
+
+    thickness_allowance: (
+        Annotated[Quantity, LENGTH.bounded(at_most=Quantity("0 um", 0.0))] | None
+    ) = None
+    """Allowance of the tooth thickness along the reference circle in the normal section, negative
+    or 0, for `backlash = "teeth"` [length]."""
 
     web: Radius | None = None
     """Thickness of the web of a gear with a thin one, for `law = "iso"` [length]."""
@@ -274,6 +286,9 @@ class Gear(Element):
             if abs(given - follows) > RADIUS_TOLERANCE * follows:
                 teeth = f"that of the teeth is {1e3 * follows:.8g} mm"
                 yield Rule(f"contradicts module and teeth: {teeth}", ("base_radius",))
+        if tooth.base_half_angle <= tooth.kind * inv(tooth.transverse_angle):
+            key = next(iter(self.given("thickness_allowance", "profile_shift")), "module")
+            yield Rule("leaves no tooth at the reference circle", (key,))
         if self.bore is not None and self.type != "external":
             yield Rule("is for external gears only", ("bore",), hint="An internal gear has a rim.")
         elif self.bore is not None and self.bore.si >= 2.0 * tooth.root:
@@ -300,6 +315,7 @@ class Gear(Element):
             addendum=(self.addendum or 1.0) + altered,
             dedendum=self.dedendum or 1.25,
             internal=self.type == "internal",
+            thickness_allowance=self.thickness_allowance.si if self.thickness_allowance else 0.0,
         )
 
     @property

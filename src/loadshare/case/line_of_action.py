@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from loadshare.case.gears import Gear
 from loadshare.case.meshes import Mesh
 from loadshare.case.place import Vector, axis_of, dot, minus
+from loadshare.involute import normal_backlash
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +73,26 @@ def line_of_action(
     distance = centre_distance(driver, minus(centres[mesh.driven], centres[mesh.driver]))
     radius = tangent_distance(driver, driven)
     return LineOfAction(math.acos(radius / distance), helix) if radius < distance else None
+
+
+def backlash_of_teeth(
+    mesh: Mesh, gears: Mapping[str, Gear], centres: Mapping[str, Vector]
+) -> float | None:
+    """Return the backlash that teeth leave along the line of action [m]; None where none are told.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    gears : mapping of str to Gear
+    centres : mapping of str to tuple of float
+        Centres of both gears [m].
+    """
+    driver, driven = gears[mesh.driver], gears[mesh.driven]
+    if driver.tooth is None or driven.tooth is None:
+        return None
+    distance = centre_distance(driver, minus(centres[mesh.driven], centres[mesh.driver]))
+    # Written digits may leave teeth that touch overlapping a little.
+    return max(normal_backlash(driver.tooth, driven.tooth, distance), 0.0)
 
 
 def _base_helix(driver: Gear, driven: Gear) -> float:

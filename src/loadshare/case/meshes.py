@@ -26,6 +26,7 @@ from loadshare.case.keys import Path
 from loadshare.case.quantity import (
     ANGLE,
     HERTZ_COMPLIANCE,
+    LENGTH,
     TORQUE,
     TORSIONAL_COMPLIANCE,
     TORSIONAL_STIFFNESS,
@@ -153,8 +154,13 @@ class Mesh(Element):
     """Part of its cycle at which it stands at the first position [-]; by `operating.phases` when
     left out."""
 
-    backlash: Distance | None = None
-    """Circumferential working backlash [length]; without any backlash the coast flank is free."""
+    backlash: (
+        Annotated[Quantity | Literal["teeth"], LENGTH.bounded(at_least=0).or_words("teeth")] | None
+    ) = None
+    """Circumferential working backlash [length]; without any backlash the coast flank is free.
+
+    teeth: what the teeth of both gears, with their `thickness_allowance`, leave where they stand.
+    """
 
     normal_backlash: Distance | None = None
     """Backlash along the line of action [length], in place of `backlash`."""

@@ -7,8 +7,13 @@ from collections.abc import Mapping
 from typing import TypeAlias
 
 from loadshare.case.gears import Gear, Polar
+from loadshare.case.meshes import Mesh
+from loadshare.involute import distance_without_backlash
 
 Vector: TypeAlias = tuple[float, float, float]
+
+COAXIAL = 1e-6
+"""How far centres on one axis may be apart, as a part of the size of what stands there [-]."""
 
 _AXES: dict[str, Vector] = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
@@ -33,32 +38,47 @@ def axis_of(gear: Gear) -> Vector:
     return (x / length, y / length, z / length)
 
 
-def centres_of(gears: Mapping[str, Gear]) -> dict[str, Vector]:
+def centres_of(gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]) -> dict[str, Vector]:
     """Return the centres of gears [m].
+
+    A distance that is left out is that at which the teeth mesh without backlash: with the pole
+    itself, else with gears on the pole's axis; there the largest that external gears need, as a
+    smaller one has no place for the teeth, else the smallest that internal gears leave.
 
     Parameters
     ----------
     gears : mapping of str to Gear
         The gears, by name.
+    meshes : mapping of str to Mesh
+        The meshes, from which distances follow.
 
     Returns
     -------
     dict of str to tuple of float
-        The centres, by name; without those given from a gear that is not there or from themselves.
+        The centres, by name; without those given from a gear that is not there or from themselves,
+        and those whose distance is neither given nor follows.
     """
     placed: dict[str, Vector] = {}
-    waiting = dict(gears)
-    while waiting:
-        ready = {
-            name: centre
-            for name, gear in waiting.items()
-            if (centre := _centre(gear, placed)) is not None
-        }
-        if not ready:
-            break
+    partners: dict[str, list[str]] = {name: [] for name in gears}
+    for mesh in meshes.values():
+        if set(mesh.ends) <= gears.keys():
+            partners[mesh.driver].append(mesh.driven)
+            partners[mesh.driven].append(mesh.driver)
+    ready: dict[str, Vector] = {}
+    while True:
         placed |= ready
-        waiting = {name: gear for name, gear in waiting.items() if name not in ready}
-    return {name: placed[name] for name in gears if name in placed}
+        waiting = {n: g for n, g in gears.items() if n not in placed and _has_pole(g, placed)}
+        # What is given comes first: only when it stands is it known what is on an axis.
+        for way in (_given, _from_pole, _from_axis):
+            ready = {
+                name: centre
+                for name, gear in waiting.items()
+                if (centre := way(gear, partners[name], gears, placed)) is not None
+            }
+            if ready:
+                break
+        else:
+            return {name: placed[name] for name in gears if name in placed}
 
 
 def dot(a: Vector, b: Vector) -> float:
@@ -71,15 +91,83 @@ def minus(a: Vector, b: Vector) -> Vector:
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
 
 
-def _centre(gear: Gear, placed: Mapping[str, Vector]) -> Vector | None:
+def on_axis(pole: Vector, centre: Vector, size: float) -> bool:
+    """Tell whether a centre is on the axis of a pole, along z; its gear has a size [m]."""
+    return math.hypot(centre[0] - pole[0], centre[1] - pole[1]) <= COAXIAL * size
+
+
+def along_z(gear: Gear) -> bool:
+    """Tell whether a gear's axis is along z, so that its teeth lie in the x-y plane."""
+    return abs(axis_of(gear)[2]) == 1.0
+
+
+def _has_pole(gear: Gear, placed: Mapping[str, Vector]) -> bool:
+    centre = gear.centre
+    return not isinstance(centre, Polar) or centre.about is None or centre.about in placed
+
+
+def _given(
+    gear: Gear, partners: list[str], gears: Mapping[str, Gear], placed: Mapping[str, Vector]
+) -> Vector | None:
+    """The centre of a gear, where it is given."""
     centre = gear.centre
     if not isinstance(centre, Polar):
         x, y, z = (*(part.si for part in centre), 0.0)[:3]
         return (x, y, z)
-    if centre.about is not None and centre.about not in placed:
+    return None if centre.distance is None else _polar(centre, centre.distance.si, placed)
+
+
+def _from_pole(
+    gear: Gear, partners: list[str], gears: Mapping[str, Gear], placed: Mapping[str, Vector]
+) -> Vector | None:
+    """The centre of a gear that meshes with its pole."""
+    centre = gear.centre
+    if not isinstance(centre, Polar) or centre.about not in partners:
         return None
-    x, y, z = placed[centre.about] if centre.about is not None else (0.0, 0.0, 0.0)
-    distance, angle = centre.distance.si, centre.angle.si
+    distance = _apart(gear, gears[centre.about])
+    return None if distance is None else _polar(centre, distance, placed)
+
+
+def _from_axis(
+    gear: Gear, partners: list[str], gears: Mapping[str, Gear], placed: Mapping[str, Vector]
+) -> Vector | None:
+    """The centre of a gear that meshes with others on its pole's axis."""
+    centre = gear.centre
+    if not isinstance(centre, Polar) or centre.about in partners:
+        return None
+    pole = _pole(centre, placed)
+    external: list[float] = []
+    internal: list[float] = []
+    for partner in partners:
+        other = gears[partner]
+        distance = _apart(gear, other)
+        if distance is None or partner not in placed:
+            continue
+        if on_axis(pole, placed[partner], distance):
+            outer = "internal" in (gear.type, other.type)
+            (internal if outer else external).append(distance)
+    if not external and not internal:
+        return None
+    return _polar(centre, max(external) if external else min(internal), placed)
+
+
+def _apart(one: Gear, two: Gear) -> float | None:
+    """Distance at which two gears mesh without backlash [m], where their teeth tell it."""
+    if one.tooth is None or two.tooth is None or not (along_z(one) and along_z(two)):
+        return None
+    try:
+        return distance_without_backlash(one.tooth, two.tooth)
+    except ValueError:
+        return None
+
+
+def _pole(centre: Polar, placed: Mapping[str, Vector]) -> Vector:
+    return placed[centre.about] if centre.about is not None else (0.0, 0.0, 0.0)
+
+
+def _polar(centre: Polar, distance: float, placed: Mapping[str, Vector]) -> Vector:
+    x, y, z = _pole(centre, placed)
+    angle = centre.angle.si
     return (
         x + distance * math.cos(angle),
         y + distance * math.sin(angle),

@@ -185,11 +185,11 @@ def _each(
 def _mesh(name: str, mesh: spec.Mesh, pair: Pair, by_layout: bool) -> Mesh:
     if mesh.normal_backlash is not None:
         backlash = mesh.normal_backlash.si
-    elif mesh.backlash is not None:
+    elif isinstance(mesh.backlash, spec.Quantity):
         line = pair.line
         backlash = mesh.backlash.si * math.cos(line.pressure_angle) * math.cos(line.helix_angle)
     else:
-        backlash = math.inf
+        backlash = pair.backlash
     radii = pair.driver.base_radius, pair.driven.base_radius
     r = radii[1] if pair.turned else radii[0]
     law = mesh.power_law

@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from loadshare import case as spec
-from loadshare.case.line_of_action import LineOfAction, line_of_action
-from loadshare.case.place import axis_of, centres_of
+from loadshare.case.line_of_action import LineOfAction, backlash_of_teeth, line_of_action
+from loadshare.case.place import axis_of
 from loadshare.case.power_flow import against_the_names, rides_on
 from loadshare.case.teeth import tooth_counts
 from loadshare.errors import CaseError, Problem
@@ -38,6 +38,8 @@ class Pair:
     line : LineOfAction
     phase : float
         Part of its cycle at which it stands at the first position, where teeth tell it [-].
+    backlash : float
+        Along the line of action, where the mesh has it follow from its teeth [m].
     """
 
     driver: Gear
@@ -46,6 +48,7 @@ class Pair:
     turned: bool
     line: LineOfAction
     phase: float = 0.0
+    backlash: float = math.inf
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -140,7 +143,7 @@ def _misfit_told(case: spec.Case, pair: Pair, misfit: Misfit) -> Problem:
 
 def _kinematics(case: spec.Case) -> Kinematics:
     running = 1 if case.operating.running == "counter-clockwise" else -1
-    centres = centres_of(case.gears)
+    centres = case.centres()
     pairs = {n: m.ends for n, m in case.meshes.items()}
     # What follows from the counts that are given is a count as well.
     toothed = {n: g for n, g in case.gears.items() if not g.is_carrier}
@@ -205,7 +208,7 @@ def _pairs(
     flows = against_the_names(case.operating, case.gears, case.meshes, case.shafts)
     against = all(flows or (False,))
     pressed = _pressed(case, gears)
-    found, centres = {}, centres_of(case.gears)
+    found, centres = {}, case.centres()
     for name, mesh in case.meshes.items():
         line = line_of_action(mesh, case.gears, centres)
         if line is None:
@@ -217,5 +220,9 @@ def _pairs(
             driver, driven = driven, driver
             contact = contact_of(driver, driven)
         normals = [contact.normal(line.pressure_angle, drive) for drive in (True, False)]
-        found[name] = Pair(driver, driven, (normals[0], normals[1]), turned, line)
+        pair = Pair(driver, driven, (normals[0], normals[1]), turned, line)
+        if mesh.backlash == "teeth":
+            left = backlash_of_teeth(mesh, case.gears, centres)
+            pair = replace(pair, backlash=math.inf if left is None else left)
+        found[name] = pair
     return found

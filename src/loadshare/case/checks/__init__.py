@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from loadshare.case.checks import carriers, fit, floats, flow, loads, meshing, names
+from loadshare.case.checks import carriers, fit, floats, flow, layout, loads, meshing, names
 from loadshare.case.draft import Draft
 from loadshare.errors import Problem
 
@@ -14,11 +14,15 @@ CHECKS = (
     names.check_about_circles,
     names.check_pairs,
     meshing.check_list_lengths,
+    layout.check_distances,
     fit.check_tooth_kinds,
     fit.check_fit,
     fit.check_formula_laws,
     loads.check_masses,
     loads.check_temperatures,
+    fit.check_backlash_of_teeth,
+    layout.check_tips,
+    layout.check_neighbours,
     carriers.check_carriers,
     carriers.check_planet_meshes,
     carriers.check_planet_shafts,

@@ -9,7 +9,7 @@ from loadshare.case.draft import Draft
 from loadshare.case.gears import Gear
 from loadshare.case.keys import Path
 from loadshare.case.line_of_action import centre_distance
-from loadshare.case.place import Vector, axis_of, centres_of, dot, minus
+from loadshare.case.place import Vector, axis_of, dot, minus
 from loadshare.case.power_flow import rides_on
 from loadshare.case.words import choices
 from loadshare.errors import Problem
@@ -19,7 +19,7 @@ NEGLECT = 'With operating.rotation = "neglected" all positions are solved as the
 
 def check_carriers(draft: Draft) -> Iterator[Problem]:
     """Yield carriers that are none, and planets that cannot ride on theirs."""
-    centres = centres_of(draft.gears)
+    centres = draft.centres()
     for name, gear in draft.gears.items():
         carrier = draft.gears.get(gear.carrier or "")
         if carrier is None:
@@ -52,7 +52,7 @@ def check_planet_shafts(draft: Draft) -> Iterator[Problem]:
 
 def check_planet_meshes(draft: Draft) -> Iterator[Problem]:
     """Yield meshes of carriers, and partners that a planet cannot mesh with as it goes round."""
-    centres = centres_of(draft.gears)
+    centres = draft.centres()
     for name, mesh in draft.meshes.items():
         ends = [draft.gears.get(mesh.driver), draft.gears.get(mesh.driven)]
         path: Path = ("meshes", name)

@@ -11,10 +11,10 @@ from loadshare.case.gears import STEEPEST, Gear, Tooth
 from loadshare.case.keys import Path
 from loadshare.case.line_of_action import centre_distance, tangent_distance
 from loadshare.case.meshes import Mesh
-from loadshare.case.place import Vector, axis_of, centres_of, dot, minus
-from loadshare.case.quantity import ANGLE
+from loadshare.case.place import Vector, axis_of, dot, minus
+from loadshare.case.quantity import ANGLE, LENGTH
 from loadshare.errors import Problem
-from loadshare.involute import base_distance, normal_backlash, working_angle_without_backlash
+from loadshare.involute import distance_without_backlash, normal_backlash
 
 TOLERANCE = 1e-3
 """How far base radii may miss the centre distance, as a part of it [-]."""
@@ -39,7 +39,7 @@ def check_tooth_kinds(draft: Draft) -> Iterator[Problem]:
 
 def check_fit(draft: Draft) -> Iterator[Problem]:
     """Yield pairs whose axes, base radii and pressure angle do not fit where they stand."""
-    centres = centres_of(draft.gears)
+    centres = draft.centres()
     for name, mesh, driver, driven in _pairs(draft):
         kinds = {driver.type, driven.type}
         if mesh.driver in centres and mesh.driven in centres and "external" in kinds:
@@ -60,15 +60,15 @@ def _parallel_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterat
     radius = tangent_distance(driver, driven)
     if "internal" in (driver.type, driven.type):
         inner, outer = sorted((driver, driven), key=lambda gear: gear.type == "internal")
-        sum_ = f"{_mm(outer.acting_radius)} − {_mm(inner.acting_radius)}"
+        sum_ = f"{mm(outer.acting_radius)} − {mm(inner.acting_radius)}"
     else:
-        sum_ = f"{_mm(driver.acting_radius)} + {_mm(driven.acting_radius)}"
-    where = f"the base radii {sum_} = {_mm(radius)}"
+        sum_ = f"{mm(driver.acting_radius)} + {mm(driven.acting_radius)}"
+    where = f"the base radii {sum_} = {mm(radius)}"
     if mesh.pressure_angle is None:
         if not math.cos(STEEPEST.si) * distance <= radius < distance:
-            what = f"{where} leave no line of action at the centre distance {_mm(distance)}"
+            what = f"{where} leave no line of action at the centre distance {mm(distance)}"
             most = radius / math.cos(STEEPEST.si)
-            allowed = f"a centre distance above {_mm(radius)} and up to {_mm(most)}"
+            allowed = f"a centre distance above {mm(radius)} and up to {mm(most)}"
             yield draft.problem(("meshes", name), what, allowed)
             return
     else:
@@ -83,7 +83,7 @@ def _teeth_fit(
     """Yield what keeps the teeth of two gears from meshing."""
     path: Path = ("meshes", name)
     if not math.isclose(one.module, two.module, rel_tol=TEETH_ALIKE):
-        modules = f"{_mm(one.module)} and {_mm(two.module)}"
+        modules = f"{mm(one.module)} and {mm(two.module)}"
         yield draft.problem(path, f"the gears have different modules, {modules}")
         return
     if not math.isclose(one.pressure_angle, two.pressure_angle, rel_tol=TEETH_ALIKE):
@@ -101,11 +101,36 @@ def _teeth_fit(
     if backlash < -OVERLAP * one.module:
         hint = ""
         with suppress(ValueError):
-            angle = working_angle_without_backlash(one, two)
-            fits = base_distance(one, two) / math.cos(angle)
-            hint = f"Without backlash it would be {_mm(fits)}."
-        what = f"at the centre distance {_mm(distance)} the teeth overlap by {_mm(-backlash)}"
+            fits = distance_without_backlash(one, two)
+            hint = f"Without backlash it would be {mm(fits)}."
+        what = f"at the centre distance {mm(distance)} the teeth overlap by {mm(-backlash)}"
         yield draft.problem(path, what, hint=hint)
+
+
+def toothed_pairs(
+    draft: Draft,
+) -> Iterator[tuple[str, tuple[str, str], tuple[Tooth, Tooth], float]]:
+    """Yield meshes whose gears both tell their teeth, with ends, teeth and centre distance [m].
+
+    Gears that could not mesh at any distance are left out, as that is told already.
+    """
+    centres = draft.centres()
+    for name, mesh, driver, driven in _pairs(draft):
+        one, two = driver.tooth, driven.tooth
+        if one is None or two is None or not {mesh.driver, mesh.driven} <= centres.keys():
+            continue
+        if (one.internal and two.internal) or not _alike(one, two):
+            continue
+        if 1 - abs(dot(axis_of(driver), axis_of(driven))) <= SQUARE:
+            offset = minus(centres[mesh.driven], centres[mesh.driver])
+            yield name, mesh.ends, (one, two), centre_distance(driver, offset)
+
+
+def _alike(one: Tooth, two: Tooth) -> bool:
+    """Tell whether two gears come from the same rack."""
+    return math.isclose(one.module, two.module, rel_tol=TEETH_ALIKE) and math.isclose(
+        one.pressure_angle, two.pressure_angle, rel_tol=TEETH_ALIKE
+    )
 
 
 def _face_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterator[Problem]:
@@ -123,7 +148,7 @@ def _face_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterator[P
         yield draft.problem(("meshes", name, "pressure_angle"), "is missing", ANGLE.allowed, hint)
         return
     radius = pinion.acting_radius
-    where = f"the pinion's base radius {_mm(radius)} does"
+    where = f"the pinion's base radius {mm(radius)} does"
     height = abs(dot(offset, axis))
     yield from _compare(draft, name, mesh, where, radius, height, "height over the face gear")
 
@@ -137,7 +162,7 @@ def _compare(
     reach = distance * math.cos(mesh.pressure_angle.si)
     if abs(reach - radius) <= TOLERANCE * distance:
         return
-    message = f"{where} not fit the {what} {_mm(distance)}, which times the cosine is {_mm(reach)}"
+    message = f"{where} not fit the {what} {mm(distance)}, which times the cosine is {mm(reach)}"
     hint = ""
     if math.cos(STEEPEST.si) * distance <= radius < distance:
         hint = f"A pressure angle of {_deg(math.acos(radius / distance))} would fit."
@@ -162,6 +187,18 @@ def check_formula_laws(draft: Draft) -> Iterator[Problem]:
                     yield draft.problem(("gears", key, missing), "is missing", hint=hint)
 
 
+def check_backlash_of_teeth(draft: Draft) -> Iterator[Problem]:
+    """Yield backlashes that are to follow from teeth which are not told."""
+    for name, mesh, driver, driven in _pairs(draft):
+        if mesh.backlash != "teeth":
+            continue
+        bare = [end for end, g in zip(mesh.ends, (driver, driven), strict=True) if g.tooth is None]
+        if bare:
+            what = f"the teeth of {' and '.join(bare)} are not told"
+            hint = "It goes with teeth and module of both gears, which are cylindrical."
+            yield draft.problem(("meshes", name, "backlash"), what, LENGTH.allowed, hint)
+
+
 def _pairs(draft: Draft) -> Iterator[tuple[str, Mesh, Gear, Gear]]:
     for name, mesh in draft.meshes.items():
         driver, driven = draft.gears.get(mesh.driver), draft.gears.get(mesh.driven)
@@ -171,7 +208,8 @@ def _pairs(draft: Draft) -> Iterator[tuple[str, Mesh, Gear, Gear]]:
             yield name, mesh, driver, driven
 
 
-def _mm(length: float) -> str:
+def mm(length: float) -> str:
+    """Return a length in mm, as messages tell it."""
     return f"{1e3 * length:.6g} mm"
 
 

@@ -12,7 +12,7 @@ from loadshare.case import Gear
 from loadshare.case.checks.fit import TOLERANCE
 from loadshare.case.content import Sections
 from loadshare.case.line_of_action import line_of_action
-from loadshare.case.place import axis_of, centres_of
+from loadshare.case.place import axis_of
 from loadshare.train import Train
 from loadshare.train.gear import Vector, transverse_frame
 from loadshare.train.ring import transverse
@@ -128,7 +128,7 @@ def layout_of(case: Sections, train: Train | None) -> Layout:
     train : Train or None
         Of the case, for running senses and directions of push; None where there is none yet.
     """
-    centres = centres_of(case.gears)
+    centres = case.centres()
     # In the order of the train, by which all pictures colour their gears.
     order = [*(train.gears if train else ()), *case.gears]
     bodies = {
@@ -167,7 +167,7 @@ def _radius(case: Sections, name: str, gear: Gear, centre: Vector) -> float:
     """Acting radius; of a carrier the distance of its outermost pin, or that of a middling gear."""
     if not gear.is_carrier:
         return gear.acting_radius
-    centres, axis = centres_of(case.gears), np.array(axis_of(gear))
+    centres, axis = case.centres(), np.array(axis_of(gear))
     pins = [
         float(np.linalg.norm(transverse(np.array(centres[n]) - centre, axis)))
         for n, g in case.gears.items()

@@ -6,7 +6,13 @@ import math
 from collections.abc import Iterator
 
 from loadshare.errors import CaseError, Problem
-from loadshare.involute import base_distance, inv, working_angle_without_backlash
+from loadshare.involute import (
+    base_distance,
+    distance_without_backlash,
+    inv,
+    root_clearance,
+    tips_pass,
+)
 from loadshare.tooth.cylindrical.checks import gear_problems
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.cylindrical.pair import (
@@ -59,10 +65,9 @@ def helicoid_pair(
     base = base_distance(driver, driven)
     if centre_distance is None:
         try:
-            angle = working_angle_without_backlash(driver, driven)
+            centre_distance = distance_without_backlash(driver, driven)
         except ValueError as error:
             raise CaseError([_no_working_angle(driver, driven)]) from error
-        centre_distance = base / math.cos(angle)
     pair = HelicoidPair(driver, driven, centre_distance, misalignment)
     if pair.actual_distance <= base:
         none = "at this centre distance the gears have no line of action"
@@ -161,10 +166,7 @@ def _tip_problems(
         largest = other.addendum_to(other.base_radius * math.hypot(1.0, limit))
         cuts = f"the tip of this gear cuts into the root fillet of the {name}"
         yield problem(key, other.addendum, cuts, f"at most {digits(largest)}")
-    # Inside an internal gear the centres are nearer one another than the circles.
-    clearance = gear.kind * (pair.actual_distance - gear.root) - other.tip
-    if other.internal:
-        clearance = other.tip - pair.actual_distance - gear.root
+    clearance = root_clearance(gear, gear.root, other, pair.actual_distance)
     if clearance <= 0.0:
         allowed = f"less than {digits(other.addendum + clearance / other.module)}"
         runs = f"the tip of this gear runs into the root of the {name}"
@@ -172,30 +174,13 @@ def _tip_problems(
 
 
 def _fouling(pair: HelicoidPair) -> Iterator[Problem]:
-    """Tips of pinion and ring that meet outside the line of action (trimming, fouling).
-
-    Where the tip circles cross, at polar angles θ1 and θ2 from the line of centres, the pinion's
-    tip must have passed the ring's:
-    z1 (inv α_a1 + θ1) − z2 (inv α_a2 + θ2) + (z2 − z1) inv α_w ≥ 0.
-    """
+    """Tips of pinion and ring that meet outside the line of action (trimming, fouling)."""
     key, ring, pinion = _ring_first(pair.driver_gear, pair.driven_gear)
-    distance, r1, r2 = pair.actual_distance, pinion.tip, ring.tip
-    cosine = (r2**2 - r1**2 - distance**2) / (2.0 * distance * r1)
-    if abs(cosine) >= 1.0:
-        return
-    theta_1 = math.acos(cosine)
-    theta_2 = math.acos((distance**2 + r2**2 - r1**2) / (2.0 * distance * r2))
-
-    def inv_tip(gear: HelicoidGear) -> float:
-        return gear.tip_roll - math.atan(gear.tip_roll)
-
-    more = ring.teeth - pinion.teeth
-    passed = pinion.teeth * (inv_tip(pinion) + theta_1) - ring.teeth * (inv_tip(ring) + theta_2)
-    if passed + more * inv(pair.working_angle) < 0.0:
+    if not tips_pass(pinion, ring, pair.actual_distance):
         yield problem(
             f"{key}.addendum",
             ring.addendum,
             "the tips of the internal gear and of its pinion meet beside the line of action, "
-            f"with {more} teeth difference",
+            f"with {ring.teeth - pinion.teeth} teeth difference",
             "a smaller addendum of either gear, or more teeth difference",
         )

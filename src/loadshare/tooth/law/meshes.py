@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from loadshare.case.keys import dotted, parse
 from loadshare.case.line_of_action import centre_distance
-from loadshare.case.place import centres_of, minus
+from loadshare.case.place import minus
 from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
 
@@ -116,7 +116,7 @@ def _by_formula(case: Case, words: Mapping[str, str]) -> tuple[dict[str, float],
     """Compliances at the driver [rad/(N·m)] by mesh, and what is wrong with their gears."""
     from loadshare.tooth.law.iso6336 import mesh_stiffness
 
-    centres = centres_of(case.gears)
+    centres = case.centres()
     found: dict[str, float] = {}
     problems: list[Problem] = []
     for name, word in words.items():

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 
 from loadshare.case.keys import dotted
 from loadshare.case.line_of_action import line_of_action
-from loadshare.case.place import centres_of
 from loadshare.errors import Problem
 from loadshare.tooth.face.pair import FaceGearPair
 from loadshare.tooth.problems import degrees, millimetres
@@ -42,7 +41,7 @@ def disagreements(case: Case, name: str, pair: PairFile) -> Iterator[Problem]:
     )
     for gear, radius, teeth, kind in sides:
         yield from _gear(case, gear, here, radius, teeth, kind)
-    line = line_of_action(mesh, case.gears, centres_of(case.gears))
+    line = line_of_action(mesh, case.gears, case.centres())
     if line is None:
         return
     angles = [("pressure_angle", line.pressure_angle, geometry.working_angle)]
