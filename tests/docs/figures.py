@@ -277,6 +277,29 @@ def printed_load() -> float:
     return ls.solve(case.replace(changes)).pair_omega["II"]
 
 
+SPLIT = "Clearance of a bearing shifts a split"
+
+
+def split_in_bearings(clearance: int) -> list[float]:
+    """Share of path A of the split-path box, its pinions in bearings, one for each law."""
+    laws = {
+        "stiffness": "3e8 N/m",
+        "ball_stiffness": "5e10 N/m^1.5",
+        "roller_stiffness": "1.2e9 N/m^(10/9)",
+    }
+    case = ls.load_case(CASES / "two_path/clocking_error.toml")
+    case = case.replace({'shafts."wheelA-pinionA".clocking': None})
+    shares = []
+    for key, value in laws.items():
+        bearings = {
+            f"pinion{path}": {"clearance": f"{play} um", key: value}
+            for path, play in (("A", clearance), ("B", 10))
+        }
+        at = ls.solve(case.replace({"bearings": bearings})).positions[0]
+        shares.append(at.torque["in-wheelA"] / 367.0)
+    return shares
+
+
 def validation_rules() -> Iterator[Rule]:
     """Rules of the validation page; what the paper prints stands in the texts."""
 
@@ -289,6 +312,12 @@ def validation_rules() -> Iterator[Rule]:
         "Ω of 6-10 and of 4-6, within the pair | {} | {} | < 1e-12 |",
         lambda: [rigid("6-10")] * 2,
     )
+    for clearance in (0, 10, 20, 40, 80):
+        yield rule(
+            f"| {clearance} | {{}} | {{}} | {{}} |",
+            lambda c=clearance: split_in_bearings(c),
+            SPLIT,
+        )
     rows = {
         3: ("the three planets | {}, {}, {} | {}, {}, {}", 3),
         4: ("planets 1, 2 | {}, {} | {}, {}", 2),
@@ -443,6 +472,10 @@ GIVEN: dict[str, tuple[str, ...]] = {
         r"50 µm (?:off|of eccentricity)",
         r"clocked by 0\.5 mrad",
         r"with 1 µm of clearance",
+        r"10 µm at pinion B",
+        r"K = [\d.]+e\d+ N/m(?:\^1\.5|\^\(10/9\))?",
+        r"(?:where|in) 50 digits",
+        r"^\| (?:0|10|20|40|80) \|",
     ),
     "exit codes": (r"^\| (?:0|1|2|130|143) \|", r"exit code (?:then is )?\d(?: or \d)?"),
     "settings, each also a constant of the code": (

@@ -113,6 +113,23 @@ def test_shares_of_planets_in_bearings_agree_with_50_digits(clearance, key, stif
     assert found.certificate.proved < 1e-11
 
 
+@pytest.mark.parametrize("law", LAWS, ids=[law[0] for law in LAWS])
+@pytest.mark.parametrize("clearance", [0, 10, 20, 40, 80])
+def test_a_clearance_shifts_a_split_as_50_digits_say(law, clearance):
+    """The bearing with more clearance leaves its path less; alike they share alike."""
+    key, stiffness, _ = law
+    case = shipped("two_path/clocking_error")
+    case = case.replace({'shafts."wheelA-pinionA".clocking': None})
+    plays = {"pinionA": clearance, "pinionB": 10}
+    bearings = {g: {"clearance": f"{c} um", key: stiffness} for g, c in plays.items()}
+    case = case.replace({"bearings": bearings})
+    found, exact = ls.solve(case).positions[0], reference(build_train(case))
+    for mesh, expected in exact.torque.items():
+        assert found.torque[mesh] == pytest.approx(float(expected), abs=1e-9)
+    share = found.torque["in-wheelA"] / 367.0
+    assert (share - 0.5) * (10 - clearance) > 0.0 or share == pytest.approx(0.5, abs=1e-12)
+
+
 def test_a_bearing_inside_a_limit_ring_agrees_with_50_digits():
     """Both limit the pinion; the bearing holds it before its ring does, or after."""
     for clearance in ("1 um", "200 um"):
