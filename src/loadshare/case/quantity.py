@@ -224,6 +224,7 @@ TORSIONAL_STIFFNESS = Dimension("N*m/rad", "a torsional stiffness", "5e5 N*m/rad
 TORSIONAL_COMPLIANCE = Dimension("rad/(N*m)", "a torsional compliance", "2e-7 rad/(N*m)")
 HERTZ_COMPLIANCE = Dimension("rad/(N*m)^(2/3)", "a Hertz compliance", "1e-6 rad/(N*m)^(2/3)")
 MASS = Dimension("kg", "a mass", "12.5 kg")
+MODULUS = Dimension("Pa", "a modulus", "79.3 GPa")
 DENSITY = Dimension("kg/m^3", "a density", "7850 kg/m^3")
 
 Length = Annotated[Quantity, LENGTH]
@@ -241,3 +242,4 @@ TorsionalCompliance = Annotated[Quantity, TORSIONAL_COMPLIANCE]
 HertzCompliance = Annotated[Quantity, HERTZ_COMPLIANCE]
 Mass = Annotated[Quantity, MASS.bounded(above=0)]
 Density = Annotated[Quantity, DENSITY.bounded(above=0)]
+Modulus = Annotated[Quantity, MODULUS.bounded(above=0)]
