@@ -27,8 +27,8 @@ def bearing_coefficient(
     """Return K of a bearing's law F = K δⁿ, δ the radial displacement of its ring.
 
     That of deep-groove and angular-contact ball bearings, n = 3/2, or of cylindrical and tapered
-    roller bearings, n = 10/9. Where a bearing has clearance, fewer elements carry than without: with
-    the usual s = 5 for that, K is 13 % smaller for balls and 18 % for rollers.
+    roller bearings, n = 10/9. Where a bearing has clearance, fewer elements carry than without:
+    with the usual s = 5 for that, K is 13 % smaller for balls and 18 % for rollers.
 
     Parameters
     ----------

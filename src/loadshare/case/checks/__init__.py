@@ -19,6 +19,7 @@ CHECKS = (
     fit.check_fit,
     fit.check_formula_laws,
     fit.check_backlash_of_teeth,
+    fit.check_tolerance_classes,
     layout.check_tips,
     layout.check_neighbours,
     carriers.check_carriers,
