@@ -93,6 +93,28 @@ def test_centre_distances_of_a_real_gearbox(name: str, pole: str, printed: float
     assert (x, z) == (pytest.approx(0.0, abs=1e-15), free.centres()[pole][2])
 
 
+@pytest.mark.parametrize(
+    ("module", "helix", "teeth", "shifts", "printed"),
+    [
+        (30, 8, (26, 31), (0.2702, 0.2093), 0.877033),
+        (20, 8, (26, 41), (0.2787, 0.1213), 0.684273),
+        (18, 12, (28, 61), (0.2976, 0.1024), 0.825885),
+    ],
+)
+def test_centre_distances_of_another(module, helix, teeth, shifts, printed):
+    """DTU 10 MW, Wang, Nejad and Moan 2020; shifts to four digits, so 1e-4 modules a gear."""
+    rack = {"module": f"{module} mm"}
+    case = chain(
+        a=gear(teeth[0], centre=["0 mm", "0 mm"], profile_shift=shifts[0])
+        | rack
+        | {"helix_angle": f"{helix} deg"},
+        b=gear(teeth[1], centre=about("a", 0.0), profile_shift=shifts[1])
+        | rack
+        | {"helix_angle": f"{-helix} deg"},
+    )
+    assert case.centres()["b"][0] == pytest.approx(printed, abs=1e-4 * module * 1e-3)
+
+
 def test_external_meshes_decide_before_internal_ones():
     """A sun with a positive shift pushes the planet out, and the ring has less play."""
     given = load_case(CASES / "planetary" / "four_planets.toml")

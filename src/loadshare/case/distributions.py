@@ -9,6 +9,8 @@ from pydantic import Field, Strict, Tag
 
 from loadshare.case.element import NESTED, VALUE, Element, Number, Rule, shaped
 
+CLASS = "class"
+"""Word for a number that follows from the tolerance class of a gear."""
 Given: TypeAlias = str | Number
 Coefficient = Annotated[float, Strict(), Field(ge=-1, le=1)]
 
@@ -38,7 +40,8 @@ class Spread(Element):
     """Uniform, truncated normal: lowest value."""
 
     high: Given | None = None
-    """Uniform, truncated normal: highest value."""
+    """Uniform, truncated normal: highest value; "class" for the eccentricity that the runout of the
+    gear's `tolerance_class` allows, half of it [length]."""
 
     scale: Given | None = None
     """Rayleigh: scale σ, the most frequent value; the mean is 1.2533 σ."""

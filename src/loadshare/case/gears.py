@@ -37,6 +37,7 @@ OF_TEETH = (
     "dedendum",
     "tip_alteration",
     "thickness_allowance",
+    "tolerance_class",
     "web",
     "rim",
     "bore",
@@ -185,6 +186,10 @@ class Gear(Element):
     ) = None
     """Allowance of the tooth thickness along the reference circle in the normal section, negative
     or 0, for `backlash = "teeth"` [length]."""
+
+    tolerance_class: Annotated[int, Strict(), Field(ge=1, le=11)] | None = None
+    """Flank tolerance class of ISO 1328-1:2013, 1 to 11, from which tolerances of pitch, profile,
+    helix and runout follow [-]."""
 
     web: Radius | None = None
     """Thickness of the web of a gear with a thin one, for `law = "iso"` [length]."""

@@ -15,7 +15,9 @@ from loadshare.case.element import (
     VALUE,
     Element,
     Rule,
+    T,
     shaped,
+    values,
     without_default,
 )
 from loadshare.case.quantity import (
@@ -28,10 +30,18 @@ from loadshare.case.quantity import (
     Angle,
     Distance,
     Length,
+    Modulus,
     PositiveStiffness,
     Quantity,
     Radius,
 )
+from loadshare.case.words import count
+
+PerSection = Annotated[
+    Annotated[T, Tag(VALUE)] | Annotated[tuple[T, ...], Field(min_length=1), Tag(LIST)],
+    shaped("a length, or a list of them, one per section"),
+]
+"""A length of a shaft, or those of its sections."""
 
 BEARING_LAWS = {"stiffness": 1.0, "ball_stiffness": 1.5, "roller_stiffness": 10.0 / 9.0}
 """Keys of the law of a bearing beyond its clearance, with the power of the way there."""
@@ -44,13 +54,70 @@ class Shaft(Element):
     ends: tuple[str, str] = Field(default=("", ""), json_schema_extra=without_default)
     """The two gears that it joins; taken from the shaft's name when left out."""
 
-    stiffness: Annotated[
-        Quantity | Literal["rigid"], TORSIONAL_STIFFNESS.bounded(above=0).or_words("rigid")
-    ]
-    """Torsional stiffness [torque/angle], or rigid."""
+    stiffness: (
+        Annotated[
+            Quantity | Literal["rigid"], TORSIONAL_STIFFNESS.bounded(above=0).or_words("rigid")
+        ]
+        | None
+    ) = None
+    """Torsional stiffness [torque/angle], or rigid; else it follows from diameter and length."""
+
+    diameter: PerSection[Radius] | None = None
+    """Outer diameter, of a stepped shaft those of its sections [length]."""
+
+    length: PerSection[Radius] | None = None
+    """Length between the gears, of a stepped shaft those of its sections [length]."""
+
+    bore: PerSection[Distance] = Quantity("0 mm", 0.0)
+    """Diameter of its bore, for all sections or each [length]."""
+
+    shear_modulus: Modulus = Quantity("79.3 GPa", 79.3e9)
+    """Shear modulus, that of steel when left out [force/area]."""
 
     clocking: Angle = Quantity("0 rad", 0.0)
     """Angle by which the second end lags the first when unloaded [angle]."""
+
+    def rules(self) -> Iterator[Rule]:
+        """Yield what does not hold of stiffness and dimensions."""
+        sizes = [key for key in ("diameter", "length") if getattr(self, key) is not None]
+        if self.stiffness is not None:
+            for key in ("diameter", "length", "bore", "shear_modulus"):
+                if key in self.model_fields_set:
+                    yield Rule("stands beside stiffness: give one or the other", (key,))
+            return
+        if not sizes:
+            hint = "Or give diameter and length."
+            allowed = TORSIONAL_STIFFNESS.or_words("rigid").allowed
+            yield Rule("is missing", ("stiffness",), allowed, hint)
+            return
+        for key in {"diameter", "length"} - set(sizes):
+            yield Rule("is missing", (key,), LENGTH.allowed, f"It goes with {sizes[0]}.")
+        if self.diameter is None or self.length is None:
+            return
+        outer, inner = values(self.diameter), values(self.bore)
+        for key, given in (("length", values(self.length)), ("bore", inner)):
+            if len(given) != len(outer) and not (key == "bore" and len(given) == 1):
+                yield Rule(f"has {count(len(given))}, diameter has {len(outer)}", (key,))
+                return
+        if any(inner[k % len(inner)] >= d for k, d in enumerate(outer)):
+            yield Rule("leaves no shaft: it is not below the diameter", ("bore",))
+
+    @property
+    def torsional_stiffness(self) -> float:
+        """Torsional stiffness [N·m/rad], infinite where rigid.
+
+        What is not given is G π (d⁴ − d_i⁴)/(32 l) of the sections, in series.
+        """
+        if self.stiffness is not None:
+            return math.inf if isinstance(self.stiffness, str) else self.stiffness.si
+        if self.diameter is None or self.length is None:
+            raise ValueError("a shaft without stiffness")
+        outer, lengths, inner = (values(v) for v in (self.diameter, self.length, self.bore))
+        compliance = sum(
+            32.0 * long / (math.pi * (d**4 - inner[k % len(inner)] ** 4))
+            for k, (d, long) in enumerate(zip(outer, lengths, strict=True))
+        )
+        return self.shear_modulus.si / compliance
 
 
 class Spline(Element):

@@ -229,6 +229,7 @@ ACCELERATION = Dimension("m/s^2", "an acceleration", "9.81 m/s^2")
 TEMPERATURE = Dimension("K", "a rise of temperature", "40 K")
 EXPANSION = Dimension("1/K", "a thermal expansion", "11.5e-6 /K")
 MASS = Dimension("kg", "a mass", "12.5 kg")
+MODULUS = Dimension("Pa", "a modulus", "79.3 GPa")
 DENSITY = Dimension("kg/m^3", "a density", "7850 kg/m^3")
 
 Length = Annotated[Quantity, LENGTH]
@@ -249,3 +250,4 @@ Temperature = Annotated[Quantity, TEMPERATURE]
 Expansion = Annotated[Quantity, EXPANSION.bounded(at_least=0)]
 Mass = Annotated[Quantity, MASS.bounded(above=0)]
 Density = Annotated[Quantity, DENSITY.bounded(above=0)]
+Modulus = Annotated[Quantity, MODULUS.bounded(above=0)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Annotated
 
 import typer
 
@@ -15,7 +16,13 @@ RESULTS = (".json", ".nc")
 """Endings of result files; all others are cases."""
 
 
-def check(cases: CasePaths) -> None:
+def check(
+    cases: CasePaths,
+    teeth: Annotated[
+        bool,
+        typer.Option("--teeth", help="Tell what follows from teeth and dimensions of gears."),
+    ] = False,
+) -> None:
     """List all problems of case files without solving them; certify result files again.
 
     A result is a .json or .nc file that `run` or `batch` wrote.
@@ -31,6 +38,8 @@ def check(cases: CasePaths) -> None:
             typer.echo(str(error), err=True)
         else:
             typer.echo(f"OK  {path}{told}")
+            if teeth and path.suffix not in RESULTS:
+                _print_teeth(path)
     if bad:
         noun = "file" if any(path.suffix in RESULTS for path in found) else "case"
         told = f"{counted(problems, 'problem')} in {bad} of {counted(len(found), noun)}."
@@ -43,6 +52,17 @@ def _case(path: Path) -> str:
 
     build_train(load_case(path))
     return ""
+
+
+def _print_teeth(path: Path) -> None:
+    from loadshare.case import load_case
+    from loadshare.cli.tables.table import show, table
+    from loadshare.report.teeth import teeth_tables
+
+    for found in teeth_tables(load_case(path)):
+        words = [column.title for column in found.columns if not column.figures]
+        rows = ([cell.text for cell in row] for row in found.rows)
+        show(found.title, table([column.title for column in found.columns], rows, words))
 
 
 def _result(path: Path) -> str:

@@ -228,7 +228,7 @@ def _laws(mesh: spec.Mesh, r: float) -> tuple[Law, ...]:
 
 
 def _shaft(name: str, shaft: spec.Shaft) -> Shaft:
-    return Shaft(name, *shaft.ends, _stiffness(shaft.stiffness), shaft.clocking.si)
+    return Shaft(name, *shaft.ends, shaft.torsional_stiffness, shaft.clocking.si)
 
 
 def _spline(gear: str, spline: spec.Spline) -> Spline:

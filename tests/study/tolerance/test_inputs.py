@@ -253,3 +253,46 @@ def test_sobol_blocks_go_on_where_the_last_one_ended():
     assert len(np.unique(both[:, 0])) > 8000
     assert both.min() > 0.0
     assert both.max() < 1.0
+
+
+def with_class(**inputs) -> ls.Case:
+    """A set of planets with eccentricities, the second of a finer class than the first."""
+    case = shipped("planetary/four_planets")
+    changes = {f"gears.planet{k}.tolerance_class": k + 4 for k in (1, 2)}
+    changes |= {
+        f"errors.planet{k}.eccentricity": {"amount": "1 um", "direction": "0 deg"}
+        for k in (1, 2, 3)
+    }
+    return case.replace(changes | {"study.t": {"kind": "tolerance", "inputs": inputs}})
+
+
+def test_runout_of_the_class_bounds_an_eccentricity():
+    """F_rT/2 = 0.45 (0.002 d + 0.55 √d + 0.7 m + 12) µm in class 5, √2 times that in class 6."""
+    spread = {"distribution": "uniform", "low": "0 um", "high": "class"}
+    case = with_class(
+        **{f"errors.planet{k}.eccentricity.amount": spread for k in (1, 2)},
+    )
+    one, two = (single.distribution for single in read_inputs(case, "t").every)
+    half = 0.45 * (0.002 * 180.0 + 0.55 * math.sqrt(180.0) + 0.7 * 5.0 + 12.0)
+    assert one.numbers["high"] == pytest.approx(half, rel=1e-12)
+    assert two.numbers["high"] == pytest.approx(half * math.sqrt(2.0), rel=1e-12)
+    assert one.unit == "um"
+
+
+@pytest.mark.parametrize(
+    ("key", "said"),
+    [
+        ("errors.planet*.eccentricity.amount", "gears.planet3 has no tolerance_class"),
+        ("errors.planet2.pin.tangential", "does not follow from a tolerance class"),
+        (
+            "errors.planet1.eccentricity.amount=errors.planet2.eccentricity.amount",
+            "is not the same for all keys",
+        ),
+    ],
+)
+def test_a_class_that_tells_nothing_is_told(key: str, said: str):
+    with pytest.raises(ls.CaseError, match=said) as caught:
+        read_inputs(
+            with_class(**{key: {"distribution": "uniform", "low": "0 um", "high": "class"}}), "t"
+        )
+    assert len(caught.value.problems) == 1

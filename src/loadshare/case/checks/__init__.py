@@ -21,6 +21,7 @@ CHECKS = (
     loads.check_masses,
     loads.check_temperatures,
     fit.check_backlash_of_teeth,
+    fit.check_tolerance_classes,
     layout.check_tips,
     layout.check_neighbours,
     carriers.check_carriers,

@@ -8,6 +8,7 @@ from contextlib import suppress
 
 from loadshare.case.draft import Draft
 from loadshare.case.gears import STEEPEST, Gear, Tooth
+from loadshare.case.iso1328 import outside
 from loadshare.case.keys import Path
 from loadshare.case.line_of_action import centre_distance, tangent_distance
 from loadshare.case.meshes import Mesh
@@ -197,6 +198,15 @@ def check_backlash_of_teeth(draft: Draft) -> Iterator[Problem]:
             what = f"the teeth of {' and '.join(bare)} are not told"
             hint = "It goes with teeth and module of both gears, which are cylindrical."
             yield draft.problem(("meshes", name, "backlash"), what, LENGTH.allowed, hint)
+
+
+def check_tolerance_classes(draft: Draft) -> Iterator[Problem]:
+    """Yield gears of a tolerance class for which its standard does not hold."""
+    for name, gear in draft.gears.items():
+        if gear.tolerance_class is not None:
+            for what in outside(gear):
+                path = ("gears", name, "tolerance_class")
+                yield draft.problem(path, f"cannot be told of {what}", hint="Leave it out.")
 
 
 def _pairs(draft: Draft) -> Iterator[tuple[str, Mesh, Gear, Gear]]:

@@ -18,6 +18,7 @@ from loadshare.report.numbers import NONE, omega, small
 from loadshare.report.page import answers
 from loadshare.report.page.inputs import input_tables
 from loadshare.report.records import Cell, Table, table
+from loadshare.report.teeth import teeth_tables
 from loadshare.results import Result
 
 CERTIFIED, PARTLY, REFUSED, UNUSABLE = "certified", "partly refused", "refused", "cannot be used"
@@ -43,7 +44,7 @@ class Chapter:
         Of the certified positions.
     drawing : Figure or None
     figures : sequence of Figure
-    tables, inputs : sequence of Table
+    tables, inputs, derived : sequence of Table
     """
 
     file: str
@@ -57,6 +58,7 @@ class Chapter:
     figures: Sequence[Figure] = ()
     tables: Sequence[Table] = ()
     inputs: Sequence[Table] = ()
+    derived: Sequence[Table] = ()
 
     @property
     def load(self) -> str:
@@ -125,6 +127,7 @@ def chapter(case: Case, file: str = "", progress: Progress | None = None) -> Cha
         figures=tuple(_figures(result)) if result else (),
         tables=tuple(_tables(result)) if result else (),
         inputs=tuple(input_tables(case)),
+        derived=tuple(teeth_tables(case)),
     )
 
 

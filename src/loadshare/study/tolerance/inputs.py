@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from loadshare.case import Case, Study
-from loadshare.case.distributions import Group
-from loadshare.case.keys import dotted
+from loadshare.case.distributions import CLASS, Group, Spread
+from loadshare.case.iso1328 import tolerances_of
+from loadshare.case.keys import dotted, parse
 from loadshare.errors import CaseError, Problem
 from loadshare.scene.scene import Array
 from loadshare.settings import TOLERANCE
@@ -190,21 +191,52 @@ class _Reader:
         seen: dict[str, str] = {}
         for text, spread in (self.block.inputs or {}).items():
             path = ("inputs", text)
-            found = read_distribution(spread)
-            if isinstance(found, list):
-                for wrong in found:
-                    tail = (wrong.key,) if wrong.key else ()
-                    self._wrong((*path, *tail), wrong.message, wrong.allowed)
+            one_for_all = None if spread.high == CLASS else self._read(path, spread)
             for keys in self._keys(path, text):
+                found = one_for_all or self._read_by_class(path, spread, keys)
                 double = [key for key in keys if key in seen]
                 for key in double:
                     message = f"{key} is drawn by {seen[key]} already"
                     self._wrong(path, message, "one distribution for each key")
                 seen |= dict.fromkeys(keys, text)
-                if isinstance(found, list):
+                if found is None:
                     self.bad.update(keys)
                 elif not double and self._fits(path, one := Input(keys, found)):
                     yield one
+
+    def _read(self, path: tuple[str | int, ...], spread: Spread) -> Distribution | None:
+        found = read_distribution(spread)
+        if isinstance(found, Distribution):
+            return found
+        for wrong in found:
+            tail = (wrong.key,) if wrong.key else ()
+            self._wrong((*path, *tail), wrong.message, wrong.allowed)
+        return None
+
+    def _read_by_class(
+        self, path: tuple[str | int, ...], spread: Spread, keys: tuple[str, ...]
+    ) -> Distribution | None:
+        """Return a distribution whose end follows from the tolerance class of a gear."""
+        if spread.high != CLASS:
+            return None  # told of already
+        ends = set()
+        for key in keys:
+            match parse(key):
+                case ("errors", gear, "eccentricity", "amount"):
+                    tolerances = tolerances_of(self.case.gears[str(gear)])
+                    hint = f"gears.{gear} has no tolerance_class with teeth and module."
+                case _:
+                    tolerances, hint = None, f"{key} does not follow from a tolerance class."
+            if tolerances is None:
+                allowed = "a value with its unit; or the eccentricity of a gear with a class"
+                self._wrong((*path, "high"), "cannot be told", allowed, hint)
+                return None
+            ends.add(tolerances.runout / 2.0)
+        if len(ends) > 1:
+            hint = "Drop the equals sign: a star gives each key a draw of its own."
+            self._wrong((*path, "high"), "is not the same for all keys of one draw", hint=hint)
+            return None
+        return self._read(path, spread.model_copy(update={"high": f"{1e6 * ends.pop()!r} um"}))
 
     def _fits(self, path: tuple[str | int, ...], one: Input) -> bool:
         """Tell whether the case can be used with the far ends of an input."""
