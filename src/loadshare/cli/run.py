@@ -41,6 +41,14 @@ def run(
         bool,
         typer.Option("--loads", help="Tell what gears, bearings or pins, and shafts carry."),
     ] = False,
+    cycle: Annotated[
+        bool,
+        typer.Option(
+            "--cycle",
+            help="Tell transmission error, stiffness, load share and place in the cycle of every "
+            "mesh at every position.",
+        ),
+    ] = False,
     explain: Annotated[
         bool,
         typer.Option(
@@ -76,7 +84,7 @@ def run(
     how = {"solver": solver, "method": method, "reduce": not no_reduce, "tolerance": tolerance}
     result, refusal = _solved(loaded, wanted, how)
     if result is not None:
-        print_result(result, len(wanted), loads=loads)
+        print_result(result, len(wanted), loads=loads, cycle=cycle)
         if search:
             there = [p.position for p in result.positions]
             _print_search(loaded, there if position else there[:1])
