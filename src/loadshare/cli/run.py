@@ -74,6 +74,7 @@ def run(
 ) -> None:
     """Solve a case and print load sharing, floats and certificate."""
     from loadshare.cli.tables.result import print_heading, print_result
+    from loadshare.report.words import period_told
     from loadshare.train import build_train
 
     with problems_told():
@@ -81,6 +82,8 @@ def run(
         train = build_train(loaded)
     wanted = _wanted(position, train.count)
     print_heading(loaded, str(case), train.count, wanted, change or ())
+    if train.period is not None:
+        say(period_told(train.period, train.input), whole=True)
     how = {"solver": solver, "method": method, "reduce": not no_reduce, "tolerance": tolerance}
     result, refusal = _solved(loaded, wanted, how)
     if result is not None:
