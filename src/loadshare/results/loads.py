@@ -71,7 +71,10 @@ class Loads:
 
     @cached_property
     def bearings(self) -> dict[str, Pair]:
-        """Force of every gear on its bearing, of a planet on its pin [N], in its frame."""
+        """Force of every gear on its bearing, of a planet on its pin [N], in its frame.
+
+        On an elastic support and a bearing with clearance together where a gear has both.
+        """
         of, state = self._state.of, self._state
         pushing = of.pushing.reshape(-1, len(of.order), 3)
         pushed = -np.einsum("egk,e->gk", pushing, state.claim.flank_force[:, 0])
@@ -83,5 +86,7 @@ class Loads:
                 if gear.support is None
                 else state.claim.support_force[k, :, 0]
             )
+            for bearing in (b for b in self.train.bearings.values() if b.gear == name):
+                own = own - gear.frame @ self.answer.radial_reaction[bearing.name]
             found[name] = (float(own[0]), float(own[1]))
         return found
