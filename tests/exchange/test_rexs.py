@@ -8,6 +8,7 @@ import random
 import zipfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 from tests.exchange.units import planetary, rexsj, two_stages, xml
 
@@ -120,6 +121,49 @@ def test_what_is_written_back_is_read_again_as_the_same_case(written, form) -> N
     assert export_rexs(result, copy) == copy.read_text()
 
 
+def test_forces_and_displacements_are_written_back(written) -> None:
+    """Two gears on one shaft between two bearings: levers, and no force is lost."""
+    unit = written(xml(*two_stages()))
+    result = ls.solve(import_rexs(unit).case())
+    here = result.positions[0]
+    found = read_model(written(export_rexs(result, unit).encode(), "copy.rexs")).components
+    pushed = {name: np.array(force) for name, force in here.loads.bearings.items()}
+    # At 25 mm and 125 mm between bearings at 0 and 200 mm.
+    first = 0.875 * pushed["gear_21"] + 0.375 * pushed["gear_22"]
+    both = pushed["gear_21"] + pushed["gear_22"]
+    # v is y and w is z, as of the gears' frames here: both axes are x.
+    for id_, force in (("61", first), ("62", both - first), ("63", pushed["gear_23"])):
+        for axis, value in zip("vw", force, strict=True):
+            told = found[id_].number(f"force_acting_on_outer_component_{axis}")
+            assert told == pytest.approx(value, rel=1e-12)
+            told = found[id_].number(f"force_acting_on_inner_component_{axis}")
+            assert told == pytest.approx(-value, rel=1e-12)
+    assert np.abs(pushed["gear_23"]).max() > 1e3, "a bearing with clearance carries as well"
+    stage = found["41"].attributes
+    mesh = "gear_22-gear_23"
+    assert stage["custom_loadshare_normal_force"] == pytest.approx((here.loads.meshes[mesh],))
+    error = here.elastic.mesh_transmission_error[mesh]
+    # Micrometres are read as metres again.
+    assert stage["custom_loadshare_transmission_error"] == pytest.approx((error,))
+    moved = found["23"].attributes["custom_loadshare_displacement"]
+    assert moved == pytest.approx(here.claim.displacement["gear_23"])
+    assert found["23"].attributes["custom_loadshare_force_on_bearings"][1:] == pytest.approx(
+        pushed["gear_23"]
+    )
+
+
+def test_the_pins_of_planets_are_inside_of_their_bearings(written) -> None:
+    unit = written(xml(*planetary()))
+    result = ls.solve(import_rexs(unit).case())
+    found = read_model(written(export_rexs(result, unit).encode(), "copy.rexs")).components
+    for k in range(3):
+        force = result.positions[0].loads.bearings[f"gear_{247 + k}"]
+        told = [
+            found[f"{300 + k}"].number(f"force_acting_on_inner_component_{axis}") for axis in "vw"
+        ]
+        assert told == pytest.approx(force)
+
+
 def test_a_unit_of_another_case_is_refused(written) -> None:
     cases = Path(__file__).parents[2] / "cases"
     result = ls.solve(cases / "planetary" / "four_planets.toml")
@@ -186,6 +230,7 @@ def test_damaged_archives_are_told_or_read(written, tmp_path, packed) -> None:
 def test_what_is_odd_in_a_file_is_no_hindrance_to_writing_back(written) -> None:
     held = json.loads(rexsj(*planetary(), "2.0"))
     held["model"]["components"] += [3, {"id": 900, "attributes": "none"}, {"id": 901}]
+    held["model"]["components"][0]["attributes"].append({"id": {}})
     held["model"]["about"] = math.nan
     unit = written(json.dumps(held).encode(), "odd.rexsj")
     result = ls.solve(import_rexs(unit).case())
@@ -256,7 +301,8 @@ def test_changed_files_are_told_or_solved(written, start) -> None:
             outcomes.add("told")
             continue
         try:
-            ls.solve(case)
+            result = ls.solve(case)
+            import_rexs(written(export_rexs(result, path).encode(), "copy"))
             outcomes.add("solved")
         except Refused:
             outcomes.add("refused")

@@ -274,6 +274,18 @@ def _rexs(random: Random, folder: Path) -> tuple[str, ...]:
     return ("import", str(file), "-o", str(folder / "case.toml"))
 
 
+def _exchanged(words: tuple[str, ...], folder: Path) -> tuple[int, str]:
+    """Import a unit; what makes a case is solved and written back, and imports again."""
+    code, wrong = _judged(words, folder)
+    if code or wrong:
+        return code, wrong
+    unit, case, copy = words[1], words[-1], str(folder / "copy.rexs")
+    code, wrong = _judged(("export", case, unit, "-o", copy), folder)
+    if code or wrong:
+        return code, wrong
+    return _judged(("import", copy, "-o", str(folder / "again.toml")), folder)
+
+
 def _read(words: tuple[str, ...], folder: Path) -> tuple[int, str]:
     """Read tooth data: they make two bodies, or are refused by name."""
     try:
@@ -320,7 +332,7 @@ KINDS: dict[str, Callable[[Random, Path], tuple[str, ...]]] = {
     "rexs": _rexs,
     "result": _result,
 }
-JUDGES = {"pair": _read, "result": _loaded}
+JUDGES = {"pair": _read, "rexs": _exchanged, "result": _loaded}
 SHARES = (
     *(("case",) * 14 + ("numbers",) * 4 + ("bytes",) * 8 + ("words",) * 6 + ("study",) * 2),
     *(("pair",) * 4 + ("rexs",) * 2 + ("result",) * 4),

@@ -21,7 +21,7 @@ from loadshare.certify import certify
 from loadshare.results.claim import claim_of
 from loadshare.results.derive import position_of, result_from
 from loadshare.results.digest import sealed
-from loadshare.results.document import FORMAT, as_data
+from loadshare.results.document import FORMAT, OLDER, as_data
 from loadshare.results.reading import read_document
 from loadshare.results.writing import DOCUMENT
 from loadshare.study.march import march
@@ -176,7 +176,7 @@ def told(document: Any) -> str:
         (("stamp", "positions"), [], "stamp.positions = []: is empty"),
         (("input", "gears", "4", "base_radius"), "3 kg", "file.json: input: gears.4.base_radius"),
         (("input", "rings", "4", "float"), "4.1 um", "is not that of the case under input"),
-        (("format",), FORMAT - 1, "Solve the case again: loadshare run CASE.toml --json FILE."),
+        (("format",), min(OLDER) - 1, "Solve the case again: loadshare run CASE.toml --json FILE."),
         (("format",), FORMAT + 1, "Load it with that version, or a newer one."),
         (("format",), True, "format = true: was written by"),
         (("refused",), {"message": "no"}, "holds a refusal and no result"),

@@ -52,6 +52,13 @@ class Operating(Element):
     positions: Positions = 1
     """Number of meshing positions in a mesh cycle [-]."""
 
+    cycle: Literal["pitch", "common"] = "pitch"
+    """What the positions go through: one pitch, all meshes together, or their common period.
+
+    Over the common period each mesh stands at its own place of its cycle, by tooth numbers and
+    speeds; the fastest has `positions` positions in each of its cycles. A march goes its own way.
+    """
+
     phases: Literal["together", "layout"] = "together"
     """Where meshes stand in their cycles at the first position.
 
@@ -93,6 +100,12 @@ class Operating(Element):
             yield Rule("is missing", ("speed",), ANGULAR_SPEED.allowed, "It goes with power.")
         elif self.torque is None and self.power is None:
             yield Rule("has no load", allowed=allowed)
+        for key in ("torque", "power") if self.cycle == "common" else ():
+            if isinstance(getattr(self, key), tuple):
+                hint = (
+                    'Over the common period of all meshes (cycle = "common") the load is one value.'
+                )
+                yield Rule("is a list", (key,), "one value", hint)
         if self.input == self.output:
             yield Rule("is the input as well", ("output",), "another gear")
 

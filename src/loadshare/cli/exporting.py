@@ -24,7 +24,7 @@ def export(
         changes("--set", "Change the case, as in operating.torque='100 N*m'; may be repeated."),
     ] = None,
 ) -> None:
-    """Solve a case and write K_γ and mesh stiffness into a copy of its REXS file."""
+    """Solve a case and write what was found into a copy of its REXS file."""
     from loadshare.errors import Refused
     from loadshare.exchange.rexs import export_rexs
     from loadshare.job import solve

@@ -41,6 +41,14 @@ def run(
         bool,
         typer.Option("--loads", help="Tell what gears, bearings or pins, and shafts carry."),
     ] = False,
+    cycle: Annotated[
+        bool,
+        typer.Option(
+            "--cycle",
+            help="Tell transmission error, stiffness, load share and place in the cycle of every "
+            "mesh at every position.",
+        ),
+    ] = False,
     explain: Annotated[
         bool,
         typer.Option(
@@ -66,6 +74,7 @@ def run(
 ) -> None:
     """Solve a case and print load sharing, floats and certificate."""
     from loadshare.cli.tables.result import print_heading, print_result
+    from loadshare.report.words import period_told
     from loadshare.train import build_train
 
     with problems_told():
@@ -73,10 +82,12 @@ def run(
         train = build_train(loaded)
     wanted = _wanted(position, train.count)
     print_heading(loaded, str(case), train.count, wanted, change or ())
+    if train.period is not None:
+        say(period_told(train.period, train.input), whole=True)
     how = {"solver": solver, "method": method, "reduce": not no_reduce, "tolerance": tolerance}
     result, refusal = _solved(loaded, wanted, how)
     if result is not None:
-        print_result(result, len(wanted), loads=loads)
+        print_result(result, len(wanted), loads=loads, cycle=cycle)
         if search:
             there = [p.position for p in result.positions]
             _print_search(loaded, there if position else there[:1])

@@ -261,6 +261,48 @@ def loads(result: Result) -> Iterator[Record]:
         }
 
 
+def yielding(result: Result) -> Iterator[Record]:
+    """Transmission error of the train and its stiffness at every position."""
+    for p in result.positions:
+        error, stiffness = p.elastic.transmission_error, p.elastic.torsional_stiffness
+        yield {
+            "position": Cell(str(p.position), p.position),
+            **{f"error {side}": Cell(significant(1e6 * e, 6), e) for side, e in error.items()},
+            **{f"stiffness {side}": Cell(f"{k:.6g}", k) for side, k in stiffness.items()},
+        }
+
+
+def error_told(result: Result) -> str:
+    """How much the transmission error at the input varies, in a sentence."""
+    errors = [p.elastic.transmission_error["input"] for p in result.positions]
+    span = significant(1e6 * (max(errors) - min(errors)), 4)
+    return f"From peak to peak the transmission error at the input is {span} µrad."
+
+
+def meshes(result: Result) -> Iterator[Record]:
+    """Every mesh at every position: where in its cycle it stands, what it carries and yields."""
+    places = torque_places(result)
+    for mesh in result.positions[0].torque:
+        for p in result.positions:
+            error, stiffness = (
+                p.elastic.mesh_transmission_error[mesh],
+                p.elastic.mesh_stiffness[mesh],
+            )
+            turning = p.elastic.mesh_torsional_stiffness[mesh]
+            yield {
+                "mesh": Cell(mesh),
+                "position": Cell(str(p.position), p.position),
+                "stands at": Cell(str(p.mesh_position[mesh]), p.mesh_position[mesh]),
+                "torque": Cell(fixed(p.torque[mesh], places), p.torque[mesh]),
+                "coast flank": Cell(fixed(p.coast_torque[mesh], places), p.coast_torque[mesh]),
+                "Ω stage": largest([p.share.get(mesh)]),
+                "Ω group": largest([p.pair_share.get(mesh)]),
+                "error": Cell(micrometres(error), error),
+                "stiffness": Cell(f"{1e-6 * stiffness:.6g}", stiffness),
+                "at the driver": Cell(f"{turning:.6g}", turning),
+            }
+
+
 def measures(result: Result) -> Iterator[Record]:
     """Largest figures of the displacements over the positions, and their bounds."""
     for name, measure, position in result.validity:

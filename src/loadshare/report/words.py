@@ -11,9 +11,26 @@ from loadshare.certify.validity import TOLD
 from loadshare.report.numbers import runs, significant
 from loadshare.report.units import engineering
 from loadshare.results import Position, Result
+from loadshare.train.period import Period
 
 ALONG = 1e-9
 """How far a direction may be from an axis and still be called by its name."""
+
+
+def period_told(period: Period, driving: str) -> str:
+    """Return how long the common period of all meshes is.
+
+    Parameters
+    ----------
+    period : Period
+    driving : str
+        The input gear.
+    """
+    mesh = period.fastest
+    return (
+        f"Common period of all meshes: {period.cycles[mesh]} cycles of mesh {mesh}, "
+        f"{significant(float(period.revolutions), 6)} revolutions of gear {driving}"
+    )
 
 
 def rest_told(rests: Sequence[FloatState], positions: Sequence[int]) -> list[str]:

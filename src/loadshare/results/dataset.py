@@ -67,6 +67,36 @@ VARIABLES = {
     "mesh_force": Variable(
         ("mesh",), "N", "force along the line of action", lambda p, m: p.loads.meshes[m]
     ),
+    "transmission_error": Variable(
+        ("side",),
+        "rad",
+        "rotation of the input beyond the kinematic one, referred to input or output",
+        lambda p, side: p.elastic.transmission_error[side],
+    ),
+    "torsional_stiffness": Variable(
+        ("side",),
+        "N·m/rad",
+        "tangent stiffness from input to output, referred to input or output",
+        lambda p, side: p.elastic.torsional_stiffness[side],
+    ),
+    "mesh_transmission_error": Variable(
+        ("mesh",),
+        "m",
+        "transmission error along the line of action",
+        lambda p, m: p.elastic.mesh_transmission_error[m],
+    ),
+    "mesh_stiffness": Variable(
+        ("mesh",),
+        "N/m",
+        "tangent stiffness along the line of action",
+        lambda p, m: p.elastic.mesh_stiffness[m],
+    ),
+    "mesh_torsional_stiffness": Variable(
+        ("mesh",),
+        "N·m/rad",
+        "tangent stiffness at the driver",
+        lambda p, m: p.elastic.mesh_torsional_stiffness[m],
+    ),
     "shaft_torque": Variable(
         ("shaft",),
         "N·m",
@@ -150,8 +180,8 @@ def dataset(result: Result) -> xr.Dataset:
     Returns
     -------
     xarray.Dataset
-        Dimensions position, mesh, gear, shaft, component, end, float, figure and measure; every
-        variable carries its unit.
+        Dimensions position, mesh, gear, shaft, side, component, end, float, figure and measure;
+        every variable carries its unit.
     """
     import xarray as xr
 
@@ -161,6 +191,7 @@ def dataset(result: Result) -> xr.Dataset:
         "mesh": list(first.torque),
         "gear": list(first.rotation),
         "shaft": list(first.loads.shafts),
+        "side": list(first.elastic.transmission_error),
         "component": list(COMPONENTS),
         "end": ["least", "largest"],
         "float": list(first.floats),

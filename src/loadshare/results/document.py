@@ -13,8 +13,10 @@ if TYPE_CHECKING:
     from loadshare.certify import Certificate
     from loadshare.results.result import Position, Result
 
-FORMAT = 4
+FORMAT = 5
 """Of the files that are written; it changes with what a file holds."""
+OLDER = {4: ("elastic",)}
+"""Forms that are read as well, with what their positions do not tell."""
 _TOLD = (
     "position",
     "torque",
@@ -32,19 +34,37 @@ _TOLD = (
 """Of a position, as it is; certificate, validity and uniqueness in more words."""
 
 _LOADS = ("meshes", "shafts", "gears", "bearings")
+_ELASTIC = (
+    "transmission_error",
+    "torsional_stiffness",
+    "mesh_transmission_error",
+    "mesh_stiffness",
+    "mesh_torsional_stiffness",
+)
 
 
-def to_document(result: Result) -> dict[str, Any]:
-    """Return the result as plain data: the documented JSON form, self-contained, with a digest."""
+def to_document(result: Result, form: int = FORMAT) -> dict[str, Any]:
+    """Return the result as plain data: the documented JSON form, self-contained, with a digest.
+
+    Parameters
+    ----------
+    result : Result
+    form : int
+        One that is read.
+    """
+    untold = OLDER.get(form, ())
     document = {
-        "format": FORMAT,
+        "format": form,
         "case": result.stamp.case,
         "version": result.stamp.version,
         "stamp": as_data(result.stamp),
         "input": result.case.to_dict(),
         "frames": as_data(result.frames),
         "stages": as_data(result.stages),
-        "positions": [_told(p) for p in result.positions],
+        "positions": [
+            {key: told for key, told in _told(p).items() if key not in untold}
+            for p in result.positions
+        ],
         "omega": dict(result.omega),
         "pair_omega": dict(result.pair_omega),
     }
@@ -68,6 +88,7 @@ def _told(p: Position) -> dict[str, Any]:
     told["validity"] = {"verdict": p.validity.verdict} | as_data(p.validity)
     told["uniqueness"] = as_data(p.uniqueness) | {"told": p.uniqueness.told}
     told["loads"] = {name: as_data(getattr(p.loads, name)) for name in _LOADS}
+    told["elastic"] = {name: as_data(getattr(p.elastic, name)) for name in _ELASTIC}
     return told | _judged(p.certificate)
 
 

@@ -26,7 +26,7 @@ from loadshare.results.claim import Claim, misnamed
 from loadshare.results.derive import position_of, result_from
 from loadshare.results.differences import DIGITS, ROUND_OFF, differences
 from loadshare.results.digest import DIGEST, digest_of
-from loadshare.results.document import FORMAT, as_data, to_document
+from loadshare.results.document import FORMAT, OLDER, as_data, to_document
 from loadshare.results.result import Effort, Position, Result, Stamp
 from loadshare.scene import assemble
 from loadshare.solver.position import of_least_norm
@@ -106,7 +106,7 @@ def read_document(text: str, file: str) -> tuple[Result, dict[str, Any]]:
     stamp = replace(given.stamp, title=case.title, case_hash=case.hash)
     result = result_from(case, train, positions, known(stamp))
     # The digest is of the very digits that stand there, whichever processor computed them.
-    told = to_document(result) | {DIGEST: document.get(DIGEST)}
+    told = to_document(result, document.get("format", 1)) | {DIGEST: document.get(DIGEST)}
     _raise(differences(told, document, names=_elements(given, train)), file)
     _raise(_altered(document), file)
     return result, document
@@ -167,7 +167,7 @@ def _parsed(text: str, file: str) -> dict[str, Any]:
         message, hint = "holds a refusal and no result", "Why stands under refused.message."
         raise ResultError([Problem(file, "", "", message, "", hint)], refusal=True)
     found = document.get("format", 1)
-    if found != FORMAT or isinstance(found, bool):
+    if found not in (FORMAT, *OLDER) or isinstance(found, bool):
         writer = as_given(document.get("version"))
         newer = isinstance(found, int) and found > FORMAT
         hint = "Load it with that version, or a newer one." if newer else AGAIN

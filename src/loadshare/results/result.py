@@ -14,6 +14,7 @@ from loadshare.certify.uniqueness import TOLD, Uniqueness, uniqueness
 from loadshare.certify.validity import Measure, Validity, validity
 from loadshare.pictures import picture
 from loadshare.results.claim import Claim, Pair, claim_of
+from loadshare.results.elastic import Elastic
 from loadshare.results.loads import Loads
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibrium import Equilibrium
@@ -184,6 +185,11 @@ class Position:
     def loads(self) -> Loads:
         """Forces of meshes and on bearings, torques of shafts and from outside."""
         return Loads(self.train, self.equilibrium)
+
+    @cached_property
+    def elastic(self) -> Elastic:
+        """Transmission errors and stiffnesses of the train and of its meshes."""
+        return Elastic(self.train, self.equilibrium)
 
     @property
     def undetermined(self) -> Mapping[str, Pair]:

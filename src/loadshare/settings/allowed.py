@@ -36,6 +36,8 @@ class Allowed(NamedTuple):
     """Size of a number without a unit that shapes teeth, such as a shift in modules."""
     positions: int = 100_000
     """Positions of a mesh cycle."""
+    common: int = 20_000
+    """Positions over the common period of all meshes, each of which keeps its answer."""
     steps: int = 1_000_000
     """Steps of a march."""
     points: int = 20_000

@@ -143,6 +143,7 @@ def train_of(
         positions=operating.positions,
         rotating=operating.rotation == "teeth",
         march=(case.march.gear, case.march.revolutions, case.march.steps) if case.march else None,
+        period=geometry.period,
     )
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from fractions import Fraction
 
 import numpy as np
 
@@ -16,11 +17,14 @@ from loadshare.case.line_of_action import LineOfAction, backlash_of_teeth, line_
 from loadshare.case.place import axis_of
 from loadshare.case.power_flow import against_the_names, rides_on
 from loadshare.case.teeth import tooth_counts
+from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
+from loadshare.settings import ALLOWED
 from loadshare.train.gear import Gear, Vector, transverse_frame
 from loadshare.train.kinematics import Kinematics, settle
 from loadshare.train.mesh import Contact, contact_of
-from loadshare.train.phases import Meeting, Misfit, phases
+from loadshare.train.period import Period, period_of
+from loadshare.train.phases import WHOLE, Meeting, Misfit, phases
 from loadshare.train.willis import Links
 
 
@@ -59,10 +63,13 @@ class Geometry:
     ----------
     gears : mapping of str to Gear
     pairs : mapping of mesh to Pair
+    period : Period or None
+        Of all meshes, where the positions go through it.
     """
 
     gears: Mapping[str, Gear]
     pairs: Mapping[str, Pair]
+    period: Period | None = None
 
 
 def geometry_of(case: spec.Case) -> Geometry:
@@ -76,8 +83,9 @@ def geometry_of(case: spec.Case) -> Geometry:
     kinematics = _kinematics(case)
     problems = [case.problem(c.key, c.message) for c in kinematics.conflicts]
     operating = case.operating
+    common = operating.cycle == "common" and case.march is None
     rotates = operating.positions > 1 and operating.rotation == "teeth"
-    if not kinematics.determined and (rotates or case.march is not None):
+    if not kinematics.determined and (rotates or common or case.march is not None):
         message = "does not tell how fast all gears turn: a differential has two speeds"
         hint = 'Hold a member, or solve one position, or give rotation = "neglected".'
         problems.append(case.problem("operating.input", message, hint=hint))
@@ -87,7 +95,54 @@ def geometry_of(case: spec.Case) -> Geometry:
     if problems:
         raise CaseError(problems)
     pairs = _pairs(case, kinematics.gears, kinematics.contacts)
-    return Geometry(kinematics.gears, _in_phase(case, pairs))
+    period = _period(case, kinematics.gears) if common else None
+    return Geometry(kinematics.gears, _in_phase(case, pairs), period)
+
+
+def _period(case: spec.Case, gears: Mapping[str, Gear]) -> Period:
+    """Return the common period of all meshes.
+
+    Raises
+    ------
+    CaseError
+        If tooth numbers do not tell it, or it has more positions than can be kept.
+    """
+    meshes = {name: mesh.ends for name, mesh in case.meshes.items()}
+    counts = {n: gears[n].teeth or 0.0 for ends in meshes.values() for n in ends}
+    unknown = [n for n, z in counts.items() if round(z) < 1 or abs(z - round(z)) > WHOLE * z]
+    if unknown:
+        hint = "The common period of all meshes follows from tooth numbers."
+        raise CaseError(
+            [case.problem(f"gears.{n}.teeth", "does not follow", "a number", hint) for n in unknown]
+        )
+    teeth = {name: round(z) for name, z in counts.items()}
+    shafts = {name: shaft.ends for name, shaft in case.shafts.items()}
+    key, operating = "operating.cycle", case.operating
+    try:
+        found = period_of(gears, meshes, shafts, teeth, operating.input)
+    except ValueError as error:
+        raise CaseError([case.problem(key, f"there is no common period: {error}")]) from None
+    steps, most = found.steps(operating.positions), ALLOWED.common
+    if steps > most:
+        cycles = found.cycles[found.fastest]
+        message = (
+            f"the meshes come round together after {_told(cycles)} cycles of mesh {found.fastest} "
+            f"({_told(found.revolutions)} revolutions of gear {operating.input}), with "
+            f"{count(operating.positions, 'position')} in each {_told(steps)} positions"
+        )
+        fewer = f" or operating.positions = {most // cycles}" if most >= cycles else ""
+        hint = f"Give a march over a part of it{fewer}."
+        raise CaseError([case.problem(key, message, f"up to {most} positions", hint)])
+    for name, measurement in case.measured.items():
+        if measurement.position is not None and measurement.position > steps:
+            path = f"measured.{name}.position"
+            raise CaseError([case.problem(path, f"the case has {steps}", f"1 to {steps}")])
+    return found
+
+
+def _told(number: Fraction | int) -> str:
+    """A number of which only the size matters where it is large."""
+    return f"{float(number):.6g}" if number < 10**300 else "more than 10^300"
 
 
 def _in_phase(case: spec.Case, pairs: Mapping[str, Pair]) -> dict[str, Pair]:

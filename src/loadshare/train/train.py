@@ -11,6 +11,8 @@ from loadshare.contact.radial import RadialLaw, spline_law
 from loadshare.train.gear import ORIGIN, Gear, Vector
 from loadshare.train.mesh import Approach, Mesh, approach_of
 from loadshare.train.offset import Offset, turned_about
+from loadshare.train.offset import Offset
+from loadshare.train.period import Period
 from loadshare.train.ring import Bearing, DrumRing, Ring, RoundRing
 
 
@@ -128,6 +130,8 @@ class Train:
         Reference gear, its revolutions and the number of steps.
     forces : mapping of gear to ndarray (3,)
         Forces from outside, weights among them, fixed in the housing [N].
+    period : Period or None
+        Common period of all meshes, where the positions go through it.
     slip : mapping of gear to ndarray (3,), or None
         Slip s₀ [m] of every spline at the position before, for friction with memory; None where
         friction has none.
@@ -150,6 +154,7 @@ class Train:
     rotating: bool
     march: tuple[str, float, int] | None
     forces: Mapping[str, Vector] = field(default_factory=dict)
+    period: Period | None = None
     slip: Mapping[str, Vector] | None = None
 
     def remembering(self, slip: Mapping[str, Vector]) -> Train:
@@ -159,7 +164,9 @@ class Train:
     @property
     def count(self) -> int:
         """Number of positions to solve."""
-        return self.positions if self.march is None else self.march[2]
+        if self.march is not None:
+            return self.march[2]
+        return self.positions if self.period is None else self.period.steps(self.positions)
 
     @cached_property
     def order(self) -> dict[str, int]:
@@ -219,8 +226,8 @@ class Train:
     def rotations(self, index: int) -> dict[str, float]:
         """Angle [rad] by which every gear has turned at position `index` (1-based).
 
-        In a mesh cycle the gears turn by one pitch of the gear `cycle` over the cycle. In a march
-        they turn through whole revolutions.
+        In a mesh cycle the gears turn by one pitch of the gear `cycle` over the cycle, or over the
+        common period of all meshes. In a march they turn through whole revolutions.
 
         Raises
         ------
@@ -231,7 +238,7 @@ class Train:
             raise IndexError(f"position {index}: this case has positions 1 to {self.count}")
         step = index - 1
         if self.march is None:
-            turned = self._pitch * step / self.positions
+            turned = self._cycle * step / self.count
         else:
             gear, revolutions, steps = self.march
             turned = 2.0 * math.pi * revolutions * step / steps / abs(self.gears[gear].ratio)
@@ -287,23 +294,28 @@ class Train:
     ) -> dict[str, int]:
         """Position in its cycle (0-based) at which every mesh stands at position `index` (1-based).
 
-        In a mesh cycle all meshes go through theirs together, each from its own phase. In a march a
-        mesh whose teeth are known stands at the position that its rotation reaches; others have one
-        law for all positions.
+        In a mesh cycle all meshes go through theirs together, each from its own phase; over their
+        common period each goes through its own. In a march a mesh whose teeth are known stands at
+        the position that its rotation reaches; others have one law for all positions.
         """
         rotation = rotation or self.rotations(index)
         return {m: self._mesh_position(m, index - 1, rotation) for m in self.meshes}
 
     @cached_property
-    def _pitch(self) -> float:
-        """Angle by which the input gear turns over a mesh cycle [rad]."""
+    def _cycle(self) -> float:
+        """Angle by which the input gear turns over all positions [rad]."""
         if self.cycle is None:
             return 0.0
+        if self.period is not None:
+            return 2.0 * math.pi * float(self.period.revolutions)
         gear = self.gears[self.cycle]
         return 2.0 * math.pi / ((gear.teeth or math.inf) * abs(gear.relative))
 
     def _mesh_position(self, mesh: str, step: int, rotation: Mapping[str, float]) -> int:
         driver, phase = self.gears[self.meshes[mesh].driver], self.meshes[mesh].phase
+        if self.march is None and self.period is not None:
+            passed = step * self.period.cycles[mesh] % self.count / self.count + phase
+            return math.floor(passed * self.positions + 1e-9) % self.positions
         if self.march is None or driver.teeth is None:
             # In whole numbers as far as it goes: a position is not to be missed by round-off.
             return (step + math.floor(phase * self.positions + 1e-9)) % self.positions

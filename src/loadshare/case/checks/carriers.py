@@ -122,7 +122,7 @@ def check_turning_frames(draft: Draft) -> Iterator[Problem]:
     operating = draft.operating
     turns = draft.march is not None or (
         operating is not None
-        and operating.positions > 1
+        and (operating.positions > 1 or operating.cycle == "common")
         and operating.rotation == "teeth"
         and any(gear.teeth for gear in draft.gears.values())
     )

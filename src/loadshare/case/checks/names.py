@@ -162,7 +162,8 @@ def check_measured_names(draft: Draft) -> Iterator[Problem]:
 
 def check_measured_positions(draft: Draft) -> Iterator[Problem]:
     """Yield measurements at positions that the case does not have."""
-    if draft.operating is None:
+    if draft.operating is None or (draft.march is None and draft.operating.cycle == "common"):
+        # How many positions there are follows from the speeds.
         return
     count = draft.operating.positions if draft.march is None else draft.march.steps
     for name, measurement in draft.measured.items():

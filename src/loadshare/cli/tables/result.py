@@ -26,7 +26,7 @@ RESTS = "Floating gears: displacement x, y and margin [µm], reaction of the rin
 WORDS = ("figure", "unit", "where")
 
 
-def print_result(result: Result, wanted: int, *, loads: bool = False) -> None:
+def print_result(result: Result, wanted: int, *, loads: bool = False, cycle: bool = False) -> None:
     """Print load sharing, coefficients, floats, displacements and the certificate.
 
     Parameters
@@ -37,6 +37,8 @@ def print_result(result: Result, wanted: int, *, loads: bool = False) -> None:
         Number of positions that were asked for.
     loads : bool
         Whether to print what gears, bearings and shafts carry.
+    cycle : bool
+        Whether to print what meshes and train do at every position.
     """
     certified = [p.position for p in result.positions]
     if len(certified) < wanted:
@@ -46,6 +48,8 @@ def print_result(result: Result, wanted: int, *, loads: bool = False) -> None:
     print_floats(result)
     if loads:
         print_loads(result)
+    if cycle:
+        print_cycle(result)
     print_validity(result)
     print_certificate(result, wanted)
 
@@ -68,6 +72,18 @@ def print_loads(result: Result) -> None:
     fields = _fields(result, "part", "torque", "bearing")
     made = texts(records.loads(result), fields, words=("part",))
     show("Loads: torque from outside or of a shaft [N·m], force on a bearing or pin [N]", made)
+
+
+def print_cycle(result: Result) -> None:
+    """Print transmission error, stiffness, share and place in the cycle at every position."""
+    rows = list(records.yielding(result))
+    title = "Transmission error [µrad] and stiffness [N·m/rad] of the train"
+    show(title, texts(rows, rows[0], words=()))
+    if len(rows) > 1:
+        say(records.error_told(result))
+    fields = ("mesh", "position", "stands at", "Ω stage", "error", "stiffness", "at the driver")
+    title = "Meshes: transmission error [µm], stiffness [N/µm] and at the driver [N·m/rad]"
+    show(title, texts(records.meshes(result), fields, words=("mesh",)))
 
 
 def print_validity(result: Result) -> None:

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
+import numpy as np
+from numpy.typing import NDArray
+
 from loadshare.errors import CaseError, Problem
 from loadshare.exchange.rexs.gearing import Gearing
+from loadshare.exchange.rexs.holding import axes_of, borne_by
+from loadshare.exchange.rexs.model import Component
 from loadshare.exchange.rexs.reading import read_model, tables
 from loadshare.input import read_file
 from loadshare.results import Result
@@ -17,15 +22,25 @@ from loadshare.settings import ALLOWED
 
 FACTOR = "mesh_load_factor_iso_6336_2019"
 STIFFNESS = "meshing_stiffness_characteristic"
-Values = Mapping[str, Mapping[str, tuple[float | list[float], str]]]
+ON_SIDE = "force_acting_on_{side}_component_{axis}"
+FORCE = "custom_loadshare_normal_force"
+ERROR = "custom_loadshare_transmission_error"
+PUSHED = "custom_loadshare_force_on_bearings"
+MOVED = "custom_loadshare_displacement"
+Array = NDArray[np.float64]
+Value = tuple[float | list[float], str]
+Values = dict[str, dict[str, Value]]
 
 
 def export_rexs(result: Result, unit: str | Path) -> str:
     """Return a REXS file with what was found, all else as it was.
 
     Of every cylindrical stage the mesh load factor K_γ, the largest Ω of its mesh over the
-    positions, where the mesh is in a stage of the case; and the stiffness over the positions of the
-    mesh cycle, force over compression along the line of action.
+    positions, where the mesh is in a stage of the case; the stiffness over the positions, force
+    over compression along the line of action; normal force and transmission error over the
+    positions. Of every bearing of a shaft the force on both its sides, of every gear and carrier
+    displacement and force on what holds it, each at the position at which it is largest. What has
+    no name in REXS has one that begins with ``custom_loadshare``.
 
     Parameters
     ----------
@@ -54,19 +69,84 @@ def export_rexs(result: Result, unit: str | Path) -> str:
 
 
 def _found(result: Result, gearing: Gearing) -> Values:
-    """Attributes by id of the component: values and units."""
-    made: dict[str, dict[str, tuple[float | list[float], str]]] = {}
-    meshes = result.positions[0].train.meshes
+    """Attributes by id of the component: values and units; none without a mesh of the case."""
+    made = _of_meshes(result, gearing)
+    if made:
+        made |= _of_bodies(result, gearing) | _of_bearings(result, gearing)
+    return made
+
+
+def _of_meshes(result: Result, gearing: Gearing) -> Values:
+    """What stages are told."""
+    made: Values = {}
+    positions, meshes = result.positions, result.positions[0].train.meshes
     for stage, one, other in gearing.stages:
         ends = gearing.names[one.id], gearing.names[other.id]
         name = next((n for n in map("-".join, (ends, ends[::-1])) if n in meshes), None)
         if name is None:
             continue
-        shares = [p.share.get(name) for p in result.positions]
+        shares = [p.share.get(name) for p in positions]
         known = [share for share in shares if share is not None]
-        made[stage.id] = {STIFFNESS: (_stiffness(result, name), "N / mm")}
+        made[stage.id] = {
+            STIFFNESS: (_stiffness(result, name), "N / mm"),
+            FORCE: ([p.loads.meshes[name] for p in positions], "N"),
+            ERROR: ([1e6 * p.elastic.mesh_transmission_error[name] for p in positions], "mum"),
+        }
         if known:
             made[stage.id][FACTOR] = (max(known), "none")
+    return made
+
+
+def _bodies(result: Result, gearing: Gearing) -> Iterator[tuple[Component, str]]:
+    """Gears and carriers of the file that the case has, with their names."""
+    for body in (*gearing.gears, *gearing.carriers):
+        if gearing.names[body.id] in result.frames:
+            yield body, gearing.names[body.id]
+
+
+def _pushed(result: Result, name: str) -> Array:
+    """Force of a body on what holds it at every position, (positions, 3) [N]."""
+    forces = np.array([p.loads.bearings[name] for p in result.positions])
+    return np.asarray(forces @ np.array(result.frames[name]))
+
+
+def _largest(vectors: Array) -> Array:
+    """The longest of some vectors."""
+    return np.asarray(vectors[np.argmax((vectors**2).sum(axis=1))])
+
+
+def _of_bodies(result: Result, gearing: Gearing) -> Values:
+    """What gears and carriers are told: x, y, z."""
+    made: Values = {}
+    for body, name in _bodies(result, gearing):
+        moved = np.array([p.claim.displacement[name] for p in result.positions])
+        made[body.id] = {
+            MOVED: ((1e6 * _largest(moved)).tolist(), "mum"),
+            PUSHED: (_largest(_pushed(result, name)).tolist(), "N"),
+        }
+    return made
+
+
+def _of_bearings(result: Result, gearing: Gearing) -> Values:
+    """Forces on both sides of every bearing, in its own directions v and w.
+
+    Each takes its part of what the bodies on its shaft push, as the import has taken them.
+    """
+    pushed: dict[str, Array] = {}
+    for body, name in _bodies(result, gearing):
+        shafts, at = gearing.shafts_of(body), gearing.along(body)
+        for bearing, side, part in borne_by(gearing.model, shafts, at):
+            along = part if side == "inner" else -part
+            known = pushed.get(bearing.id, np.zeros(3))
+            pushed[bearing.id] = known + along * _pushed(result, name)
+    made: Values = {}
+    for id_, forces in pushed.items():
+        outwards = np.stack(axes_of(gearing.model.components[id_])) @ _largest(forces)
+        made[id_] = {
+            ON_SIDE.format(side=side, axis=axis): (float(sign * force), "N")
+            for side, sign in (("inner", -1.0), ("outer", 1.0))
+            for axis, force in zip("vw", outwards, strict=True)
+        }
     return made
 
 
@@ -100,7 +180,7 @@ def _into_xml(root: ElementTree.Element, found: Values) -> str:
 def _into_json(root: dict[str, Any], found: Values) -> str:
     for component in tables(root["model"]["components"]):
         new = found.get(str(component.get("id", "")), {})
-        kept = [a for a in tables(component.get("attributes")) if a.get("id") not in new]
+        kept = [a for a in tables(component.get("attributes")) if str(a.get("id")) not in new]
         for key, (value, unit) in new.items():
             kind = "floating_point_array" if isinstance(value, list) else "floating_point"
             kept.append({"id": key, "unit": unit, kind: value})

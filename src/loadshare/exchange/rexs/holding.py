@@ -50,23 +50,16 @@ def holding_of(
 
     Other bodies on the same shaft are not seen.
     """
-    found = []
-    for bearing, inner, outer in model.related("side", "assembly", "inner_part", "outer_part"):
-        if bearing.type not in BEARINGS:
-            continue
-        for shaft, side in ((inner, "inner"), (outer, "outer")):
-            if shaft in shafts:
-                place = bearing.number(f"u_coordinate_on_shaft_{side}_side") or 0.0
-                found.append((bearing, place))
+    found = _bearings_on(model, shafts)
     if not found:
         return Holding({"support": "free" if shafts else "rigid"}, {}, (0.0, 0.0, 0.0))
-    stiffness = [_stiffness(bearing, name, assumed) for bearing, _ in found]
-    places = np.array([place for _, place in found])
+    stiffness = [_stiffness(bearing, name, assumed) for bearing, *_ in found]
+    places = np.array([place for _, place, _ in found])
     held = _seen_from(at, np.array(stiffness), places)
     if len(found) > 1 or held is not None:
         assumed.append("supports: each gear by the bearings of its shaft, as a rigid beam")
     rigid = held is None or held >= STIFF
-    bearings = [bearing for bearing, _ in found]
+    bearings = [bearing for bearing, *_ in found]
     told_by = ("operating_radial_bearing_clearance", "radial_clearance")
     gaps = [bearing.number(*told_by) or 0.0 for bearing in bearings]
     offset = _offset(bearings)
@@ -76,6 +69,59 @@ def holding_of(
         told = "rigid" if rigid else f"{held:.12g} N/m"
         return Holding({}, {"clearance": f"{0.5e6 * gap:.12g} um", "stiffness": told}, offset)
     return Holding({"support": "rigid" if rigid else f"{held:.12g} N/m"}, {}, offset)
+
+
+def borne_by(
+    model: Model, shafts: list[Component], at: float
+) -> list[tuple[Component, str, float]]:
+    """Return the bearings that hold a body at a place along its shaft [m], as `holding_of` has it.
+
+    Returns
+    -------
+    list of (Component, str, float)
+        Bearing, the side on which the shaft is ("inner" or "outer"), and the part of the body's
+        force that the bearing takes, k (1, u) S⁻¹ (1, x)ᵀ; all parts add up to one.
+    """
+    found = _bearings_on(model, shafts)
+    if not found:
+        return []
+    stiffness = np.array([_stiffness(bearing, "", []) for bearing, *_ in found])
+    arms, here = _arms(at, np.array([place for _, place, _ in found]))
+    beam = arms.T @ (stiffness[:, None] * arms)
+    parts = stiffness * (arms @ np.linalg.solve(beam, here))
+    return [(b, side, part) for (b, _, side), part in zip(found, parts.tolist(), strict=True)]
+
+
+def axes_of(bearing: Component) -> tuple[np.ndarray, np.ndarray]:
+    """Directions v and w of a bearing, of length 1."""
+    u = np.array(bearing.vector("u_axis_vector") or (1.0, 0.0, 0.0))
+    w = np.array(bearing.vector("w_axis_vector") or (0.0, 0.0, 1.0))
+    u, w = (a / np.linalg.norm(a) if a.any() else a for a in (u, w))
+    return np.cross(w, u), w
+
+
+def _bearings_on(model: Model, shafts: list[Component]) -> list[tuple[Component, float, str]]:
+    """Bearings of shafts, where along the shaft they sit [m], and on which side it is."""
+    found = []
+    for bearing, inner, outer in model.related("side", "assembly", "inner_part", "outer_part"):
+        if bearing.type not in BEARINGS:
+            continue
+        for shaft, side in ((inner, "inner"), (outer, "outer")):
+            if shaft in shafts:
+                place = bearing.number(f"u_coordinate_on_shaft_{side}_side") or 0.0
+                found.append((bearing, place, side))
+    return found
+
+
+def _arms(at: float, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(1, u) of places along a shaft and of one more, in units in which they are well told."""
+    size = float(np.ptp(places))
+    if size < 1e-9:
+        return np.ones((len(places), 1)), np.ones(1)
+    # About the middle of the bearings, in units of their distance: better numbers.
+    middle = float(places.mean())
+    arms = np.column_stack([np.ones(len(places)), (places - middle) / size])
+    return arms, np.array([1.0, (at - middle) / size])
 
 
 def _stiffness(bearing: Component, name: str, assumed: list[str]) -> float:
@@ -90,12 +136,7 @@ def _seen_from(at: float, stiffness: np.ndarray, places: np.ndarray) -> float | 
     """Stiffness at a place [N/m]; None where all is rigid."""
     if stiffness.min() >= STIFF:
         return None
-    if np.ptp(places) < 1e-9:
-        return float(stiffness.sum())
-    # About the middle of the bearings, in units of their distance: better numbers.
-    middle, size = float(places.mean()), float(np.ptp(places))
-    arms = np.column_stack([np.ones(len(places)), (places - middle) / size])
-    here = np.array([1.0, (at - middle) / size])
+    arms, here = _arms(at, places)
     beam = arms.T @ (stiffness[:, None] * arms)
     return float(1.0 / (here @ np.linalg.solve(beam, here)))
 
@@ -104,10 +145,8 @@ def _offset(bearings: list[Component]) -> tuple[float, float, float]:
     """Mean of what bearings are out of place (3,) [m]."""
     total = np.zeros(3)
     for bearing in bearings:
-        u = np.array(bearing.vector("u_axis_vector") or (1.0, 0.0, 0.0))
-        w = np.array(bearing.vector("w_axis_vector") or (0.0, 0.0, 1.0))
-        u, w = (a / np.linalg.norm(a) if a.any() else a for a in (u, w))
-        v = bearing.number("misalignment_in_v_direction") or 0.0
-        total += v * np.cross(w, u) + (bearing.number("misalignment_in_w_direction") or 0.0) * w
+        v, w = axes_of(bearing)
+        total += (bearing.number("misalignment_in_v_direction") or 0.0) * v
+        total += (bearing.number("misalignment_in_w_direction") or 0.0) * w
     x, y, z = (total / len(bearings)).tolist()
     return (x, y, z)

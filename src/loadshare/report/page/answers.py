@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from loadshare.report import records
-from loadshare.report.numbers import fixed, small
+from loadshare.report.numbers import small
 from loadshare.report.records import Cell, Table, table
 from loadshare.report.words import advice, places_told, rest_told, undetermined_told
 from loadshare.results import Result
@@ -18,6 +18,18 @@ LOADS = {
     "torque": "torque [N·m]",
     "bearing": "force on the bearing or pin [N]",
     "position": "at position",
+}
+MESHES = {
+    "torque": "torque [N·m]",
+    "coast flank": "coast flank [N·m]",
+    "error": "error [µm]",
+    "stiffness": "stiffness [N/µm]",
+    "at the driver": "at the driver [N·m/rad]",
+}
+YIELDING = {
+    f"{what} {side}": f"{what} at the {side} [{unit}]"
+    for what, unit in (("error", "µrad"), ("stiffness", "N·m/rad"))
+    for side in ("input", "output")
 }
 FOLDED = 24
 """Rows from which a table is shown only when asked for."""
@@ -49,21 +61,23 @@ def torque_table(result: Result) -> Table:
 
 
 def position_table(result: Result) -> Table:
-    """Torque and coefficients of every mesh at every position."""
-    places = records.torque_places(result)
-    rows = [
-        {
-            "mesh": Cell(mesh),
-            "position": Cell(str(p.position), p.position),
-            "torque [N·m]": Cell(fixed(torque, places), torque),
-            "coast flank [N·m]": Cell(fixed(p.coast_torque[mesh], places), p.coast_torque[mesh]),
-            "Ω stage": records.largest([p.share.get(mesh)]),
-            "Ω group": records.largest([p.pair_share.get(mesh)]),
-        }
-        for p in result.positions
-        for mesh, torque in p.torque.items()
+    """Every mesh at every position: its place in its cycle, load, coefficients and stiffness."""
+    rows = list(records.meshes(result))
+    notes = ["The error is the transmission error along the line of action; stiffness is tangent."]
+    title = "Meshes at every position"
+    return table(title, rows, ("mesh",), list(rows[0])[1:], MESHES, notes, most=FOLDED)
+
+
+def yield_table(result: Result) -> Table:
+    """Transmission error of the train and its stiffness at every position."""
+    rows = list(records.yielding(result))
+    notes = [
+        "How far the input turns beyond what its ratio to the output says, and the tangent of "
+        "torque over rotation.",
+        records.error_told(result),
     ]
-    return table("Every position", rows, ("mesh",), list(rows[0])[1:], most=FOLDED)
+    title = "Transmission error and stiffness of the train"
+    return table(title, rows, (), list(rows[0]), YIELDING, notes, FOLDED)
 
 
 def float_table(result: Result) -> Table:

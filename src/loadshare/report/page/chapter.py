@@ -181,8 +181,8 @@ def _tables(result: Result) -> Iterator[Table]:
     if result.stages:
         yield answers.omega_table(result)
     yield answers.torque_table(result)
-    if not records.alike(result):
-        yield answers.position_table(result)
+    yield answers.position_table(result)
+    yield answers.yield_table(result)
     if result.positions[0].floats:
         yield answers.float_table(result)
     yield answers.load_table(result)
