@@ -12,6 +12,9 @@ from loadshare.tooth.contact.programme import Contact
 from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.unloaded.positions import ContactLine, MeshPosition
 
+LEAST_LOAD = 1e-9
+"""How far below the least load of the fit a load may lie by rounding, as a part of it."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class LineLoad:
@@ -139,8 +142,21 @@ class Ltca:
         return np.asarray((fitted - self.angle) / (self.angle - self.law.a[:, None]))
 
     def secant(self, part: float = 1.0) -> Array:
-        """K = T/(Δφ − a) (K,) [N·m/rad at the driver] under a computed part of the rated torque."""
+        """K = T/(Δφ − a) (K,) [N·m/rad at the driver] under a computed part of the rated torque.
+
+        Raises
+        ------
+        ValueError
+            If that part was not computed, or lies below the loads that a follows from: a is not
+            the unloaded error, but what the law has there, so that Δφ − a means nothing.
+        """
         k = self._load(part)
+        if self.torque[k] < min(FIT_LOADS) * self.rated * (1.0 - LEAST_LOAD):
+            raise ValueError(
+                f"{part} of the rated torque lies below the loads of the fit, from "
+                f"{min(FIT_LOADS)} on, and a holds for these only; allowed: {min(FIT_LOADS)} or "
+                "more; tangent and increment hold for any load"
+            )
         return np.asarray(self.torque[k] / (self.angle[:, k] - self.law.a))
 
     def tangent(self, part: float = 1.0) -> Array:
