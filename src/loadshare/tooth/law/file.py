@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -20,6 +20,7 @@ from loadshare.case.reader import read_toml
 from loadshare.case.translate import translate
 from loadshare.case.words import count
 from loadshare.errors import CaseError, Refused
+from loadshare.tooth.analysis.fit import FIT_LOADS
 from loadshare.tooth.analysis.result import Ltca
 from loadshare.tooth.pair.file import PairFile
 from loadshare.tooth.pair.model import Load, Number, Positions
@@ -138,10 +139,22 @@ class MeshLaw(Element):
             )
         return tuple(told)
 
-    @property
-    def coefficients(self) -> dict[str, list[str]]:
-        """a, b and c as the table `law` of a mesh."""
-        return {key: [value.text for value in getattr(self, key)] for key in "abc"}
+    def as_law(self, assumed: Sequence[str] = ()) -> dict[str, Any]:
+        """The table `law` of a mesh: a, b and c, what they are from, and where that holds.
+
+        Parameters
+        ----------
+        assumed : sequence of str
+            What was assumed for the analysis.
+        """
+        made = self.computed
+        means = ", means over the cycle" if made.sampling == "means" else ""
+        taken = f"; assumed: {', '.join(assumed)}" if assumed else ""
+        return {key: [value.text for value in getattr(self, key)] for key in "abc"} | {
+            "basis": f"LTCA, {made.compliance}{means}{taken}",
+            "holds_from": f"{min(FIT_LOADS) * made.torque.si:.9g} N*m",
+            "holds_to": f"{made.torque.si:.9g} N*m",
+        }
 
 
 def law_of(pair: PairFile, found: Ltca) -> MeshLaw:
