@@ -500,6 +500,8 @@ GIVEN: dict[str, tuple[str, ...]] = {
         r"^\| `(?:torque|helices|analysis|profile_shift|addendum|rim|youngs_modulus)`.*$",
         r"^\| `(?:modification|inner)`.*$",
         r"contact ratio below 1\b",
+        r"1\.5 tooth heights deep",
+        r"50 N per mm of face width",
         r"at T, 0\.95 T and 0\.9 T",
         r"at 0\.1, 0\.5 and 0\.9 T",
         r"held at 0\b",

@@ -160,6 +160,7 @@ T = TypeVar("T")
 _HIGH = ALLOWED.largest
 Number = Annotated[float, Strict(), Field(ge=-_HIGH, le=_HIGH, allow_inf_nan=False)]
 Positive = Annotated[float, Strict(), Field(gt=0, le=_HIGH, allow_inf_nan=False)]
+NotNegative = Annotated[float, Strict(), Field(ge=0, le=_HIGH, allow_inf_nan=False)]
 Turns = Annotated[float, Strict(), Field(gt=0, le=ALLOWED.revolutions, allow_inf_nan=False)]
 
 Count = Annotated[int, Strict(), Field(ge=1, le=ALLOWED.samples)]

@@ -10,7 +10,17 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Strict, Tag
 
-from loadshare.case.element import LIST, TABLE, VALUE, Element, Number, Positive, Rule, shaped
+from loadshare.case.element import (
+    LIST,
+    TABLE,
+    VALUE,
+    Element,
+    NotNegative,
+    Number,
+    Positive,
+    Rule,
+    shaped,
+)
 from loadshare.case.quantity import (
     ANGLE,
     LENGTH,
@@ -42,6 +52,11 @@ OF_TEETH = (
     "rim",
     "bore",
     "density",
+    "tip_radius",
+    "web",
+    "rim",
+    "bore",
+    "outside_diameter",
 )
 """Keys of a gear that say more of its teeth, beside their number and module."""
 OF_A_GEAR = ("base_radius", "inner_radius", "outer_radius", "teeth", "module", *OF_TEETH)
@@ -178,6 +193,9 @@ class Gear(Element):
     dedendum: Positive | None = None
     """Dedendum of the rack in modules; 1.25 when left out [-]."""
 
+    tip_radius: NotNegative | None = None
+    """Tip radius of the rack in modules, for `law = "ltca"`; 0.38 when left out [-]."""
+
     tip_alteration: Length | None = None
     """Alteration of the tooth's height at its tip, negative where it is shortened [length]."""
 
@@ -195,7 +213,14 @@ class Gear(Element):
     """Thickness of the web of a gear with a thin one, for `law = "iso"` [length]."""
 
     rim: Radius | None = None
-    """Thickness of the rim below the teeth on a thin web, for `law = "iso"` [length]."""
+    """Thickness of the rim below the teeth [length]: on a thin web for `law = "iso"`; for
+    `law = "ltca"` of the body that yields, 1.5 tooth heights where nothing tells it."""
+
+    bore: Radius | None = None
+    """Diameter of the bore, from which the rim follows for `law = "ltca"` [length]."""
+
+    outside_diameter: Radius | None = None
+    """Diameter at which the body of an internal gear ends, likewise [length]."""
 
     bore: Radius | None = None
     """Diameter of the bore of an external gear; solid when left out [length]."""
@@ -283,6 +308,9 @@ class Gear(Element):
         if self.helix_angle is not None and abs(self.helix_angle.si) > STEEPEST_HELIX:
             yield Rule("is steeper than 60 deg", ("helix_angle",), ANGLE.allowed)
             return
+        for key, kind in (("bore", "external"), ("outside_diameter", "internal")):
+            if getattr(self, key) is not None and self.type != kind:
+                yield Rule(f"is for {kind} gears only", (key,))
         tooth = self.tooth
         if tooth is None:
             return

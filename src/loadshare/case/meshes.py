@@ -58,6 +58,19 @@ class Law(Element):
     c: PerPosition[Hertz] = Quantity("0 rad/(N*m)^(2/3)", 0.0)
     """Hertz contact [angle/torque^(2/3)], one value or one per position."""
 
+    basis: str = Field(default="", exclude=True)
+    """What the law is from."""
+
+    holds_from: Annotated[Quantity, TORQUE.bounded(at_least=0)] | None = Field(
+        default=None, exclude=True
+    )
+    """Torque at the driver below which its basis does not hold; results tell [torque]."""
+
+    holds_to: Annotated[Quantity, TORQUE.bounded(above=0)] | None = Field(
+        default=None, exclude=True
+    )
+    """Torque at the driver above which its basis does not hold; results tell [torque]."""
+
     def rules(self) -> Iterator[Rule]:
         """Yield the positions at which the mesh would be rigid."""
         b, c = values(self.b), values(self.c)
@@ -127,16 +140,22 @@ class Mesh(Element):
 
     law: (
         Annotated[
-            Annotated[Literal["iso", "iso solid"], Tag(VALUE)] | Annotated[Law, Tag(TABLE)],
-            shaped('"iso", "iso solid", or a table of a, b and c'),
+            Annotated[Literal["iso", "iso solid", "ltca", "ltca elements"], Tag(VALUE)]
+            | Annotated[Law, Tag(TABLE)],
+            shaped('"iso", "iso solid", "ltca", "ltca elements", or a table of a, b and c'),
         ]
         | None
     ) = None
     """Deformation law a + b T + c T^(2/3) at the driver [angle], or a word for its source.
 
     iso: mean stiffness by ISO 6336-1, method B, from the teeth of both gears; iso solid: without
-    C_M = 0.8, by which measured teeth are softer than calculated ones.
+    C_M = 0.8, by which measured teeth are softer than calculated ones. ltca: loaded tooth contact
+    analysis of the teeth of both gears by slices; ltca elements: by finite elements.
     """
+
+    rated_torque: Annotated[Quantity, TORQUE.bounded(above=0)] | None = None
+    """Torque at the driver up to which `law = "ltca"` is analysed [torque]; that of 50 N per mm of
+    face width and of module when left out."""
 
     table: Table | None = None
     """Deformation at the driver [angle] as a table over the torque [torque]."""
@@ -179,6 +198,8 @@ class Mesh(Element):
             source = "geometry" if self.geometry else "law_file"
             hint = "Leave it out; errors of the gears open the mesh besides."
             yield Rule(f"stands beside {source}, which gives the gap", ("gap",), hint=hint)
+        if self.rated_torque is not None and not self.law_is_of_contact:
+            yield Rule('goes with law = "ltca"', ("rated_torque",))
         if self.backlash is not None and self.normal_backlash is not None:
             yield Rule("stands beside backlash: give one or the other", ("normal_backlash",))
         if self.helix_angle is not None and abs(self.helix_angle.si) >= math.pi / 2:
@@ -193,6 +214,11 @@ class Mesh(Element):
     def power_law(self) -> Law | None:
         """The law a + b T + c T^(2/3), if one is given in numbers."""
         return self.law if isinstance(self.law, Law) else None
+
+    @property
+    def law_is_of_contact(self) -> bool:
+        """Whether the law comes from a contact analysis of the gears' own teeth."""
+        return self.law in ("ltca", "ltca elements")
 
     @property
     def law_is_computed(self) -> bool:

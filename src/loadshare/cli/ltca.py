@@ -76,6 +76,8 @@ def ltca(
     law = kept_law(asked, found)
     _print_positions(found, law)
     _print_summary(asked, found)
+    for finding in law.findings:
+        say(f"Note: {finding}", whole=True)
     wrote = list(_written(folder, asked, found, law))
     typer.echo(f"Wrote {', '.join(file.name for file in wrote)} to {wrote[0].parent}")
 

@@ -11,6 +11,7 @@ from loadshare.case import Case
 from loadshare.certify.validity import TOLD
 from loadshare.report.numbers import NONE, decimals, fixed, micrometres, omega, significant, small
 from loadshare.results import Position, Result
+from loadshare.results.laws import laws_told
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,7 +200,7 @@ def torque_notes(result: Result, rows: Iterable[Record]) -> list[str]:
         notes.append(told[0] if alike(result) else told[1])
     if any(row["Ω pair"].text == NONE for row in rows):
         notes.append(f"{NONE}: not in a stage, or without load.")
-    return notes
+    return notes + laws_told(result.laws)
 
 
 def largest(shares: Iterable[float | None]) -> Cell:

@@ -8,6 +8,7 @@ from dataclasses import fields, is_dataclass
 from typing import TYPE_CHECKING, Any
 
 from loadshare.results.digest import DIGEST, digest_of
+from loadshare.results.laws import laws_told
 
 if TYPE_CHECKING:
     from loadshare.certify import Certificate
@@ -68,6 +69,8 @@ def to_document(result: Result, form: int = FORMAT) -> dict[str, Any]:
         "omega": dict(result.omega),
         "pair_omega": dict(result.pair_omega),
     }
+    if laws_told(result.laws):
+        document["laws"] = as_data(result.laws)
     return document | {DIGEST: digest_of(document)}
 
 

@@ -15,6 +15,7 @@ from loadshare.certify.validity import Measure, Validity, validity
 from loadshare.pictures import picture
 from loadshare.results.claim import Claim, Pair, claim_of
 from loadshare.results.elastic import Elastic
+from loadshare.results.laws import LawUse, laws_of
 from loadshare.results.loads import Loads
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibrium import Equilibrium
@@ -313,6 +314,11 @@ class Result:
             (p.uniqueness for p in self.positions),
             key=lambda u: (order.index(u.kind), math.inf if u.curvature is None else u.curvature),
         )
+
+    @cached_property
+    def laws(self) -> Mapping[str, LawUse]:
+        """What the law of every mesh is from, and under which loads it was used."""
+        return laws_of(self.case, [p.torque for p in self.positions])
 
     @property
     def floats(self) -> tuple[Mapping[str, FloatState], ...]:

@@ -131,6 +131,16 @@ def test_light_load_works():
     assert np.count_nonzero(found.contacts[1][0].force) == 4  # the middle two of each pair
 
 
+def test_a_secant_is_that_of_the_fitted_loads_only():
+    """Below them Δφ − a means nothing: of pair p12 it made −6.8 to 2.9 K at 0.01 T."""
+    found = ltca(CROWNED, TORQUE, 2, (0.01, 0.1, 1.0), "slices", points=20)
+    assert np.all(found.secant(0.1) < found.secant(1.0))
+    with pytest.raises(ValueError, match=r"0\.01 of the rated torque lies below the loads"):
+        found.secant(0.01)
+    assert np.all(found.tangent(0.01) > 0.0)
+    assert np.all(found.increment(0.01, 0.1) > 0.0)
+
+
 def test_edges_are_found_with_their_share():
     plain = analysed(crowned=False)
     assert {e.edge for e in plain.edges} == {"end of the face"}

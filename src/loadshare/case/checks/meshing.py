@@ -90,7 +90,7 @@ def check_march_teeth(draft: Draft) -> Iterator[Problem]:
 
 
 def _varies(mesh: Mesh) -> bool:
-    if mesh.law_file or mesh.geometry:
+    if mesh.law_file or mesh.geometry or mesh.law_is_of_contact:
         return True
     lists = (values for _, values in mesh.per_position() if isinstance(values, tuple))
     return any(len(set(values)) > 1 for values in lists)

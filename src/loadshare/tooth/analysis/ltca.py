@@ -16,7 +16,8 @@ import numpy as np
 
 from loadshare.errors import Refused
 from loadshare.tooth.analysis.fit import FIT_LOADS
-from loadshare.tooth.analysis.result import LineLoad, Ltca
+from loadshare.tooth.analysis.result import Beside, LineLoad, Ltca
+from loadshare.tooth.analysis.sampling import cells
 from loadshare.tooth.compliance.interface import Compliance, Flank
 from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
 from loadshare.tooth.contact.programme import Contact, solve_contacts
@@ -104,6 +105,8 @@ def ltca(
     compliance: PairCompliance | Model = "finite elements",
     points: int | None = None,
     progress: Callable[[int, int], None] | None = None,
+    *,
+    means: bool = False,
 ) -> Ltca:
     """Analyse the loaded contact of a pair over its mesh cycle.
 
@@ -122,6 +125,8 @@ def ltca(
         Points on each contact line; by default 32 with finite elements, 16 with slices.
     progress : callable, optional
         Told after each position how many are done, and how many there are.
+    means : bool
+        Whether the law of a position is the mean over its part of the cycle, from equal parts.
 
     Raises
     ------
@@ -138,12 +143,17 @@ def ltca(
         )
     if points is not None and points < 3:
         raise ValueError(f"points = {points} on a contact line; allowed: 3 or more")
+    if means and not isinstance(phases, int):
+        raise ValueError("means need the number of positions, not phases")
     places = [k / phases for k in range(phases)] if isinstance(phases, int) else list(phases)
+    count, parts_of = len(places), cells(len(places), pair.changes) if means else None
+    if parts_of is not None:
+        places += parts_of.phase.tolist()
     if isinstance(compliance, str):
         compliance = pair_compliance(pair, compliance)
     torques = torque * np.array(parts)
-    count = POINTS.get(compliance.model, 32) if points is None else points
-    positions = pair.positions(places, count)
+    points = POINTS.get(compliance.model, 32) if points is None else points
+    positions = pair.positions(places, points)
     problems = contact_problems(pair, positions, compliance)
     found: dict[int, tuple[Contact, ...]] = {}
     for group in _groups(problems, len(parts)):
@@ -151,20 +161,22 @@ def ltca(
         for k, own in zip(group, solved, strict=True):
             found[k] = own
             if progress is not None:
-                progress(len(found), len(places))
+                progress(len(found) * count // len(places), count)
     contacts = tuple(found[k] for k in range(len(positions)))
+    here = positions[:count], contacts[:count]
     return Ltca(
         rated=torque,
         torque=torques,
-        positions=positions,
+        positions=here[0],
         arm=pair.arm,
         helices=pair.helices,
-        contacts=contacts,
+        contacts=here[1],
         lines=tuple(
             _line_loads(position, problem, under_all)
-            for position, problem, under_all in zip(positions, problems, contacts, strict=True)
+            for position, problem, under_all in zip(here[0], problems, here[1], strict=False)
         ),
         compliance=compliance.model,
+        beside=None if parts_of is None else Beside(parts_of, positions[count:], contacts[count:]),
     )
 
 

@@ -8,9 +8,13 @@ from functools import cached_property
 import numpy as np
 
 from loadshare.tooth.analysis.fit import FIT_LOADS, LawFit, fit_law
+from loadshare.tooth.analysis.sampling import Cells
 from loadshare.tooth.contact.programme import Contact
 from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.unloaded.positions import ContactLine, MeshPosition
+
+LEAST_LOAD = 1e-9
+"""How far below the least load of the fit a load may lie by rounding, as a part of it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -73,9 +77,30 @@ class EdgeContact:
     pressure: float
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Beside:
+    """Contact between the positions, from which means follow.
+
+    Attributes
+    ----------
+    cells : Cells
+    positions : tuple of MeshPosition
+        At the phases of the cells.
+    contacts : tuple of tuple of Contact
+        Of each, under every load.
+    """
+
+    cells: Cells
+    positions: tuple[MeshPosition, ...]
+    contacts: tuple[tuple[Contact, ...], ...]
+
+
 @dataclass(frozen=True, eq=False)
 class Ltca:
     """Loaded tooth contact at K positions of the mesh cycle and under L torques.
+
+    Law, secant, tangent and increment are those of the positions, or of the means over the parts
+    of the cycle that they stand for where contact between them was solved as well.
 
     Attributes
     ----------
@@ -95,6 +120,8 @@ class Ltca:
         Load on each line of each position and load.
     compliance : str
         Model that the compliances came from.
+    beside : Beside, optional
+        Contact between the positions.
     """
 
     rated: float
@@ -105,6 +132,7 @@ class Ltca:
     contacts: tuple[tuple[Contact, ...], ...]
     lines: tuple[tuple[tuple[LineLoad, ...], ...], ...] = field(repr=False)
     compliance: str
+    beside: Beside | None = field(default=None, repr=False)
 
     @cached_property
     def phase(self) -> Array:
@@ -127,21 +155,51 @@ class Ltca:
         return np.asarray(self.unloaded_error[:, None] + self.approach / self.arm)
 
     @cached_property
+    def elastic(self) -> Array:
+        """Approach (K, L) [m] that the law tells: at the positions, or their means."""
+        if self.beside is None:
+            return self.approach
+        every = np.array([[c.approach for c in row] for row in self.beside.contacts])
+        return self.beside.cells.mean(every)
+
+    @cached_property
+    def told(self) -> Array:
+        """Δφ (K, L) [rad at the driver] that the law tells: at the positions, or their means."""
+        lead = self.unloaded_error
+        if self.beside is not None:
+            every = np.array([p.transmission_error for p in self.beside.positions])
+            lead = self.beside.cells.mean(every)
+        return np.asarray(lead[:, None] + self.elastic / self.arm)
+
+    @cached_property
     def law(self) -> LawFit:
         """a, b, c of every position, from 0.1, 0.5 and 0.9 of the rated torque."""
         fit = np.isclose(self.torque[:, None], self.rated * np.array(FIT_LOADS)).any(axis=1)
-        return fit_law(self.torque[fit], self.angle[:, fit])
+        return fit_law(self.torque[fit], self.told[:, fit])
 
     @cached_property
     def misfit(self) -> Array:
         """Law minus computed angle (K, L), over the elastic angle Δφ − a under that torque."""
         fitted = np.column_stack([self.law.angle(t) for t in self.torque])
-        return np.asarray((fitted - self.angle) / (self.angle - self.law.a[:, None]))
+        return np.asarray((fitted - self.told) / (self.told - self.law.a[:, None]))
 
     def secant(self, part: float = 1.0) -> Array:
-        """K = T/(Δφ − a) (K,) [N·m/rad at the driver] under a computed part of the rated torque."""
+        """K = T/(Δφ − a) (K,) [N·m/rad at the driver] under a computed part of the rated torque.
+
+        Raises
+        ------
+        ValueError
+            If that part was not computed, or lies below the loads that a follows from: a is not
+            the unloaded error, but what the law has there, so that Δφ − a means nothing.
+        """
         k = self._load(part)
-        return np.asarray(self.torque[k] / (self.angle[:, k] - self.law.a))
+        if self.torque[k] < min(FIT_LOADS) * self.rated * (1.0 - LEAST_LOAD):
+            raise ValueError(
+                f"{part} of the rated torque lies below the loads of the fit, from "
+                f"{min(FIT_LOADS)} on, and a holds for these only; allowed: {min(FIT_LOADS)} or "
+                "more; tangent and increment hold for any load"
+            )
+        return np.asarray(self.torque[k] / (self.told[:, k] - self.law.a))
 
     def tangent(self, part: float = 1.0) -> Array:
         """dT/dΔφ (K,) [N·m/rad at the driver] under a computed part of the rated torque.
@@ -150,12 +208,15 @@ class Ltca:
         """
         k = self._load(part)
         slope = np.array([row[k].tangent for row in self.contacts])
+        if self.beside is not None:
+            every = np.array([row[k].tangent for row in self.beside.contacts])
+            slope = self.beside.cells.mean(every)
         return np.asarray(self.helices * self.arm**2 / slope)
 
     def increment(self, low: float, high: float) -> Array:
         """ΔT/ΔΔφ (K,) [N·m/rad at the driver] between two computed parts of the rated torque."""
         i, j = self._load(low), self._load(high)
-        return np.asarray((self.torque[j] - self.torque[i]) / (self.angle[:, j] - self.angle[:, i]))
+        return np.asarray((self.torque[j] - self.torque[i]) / (self.told[:, j] - self.told[:, i]))
 
     @cached_property
     def contact_ratio(self) -> Array:

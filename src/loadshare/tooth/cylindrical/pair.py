@@ -124,6 +124,11 @@ class HelicoidPair(GearPair):
         own, other = 0.5 * self.driver_gear.face_width, 0.5 * self.driven_gear.face_width
         return max(-own, shift - other), min(own, shift + other)
 
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Axial coordinates of the ends of the contact lines [m]."""
+        return self.axial_range
+
     @cached_property
     def driver(self) -> HelicoidBody:
         """The driver's tooth."""

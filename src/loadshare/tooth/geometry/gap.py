@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,15 +61,22 @@ class Trace:
 
     def at(self, stations: slice) -> Trace:
         """The trace at some of the stations."""
-        own, other = (Patch(f.components[..., stations]) for f in (self.driver, self.driven))
+        return self._part(np.s_[:, stations])
+
+    def lines(self, chosen: NDArray[np.int64]) -> Trace:
+        """The trace of some of the lines."""
+        return self._part(np.s_[chosen, :])
+
+    def _part(self, part: tuple[Any, Any]) -> Trace:
+        own, other = (Patch(f.components[..., *part]) for f in (self.driver, self.driven))
         (a, b), (c, d) = self.driver_at, self.driven_at
         return Trace(
             driver=own,
             driven=other,
-            driver_at=(a[:, stations], b[:, stations]),
-            driven_at=(c[:, stations], d[:, stations]),
-            gap=self.gap[:, stations],
-            tangent=self.tangent[:, stations],
+            driver_at=(a[part], b[part]),
+            driven_at=(c[part], d[part]),
+            gap=self.gap[part],
+            tangent=self.tangent[part],
         )
 
 
@@ -97,6 +105,18 @@ class Extents:
     driver: Array
     driven: Array
     trace: Callable[[Array], Trace]
+
+    def rows(self, chosen: NDArray[np.int64]) -> Extents:
+        """Some of the lines."""
+
+        def trace(stations: Array) -> Trace:
+            middles = 0.5 * (self.start + self.end)
+            every = np.repeat(middles[:, None], stations.shape[1], axis=1)
+            every[chosen] = stations
+            return self.trace(every).lines(chosen)
+
+        named = ("position", "pairs", "start", "end", "driver", "driven")
+        return replace(self, trace=trace, **{name: getattr(self, name)[chosen] for name in named})
 
     def spread(self, points: int) -> tuple[Array, slice]:
         """Stations (m, n) for a first look at the lines, and which of them are wanted.

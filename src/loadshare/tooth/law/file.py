@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -14,16 +15,43 @@ from loadshare._version import __version__
 from loadshare.case.element import Element, Rule, written
 from loadshare.case.meshes import Bending, Hertz
 from loadshare.case.origin import Origin
-from loadshare.case.quantity import Angle
+from loadshare.case.quantity import Angle, Length
 from loadshare.case.reader import read_toml
 from loadshare.case.translate import translate
 from loadshare.case.words import count
-from loadshare.errors import CaseError
+from loadshare.errors import CaseError, Refused
+from loadshare.tooth.analysis.fit import FIT_LOADS
 from loadshare.tooth.analysis.result import Ltca
 from loadshare.tooth.pair.file import PairFile
 from loadshare.tooth.pair.model import Load, Number, Positions
 
+MISSED = 0.01
+"""Part of the mean deflection that positions may miss without a word."""
+_GEARS = {"driver": "driver", "driven": "driven gear"}
 Share = Annotated[float, Strict(), Field(ge=0, allow_inf_nan=False)]
+
+
+class Rim(Element):
+    """What another rim of a gear would do, by slices."""
+
+    thickness: tuple[Length, Length, Length]
+    """Of a thinner rim, of the gear's own, and of a thicker one, below the root [length]."""
+
+    stiffness: tuple[Number, Number, Number]
+    """Mean stiffness of the mesh at the rated torque, over that on the gear's own rim [-]."""
+
+    assumed: bool
+    """Whether the gear's own is 1.5 tooth heights because the pair does not say."""
+
+    def told(self, gear: str) -> str:
+        """Return what it says in a line."""
+        low, own, high = (f"{1e3 * value.si:.4g} mm" for value in self.thickness)
+        softer, stiffer = (f"{100.0 * (self.stiffness[k] - 1.0):+.1f} %" for k in (0, 2))
+        source = " (assumed, 1.5 tooth heights)" if self.assumed else ""
+        return (
+            f"The rim of the {gear} is {own} thick{source}. With {low} the mean stiffness would "
+            f"change by {softer}, with {high} by {stiffer}."
+        )
 
 
 class Stamp(Element):
@@ -53,6 +81,9 @@ class Stamp(Element):
     compliance: str
     """Model of the teeth."""
 
+    sampling: Literal["points", "means"] = "points"
+    """Whether the law holds at the positions, or is the mean over their parts of the cycle."""
+
     teeth: int | None = None
     """Teeth in the finite-element model, where the pair file says [-]."""
 
@@ -78,6 +109,12 @@ class MeshLaw(Element):
     misfit: tuple[Share, ...]
     """Largest miss of the law at the loads that were solved, over the elastic angle there [-]."""
 
+    rim: dict[Literal["driver", "driven"], Rim] = Field(default_factory=dict)
+    """What other rims of either gear would do."""
+
+    sampled: Number | None = None
+    """Mean deflection at the positions over that of the whole cycle, by slices [-]."""
+
     computed: Stamp
     """What it was computed from."""
 
@@ -90,9 +127,34 @@ class MeshLaw(Element):
                 yield Rule(told, (key,))
 
     @property
-    def coefficients(self) -> dict[str, list[str]]:
-        """a, b and c as the table `law` of a mesh."""
-        return {key: [value.text for value in getattr(self, key)] for key in "abc"}
+    def findings(self) -> tuple[str, ...]:
+        """How far the law hangs on rims and positions, a line each."""
+        told = [rim.told(_GEARS[name]) for name, rim in self.rim.items()]
+        missed = 0.0 if self.sampled is None else self.sampled - 1.0
+        if abs(missed) > MISSED:
+            told.append(
+                f"Sampled at {count(self.computed.positions, 'position')}, the mean deflection is "
+                f"{100.0 * missed:+.1f} % off that of the whole cycle; analysis.sampling = "
+                '"means" carries it right.'
+            )
+        return tuple(told)
+
+    def as_law(self, assumed: Sequence[str] = ()) -> dict[str, Any]:
+        """The table `law` of a mesh: a, b and c, what they are from, and where that holds.
+
+        Parameters
+        ----------
+        assumed : sequence of str
+            What was assumed for the analysis.
+        """
+        made = self.computed
+        means = ", means over the cycle" if made.sampling == "means" else ""
+        taken = f"; assumed: {', '.join(assumed)}" if assumed else ""
+        return {key: [value.text for value in getattr(self, key)] for key in "abc"} | {
+            "basis": f"LTCA, {made.compliance}{means}{taken}",
+            "holds_from": f"{min(FIT_LOADS) * made.torque.si:.9g} N*m",
+            "holds_to": f"{made.torque.si:.9g} N*m",
+        }
 
 
 def law_of(pair: PairFile, found: Ltca) -> MeshLaw:
@@ -113,7 +175,7 @@ def law_of(pair: PairFile, found: Ltca) -> MeshLaw:
         "loads": [float(f"{part:.9g}") for part in found.torque / found.rated],
         "positions": len(found.positions),
         **settings.model_dump(
-            exclude_none=True, include={"points", "compliance", "teeth", "layers"}
+            exclude_none=True, include={"points", "compliance", "sampling", "teeth", "layers"}
         ),
     }
     return MeshLaw.model_validate(
@@ -123,9 +185,29 @@ def law_of(pair: PairFile, found: Ltca) -> MeshLaw:
             "b": [f"{float(value)!r} rad/(N*m)" for value in law.b],
             "c": [f"{float(value)!r} rad/(N*m)^(2/3)" for value in law.c],
             "misfit": [float(f"{part:.3g}") for part in np.abs(found.misfit).max(axis=1)],
+            **_sureness(pair),
             "computed": computed,
         }
     )
+
+
+def _sureness(pair: PairFile) -> dict[str, Any]:
+    """How far the law hangs on its rims and on its positions, where slices can tell."""
+    from loadshare.tooth.pair.sensitivity import rim_effects, sampled_deflection
+
+    found: dict[str, Any] = {}
+    with suppress(Refused):
+        found["rim"] = {
+            name: {
+                "thickness": [f"{1e3 * t:.6g} mm" for t in effect.thickness],
+                "stiffness": [float(f"{part:.4g}") for part in effect.stiffness],
+                "assumed": getattr(pair.content, name).rim is None,
+            }
+            for name, effect in rim_effects(pair).items()
+        }
+        if pair.analysis.sampling == "points":
+            found["sampled"] = float(f"{sampled_deflection(pair):.4g}")
+    return found
 
 
 def law_text(law: MeshLaw) -> str:

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 MEASURED = 0.8
 """C_M, the standard's."""
+LEAST_LOAD = 100e3
+"""Tangential force per face width below which the standard's c' falls [N/m]."""
 
 
 @dataclass(frozen=True)
@@ -128,6 +130,30 @@ def blank_factor(web: float, rim: float) -> float:
     """
     web, rim = min(max(web, 0.2), 1.2), max(rim, 1.0)
     return 1.0 + math.log(web) / (5.0 * math.exp(rim / 5.0))
+
+
+def basis_of(gears: tuple[Gear, Gear], *, measured: bool) -> str:
+    """Say which of the standard's factors are in a mesh's stiffness."""
+    width = min(gear.face_width.si for gear in gears if gear.face_width is not None)
+    blank = 0.5 * sum(_blank(gear, width) for gear in gears)
+    with_measured = "with" if measured else "without"
+    body = "solid bodies" if blank == 1.0 else f"C_R {blank:.3g} for thin webs"
+    return f"ISO 6336-1 method B, {with_measured} C_M, {body}"
+
+
+def least_torque(gears: tuple[Gear, Gear]) -> float:
+    """Torque on the first gear of a mesh from which the standard's stiffness holds [N·m].
+
+    Below F_t K_A/b = 100 N/mm it has c' fall in proportion to the load. As a law of a mesh that
+    would be a deflection that no load changes, or, as a tangent, one without end: no law for an
+    equilibrium. K_A counts as 1.
+
+    Source: ISO 6336-1, single stiffness c'.
+    """
+    first, width = gears[0].tooth, [g.face_width.si for g in gears if g.face_width is not None]
+    if first is None or len(width) < len(gears):
+        raise ValueError("a gear without teeth or face width")
+    return LEAST_LOAD * min(width) * first.radius
 
 
 def mesh_stiffness(gears: tuple[Gear, Gear], distance: float, *, measured: bool = True) -> float:

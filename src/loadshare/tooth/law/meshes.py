@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -57,20 +57,47 @@ def resolve(case: Case, progress: Tick | None = None) -> Case:
     if not sources and not words:
         return case
     laws, pairs, problems = _read(case, sources)
-    formulas, more = _by_formula(case, words)
-    if problems or more:
-        raise CaseError([*problems, *more])
+    inline, taken, wrong = _inline(case)
+    formulas, more = _by_formula(case, [name for name in words if name not in inline])
+    if problems or wrong or more:
+        raise CaseError([*problems, *wrong, *more])
+    pairs |= inline
     by_hash = _laws({pair.hash: pair for pair in pairs.values()}, progress)
     laws |= {name: by_hash[pair.hash] for name, pair in pairs.items()}
-    changes: dict[str, object] = {}
-    for name, source in sources.items():
-        changes[dotted(("meshes", name, source))] = None
-        changes[dotted(("meshes", name, "law"))] = laws[name].coefficients
-    for name, compliance in formulas.items():
-        changes[dotted(("meshes", name, "law"))] = {"b": f"{compliance!r} rad/(N*m)"}
-    if case.assumed:
-        changes["assumed"] = _still_assumed(case.assumed)
+    found = {name: law.as_law(taken.get(name, ())) for name, law in laws.items()} | formulas
+    changes: dict[str, object] = {
+        **{dotted(("meshes", name, source)): None for name, source in sources.items()},
+        **{dotted(("meshes", name, "law")): law for name, law in found.items()},
+    }
+    for name in inline:
+        if case.meshes[name].rated_torque is not None:
+            changes[dotted(("meshes", name, "rated_torque"))] = None
+    assumed = _still_assumed([*case.assumed, *(dotted(("meshes", name, "law")) for name in inline)])
+    if assumed:
+        changes["assumed"] = assumed
     return case.replace(changes)
+
+
+def _inline(
+    case: Case,
+) -> tuple[dict[str, PairFile], dict[str, tuple[str, ...]], list[Problem]]:
+    """Pairs of the meshes whose law is of their gears' teeth, what they assume, and what is wrong.
+
+    What an analysis takes for granted marks the law as assumed.
+    """
+    names = [name for name, mesh in case.meshes.items() if mesh.law_is_of_contact]
+    if not names:
+        return {}, {}, []
+    from loadshare.tooth.law.inline import assumed_of, inline_pair
+
+    pairs: dict[str, PairFile] = {}
+    problems: dict[Problem, None] = {}
+    for name in names:
+        try:
+            pairs[name] = inline_pair(case, name)
+        except CaseError as error:
+            problems |= dict.fromkeys(error.problems)
+    return pairs, {name: assumed_of(case, name) for name in names}, list(problems)
 
 
 def _read(
@@ -112,25 +139,33 @@ def _read(
     return laws, pairs, list(problems)
 
 
-def _by_formula(case: Case, words: Mapping[str, str]) -> tuple[dict[str, float], list[Problem]]:
-    """Compliances at the driver [rad/(N·m)] by mesh, and what is wrong with their gears."""
-    from loadshare.tooth.law.iso6336 import mesh_stiffness
+def _by_formula(
+    case: Case, names: Iterable[str]
+) -> tuple[dict[str, dict[str, str]], list[Problem]]:
+    """Laws at the driver by mesh, and what is wrong with their gears."""
+    from loadshare.tooth.law.iso6336 import basis_of, least_torque, mesh_stiffness
 
     centres = case.centres()
     found: dict[str, float] = {}
+    centres = centres_of(case.gears)
+    found: dict[str, dict[str, str]] = {}
     problems: list[Problem] = []
-    for name, word in words.items():
+    for name in names:
         mesh = case.meshes[name]
+        measured = mesh.law == "iso"
         pair = case.gears[mesh.driver], case.gears[mesh.driven]
         offset = minus(centres[mesh.driven], centres[mesh.driver])
         try:
-            stiffness = mesh_stiffness(
-                pair, centre_distance(pair[0], offset), measured=word == "iso"
-            )
+            stiffness = mesh_stiffness(pair, centre_distance(pair[0], offset), measured=measured)
         except ValueError as error:
             problems.append(case.problem(("meshes", name, "law"), str(error)))
             continue
-        found[name] = 1.0 / (stiffness * pair[0].acting_radius ** 2)
+        compliance = 1.0 / (stiffness * pair[0].acting_radius ** 2)
+        found[name] = {
+            "b": f"{compliance!r} rad/(N*m)",
+            "basis": basis_of(pair, measured=measured),
+            "holds_from": f"{least_torque(pair)!r} N*m",
+        }
     return found, problems
 
 

@@ -20,6 +20,7 @@ from loadshare.case.words import as_given, choices, did_you_mean
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.tooth.analysis.ltca import LOADS, POINTS, Model, ltca, pair_compliance
 from loadshare.tooth.analysis.result import Ltca
+from loadshare.tooth.analysis.sampling import cells
 from loadshare.tooth.cylindrical.build import helicoid_pair
 from loadshare.tooth.cylindrical.gear import HelicoidGear, Modification
 from loadshare.tooth.cylindrical.pair import HelicoidPair, Misalignment
@@ -91,12 +92,15 @@ class PairFile:
         if self.geometry.misalignment == none:
             return 0.0
         aligned = replace(self.geometry, misalignment=none)
-        phases = [k / self.analysis.positions for k in range(self.analysis.positions)]
+        count = self.analysis.positions
+        means = self.analysis.sampling == "means"
+        parts = cells(count, self.geometry.changes) if means else None
+        phases = [k / count for k in range(count)] if parts is None else parts.phase.tolist()
         leads = [
             transmission_error(self.geometry, phase) - transmission_error(aligned, phase)
             for phase in phases
         ]
-        return sum(leads) / len(leads)
+        return sum(leads) / len(leads) if parts is None else float(parts.mean(leads).mean())
 
     def revised(
         self,
@@ -149,6 +153,7 @@ class PairFile:
                 compliance,
                 chosen.points,
                 progress,
+                means=chosen.sampling == "means",
             )
         except Refused as refusal:
             raise Refused(f"{self.name}: {refusal}", refusal.figures) from refusal

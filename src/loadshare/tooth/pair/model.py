@@ -176,6 +176,10 @@ class Analysis(Element):
     compliance: Literal["finite elements", "slices"] = "finite elements"
     """Model of the teeth: finite elements, or slices, which are a hundred times faster."""
 
+    sampling: Literal["points", "means"] = "points"
+    """points: the law of a position is that of its point of the cycle; means: the mean over its
+    part of the cycle, so that the mean over the cycle does not depend on how many there are."""
+
     points: Annotated[int, Strict(), Field(ge=3)] = Field(
         default_factory=lambda said: POINTS[said.get("compliance", "finite elements")]
     )

@@ -170,6 +170,23 @@ class GearPair(ABC):
     def overlap_ratio(self) -> float:
         """Overlap ratio ε_β of one half; 0 for spur teeth and face gears."""
 
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Axial coordinates of the ends of the contact lines on the driver [m]."""
+        return 0.0, 0.0
+
+    @property
+    def changes(self) -> tuple[float, ...]:
+        """Phases at which lines begin, end, or come to an end of the face, without load.
+
+        There the contact of a pair of teeth that stands ideally enters or leaves the range of roll.
+        """
+        driver = self.ideal(np.zeros(1))[0]
+        pitches = self.driver.gear.kind * self.driver.teeth / (2.0 * math.pi)
+        at = [float(self.roll(np.zeros(1), end, driver)[0]) for end in self.ends]
+        found = {(roll - own) * pitches % 1.0 for roll in self.roll_range for own in at}
+        return tuple(sorted(found))
+
     @abstractmethod
     def ideal(self, phase: Array) -> tuple[Array, Array]:
         """Rotations of driver and driven gear at phases of the ideal pair [rad]."""

@@ -9,7 +9,7 @@ import numpy as np
 from loadshare.settings import TEETH
 from loadshare.tooth.geometry.body import Array
 from loadshare.tooth.geometry.flank import principal_directions, relative_curvature, unit
-from loadshare.tooth.geometry.gap import least_gap
+from loadshare.tooth.geometry.gap import Extents, least_gap
 from loadshare.tooth.unloaded.positions import GearPair, touching
 
 
@@ -51,9 +51,9 @@ def contact_points(pair: GearPair, phase: float) -> tuple[ContactPoint, ...]:
 
     The contact equations, equal points and opposite normals in five unknowns (two parameters on
     either flank and the driver's angle), are solved by Newton's method from the place of the least
-    gap on the pair's line. Steps along a line contact, where the equations are singular, are
-    left out. Where the flanks touch at an edge, no inner point of contact exists and the edge is
-    named.
+    gap on the pair's line, with the driver turned on until that line touches. Steps along a line
+    contact, where the equations are singular, are left out. Where the flanks touch at an edge, no
+    inner point of contact exists and the edge is named.
 
     Parameters
     ----------
@@ -72,24 +72,20 @@ def contact_points(pair: GearPair, phase: float) -> tuple[ContactPoint, ...]:
     NoContactError
         If no pair of teeth is within both active flanks.
     """
-    error, lines, _ = touching(pair, [phase])
-    gap, station, _ = least_gap(lines)
+    error, found, _ = touching(pair, [phase])
+    lines, station, turned = _alone(pair, found)
     trace = lines.trace(station[:, None])
     pairs, driver, driven = (x[:, None] for x in (lines.pairs, lines.driver, lines.driven))
     at_end = np.minimum(np.abs(station - lines.start), np.abs(station - lines.end)) < TEETH.at_end
     at_edge = at_end & (np.abs(trace.slope[:, 0]) > TEETH.level)
 
     unknowns = np.stack([*trace.driver_at, *trace.driven_at, np.zeros_like(trace.gap)], axis=-1)
-    unknowns[..., 4] = gap[:, None] / pair.arm
+    unknowns[..., 4] = trace.gap / pair.arm
     inner = ~at_edge
     if inner.any():
-        turned = (rotation[inner] for rotation in (driver, driven))
-        refined = _newton(pair, pairs[inner], unknowns[inner], *turned)
-        # Next to a line contact the equations are nearly singular and can lead off the line; the
-        # place of the least gap then stands.
-        lead = refined[..., 4] - unknowns[inner][..., 4]
-        near = np.abs(lead) * pair.arm < TEETH.near
-        unknowns[inner] = np.where(near[..., None], refined, unknowns[inner])
+        part = pairs[inner], unknowns[inner]
+        refined, met = _newton(pair, *part, driver[inner], driven[inner])
+        unknowns[inner] = np.where(_sooner(pair, met, *part, refined), refined, part[1])
     a, b, c, d, lead = np.moveaxis(unknowns, -1, 0)
     own = pair.driver_patch(pairs, (a, b), driver + lead)
     other = pair.driven_patch(pairs, (c, d), driven)
@@ -106,13 +102,65 @@ def contact_points(pair: GearPair, phase: float) -> tuple[ContactPoint, ...]:
         )
         edges.append(edge if at_edge[i] else "")
     vectors = (part[:, 0] for part in (own.point, own.normal, major, minor))
-    numbers = [part[:, 0].tolist() for part in (error[0] + lead, least, greatest)]
+    leads = error[0] + turned[:, None] + lead
+    numbers = [part[:, 0].tolist() for part in (leads, least, greatest)]
     rows = zip(lines.pairs.tolist(), numbers[0], *vectors, *numbers[1:], edges, strict=True)
     return tuple(ContactPoint(int(number), *parts) for number, *parts in rows)
 
 
-def _newton(pair: GearPair, pairs: Array, unknowns: Array, driver: Array, driven: Array) -> Array:
-    """Solve the contact equations; unknowns (m, 1, 5) with the driver's further turn as last."""
+def _alone(pair: GearPair, found: Extents) -> tuple[Extents, Array, Array]:
+    """Lines (m,) of pairs, each with the driver turned on until that pair touches.
+
+    Far from its contact a pair has another line than at it, and a gap over the arm is only nearly
+    the angle that closes it. A line that leaves the flanks on the way stays where it was last.
+
+    Returns
+    -------
+    lines : Extents
+    station : array (m,)
+        Where the gap is least [m].
+    turned : array (m,)
+        How far the driver was turned [rad].
+    """
+    turned, moving = np.zeros(len(found.pairs)), np.ones(len(found.pairs), bool)
+    lines = found
+    gap, station, _ = least_gap(lines)
+    for _ in range(TEETH.steps):
+        moving &= np.abs(gap) >= TEETH.touching
+        if not moving.any():
+            break
+        further = turned + np.where(moving, gap / pair.arm, 0.0)
+        every = pair.extents(found.driver + further, found.driven)
+        own = np.flatnonzero(every.pairs == found.pairs[every.position])
+        if len(own) < len(found.pairs):
+            moving[np.setdiff1d(np.arange(len(found.pairs)), every.position[own])] = False
+            continue
+        lines, turned = every.rows(own), further
+        gap, station, _ = least_gap(lines)
+    return lines, station, turned
+
+
+def _sooner(pair: GearPair, met: Array, pairs: Array, line: Array, refined: Array) -> Array:
+    """Which answers (m, 1, 1) of Newton's method stand: on both flanks, and no later than the line.
+
+    Next to a line contact the equations are nearly singular and can lead off the flanks; the place
+    of the least gap on the line then stands. It leaves out that the profile slopes across the line,
+    so that a pair touches sooner than its line says, never later.
+    """
+    a, b, c, d, lead = np.moveaxis(refined, -1, 0)
+    margins = pair.margins((a, b), (c, d)).values()
+    on_both = np.min(np.stack([np.broadcast_to(m, a.shape) for m in margins]), axis=0) >= 0.0
+    later = (lead - line[..., 4]) * pair.arm
+    return np.asarray((met & on_both & (later < TEETH.near))[..., None])
+
+
+def _newton(
+    pair: GearPair, pairs: Array, unknowns: Array, driver: Array, driven: Array
+) -> tuple[Array, Array]:
+    """Solve the contact equations; unknowns (m, 1, 5) with the driver's further turn as last.
+
+    Returns them, and for which pairs (m, 1) they are solved.
+    """
     for _ in range(20):
         a, b, c, d, turn = np.moveaxis(unknowns, -1, 0)
         own = pair.driver_patch(pairs, (a, b), driver + turn)
@@ -133,7 +181,7 @@ def _newton(pair: GearPair, pairs: Array, unknowns: Array, driver: Array, driven
         unknowns = unknowns + step[..., 0] / scale
         if np.abs(step).max() < TEETH.last_step:
             break
-    return unknowns
+    return unknowns, np.abs(step[..., 0]).max(axis=-1) + np.abs(right).max(axis=-1) < TEETH.near
 
 
 def _about_z(vectors: Array) -> Array:

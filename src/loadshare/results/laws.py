@@ -1,0 +1,117 @@
+"""What the law of every mesh is from, and whether its load is one for which that holds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from loadshare.case import Case
+
+GIVEN = "given"
+"""Basis of a law in numbers of which the case says no more."""
+MOST = 4
+"""Meshes that a line names."""
+ROUNDED = 1e-6
+"""Part of a torque by which it may pass a limit by rounding [-]."""
+
+
+@dataclass(frozen=True, slots=True)
+class LawUse:
+    """The law of a mesh, and the loads under which it was used.
+
+    Attributes
+    ----------
+    basis : str
+        What it is from.
+    torque : tuple of float
+        Least and largest torque at the driver over the positions, without its sign [N·m].
+    line_load : float or None
+        Largest tangential force at the reference circle per face width [N/m]; None where the case
+        does not tell teeth and face widths.
+    note : str
+        That the load lies beside what the law holds for; empty where it does not.
+    """
+
+    basis: str
+    torque: tuple[float, float]
+    line_load: float | None
+    note: str
+
+
+def laws_of(case: Case, torques: Sequence[Mapping[str, float]]) -> dict[str, LawUse]:
+    """Return the law of every mesh as it was used.
+
+    Parameters
+    ----------
+    case : Case
+        As it was solved, its mesh laws computed.
+    torques : sequence of mapping of mesh to float
+        On the driver, position by position [N·m].
+    """
+    found = {}
+    for name, mesh in case.meshes.items():
+        law = mesh.power_law
+        sizes = [abs(each[name]) for each in torques]
+        least, largest = min(sizes, default=0.0), max(sizes, default=0.0)
+        load = _line_load(case, mesh.ends, largest)
+        note = ""
+        if law is not None and law.holds_from is not None and largest > 0.0:
+            note = _below(least, largest, law.holds_from.si)
+        if law is not None and law.holds_to is not None and not note:
+            note = _above(largest, law.holds_to.si)
+        if note and load is not None:
+            note += f"; it carries {load * 1e-3:.3g} N per mm of face width at most"
+        basis = law.basis if law is not None and law.basis else GIVEN
+        found[name] = LawUse(basis, (least, largest), load, note)
+    return found
+
+
+def laws_told(laws: Mapping[str, LawUse]) -> list[str]:
+    """Lines that say what laws are from and where they are stretched; none if all are given."""
+    if all(use.basis == GIVEN and not use.note for use in laws.values()):
+        return []
+    bases = _alike((use.basis, name) for name, use in laws.items())
+    notes = _alike((use.note, name) for name, use in laws.items() if use.note)
+    return [
+        *(f"Law of {_named(names, len(laws))}: {basis}." for basis, names in bases.items()),
+        *(f"WARNING: {_named(names, len(laws))}: {note}." for note, names in notes.items()),
+    ]
+
+
+def _below(least: float, largest: float, limit: float) -> str:
+    if largest < limit * (1.0 - ROUNDED):
+        return f"{largest:.4g} N·m lies below the {limit:.4g} N·m from which the law holds"
+    if least < limit * (1.0 - ROUNDED):
+        return f"down to {least:.4g} N·m, below the {limit:.4g} N·m from which the law holds"
+    return ""
+
+
+def _above(largest: float, limit: float) -> str:
+    if largest > limit * (1.0 + ROUNDED):
+        return f"{largest:.4g} N·m lies above the {limit:.4g} N·m up to which the law holds"
+    return ""
+
+
+def _line_load(case: Case, ends: tuple[str, str], torque: float) -> float | None:
+    gears = [case.gears[name] for name in ends]
+    widths = [gear.face_width.si for gear in gears if gear.face_width is not None]
+    tooth = gears[0].tooth
+    if tooth is None or len(widths) < len(gears):
+        return None
+    return torque / (tooth.radius * min(widths))
+
+
+def _alike(pairs: Iterable[tuple[str, str]]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
+    for text, name in pairs:
+        found.setdefault(text, []).append(name)
+    return found
+
+
+def _named(names: Sequence[str], every: int) -> str:
+    if len(names) == 1:
+        return f"mesh {names[0]}"
+    if len(names) == every:
+        return "all meshes"
+    told = names if len(names) <= MOST else [*names[: MOST - 1], f"{len(names) - MOST + 1} more"]
+    return f"meshes {', '.join(told)}"

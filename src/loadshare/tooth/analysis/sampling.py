@@ -1,0 +1,73 @@
+"""Means of what a position of the mesh cycle stands for: its part of the cycle.
+
+Where a pair of teeth comes into contact or leaves it, a spur mesh jumps, and positions a part of
+the cycle apart see that part of it only which they happen to hit. The mean over a position's part
+is integrated between these changes, by Gauss's rule: the mean over the cycle is then the same
+whatever the number of positions. The changes are those without load; under load a relieved tip
+comes into contact earlier and gently, which the rule sees as a kink.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from loadshare.tooth.geometry.body import Array
+
+LONGEST = 0.1
+"""Longest stretch of the cycle between neighbouring ends of Gauss's rule."""
+NODES = 2
+"""Nodes on a stretch: exact for a cubic."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Where means over the parts of the mesh cycle are sampled.
+
+    Attributes
+    ----------
+    phase : array (m,)
+        0 ≤ phase < 1.
+    weight : array (K, m)
+        Of the phases in the mean of each position; rows sum to 1.
+    """
+
+    phase: Array
+    weight: Array
+
+    def mean(self, values: ArrayLike) -> Array:
+        """Means (K, …) of values (m, …) at the phases."""
+        return np.asarray(np.tensordot(self.weight, np.asarray(values, float), axes=1))
+
+
+def cells(count: int, changes: Sequence[float]) -> Cells:
+    """Divide the mesh cycle into parts about `count` positions, and these at changes of contact.
+
+    Parameters
+    ----------
+    count : int
+        Positions; position k stands for the phases from (k − ½)/count to (k + ½)/count.
+    changes : sequence of float
+        Phases at which the number of pairs in contact changes, or the course of their lines.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    places: list[Array] = []
+    shares: list[Array] = []
+    for k in range(count):
+        low, high = (k - 0.5) / count, (k + 0.5) / count
+        turns = np.array([c + turn for c in changes for turn in (-1.0, 0.0, 1.0)])
+        within = turns[(turns > low) & (turns < high)]
+        even = np.linspace(low, high, int(np.ceil((high - low) / LONGEST - 1e-9)) + 1)
+        ends = np.unique(np.concatenate([even, within]))
+        half = 0.5 * np.diff(ends)
+        places.append((0.5 * (ends[1:] + ends[:-1])[:, None] + half[:, None] * nodes).ravel())
+        shares.append((half[:, None] * weights).ravel() * count)
+    weight = np.zeros((count, sum(map(len, places))))
+    start = 0
+    for k, share in enumerate(shares):
+        weight[k, start : start + len(share)] = share
+        start += len(share)
+    return Cells(np.concatenate(places) % 1.0, weight)

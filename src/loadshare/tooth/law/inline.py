@@ -1,0 +1,131 @@
+"""The pair of gears that a mesh of a case is, for a law from the gears' own teeth."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from loadshare.case.keys import dotted
+from loadshare.case.line_of_action import centre_distance
+from loadshare.case.place import centres_of, minus
+from loadshare.errors import CaseError, Problem
+from loadshare.tooth.pair.file import PairFile, built
+from loadshare.tooth.pair.model import HelicoidContent
+
+if TYPE_CHECKING:
+    from loadshare.case import Case, Gear
+
+MODELS = {"ltca": "slices", "ltca elements": "finite elements"}
+"""Compliance of the teeth by the word for the law."""
+LOAD = 50e6
+"""Tooth force per face width and module of the rated torque where none is given [Pa]."""
+
+
+def inline_pair(case: Case, name: str) -> PairFile:
+    """Return the pair that two gears of a case make, as a pair file would say it.
+
+    Parameters
+    ----------
+    case : Case
+    name : str
+        A mesh of two cylindrical gears with module, teeth and face width, whose law is "ltca" or
+        "ltca elements".
+
+    Raises
+    ------
+    CaseError
+        With everything that is wrong with the gears or with their mesh, by the keys of the case.
+    """
+    mesh = case.meshes[name]
+    driver, driven = case.gears[mesh.driver], case.gears[mesh.driven]
+    centres = centres_of(case.gears)
+    distance = centre_distance(driver, minus(centres[mesh.driven], centres[mesh.driver]))
+    torque = mesh.rated_torque.si if mesh.rated_torque else _rated(driver, driven)
+    content = HelicoidContent.model_validate(
+        {
+            "kind": "helicoid",
+            "torque": f"{torque!r} N*m",
+            "driver": _gear(driver),
+            "driven": _gear(driven),
+            # To a picometre, so that planets' pairs are one whose places are rounded.
+            "centre_distance": f"{1e3 * distance:.9f} mm",
+            "analysis": {
+                "positions": case.operating.positions,
+                "compliance": MODELS[str(mesh.law)],
+                "sampling": "means",
+            },
+        }
+    )
+    try:
+        return PairFile(name, content, built(content))
+    except CaseError as error:
+        raise CaseError([_in_case(case, name, problem) for problem in error.problems]) from None
+
+
+def assumed_of(case: Case, name: str) -> tuple[str, ...]:
+    """What the pair of a mesh takes for granted, because the case does not say."""
+    mesh = case.meshes[name]
+    gears = dict(zip(("driver", "driven gear"), (case.gears[n] for n in mesh.ends), strict=True))
+    bare = [which for which, gear in gears.items() if _rim(gear) is None]
+    found = [f"rim of {' and '.join(bare)} 1.5 tooth heights"] if bare else []
+    if mesh.rated_torque is None:
+        found.append(f"rated for {LOAD * 1e-6:g} N per mm of face width and module")
+    if any(gear.tip_radius is None for gear in gears.values()):
+        found.append("tip radius of the rack 0.38")
+    return (*found, "steel", "unmodified flanks")
+
+
+def _rated(driver: Gear, driven: Gear) -> float:
+    if driver.tooth is None or driver.face_width is None or driven.face_width is None:
+        raise ValueError("a gear without teeth or face width")
+    width = min(driver.face_width.si, driven.face_width.si)
+    return LOAD * width * driver.tooth.module * driver.tooth.radius
+
+
+def _gear(gear: Gear) -> dict[str, Any]:
+    tooth = gear.tooth
+    if tooth is None or gear.face_width is None:
+        raise ValueError("a gear without teeth or face width")
+    said: dict[str, Any] = {
+        "module": f"{tooth.module!r} m",
+        "teeth": tooth.teeth,
+        "pressure_angle": f"{tooth.pressure_angle!r} rad",
+        "profile_shift": tooth.profile_shift,
+        "addendum": tooth.addendum,
+        "dedendum": tooth.dedendum,
+        "internal": tooth.internal,
+        "face_width": f"{gear.face_width.si!r} m",
+    }
+    if gear.helix_angle is not None:
+        said["helix_angle"] = f"{tooth.helix_angle!r} rad"
+    if gear.tip_radius is not None:
+        said["tip_radius"] = gear.tip_radius
+    rim = _rim(gear)
+    return said if rim is None else said | {"rim": f"{rim!r} m"}
+
+
+def _rim(gear: Gear) -> float | None:
+    """Radius at which the body ends, where the gear says so [m]; the rim on a web counts first."""
+    tooth = gear.tooth
+    if gear.rim is not None and tooth is not None:
+        inward = tooth.kind * (tooth.dedendum - tooth.profile_shift) * tooth.module
+        return tooth.radius - inward - tooth.kind * gear.rim.si
+    ends = gear.bore or gear.outside_diameter
+    return 0.5 * ends.si if ends else None
+
+
+def _in_case(case: Case, name: str, problem: Problem) -> Problem:
+    """A problem of the pair by the keys of the case."""
+    which, _, key = problem.key.partition(".")
+    mesh = case.meshes[name]
+    ends = {"driver": mesh.driver, "driven": mesh.driven}
+    if which not in ends:
+        told = f"{problem.key} = {problem.given}: {problem.message}" if which else problem.message
+        return case.problem(("meshes", name, "law"), told, problem.allowed, problem.hint)
+    gear = case.gears[ends[which]]
+    if key == "rim":
+        key = next(iter(gear.given("rim", "bore", "outside_diameter")), "module")
+    found = case.problem(
+        dotted(("gears", ends[which], key)), problem.message, problem.allowed, problem.hint
+    )
+    return found if found.given else replace(found, given=problem.given)

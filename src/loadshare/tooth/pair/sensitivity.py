@@ -1,0 +1,110 @@
+"""How far a computed law hangs on the rims and on where the mesh cycle is sampled.
+
+Both are found by slices, whatever the pair is analysed by: only ratios are told, and slices take a
+moment.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from loadshare.tooth.analysis.ltca import PairCompliance, ltca
+from loadshare.tooth.compliance.slices import Slices
+from loadshare.tooth.cylindrical.body import HelicoidBody
+from loadshare.tooth.face.body import FaceBody
+from loadshare.tooth.pair.file import PairFile
+
+THINNER, THICKER = 0.5, 1.5
+"""Rims that are tried, over the pair's own."""
+Which = Literal["driver", "driven"]
+
+
+@dataclass(frozen=True, slots=True)
+class RimEffect:
+    """Mean stiffness of a pair on other rims of one gear.
+
+    Attributes
+    ----------
+    thickness : tuple of float
+        Below the root: of a thinner rim, of the gear's own, and of a thicker one [m].
+    stiffness : tuple of float
+        T over the mean deflection of the cycle, over that on the gear's own rim.
+    """
+
+    thickness: tuple[float, float, float]
+    stiffness: tuple[float, float, float]
+
+
+def rim_effects(pair: PairFile) -> dict[Which, RimEffect]:
+    """Rims half as thick and half as thick again, or half-way to a solid body where that is less.
+
+    Parameters
+    ----------
+    pair : PairFile
+
+    Returns
+    -------
+    dict of "driver" or "driven" to RimEffect
+
+    Raises
+    ------
+    Refused
+        If a position has no certified contact.
+    """
+    geometry = pair.geometry
+    bodies: dict[Which, Any] = {"driver": geometry.driver, "driven": geometry.driven}
+    sides: dict[Which, int] = {"driver": 1, "driven": geometry.driven_side}
+    own = {name: Slices(bodies[name], sides[name]) for name in bodies}
+    mean = _mean_deflection(pair, own)
+    found = {}
+    for name, body in bodies.items():
+        thickness = _thickness(body)
+        most = np.inf if body.shape != "external" else 0.5 * (thickness + body.gear.root)
+        tried = thickness * THINNER, min(thickness * THICKER, most)
+        others = [
+            _mean_deflection(pair, own | {name: Slices(_on_rim(body, rim), sides[name])})
+            for rim in tried
+        ]
+        found[name] = RimEffect(
+            (tried[0], thickness, tried[1]), (mean / others[0], 1.0, mean / others[1])
+        )
+    return found
+
+
+def sampled_deflection(pair: PairFile) -> float:
+    """Mean elastic deflection at the positions of a pair, over that of the whole mesh cycle.
+
+    Parameters
+    ----------
+    pair : PairFile
+
+    Raises
+    ------
+    Refused
+        If a position has no certified contact.
+    """
+    count = pair.analysis.positions
+    found = ltca(pair.geometry, pair.torque, count, (1.0,), "slices", means=True)
+    return float(found.approach[:, -1].mean() / found.elastic[:, -1].mean())
+
+
+def _mean_deflection(pair: PairFile, models: dict[Which, Slices]) -> float:
+    compliance = PairCompliance(models["driver"], models["driven"], "slices")
+    found = ltca(pair.geometry, pair.torque, 1, (1.0,), compliance, means=True)
+    return float(found.elastic[0, -1])
+
+
+def _thickness(body: HelicoidBody | FaceBody) -> float:
+    if isinstance(body, FaceBody):
+        return body.rim
+    return abs(body.gear.root - body.rim)
+
+
+def _on_rim(body: HelicoidBody | FaceBody, thickness: float) -> HelicoidBody | FaceBody:
+    if isinstance(body, FaceBody):
+        return replace(body, gear=replace(body.gear, rim=thickness))
+    rim = body.gear.root - body.gear.kind * thickness
+    return replace(body, gear=replace(body.gear, rim=rim))
