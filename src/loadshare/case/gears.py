@@ -216,14 +216,11 @@ class Gear(Element):
     """Thickness of the rim below the teeth [length]: on a thin web for `law = "iso"`; for
     `law = "ltca"` of the body that yields, 1.5 tooth heights where nothing tells it."""
 
-    bore: Radius | None = None
-    """Diameter of the bore, from which the rim follows for `law = "ltca"` [length]."""
-
     outside_diameter: Radius | None = None
-    """Diameter at which the body of an internal gear ends, likewise [length]."""
+    """Diameter at which the body of an internal gear ends, from which its rim follows [length]."""
 
     bore: Radius | None = None
-    """Diameter of the bore of an external gear; solid when left out [length]."""
+    """Diameter of the bore of an external gear, from which its rim follows [length]."""
 
     density: Density | None = None
     """Density of the body, from which with the teeth its mass follows; 7850 kg/m^3 when left out
@@ -322,9 +319,7 @@ class Gear(Element):
         if tooth.base_half_angle <= tooth.kind * inv(tooth.transverse_angle):
             key = next(iter(self.given("thickness_allowance", "profile_shift")), "module")
             yield Rule("leaves no tooth at the reference circle", (key,))
-        if self.bore is not None and self.type != "external":
-            yield Rule("is for external gears only", ("bore",), hint="An internal gear has a rim.")
-        elif self.bore is not None and self.bore.si >= 2.0 * tooth.root:
+        if self.type == "external" and self.bore is not None and self.bore.si >= 2.0 * tooth.root:
             root = f"the root diameter is {2e3 * tooth.root:.6g} mm"
             yield Rule(f"leaves no body below the teeth: {root}", ("bore",))
         if tooth.tip <= tooth.base_radius:

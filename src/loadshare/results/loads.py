@@ -74,7 +74,6 @@ class Loads:
         """Force of every gear on its bearing, of a planet on its pin [N], in its frame.
 
         Supports and bearings with clearance together; those of splines and rings stand apart.
-        On an elastic support and a bearing with clearance together where a gear has both.
         """
         of, state = self._state.of, self._state
         pushing = of.pushing.reshape(-1, len(of.order), 3)
@@ -92,7 +91,5 @@ class Loads:
             bearing = self.train.bearings.get(name)
             if bearing is not None:
                 own = own - gear.frame @ state.reaction[of.pulls.index(bearing.name), :, 0]
-            for bearing in (b for b in self.train.bearings.values() if b.gear == name):
-                own = own - gear.frame @ self.answer.radial_reaction[bearing.name]
             found[name] = (float(own[0]), float(own[1]))
         return found

@@ -11,7 +11,6 @@ from loadshare.contact.radial import RadialLaw, spline_law
 from loadshare.train.gear import ORIGIN, Gear, Vector
 from loadshare.train.mesh import Approach, Mesh, approach_of
 from loadshare.train.offset import Offset, turned_about
-from loadshare.train.offset import Offset
 from loadshare.train.period import Period
 from loadshare.train.ring import Bearing, DrumRing, Ring, RoundRing
 

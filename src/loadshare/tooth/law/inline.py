@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from loadshare.case.keys import dotted
 from loadshare.case.line_of_action import centre_distance
-from loadshare.case.place import centres_of, minus
+from loadshare.case.place import minus
 from loadshare.errors import CaseError, Problem
 from loadshare.tooth.pair.file import PairFile, built
 from loadshare.tooth.pair.model import HelicoidContent
@@ -38,7 +38,7 @@ def inline_pair(case: Case, name: str) -> PairFile:
     """
     mesh = case.meshes[name]
     driver, driven = case.gears[mesh.driver], case.gears[mesh.driven]
-    centres = centres_of(case.gears)
+    centres = case.centres()
     distance = centre_distance(driver, minus(centres[mesh.driven], centres[mesh.driver]))
     torque = mesh.rated_torque.si if mesh.rated_torque else _rated(driver, driven)
     content = HelicoidContent.model_validate(

@@ -146,8 +146,6 @@ def _by_formula(
     from loadshare.tooth.law.iso6336 import basis_of, least_torque, mesh_stiffness
 
     centres = case.centres()
-    found: dict[str, float] = {}
-    centres = centres_of(case.gears)
     found: dict[str, dict[str, str]] = {}
     problems: list[Problem] = []
     for name in names:
