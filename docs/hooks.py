@@ -40,6 +40,7 @@ TABLES = (
     ("Float range, up and down", "Range", "float = { up = …, down = … }"),
     ("Float range from backlashes", "Backlashes", "float = { upward = …, downward = … }"),
     ("Bearings with clearance", "Bearing", "[bearings.GEAR]"),
+    ("Balls or rollers of a bearing", "RollingElements", "rolling = { … }"),
     ("Errors", "Errors", "[errors.GEAR]"),
     ("Installation error by size and direction", "Offset", "installation = { … }"),
     ("Eccentricity", "Eccentricity", "eccentricity = { … }"),

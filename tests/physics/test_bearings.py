@@ -189,6 +189,26 @@ def test_laws_of_rolling_bearings_are_samples_of_one_machine(key, stiffness, pow
             assert here == pytest.approx(float(expected), rel=1e-9, abs=1e-11 * torque[sample])
 
 
+def test_a_bearing_of_balls_yields_as_palmgren_has_it():
+    """Nine balls of 7.9 mm: δ = 4.36e-4 (Q²/D)^(1/3) mm with Q = 4.37 F/Z, Harris' form."""
+    rolling = {"balls": 9, "diameter": "7.938 mm"}
+    case = pair().replace({"bearings.a.stiffness": None, "bearings.a.rolling": rolling})
+    found = ls.solve(case).positions[0]
+    most = 4.37 * FORCE / 9
+    further = 4.36e-7 * (most**2 / 7.938) ** (1 / 3)
+    assert np.hypot(*found.displacement["a"]) == pytest.approx(20e-6 + further, rel=1e-12)
+
+
+def test_a_bearing_of_rollers_yields_as_palmgren_has_it():
+    rolling = {"rollers": 14, "length": "12 mm", "contact_angle": "12 deg"}
+    case = pair().replace({"bearings.a.stiffness": None, "bearings.a.rolling": rolling})
+    found = ls.solve(case).positions[0]
+    inclined = math.cos(math.radians(12.0))
+    most = 4.08 * FORCE / 14 / inclined
+    further = 7.68e-8 * most**0.9 / 12.0**0.8 / inclined
+    assert np.hypot(*found.displacement["a"]) == pytest.approx(20e-6 + further, rel=1e-12)
+
+
 @pytest.mark.parametrize(("key", "stiffness", "power"), LAWS[1:])
 def test_a_rolling_bearing_yields_by_its_tangent(key, stiffness, power):
     """Of δ = (F/K)^(1/power) by torque and by K; a set of elements keeps its rates."""
@@ -227,6 +247,14 @@ def test_a_turned_train_shares_alike(frame):
         ({"bearings.a.clearance": "-1 um"}, "bearings.a.clearance"),
         ({"bearings.a.stiffness": None}, "bearings.a.stiffness"),
         ({"bearings.a.ball_stiffness": "1e9 N/m^1.5"}, "bearings.a.ball_stiffness"),
+        (
+            {"bearings.a.stiffness": None, "bearings.a.rolling": {"balls": 9}},
+            "diameter: is missing",
+        ),
+        (
+            {"bearings.a.stiffness": None, "bearings.a.rolling": {"rollers": 9, "balls": 9}},
+            "either balls or rollers",
+        ),
         ({"bearings.c": {"clearance": "1 um", "stiffness": "rigid"}}, "bearings.c"),
         ({"gears.a.support": "rigid"}, "gears.a.support"),
     ],

@@ -21,6 +21,7 @@ from loadshare.case.element import (
     without_default,
 )
 from loadshare.case.quantity import (
+    ANGLE,
     BALL_STIFFNESS,
     FORCE,
     LENGTH,
@@ -35,6 +36,7 @@ from loadshare.case.quantity import (
     Quantity,
     Radius,
 )
+from loadshare.case.rolling import BALL, ROLLER, bearing_coefficient
 from loadshare.case.words import count
 
 PerSection = Annotated[
@@ -43,8 +45,9 @@ PerSection = Annotated[
 ]
 """A length of a shaft, or those of its sections."""
 
-BEARING_LAWS = {"stiffness": 1.0, "ball_stiffness": 1.5, "roller_stiffness": 10.0 / 9.0}
-"""Keys of the law of a bearing beyond its clearance, with the power of the way there."""
+BEARING_LAWS = ("stiffness", "ball_stiffness", "roller_stiffness", "rolling")
+"""Keys of the law of a bearing beyond its clearance."""
+STEEPEST_CONTACT = Quantity("75 deg", math.radians(75.0))
 Load = Annotated[Quantity, FORCE.bounded(at_least=0)]
 
 
@@ -255,6 +258,52 @@ class Ring(Element):
             yield Rule("is missing", ("radius",), LENGTH.allowed)
 
 
+class RollingElements(Element):
+    """The balls or rollers of a bearing, from which its law follows after Palmgren."""
+
+    balls: Annotated[int, Strict(), Field(ge=3)] | None = None
+    """Number of balls [-]."""
+
+    rollers: Annotated[int, Strict(), Field(ge=3)] | None = None
+    """Number of rollers, of all rows [-]."""
+
+    diameter: Radius | None = None
+    """Diameter of a ball [length]."""
+
+    length: Radius | None = None
+    """Effective length of a roller [length]."""
+
+    contact_angle: Annotated[Quantity, ANGLE.bounded(at_least=0, at_most=STEEPEST_CONTACT)] = (
+        Quantity("0 deg", 0.0)
+    )
+    """Angle of the line of contact to the radial plane [angle]."""
+
+    def rules(self) -> Iterator[Rule]:
+        """Yield what does not hold of the elements."""
+        kinds = self.given("balls", "rollers")
+        if len(kinds) != 1:
+            yield Rule(
+                "has either balls or rollers", allowed="balls and diameter, or rollers and length"
+            )
+            return
+        needed, idle = ("diameter", "length") if kinds == ["balls"] else ("length", "diameter")
+        if getattr(self, needed) is None:
+            yield Rule("is missing", (needed,), LENGTH.allowed, f"It goes with {kinds[0]}.")
+        if getattr(self, idle) is not None:
+            yield Rule(f"does not count for {kinds[0]}", (idle,))
+
+    @property
+    def law(self) -> tuple[float, float]:
+        """K [N/m^power], and its power."""
+        count = self.balls or self.rollers or 0
+        size = self.diameter or self.length
+        if size is None:
+            raise ValueError("rolling elements without a size")
+        kind: Literal["ball", "roller"] = "ball" if self.balls else "roller"
+        coefficient = bearing_coefficient(kind, count, size.si, size.si, self.contact_angle.si)
+        return coefficient, BALL if self.balls else ROLLER
+
+
 class Bearing(Element):
     """A bearing with radial clearance: it holds its gear where the clearance ends."""
 
@@ -271,6 +320,9 @@ class Bearing(Element):
 
     roller_stiffness: Annotated[Quantity, ROLLER_STIFFNESS.bounded(above=0)] | None = None
     """K of a roller bearing, F = K δ^(10/9) from there on [force/length^(10/9)]."""
+
+    rolling: RollingElements | None = None
+    """Balls or rollers from whose number and size the law follows."""
 
     offset: tuple[Length, Length] = (Quantity("0 mm", 0.0), Quantity("0 mm", 0.0))
     """Middle of the bearing, from the gear's centre [length]."""
@@ -289,6 +341,10 @@ class Bearing(Element):
     @property
     def wall(self) -> tuple[float, float]:
         """K [N/m^power] from the clearance on, infinite for a rigid bearing, and its power."""
-        (key,) = self.given(*BEARING_LAWS)
-        value = getattr(self, key)
-        return math.inf if isinstance(value, str) else value.si, BEARING_LAWS[key]
+        if self.rolling is not None:
+            return self.rolling.law
+        if self.ball_stiffness is not None:
+            return self.ball_stiffness.si, BALL
+        if self.roller_stiffness is not None:
+            return self.roller_stiffness.si, ROLLER
+        return self.stiffness.si if isinstance(self.stiffness, Quantity) else math.inf, 1.0
