@@ -57,12 +57,17 @@ OF_TEETH = (
     "rim",
     "bore",
     "outside_diameter",
+    "ovalisation",
 )
 """Keys of a gear that say more of its teeth, beside their number and module."""
 OF_A_GEAR = ("base_radius", "inner_radius", "outer_radius", "teeth", "module", *OF_TEETH)
 """Keys of a gear that a carrier does not have."""
 STEEL_EXPANSION = 11.5e-6
 """Thermal expansion where none is given [1/K]."""
+HARMONICS = 7
+"""How many harmonics of a rim there are at most: 2 to 8."""
+YOUNG = 206e9
+"""Of steel [Pa]."""
 COPIES = range(2, 33)
 """How many copies a gear may have."""
 RADIUS_TOLERANCE = 1e-3
@@ -216,6 +221,21 @@ class Gear(Element):
     """Thickness of the rim below the teeth [length]: on a thin web for `law = "iso"`; for
     `law = "ltca"` of the body that yields, 1.5 tooth heights where nothing tells it."""
 
+    ovalisation: (
+        Annotated[
+            Annotated[Literal["rim"], Tag(VALUE)]
+            | Annotated[
+                tuple[PositiveStiffness, ...], Field(min_length=1, max_length=HARMONICS), Tag(LIST)
+            ],
+            shaped('"rim", or a list of stiffnesses'),
+        ]
+        | None
+    ) = None
+    """Stiffness of an internal gear's rim against bending in the harmonics 2, 3, … [force/length].
+
+    rim: that of a thin ring of steel of the `rim` and `face_width`, up to the eighth.
+    """
+
     outside_diameter: Radius | None = None
     """Diameter at which the body of an internal gear ends, from which its rim follows [length]."""
 
@@ -260,6 +280,7 @@ class Gear(Element):
         if self.type == "carrier":
             yield from self._carrier_rules()
             return
+        yield from self._rim_rules()
         radii = self.given("inner_radius", "outer_radius")
         if self.module is not None or self.given(*OF_TEETH):
             yield from self._tooth_rules()
@@ -281,6 +302,16 @@ class Gear(Element):
         ):
             yield Rule("is not below outer_radius", ("inner_radius",))
         yield from self._axis_rules()
+
+    def _rim_rules(self) -> Iterator[Rule]:
+        if self.ovalisation is None:
+            return
+        if self.type != "internal":
+            yield Rule("is for internal gears only", ("ovalisation",))
+        elif isinstance(self.ovalisation, str):
+            for key in ("module", "rim", "face_width"):
+                if getattr(self, key) is None:
+                    yield Rule("is missing", (key,), LENGTH.allowed, "It goes with ovalisation.")
 
     def _axis_rules(self) -> Iterator[Rule]:
         if not isinstance(self.axis, str) and not any(self.axis):
@@ -345,6 +376,22 @@ class Gear(Element):
             internal=self.type == "internal",
             thickness_allowance=self.thickness_allowance.si if self.thickness_allowance else 0.0,
         )
+
+    @property
+    def rim_stiffnesses(self) -> tuple[float, ...]:
+        """Stiffness of the rim against the harmonics 2, 3, … [N/m], none where it is rigid.
+
+        Of a thin ring π E I (n² − 1)²/R³, R its middle and I its section's second moment.
+        """
+        if self.ovalisation is None:
+            return ()
+        if not isinstance(self.ovalisation, str):
+            return tuple(k.si for k in self.ovalisation)
+        if self.tooth is None or self.rim is None or self.face_width is None:
+            raise ValueError("a rim without dimensions")
+        thick, middle = self.rim.si, self.tooth.root + 0.5 * self.rim.si
+        bending = math.pi * YOUNG * self.face_width.si * thick**3 / 12.0 / middle**3
+        return tuple(bending * (n**2 - 1) ** 2 for n in range(2, 2 + HARMONICS))
 
     @property
     def is_carrier(self) -> bool:

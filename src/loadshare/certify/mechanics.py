@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -117,6 +118,13 @@ class Mechanics:
                     self.moment[order[carrier], e] += moment
                     self.turning[e, order[carrier]] -= moment
                     pushing[e, order[carrier]] -= push
+            for end, other, push in (
+                (mesh.driver, mesh.driven, normal),
+                (mesh.driven, mesh.driver, -normal),
+            ):
+                way = train.gears[other].centre - train.gears[end].centre
+                for name, bends in _bending(train, end, way, push):
+                    pushing[e, order[name]] += bends
         self.pushing = pushing.reshape(width, 3 * count)
 
     def _put_shafts(self) -> None:
@@ -274,6 +282,21 @@ def mechanics_of(train: Train) -> Mechanics:
 
 def _pairs(values: list[object]) -> Numbers:
     return np.array(values, dtype=np.intp).reshape(-1, 2)
+
+
+def _bending(train: Train, gear: str, way: Array, push: Array) -> Iterator[tuple[str, Array]]:
+    """Yield the harmonics of a gear's rim, and the part of a push on it that works on each.
+
+    The rim moves by cos nψ outwards and −(sin nψ)/n round, and a quarter of a wave further on.
+    """
+    for name, rim in train.gears.items():
+        if rim.rim_of != gear:
+            continue
+        out = transverse(way, rim.axis) / np.linalg.norm(transverse(way, rim.axis))
+        ahead = cross(rim.axis, out)
+        turn = (rim.frame[0] @ out + 1j * (rim.frame[1] @ out)) ** rim.harmonic
+        moved = out * turn + 1j * ahead * turn / rim.harmonic
+        yield name, (push @ moved.real) * rim.frame[0] + (push @ moved.imag) * rim.frame[1]
 
 
 def _apart(train: Train, gear: str, neighbour: str) -> Array:

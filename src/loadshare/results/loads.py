@@ -67,6 +67,7 @@ class Loads:
         return {
             name: gear.sense * float(value) + 0.0
             for (name, gear), value in zip(self.train.gears.items(), torque, strict=True)
+            if gear.rim_of is None
         }
 
     @cached_property
@@ -83,6 +84,8 @@ class Loads:
             pushed += state.pushed[1][:, :, 0]
         found = {}
         for k, (name, gear) in enumerate(self.train.gears.items()):
+            if gear.rim_of is not None:
+                continue
             own = (
                 gear.frame @ pushed[k]
                 if gear.support is None

@@ -20,6 +20,7 @@ from loadshare.train.gear import Gear, Vector, cross
 from loadshare.train.geometry import Geometry, Pair, geometry_of
 from loadshare.train.mesh import Mesh
 from loadshare.train.offset import Offset, polar
+from loadshare.train.rim import with_harmonics
 from loadshare.train.ring import Bearing, DrumRing, Ring, RoundRing, transverse
 from loadshare.train.thermal import fitted, flank_growth, grows, with_growth
 from loadshare.train.train import Shaft, Spline, Stage, Train
@@ -101,7 +102,7 @@ def train_of(
         "gears", lambda name, _: replace(geometry.gears[name], support=_support(case, name))
     )
     # In the order of the walk from the input gear.
-    gears = {name: supported[name] for name in geometry.gears}
+    gears = with_harmonics(case, {name: supported[name] for name in geometry.gears})
     by_layout, warm = case.operating.phases == "layout", grows(case)
 
     def mesh_of(name: str, mesh: spec.Mesh) -> Mesh:

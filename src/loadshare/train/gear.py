@@ -79,6 +79,11 @@ class Gear:
         How far its pin moves per rotation of the carrier [m].
     frame_of : str or None
         Carrier from which it is seen: that of the planets with which it meshes, its own, or itself.
+    rim_of : str or None
+        Internal gear of whose rim it is a harmonic: no body but a way in which that one bends. Its
+        displacement is the amplitude of cos nψ and of sin nψ.
+    harmonic : int
+        n.
     """
 
     name: str
@@ -96,6 +101,8 @@ class Gear:
     carrier: str | None = None
     seat: Vector = field(default_factory=lambda: ORIGIN)
     frame_of: str | None = None
+    rim_of: str | None = None
+    harmonic: int = 0
 
     @property
     def running(self) -> int:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 from loadshare.contact.law import Law
 from loadshare.train.gear import Gear, Vector, cross
+from loadshare.train.rim import bent
 
 
 class MeshGeometryError(ValueError):
@@ -239,6 +240,8 @@ def approach_of(mesh: Mesh, drive: bool, gears: Mapping[str, Gear]) -> Approach:
         if carrier is not None:
             turning[carrier] = turning.get(carrier, 0.0) + float(push @ gears[end].seat)
             shifting[carrier] = shifting.get(carrier, 0.0) + push
+        other = gears[mesh.driven if end == mesh.driver else mesh.driver]
+        shifting |= bent(end, other, push, gears)
     return Approach(turning, shifting)
 
 
