@@ -1,0 +1,50 @@
+"""Shipped cases from their teeth, or with each branch written once, against those in numbers."""
+
+from pathlib import Path
+
+import pytest
+
+import loadshare as ls
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+def torques(path: str) -> dict[str, float]:
+    return ls.solve(CASES / path).positions[0].torque
+
+
+def test_the_split_path_box_from_its_teeth():
+    """The same box but for digits: its angles are written to 1e-10 deg, its centres to 10 nm."""
+    given, teeth = torques("two_path/clocking_error.toml"), torques("two_path/from_teeth.toml")
+    names = {
+        "in-wheelA": "in-wheel1",
+        "in-wheelB": "in-wheel2",
+        "pinionA-out": "pinion1-out",
+        "pinionB-out": "pinion2-out",
+    }
+    for one, other in names.items():
+        assert teeth[other] == pytest.approx(given[one], rel=1e-7)
+    old = ls.load_case(CASES / "two_path/clocking_error.toml").centres()
+    new = ls.load_case(CASES / "two_path/from_teeth.toml").centres()
+    for one, other in (("wheelA", "wheel1"), ("pinionB", "pinion2"), ("out", "out")):
+        assert new[other] == pytest.approx(old[one], abs=1e-8)
+
+
+def test_the_seeds_drive_with_each_branch_written_once():
+    given, short = torques("fgfbstts/installation_error.toml"), torques("fgfbstts/short.toml")
+    gears = {"1": "in", "2": "face1", "3": "face2", "4": "pinion1", "5": "pinion2", "10": "out"}
+    gears |= {"6": "right1", "8": "right2", "7": "left1", "9": "left2"}
+    assert len(given) == len(short) == 10
+    for mesh, torque in given.items():
+        other = "-".join(gears[end] for end in mesh.split("-"))
+        assert short[other] == pytest.approx(torque, rel=1e-12)
+
+
+def test_a_differential_halves_the_torque():
+    """Each sun takes half of the carrier's torque, shared by three planets as 21 teeth have it."""
+    result = ls.solve(CASES / "planetary/differential.toml")
+    assert result.positions[0].loads.gears["left"] == pytest.approx(-500.0, rel=1e-12)
+    meshes = result.positions[0].torque
+    assert sum(meshes[f"right-second{k}"] for k in (1, 2, 3)) == pytest.approx(500.0, rel=1e-12)
+    first = sum(meshes[f"first{k}-left"] for k in (1, 2, 3))
+    assert first == pytest.approx(500.0 * 16.0 / 21.0, rel=1e-12)
