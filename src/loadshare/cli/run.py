@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
@@ -15,7 +16,7 @@ from loadshare.cli.files import write_document, write_text
 from loadshare.cli.options import CaseFile, Method, Solver, Tolerance, changes, output
 from loadshare.cli.refusal import refused_document, told
 from loadshare.errors import Refused
-from loadshare.output import csv_of
+from loadshare.output import clear, csv_of
 
 if TYPE_CHECKING:
     from loadshare.case import Case
@@ -27,6 +28,14 @@ def run(
     json: Annotated[Path | None, output("--json", what="Write the result as JSON.")] = None,
     netcdf: Annotated[Path | None, output("--netcdf", what="Write labelled arrays.")] = None,
     csv: Annotated[Path | None, output("--csv", what="Write torques and Ω as a table.")] = None,
+    tables: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FOLDER",
+            file_okay=False,
+            help="Write case and result as CSV tables for a spreadsheet into this folder.",
+        ),
+    ] = None,
     solver: Solver = "auto",
     method: Method = "newton",
     tolerance: Tolerance = 1e-9,
@@ -94,11 +103,13 @@ def run(
     if explain:
         _print_explanations(loaded, wanted if position else wanted[:1], how)
     if refusal is not None:
-        _end_refused(refusal, loaded.name, json, (netcdf, csv))
+        _end_refused(refusal, loaded.name, json, (netcdf, csv, tables))
     assert result is not None
     _write(json, result.to_json)
     _write(netcdf, result.to_netcdf)
     _write(csv, lambda file: write_text(file, csv_of(result.to_frame())))
+    if tables is not None:
+        _write_tables(tables, result)
 
 
 def _solved(
@@ -140,6 +151,17 @@ def _end_refused(
     _write(json, lambda file: write_document(file, refused_document(refusal, case)))
     lines = [f"REFUSED  {line}" for line in told(refusal)]
     fail([*lines, *(f"{f}: not written, for want of an answer" for f in others if f)], REFUSED)
+
+
+def _write_tables(folder: Path, result: Result) -> None:
+    from loadshare.exchange.spreadsheet import export_tables
+
+    with problems_told():
+        made = export_tables(result)
+    files = {folder / f"{name}.csv": text for name, text in made.items()}
+    clear(files)
+    for file, text in files.items():
+        _write(file, partial(write_text, text=text))
 
 
 def _wanted(positions: list[int] | None, count: int) -> list[int]:
