@@ -22,20 +22,34 @@ if TYPE_CHECKING:
     from loadshare.case import Case
     from loadshare.results import Result
 
+Tables = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FOLDER",
+        file_okay=False,
+        help="Write case and result as CSV tables for a spreadsheet into this folder.",
+    ),
+]
+Loads = Annotated[
+    bool,
+    typer.Option("--loads", help="Tell what gears, bearings or pins, and shafts carry."),
+]
+Cycle = Annotated[
+    bool,
+    typer.Option(
+        "--cycle",
+        help="Tell transmission error, stiffness, load share and place in the cycle of every "
+        "mesh at every position.",
+    ),
+]
+
 
 def run(
     case: CaseFile,
     json: Annotated[Path | None, output("--json", what="Write the result as JSON.")] = None,
     netcdf: Annotated[Path | None, output("--netcdf", what="Write labelled arrays.")] = None,
     csv: Annotated[Path | None, output("--csv", what="Write torques and Ω as a table.")] = None,
-    tables: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FOLDER",
-            file_okay=False,
-            help="Write case and result as CSV tables for a spreadsheet into this folder.",
-        ),
-    ] = None,
+    tables: Tables = None,
     solver: Solver = "auto",
     method: Method = "newton",
     tolerance: Tolerance = 1e-9,
@@ -46,18 +60,8 @@ def run(
     no_reduce: Annotated[
         bool, typer.Option("--no-reduce", help="Solve the whole scene, leaving nothing out.")
     ] = False,
-    loads: Annotated[
-        bool,
-        typer.Option("--loads", help="Tell what gears, bearings or pins, and shafts carry."),
-    ] = False,
-    cycle: Annotated[
-        bool,
-        typer.Option(
-            "--cycle",
-            help="Tell transmission error, stiffness, load share and place in the cycle of every "
-            "mesh at every position.",
-        ),
-    ] = False,
+    loads: Loads = False,
+    cycle: Cycle = False,
     explain: Annotated[
         bool,
         typer.Option(
