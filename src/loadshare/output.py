@@ -189,11 +189,12 @@ def netcdf_of(arrays: xr.Dataset) -> bytes:
     return held.getvalue()
 
 
-_FORMULA = re.compile(r"[=@\t\r\n]|[+-](?![\d.])")
+FORMULA = re.compile(r"[=@\t\r\n]|[+-](?![\d.])")
+"""How a text begins that a spreadsheet takes for a formula, and that is no quantity."""
 
 
 def _plain(cell: object) -> object:
-    return f"'{cell}" if isinstance(cell, str) and _FORMULA.match(cell) else cell
+    return f"'{cell}" if isinstance(cell, str) and FORMULA.match(cell) else cell
 
 
 def _give(path: Path, known: os.stat_result) -> None:

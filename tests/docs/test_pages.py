@@ -28,6 +28,7 @@ blocks = _load("blocks")
         "docs/index.md",
         "docs/tutorial.md",
         "docs/gearbox.md",
+        "docs/spreadsheets.md",
         "docs/pictures.md",
         "docs/studies.md",
         "docs/results.md",

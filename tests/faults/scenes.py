@@ -149,6 +149,7 @@ FILES: dict[str, tuple[str, ...]] = {
     "result.json": ("run", "{}/in/case.toml", "--position", "1", "--json", "{}/out/result.json"),
     "result.nc": ("run", "{}/in/case.toml", "--position", "1", "--netcdf", "{}/out/result.nc"),
     "result.csv": ("run", "{}/in/case.toml", "--position", "1", "--csv", "{}/out/result.csv"),
+    "gears.csv": ("run", "{}/in/case.toml", "--position", "1", "--tables", "{}/out"),
     "refused.json": ("run", "{}/in/unheld.toml", "--json", "{}/out/refused.json"),
     "sweep.csv": (
         *("sweep", "{}/in/case.toml", "--position", "1", "--set", FLOAT),
@@ -163,7 +164,7 @@ FILES: dict[str, tuple[str, ...]] = {
     "schema.json": ("schema", "-o", "{}/out/schema.json"),
     "case.toml": ("new", "fresh", "-o", "{}/out/case.toml", "--force"),
 }
-"""Commands that write one file."""
+"""Commands that write one file; tables are several, one after the other."""
 OLD = b"what was there before\n"
 
 

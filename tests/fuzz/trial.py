@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import shutil
 import warnings
 from collections.abc import Callable, Iterator
@@ -32,6 +33,7 @@ from tests.fuzz.mutations import (
 import loadshare as ls
 from benchmarks.limit import TooLong, limited
 from loadshare.cli.main import main
+from loadshare.exchange.spreadsheet.exporting import case_tables
 from loadshare.settings import ALLOWED
 from loadshare.tooth.pair.file import load_pair
 
@@ -192,19 +194,19 @@ def study_case(name: str) -> dict[str, Any]:
 
 def shortened(case: dict[str, Any]) -> dict[str, Any]:
     """Return a case without what may take hours as it is asked for: samples, steps."""
-    for table in _tables(case):
+    for table in _tables_in(case):
         for key in COUNTS & set(table):
             if isinstance(table[key], int) and 20 < table[key] <= ALLOWED.samples:
                 table[key] = 20
     return case
 
 
-def _tables(data: Any) -> Iterator[dict[str, Any]]:
+def _tables_in(data: Any) -> Iterator[dict[str, Any]]:
     if isinstance(data, dict):
         yield data
     for item in data.values() if isinstance(data, dict) else data:
         if isinstance(item, dict | list):
-            yield from _tables(item)
+            yield from _tables_in(item)
 
 
 def _bytes(random: Random, folder: Path) -> tuple[str, ...]:
@@ -274,6 +276,41 @@ def _rexs(random: Random, folder: Path) -> tuple[str, ...]:
     return ("import", str(file), "-o", str(folder / "case.toml"))
 
 
+def _tables(random: Random, folder: Path) -> tuple[str, ...]:
+    """Write the tables of a case with cells or bytes changed."""
+    _, data = pick(random, plain_cases())
+    box = folder / "box"
+    box.mkdir()
+    tables = dict(case_tables(data))
+    spoilt = pick(random, tuple(tables))
+    for name, text in tables.items():
+        content = text.encode()
+        if name == spoilt and random.integers(2):
+            content = garbled(random, content)
+        elif name == spoilt:
+            cells = re.split("([,\n])", text)
+            for _ in range(random.integers(1, 4)):
+                cells[2 * random.integers(len(cells) // 2)] = pick(random, (*NUMBERS, *NAMES))
+            content = "".join(cells).encode("utf-8", "surrogatepass")
+        (box / f"{name}.csv").write_bytes(content)
+    return ("import", str(box), "-o", str(folder / "case.toml"))
+
+
+@cache
+def plain_cases() -> list[tuple[Path, dict[str, Any]]]:
+    """Shipped cases with all that they inherit."""
+    return [(file, ls.load_case(file).to_dict()) for file, _ in shipped_cases()]
+
+
+def _imported(words: tuple[str, ...], folder: Path) -> tuple[int, str]:
+    """Import tables; what makes a case is solved."""
+    code, wrong = _judged(words, folder)
+    if code or wrong:
+        return code, wrong
+    found = str(folder / "found.json")
+    return _judged(("run", words[-1], "--position", "1", "--json", found), folder)
+
+
 def _exchanged(words: tuple[str, ...], folder: Path) -> tuple[int, str]:
     """Import a unit; what makes a case is solved and written back, and imports again."""
     code, wrong = _judged(words, folder)
@@ -330,12 +367,13 @@ KINDS: dict[str, Callable[[Random, Path], tuple[str, ...]]] = {
     "words": _words,
     "pair": _pair,
     "rexs": _rexs,
+    "tables": _tables,
     "result": _result,
 }
-JUDGES = {"pair": _read, "rexs": _exchanged, "result": _loaded}
+JUDGES = {"pair": _read, "rexs": _exchanged, "tables": _imported, "result": _loaded}
 SHARES = (
     *(("case",) * 14 + ("numbers",) * 4 + ("bytes",) * 8 + ("words",) * 6 + ("study",) * 2),
-    *(("pair",) * 4 + ("rexs",) * 2 + ("result",) * 4),
+    *(("pair",) * 4 + ("rexs",) * 2 + ("tables",) * 2 + ("result",) * 4),
 )
 """How often each kind is drawn: studies take ten times as long as all others."""
 

@@ -17,7 +17,11 @@ from loadshare.output import STANDARD
 
 def import_machine(
     unit: Annotated[
-        Path, typer.Argument(metavar="UNIT", help="REXS file: .rexs, .rexsj or .rexsz.")
+        Path,
+        typer.Argument(
+            metavar="UNIT",
+            help="REXS file (.rexs, .rexsj, .rexsz), folder of CSV tables, or workbook (.xlsx).",
+        ),
     ],
     to: Annotated[
         Path | None,
@@ -29,16 +33,18 @@ def import_machine(
         bool, typer.Option("--force", help="Overwrite the case file if it exists.")
     ] = False,
 ) -> None:
-    """Turn a gear unit from a REXS file into a case, and tell what was assumed and left out."""
+    """Turn a gear unit into a case, and tell what was assumed and left out."""
     from loadshare.errors import CaseError
     from loadshare.exchange.rexs import import_rexs
+    from loadshare.exchange.spreadsheet import import_tables, is_spreadsheet
 
-    target = to or Path(unit.name).with_suffix(".toml")
+    known = unit.resolve() if unit.is_dir() else unit
+    target = to or Path(known.name or "case").with_suffix(".toml")
     if target != STANDARD and target.exists() and not force:
         fail([f"{target}: exists already; --force overwrites it"], UNUSABLE)
     keep_inputs([unit])
     with problems_told():
-        imported = import_rexs(unit)
+        imported = import_tables(unit) if is_spreadsheet(unit) else import_rexs(unit)
     save_text(target, imported.text)
     if target != STANDARD:
         say(f"Took {', '.join(imported.taken)}.")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
@@ -15,11 +16,32 @@ from loadshare.cli.files import write_document, write_text
 from loadshare.cli.options import CaseFile, Method, Solver, Tolerance, changes, output
 from loadshare.cli.refusal import refused_document, told
 from loadshare.errors import Refused
-from loadshare.output import csv_of
+from loadshare.output import clear, csv_of
 
 if TYPE_CHECKING:
     from loadshare.case import Case
     from loadshare.results import Result
+
+Tables = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FOLDER",
+        file_okay=False,
+        help="Write case and result as CSV tables for a spreadsheet into this folder.",
+    ),
+]
+Loads = Annotated[
+    bool,
+    typer.Option("--loads", help="Tell what gears, bearings or pins, and shafts carry."),
+]
+Cycle = Annotated[
+    bool,
+    typer.Option(
+        "--cycle",
+        help="Tell transmission error, stiffness, load share and place in the cycle of every "
+        "mesh at every position.",
+    ),
+]
 
 
 def run(
@@ -27,6 +49,7 @@ def run(
     json: Annotated[Path | None, output("--json", what="Write the result as JSON.")] = None,
     netcdf: Annotated[Path | None, output("--netcdf", what="Write labelled arrays.")] = None,
     csv: Annotated[Path | None, output("--csv", what="Write torques and Ω as a table.")] = None,
+    tables: Tables = None,
     solver: Solver = "auto",
     method: Method = "newton",
     tolerance: Tolerance = 1e-9,
@@ -37,18 +60,8 @@ def run(
     no_reduce: Annotated[
         bool, typer.Option("--no-reduce", help="Solve the whole scene, leaving nothing out.")
     ] = False,
-    loads: Annotated[
-        bool,
-        typer.Option("--loads", help="Tell what gears, bearings or pins, and shafts carry."),
-    ] = False,
-    cycle: Annotated[
-        bool,
-        typer.Option(
-            "--cycle",
-            help="Tell transmission error, stiffness, load share and place in the cycle of every "
-            "mesh at every position.",
-        ),
-    ] = False,
+    loads: Loads = False,
+    cycle: Cycle = False,
     explain: Annotated[
         bool,
         typer.Option(
@@ -94,11 +107,13 @@ def run(
     if explain:
         _print_explanations(loaded, wanted if position else wanted[:1], how)
     if refusal is not None:
-        _end_refused(refusal, loaded.name, json, (netcdf, csv))
+        _end_refused(refusal, loaded.name, json, (netcdf, csv, tables))
     assert result is not None
     _write(json, result.to_json)
     _write(netcdf, result.to_netcdf)
     _write(csv, lambda file: write_text(file, csv_of(result.to_frame())))
+    if tables is not None:
+        _write_tables(tables, result)
 
 
 def _solved(
@@ -140,6 +155,17 @@ def _end_refused(
     _write(json, lambda file: write_document(file, refused_document(refusal, case)))
     lines = [f"REFUSED  {line}" for line in told(refusal)]
     fail([*lines, *(f"{f}: not written, for want of an answer" for f in others if f)], REFUSED)
+
+
+def _write_tables(folder: Path, result: Result) -> None:
+    from loadshare.exchange.spreadsheet import export_tables
+
+    with problems_told():
+        made = export_tables(result)
+    files = {folder / f"{name}.csv": text for name, text in made.items()}
+    clear(files)
+    for file, text in files.items():
+        _write(file, partial(write_text, text=text))
 
 
 def _wanted(positions: list[int] | None, count: int) -> list[int]:

@@ -257,3 +257,30 @@ def frame(result: Result) -> pd.DataFrame:
     arrays = result.dataset[["torque", "coast_torque", "share", "pair_share"]]
     worst = [p.certificate.worst for p in result.positions]
     return arrays.assign(worst_residual=("position", worst)).to_dataframe().reset_index()
+
+
+def frames(result: Result) -> dict[str, pd.DataFrame]:
+    """Tabulate everything by what it is told of: train, meshes, gears, shafts, floats.
+
+    A row for every position and element; heads tell the unit.
+    """
+    arrays, found = result.dataset, {}
+    for dim in ("side", "mesh", "gear", "shaft", "float"):
+        columns = {}
+        for name, variable in VARIABLES.items():
+            head = f"{name} [{variable.units}]"
+            if variable.dims == (dim,):
+                columns[head] = arrays[name]
+            elif variable.dims == (dim, "component"):
+                for axis in COMPONENTS:
+                    columns[f"{name} {axis} [{variable.units}]"] = arrays[name].sel(
+                        component=axis, drop=True
+                    )
+        if arrays.sizes[dim]:
+            table = arrays[[]].assign(columns).to_dataframe(["position", dim])
+            found[TABLES[dim]] = table.reset_index()
+    return found
+
+
+TABLES = {"side": "train", "mesh": "meshes", "gear": "gears", "shaft": "shafts", "float": "floats"}
+"""Names of tables of what is told of an element, by dimension."""

@@ -8,54 +8,15 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
-from loadshare.case import Case
-from loadshare.case.origin import Origin
-from loadshare.case.writer import toml_text
 from loadshare.errors import CaseError, Problem
+from loadshare.exchange.imported import Data, Imported, commented
 from loadshare.exchange.rexs.gearing import GEARS, READ, Gearing, Vector
 from loadshare.exchange.rexs.holding import Holding, holding_of
 from loadshare.exchange.rexs.model import Component
 from loadshare.exchange.rexs.reading import read_model
 from loadshare.exchange.rexs.shafts import torsion_between
-
-Data: TypeAlias = dict[str, Any]
-
-
-@dataclass(frozen=True)
-class Imported:
-    """A case as it was imported.
-
-    Attributes
-    ----------
-    data : dict
-        The sections of a case file.
-    text : str
-        The case file, headed by what was assumed and left out.
-    taken, assumed, left_out : tuple of str
-    """
-
-    data: Data
-    text: str
-    taken: tuple[str, ...]
-    assumed: tuple[str, ...]
-    left_out: tuple[str, ...]
-
-    def case(self, file: str = "case") -> Case:
-        """Return the case.
-
-        Parameters
-        ----------
-        file : str
-            To be named in messages.
-
-        Raises
-        ------
-        CaseError
-            If what the file says makes no case that can be used.
-        """
-        return Case(self.data, origin=Origin(file))
 
 
 def import_rexs(path: str | Path) -> Imported:
@@ -139,7 +100,7 @@ class _Importer:
             if part
         )
         assumed, left = dict.fromkeys(self.assumed), dict.fromkeys(self.left_out)
-        text = _commented(data, assumed, left)
+        text = commented(data, assumed, left)
         return Imported(data, text, taken, tuple(assumed), tuple(left))
 
     # Bodies ---------------------------------------------------------------------------------------
@@ -402,12 +363,3 @@ def _axis(axis: Vector) -> Any:
 def _torsion(stiffness: float | None) -> str:
     rigid = stiffness is None or not 0.0 < stiffness < 1e15
     return "rigid" if rigid else f"{stiffness:.12g} N*m/rad"
-
-
-def _commented(data: Data, assumed: dict[str, None], left: dict[str, None]) -> str:
-    """The case file, headed by what was assumed and left out."""
-    lines = []
-    for title, told in (("Assumed:", assumed), ("Left out:", left)):
-        if told:
-            lines += [f"# {title}", *(f"#   {' '.join(line.split())}" for line in told)]
-    return "\n".join([*lines, "", toml_text(data)])

@@ -1,0 +1,61 @@
+"""A case as it was imported from another kind of file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+from loadshare.case import Case
+from loadshare.case.keys import Path
+from loadshare.case.origin import Origin
+from loadshare.case.writer import toml_text
+
+Data: TypeAlias = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Imported:
+    """A case as it was imported.
+
+    Attributes
+    ----------
+    data : dict
+        The sections of a case file.
+    text : str
+        The case file, headed by what was assumed and left out.
+    taken, assumed, left_out : tuple of str
+    places : mapping of key path to str
+        Where keys stood, where that is to be told.
+    """
+
+    data: Data
+    text: str
+    taken: tuple[str, ...]
+    assumed: tuple[str, ...]
+    left_out: tuple[str, ...]
+    places: Mapping[Path, str] = field(default_factory=dict)
+
+    def case(self, file: str = "case") -> Case:
+        """Return the case.
+
+        Parameters
+        ----------
+        file : str
+            To be named in messages.
+
+        Raises
+        ------
+        CaseError
+            If what the file says makes no case that can be used.
+        """
+        return Case(self.data, origin=Origin(file, self.places))
+
+
+def commented(data: Data, assumed: Iterable[str], left: Iterable[str]) -> str:
+    """Return the case file, headed by what was assumed and left out."""
+    lines = []
+    for title, told in (("Assumed:", list(assumed)), ("Left out:", list(left))):
+        if told:
+            lines += [f"# {title}", *(f"#   {' '.join(line.split())}" for line in told)]
+    return "\n".join([*lines, "", toml_text(data)])

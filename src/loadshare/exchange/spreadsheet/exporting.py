@@ -1,0 +1,118 @@
+"""A case and what was found of it, as the tables of a spreadsheet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from loadshare.case.content import Content
+from loadshare.case.keys import Path, dotted
+from loadshare.errors import CaseError, Problem
+from loadshare.exchange.spreadsheet.cells import (
+    head_of,
+    taken,
+    text_of,
+    value_of,
+    with_common_unit,
+)
+from loadshare.exchange.spreadsheet.importing import ABOUT, ALONE, FOUND
+from loadshare.output import csv_of
+
+if TYPE_CHECKING:
+    from loadshare.results import Result
+
+
+def export_tables(result: Result) -> dict[str, str]:
+    """Return the tables of a case and of its result as CSV, by name.
+
+    Those of the case are read by `import_tables` as the same case; the names of the others begin
+    with ``result_``.
+
+    Parameters
+    ----------
+    result : Result
+
+    Raises
+    ------
+    CaseError
+        If a name or text of the case cannot stand in a cell, as one with a semicolon in a list.
+    """
+    from loadshare.results.dataset import frames
+
+    made = dict(case_tables(result.case.to_dict()))
+    return made | {FOUND + name: csv_of(frame) for name, frame in frames(result).items()}
+
+
+def case_tables(data: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Yield the tables of a case as CSV, with their names.
+
+    Parameters
+    ----------
+    data : mapping
+        A case as plain data.
+
+    Raises
+    ------
+    CaseError
+        As `export_tables`.
+    """
+    about = {key: value for key, value in data.items() if not isinstance(value, Mapping)}
+    for name in (ABOUT, *Content.model_fields):
+        value = about if name == ABOUT else data.get(name)
+        if not isinstance(value, Mapping) or not value:
+            continue
+        above: Path = () if name == ABOUT else (name,)
+        if name == ABOUT or name in ALONE:
+            leaves = dict(_leaves(value))
+            cells = [_column(path, [leaf], above) for path, leaf in leaves.items()]
+            yield name, _csv(["key", "value"], [[head, text] for head, (text,) in cells])
+            continue
+        rows = {element: dict(_leaves(keys)) for element, keys in value.items()}
+        columns = [list(rows)]
+        heads = ["name"]
+        for path in dict.fromkeys(path for keys in rows.values() for path in keys):
+            head, texts = _column(path, [keys.get(path) for keys in rows.values()], (name, "x"))
+            heads.append(head)
+            columns.append(texts)
+        yield name, _csv(heads, [list(row) for row in zip(*columns, strict=True)])
+
+
+def _leaves(data: Mapping[str, Any], above: Path = ()) -> Iterator[tuple[Path, Any]]:
+    """Yield the values in nested tables, with their keys."""
+    for key, value in data.items():
+        if isinstance(value, Mapping):
+            yield from _leaves(value, (*above, key))
+        else:
+            yield (*above, key), value
+
+
+def _column(path: Path, values: list[Any], above: Path) -> tuple[str, list[str]]:
+    """Return the head of a column and its cells; None makes an empty one.
+
+    Raises
+    ------
+    CaseError
+        If they would not be read as they are.
+    """
+    given = [value for value in values if value is not None]
+    unit, shown = with_common_unit(given)
+    head = f"{dotted(path)} [{unit}]" if unit else dotted(path)
+    texts = iter([text_of(value) for value in shown])
+    cells = ["" if value is None else next(texts) for value in values]
+    read, told = head_of(head, above)
+    options = taken(read)
+    for value, cell in zip(values, cells, strict=True):
+        # An empty text is as good as none.
+        if value not in (None, "") and (
+            (read, told) != ((*above, *path), unit) or value_of(cell, unit, options) != value
+        ):
+            what = "cannot stand in a cell as it is"
+            where = dotted((above[0], "…", *path) if len(above) > 1 else (*above, *path))
+            raise CaseError([Problem("", where, text_of(value), what)])
+    return head, cells
+
+
+def _csv(heads: list[str], rows: list[list[str]]) -> str:
+    import pandas as pd
+
+    return csv_of(pd.DataFrame(rows, columns=heads, dtype=object))

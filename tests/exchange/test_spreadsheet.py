@@ -1,0 +1,234 @@
+"""Tables of a spreadsheet: the same case in and out, what cells mean, what is wrong with them."""
+
+from __future__ import annotations
+
+import csv
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+from tests.cli.conftest import on_a_screen_of
+from tests.support import SHIPPED, shipped
+
+import loadshare as ls
+from loadshare.errors import CaseError
+from loadshare.exchange.spreadsheet import export_tables, import_tables
+from loadshare.exchange.spreadsheet.exporting import case_tables
+
+OPERATING = "key,value\ninput,a\noutput,b\ntorque [N*m],100\n"
+GEARS = "name,teeth,module [mm],centre [mm],Face width [mm]\na,20,2,0; 0,10\nb,40,2,60; 0,10\n"
+MESHES = "name,stiffness\na-b,1e6 N*m/rad\n"
+
+
+@pytest.fixture
+def box(tmp_path):
+    """Return how a folder of tables is written."""
+
+    def write(**tables: str | bytes) -> Path:
+        given: dict[str, str | bytes] = {
+            "operating": OPERATING,
+            "gears": GEARS,
+            "meshes": MESHES,
+            **tables,
+        }
+        for name, text in given.items():
+            content = text.encode() if isinstance(text, str) else text
+            (tmp_path / f"{name}.csv").write_bytes(content)
+        return tmp_path
+
+    return write
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_a_case_survives_its_tables(name, tmp_path) -> None:
+    case = shipped(name)
+    for table, text in case_tables(case.to_dict()):
+        (tmp_path / f"{table}.csv").write_text(text, encoding="utf-8")
+    again = import_tables(tmp_path).case()
+    assert again == case
+    assert again.hash == case.hash
+
+
+def test_a_few_lines_make_a_case(box) -> None:
+    found = import_tables(box())
+    case = found.case()
+    assert found.taken == ("2 gears", "1 meshes")
+    assert case.gears["b"].centre[0].si == pytest.approx(0.06)
+    assert case.gears["a"].face_width.si == pytest.approx(0.01), "a space stands for _"
+    assert case.gears["a"].teeth == 20
+    assert ls.solve(case).positions[0].torque == pytest.approx({"a-b": 100.0})
+
+
+def test_cells_are_what_their_keys_take(box) -> None:
+    """Numbers are names, counts or physical values; lists, lists of lists, tables and words."""
+    gears = (
+        "name,type,teeth,base_radius [mm],centre.distance,centre.angle [deg],held,axis\n"
+        "1,,,30,0 mm,0,false,0;0;1.0\n"
+        "2,internal,80,90,60 mm,0,,\n"
+    )
+    meshes = "name,table.torque [N*m],table.deflection,pressure_angle\n"
+    meshes += "1-2,100; 200,1 mrad; 2 mrad | 1.1 mrad; 2.1 mrad,0 deg\n"
+    found = import_tables(
+        box(
+            operating="key,value\ninput,1\noutput,2\npositions,2\ntorque,5 N*m\n",
+            gears=gears,
+            meshes=meshes,
+            stages="name,meshes,groups\nI,1-2,1-2 | 1-2\n",
+            case="key,value\ntitle,one; two\nassumed,gears.1.teeth\n",
+        )
+    ).data
+    assert found["operating"] == {"input": "1", "output": "2", "positions": 2, "torque": "5 N*m"}
+    assert found["gears"]["1"] == {
+        "base_radius": "30 mm",
+        "centre": {"distance": "0 mm", "angle": "0 deg"},
+        "held": False,
+        "axis": [0, 0, 1.0],
+    }
+    assert found["meshes"]["1-2"]["table"] == {
+        "torque": ["100 N*m", "200 N*m"],
+        "deflection": [["1 mrad", "2 mrad"], ["1.1 mrad", "2.1 mrad"]],
+    }
+    assert found["stages"]["I"] == {"meshes": ["1-2"], "groups": [["1-2"], ["1-2"]]}
+    assert found["title"] == "one; two"
+    assert found["assumed"] == ["gears.1.teeth"]
+
+
+@pytest.mark.parametrize(
+    ("tables", "told"),
+    [
+        (
+            {"gears": GEARS.replace("40,2", "40,2 kg")},
+            'gears.csv: row 3, column C: gears.b.module = "2 kg": is a mass, a length is needed',
+        ),
+        ({"gears": GEARS.replace("20,2", "two,2")}, "gears.csv: row 2, column B: gears.a.teeth"),
+        (
+            {"gears": GEARS.replace("teeth", "tooth")},
+            "gears.csv: row 2, column B: gears.a.tooth = ",
+        ),
+        (
+            {"gears": GEARS.replace("teeth", "a b.c[0]")},
+            'gears.csv: row 1, column B: "a b.c[0]" is no key',
+        ),
+        ({"gears": GEARS + "a,1,1,1\n"}, 'row 4, column A: the name "a" stands there twice'),
+        ({"gears": GEARS + ",1,1,1\n"}, "row 4, column A: has no name"),
+        ({"gears": GEARS + "c,1,1,1;1,1,6\n"}, 'row 4, column F: "6" has no head'),
+        ({"gears": GEARS.replace("module", "teeth")}, "gears.csv: row 2, column C: gears.a.teeth"),
+        ({"gears": "a,b\n"}, "gears.csv: row 1, column A: has no head. Allowed: name, then keys"),
+        ({"gears": ""}, "gears.csv: row 1, column A: has no head"),
+        ({"gears": GEARS.replace(",", "\t")}, "has no commas between its cells"),
+        ({"gears": "name;teeth\na;1,5\n"}, "has no commas between its cells"),
+        ({"gears": 'name,teeth\n"a,1\n'}, "gears.csv: is not CSV"),
+        ({"gears": b"name,teeth\n\xff,1\n"}, "gears.csv: is not UTF-8 text at byte 11"),
+        ({"operating": "input,a\n"}, "operating.csv: row 1, column A: has no head. Allowed: key,"),
+        ({"operating": OPERATING + "speed,1 rpm,2\n"}, "row 5, column C: stands beside key and"),
+        ({"operating": OPERATING + ",1 rpm\n"}, "row 5, column A: has a value and no key"),
+        ({"operating": OPERATING + "torque,1 N*m\n"}, "operating.torque stands there twice"),
+        (
+            {"meshes": "name,law,law.b\na-b,iso,1e-6 rad/(N*m)\n"},
+            'meshes.csv: row 2, column C: meshes."a-b".law.b stands beside meshes."a-b".law',
+        ),
+        ({"gaers": GEARS}, "gaers.csv: gaers is no table of a case. Allowed: case, operating, "),
+        ({"gears": "name," + ".".join("a" * 30) + "\na,1\n"}, "is no key"),
+    ],
+)
+def test_what_is_wrong_is_told_with_its_cell(box, tables, told) -> None:
+    with pytest.raises(CaseError) as caught:
+        import_tables(box(**tables)).case()
+    assert told in str(caught.value)
+
+
+def test_a_folder_without_tables_and_none_at_all_are_told(tmp_path) -> None:
+    for path, told in ((tmp_path, "holds no CSV file"), (tmp_path / "x", "no such file")):
+        with pytest.raises(CaseError, match=told):
+            import_tables(path)
+
+
+def test_names_that_look_like_formulas_stay_names(box, tmp_path) -> None:
+    """No cell that is written is a formula, and what is read again is the name."""
+    case = import_tables(box()).case()
+    data = case.to_dict()
+    name = "=1+1"
+    data["gears"][name] = data["gears"].pop("a")
+    data["operating"]["input"] = name
+    data["meshes"] = {"m": {"driver": name, "driven": "b", **data["meshes"]["a-b"]}}
+    tables = dict(case_tables(data))
+    assert "\n'=1+1," in tables["gears"]
+    cells = [
+        cell for text in tables.values() for row in csv.reader(text.splitlines()) for cell in row
+    ]
+    assert not [cell for cell in cells if cell[:1] in tuple("=@\t")]
+    again = import_tables(box(**tables)).case()
+    assert again == ls.Case(data)
+
+
+def test_what_cannot_stand_in_a_cell_is_not_written(box) -> None:
+    data = import_tables(box()).case().to_dict()
+    data["meshes"] = {"m;n": {"driver": "a", "driven": "b", **data["meshes"]["a-b"]}}
+    data["stages"] = {"I": {"meshes": ["m;n"]}}
+    with pytest.raises(CaseError, match="cannot stand in a cell as it is"):
+        dict(case_tables(data))
+
+
+def test_the_command_writes_tables_that_the_command_reads(tmp_path) -> None:
+    command, folder = on_a_screen_of(200), tmp_path / "deep" / "box"
+    case = shipped("fgfbstts/all_elements")
+    path = tmp_path / "all.toml"
+    path.write_text(case.to_toml(), encoding="utf-8")
+    assert command("run", path, "--tables", folder).exit_code == 0
+    again = tmp_path / "again.toml"
+    done = command("import", folder, "-o", again)
+    assert done.exit_code == 0
+    assert "Left out: tables of a result" in done.stdout
+    assert ls.load_case(again) == case
+    result = ls.solve(case)
+    with (folder / "result_meshes.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(result.positions) * len(case.meshes)
+    for row in rows:
+        here = result.positions[int(row["position"]) - 1]
+        assert float(row["torque [N·m]"]) == here.torque[row["mesh"]]
+        assert float(row["mesh_force [N]"]) == here.loads.meshes[row["mesh"]]
+        assert float(row["mesh_position [1]"]) == here.mesh_position[row["mesh"]]
+    with (folder / "result_gears.csv").open(encoding="utf-8") as file:
+        for row in csv.DictReader(file):
+            force = result.positions[int(row["position"]) - 1].loads.bearings[row["gear"]]
+            assert (float(row["bearing_force x [N]"]), float(row["bearing_force y [N]"])) == force
+    assert {*export_tables(result)} == {file.stem for file in folder.iterdir()}
+
+
+def test_a_folder_has_its_name_for_the_case(box, monkeypatch) -> None:
+    folder = box()
+    monkeypatch.chdir(folder)
+    done = on_a_screen_of(200)("import", ".")
+    assert done.exit_code == 0
+    assert (folder / f"{folder.name}.toml").exists()
+
+
+def test_a_workbook_needs_its_library(tmp_path, monkeypatch) -> None:
+    path = tmp_path / "box.xlsx"
+    path.write_bytes(b"")
+    monkeypatch.setitem(sys.modules, "openpyxl", None)
+    done = on_a_screen_of(200)("import", path)
+    assert done.exit_code == 2
+    assert "is a workbook, which needs openpyxl to be read" in done.stderr
+    assert "pip install 'loadshare[spreadsheet]'" in done.stderr
+
+
+def test_a_workbook_says_what_its_sheets_say(box, tmp_path) -> None:
+    openpyxl = pytest.importorskip("openpyxl")
+    book = openpyxl.Workbook()
+    book.remove(book.active)
+    for name, text in {"operating": OPERATING, "Gears": GEARS, "meshes": MESHES}.items():
+        sheet = book.create_sheet(name)
+        for row in csv.reader(text.splitlines()):
+            sheet.append([float(cell) if cell.isdigit() else cell for cell in row])
+    book.save(tmp_path / "box.xlsx")
+    assert import_tables(tmp_path / "box.xlsx").data == import_tables(box()).data
+    (tmp_path / "box.xlsx").write_bytes(b"PK damaged")
+    with pytest.raises(CaseError, match="is a damaged workbook"):
+        import_tables(tmp_path / "box.xlsx")
+    with zipfile.ZipFile(tmp_path / "box.xlsx", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("xl/workbook.xml", b" " * (65 * 2**20))
+    with pytest.raises(CaseError, match="unpacks into more than 64 MiB"):
+        import_tables(tmp_path / "box.xlsx")
