@@ -115,6 +115,11 @@ class ToothBody(ABC):
     def rim(self) -> float:
         """Inner radius (external), outer radius (internal), thickness below root (face) [m]."""
 
+    @property
+    @abstractmethod
+    def face_width(self) -> float:
+        """Face width, of one half for a herringbone gear [m]."""
+
     @abstractmethod
     def outline(self, u: ArrayLike, w: ArrayLike, side: int) -> Array:
         """Boundary of half of tooth 0 at a width station.
