@@ -244,6 +244,7 @@ def _strips(
             poisson=(pair.driver.poisson, pair.driven.poisson),
             depth=(depth[0], depth[1]),
             factor=factor,
+            face_width=min(pair.driver.face_width, pair.driven.face_width),
         )
 
 

@@ -227,6 +227,15 @@ class Ltca:
         loaded = [[sum(one.loaded for one in lines) for lines in row] for row in self.lines]
         return np.asarray(np.mean(np.array(loaded, dtype=float), axis=0))
 
+    def shares(self, part: float = 1.0) -> list[dict[int, float]]:
+        """Part of the load on each pair of teeth in contact, by position, under part of T."""
+        k = self._load(part)
+        forces = [{one.line.pair: float(one.force.sum()) for one in row[k]} for row in self.lines]
+        return [
+            {pair: force / sum(own.values()) for pair, force in own.items() if force > 0.0}
+            for own in forces
+        ]
+
     @cached_property
     def largest_pressure(self) -> Array:
         """Largest pressure (K, L) [Pa]."""

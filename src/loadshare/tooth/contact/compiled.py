@@ -103,6 +103,10 @@ def surface(strips, n, force, least, secant, tangent):  # type: ignore[no-untype
                 secant[i, j] = scale[j] * (far[0] - near[0])
                 # b grows as √p, so p ∂S/∂p = −½ Σ ± τ g'(τ).
                 tangent[i, j] = secant[i, j] - 0.5 * scale[j] * (far[1] - near[1])
+        if strips.alone[n, i] > 0.0:
+            depth = strips.level[n, i] - 0.5 * np.log(max(force[i], least))
+            secant[i, i] += strips.alone[n, i] * depth
+            tangent[i, i] += strips.alone[n, i] * (depth - 0.5)
 
 
 @compiled

@@ -96,6 +96,8 @@ class Strips(NamedTuple):
     half: Array  # (M, N): half of the length [m]
     scale: Array  # (M, N): displacement per force and unit of g [m/N]
     square: Array  # (M, N): b² per force [m²/N]
+    alone: Array  # (M, N): A of slices of narrow faces [m/N]; 0 of others
+    level: Array  # (M, N): their B
     series: Array  # (M, TEETH.terms + 1, N, N): coefficients of b²ᵏ [m/N]
     far: float
     table: StripTable
@@ -135,7 +137,7 @@ class ContactBatch:
         positions, points = len(problems), int(self.count.max())
         self.gap = np.full((positions, points), TEETH.far_off)
         self.fixed = np.zeros((positions, points, points))
-        strips = np.zeros((5, positions, points))
+        strips = np.zeros((7, positions, points))
         strips[0] = -1.0
         for k, (problem, count) in enumerate(zip(problems, self.count, strict=True)):
             self.gap[k, :count] = problem.gap
@@ -143,8 +145,10 @@ class ContactBatch:
             for number, (line, part) in enumerate(zip(problem.lines, problem.parts, strict=True)):
                 strips[:, k, part] = _strips(number, line)
         series = np.empty((positions, TEETH.terms + 1, points, points))
-        lines, place, half, scale, square = strips
-        self.strips = Strips(lines, place, half, scale, square, series, TEETH.far, strip_table())
+        lines, place, half, scale, square, alone, level = strips
+        self.strips = Strips(
+            lines, place, half, scale, square, alone, level, series, TEETH.far, strip_table()
+        )
         expand(self.strips, COEFFICIENTS, series)
 
     def rows(self, chosen: NDArray[np.int64]) -> ContactBatch:
@@ -181,9 +185,11 @@ COEFFICIENTS = np.array(
 
 
 def _strips(number: int, line: StripLine) -> Array:
-    """Number of the line, place, half length, scale and b² per force of its strips (5, n)."""
+    """What `Strips` holds of the strips of a line, from its number to `level` (7, n)."""
     # b² per force: half-width of line contact at the strip's load per length.
     square = line.widths(np.ones_like(line.length)) ** 2
     scale = 1.0 / (pi * line.effective * line.length)
+    if line.narrow:
+        scale = (1.0 - line.narrow) * scale
     numbers = np.full_like(line.length, number)
-    return np.stack([numbers, line.place, 0.5 * line.length, scale, square])
+    return np.stack([numbers, line.place, 0.5 * line.length, scale, square, *line.slices])

@@ -15,6 +15,16 @@ The bulk compliance of a tooth is that of its middle surface, so only what lies 
 and the depth h may be added here: the half-space's displacement at the depth h is taken off. For a
 long line this is Weber and Banaschek's compression to the depth h.
 
+A half-space goes on beyond the ends of the face, and a load spreads there. A face that is narrower
+than its tooth is thick has nothing beyond: in the limit every strip is a slice in plane stress,
+alone, with Weber and Banaschek's compression for that state,
+
+.. math:: \frac{2q}{\pi}\sum\frac1E\left(\ln\frac{2h}{b}-\frac\nu2\right),\qquad
+    b^2 = \frac{4q}{\pi k}\sum\frac1E .
+
+In between both are mixed, in proportion to how far the face is narrower than thick; from there on
+it is the half-space alone, whose ends are a few per cent too stiff.
+
 Sources: K. L. Johnson, Contact Mechanics (1985), sections 4.2 and 5.6; C. Weber and K. Banaschek,
 Formänderung und Profilrücknahme bei gerad- und schrägverzahnten Rädern (1953). Formulation,
 sections 3 and 9.
@@ -24,7 +34,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache, cached_property
-from math import pi
+from math import inf, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -166,6 +176,8 @@ class StripLine:
         it the bodies are half-spaces and the approach is that of distant points.
     factor : array (n,), optional
         κ of the points, where it is known already.
+    face_width : float
+        Of the narrower tooth [m].
 
     Raises
     ------
@@ -180,6 +192,7 @@ class StripLine:
     poisson: tuple[float, float]
     depth: tuple[Array, Array] | None = None
     factor: Array | None = None
+    face_width: float = inf
 
     def __post_init__(self) -> None:
         if np.any(self.curvature <= 0.0):
@@ -187,6 +200,30 @@ class StripLine:
                 "the flanks must part on both sides of the contact line: relative curvature "
                 f"{float(np.min(self.curvature)):.4g} 1/m, allowed > 0"
             )
+
+    @cached_property
+    def narrow(self) -> float:
+        """Part of the slice in plane stress in what yields, 0 to 1; the half-space has the rest."""
+        if self.depth is None:
+            return 0.0
+        thickness = float(np.max(self.depth[0] + self.depth[1]))
+        return max(0.0, 1.0 - self.face_width / thickness)
+
+    @cached_property
+    def slices(self) -> tuple[Array, Array]:
+        """A and B (n,) of the slices' yielding A p (B − ½ ln p) [m], their part of it."""
+        none = np.zeros_like(self.length)
+        if self.depth is None or self.narrow == 0.0:
+            return none, none
+        soft = [1.0 / e for e in self.modulus]
+        # b² per force of line contact in plane stress, as `widths` has it in plane strain.
+        square = self.widths(np.ones_like(self.length)) ** 2 * self.effective * sum(soft)
+        ends = (
+            part * (0.5 * np.log(4.0 * depth**2 / square) - 0.5 * nu)
+            for part, depth, nu in zip(soft, self.depth, self.poisson, strict=True)
+        )
+        scale = self.narrow * 2.0 * sum(soft) / (pi * self.length)
+        return scale, np.asarray(sum(ends, none) / sum(soft))
 
     @cached_property
     def place(self) -> Array:
@@ -219,7 +256,10 @@ class StripLine:
 
     @cached_property
     def removed(self) -> Array:
-        """Compliance (n, n) [m/N] of two half-spaces at the depths of the middle surfaces."""
+        """Compliance (n, n) [m/N] of two half-spaces at the depths of the middle surfaces.
+
+        Of a narrow face the half-spaces' part of it.
+        """
         from loadshare.tooth.contact.compiled import add_below
 
         total = np.zeros((len(self.length),) * 2)
@@ -227,4 +267,4 @@ class StripLine:
             for depth, e, nu in zip(self.depth, self.modulus, self.poisson, strict=True):
                 scale = (1.0 + nu) / (2.0 * pi * e * self.length)
                 add_below(self.place, self.length, scale, depth, float(nu), total)
-        return total
+        return total * (1.0 - self.narrow) if self.narrow else total

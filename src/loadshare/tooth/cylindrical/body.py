@@ -37,6 +37,11 @@ class HelicoidBody(ToothBody):
         """Inner radius of the body, outer radius if internal [m]."""
         return self.gear.rim_radius
 
+    @property
+    def face_width(self) -> float:
+        """Face width [m]."""
+        return self.gear.face_width
+
     @cached_property
     def _root(self) -> Curve:
         return root_curve(self.gear)

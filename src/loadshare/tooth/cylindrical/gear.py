@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Literal, NamedTuple
 
 from loadshare.involute import InvoluteTooth
-from loadshare.tooth.geometry.body import Gear
+from loadshare.tooth.geometry.body import Gear, PitchDeviations
 
 
 @dataclass(frozen=True)
@@ -99,6 +99,8 @@ class HelicoidGear(InvoluteTooth, Gear):
         heights of material below the root.
     youngs_modulus, poisson : float
         Elasticity, [Pa] and 1.
+    pitch : PitchDeviations, optional
+        Pitch deviations of the loaded flanks.
     """
 
     module: float
@@ -117,6 +119,12 @@ class HelicoidGear(InvoluteTooth, Gear):
     rim: float | None = None
     youngs_modulus: float = 2.06e11
     poisson: float = 0.3
+    pitch: PitchDeviations | None = None
+
+    @property
+    def pitch_radius(self) -> float:
+        """Radius of the circle along which pitch deviations are measured [m]."""
+        return self.radius
 
     @property
     def total_width(self) -> float:

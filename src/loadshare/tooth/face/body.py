@@ -37,6 +37,11 @@ class FaceBody(ToothBody):
         """Thickness of the body below the root [m]."""
         return self.gear.rim_thickness
 
+    @property
+    def face_width(self) -> float:
+        """L2 − L1 [m]."""
+        return self.gear.outer - self.gear.inner
+
     @cached_property
     def flank(self) -> FaceFlank:
         """The flank that a pinion pushes, side −1."""

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from loadshare.involute import InvoluteTooth
-from loadshare.tooth.geometry.body import Array, Gear, about_y
+from loadshare.tooth.geometry.body import Array, Gear, PitchDeviations, about_y
 
 
 @dataclass(frozen=True)
@@ -67,6 +67,8 @@ class FaceGear(Gear):
         Thickness of the body below the root [m]; by default 1.5 tooth heights.
     youngs_modulus, poisson : float
         Elasticity, [Pa] and 1.
+    pitch : PitchDeviations, optional
+        Pitch deviations of the loaded flanks.
     """
 
     teeth: int
@@ -78,6 +80,12 @@ class FaceGear(Gear):
     rim: float | None = None
     youngs_modulus: float = 2.06e11
     poisson: float = 0.3
+    pitch: PitchDeviations | None = None
+
+    @property
+    def pitch_radius(self) -> float:
+        """Radius of the circle along which pitch deviations are measured [m]."""
+        return 0.5 * (self.inner + self.outer)
 
     @property
     def roll_ratio(self) -> float:

@@ -14,6 +14,23 @@ from numpy.typing import ArrayLike, NDArray
 Array: TypeAlias = NDArray[np.float64]
 
 
+@dataclass(frozen=True)
+class PitchDeviations:
+    """Where the loaded flanks of a gear's teeth stand against even pitches.
+
+    Parameters
+    ----------
+    cumulative : tuple of float
+        By tooth, in the order in which they come into mesh: how far each stands ahead in the sense
+        of rotation, as an arc of the pitch circle [m]; 0 for teeth beyond the list.
+    first : int
+        Tooth of pair 0, from 1.
+    """
+
+    cumulative: tuple[float, ...]
+    first: int = 1
+
+
 class Gear:
     """What gears of every kind have."""
 
@@ -23,6 +40,25 @@ class Gear:
     """Modulus of elasticity [Pa]."""
     poisson: float
     """Poisson's ratio."""
+    pitch: PitchDeviations | None = None
+    """Pitch deviations, if any."""
+
+    @property
+    def pitch_radius(self) -> float:
+        """Radius of the circle along which pitch deviations are measured [m]."""
+        raise NotImplementedError
+
+    def tooth_of(self, pair: int) -> int:
+        """Number of the tooth of a pair, from 1: pairs that meet later have larger numbers."""
+        first = self.pitch.first if self.pitch else 1
+        return (first - 1 - pair) % self.teeth + 1
+
+    def ahead(self, pair: int) -> float:
+        """Angle by which the tooth of a pair stands ahead [rad]."""
+        number = self.tooth_of(pair)
+        if self.pitch is None or number > len(self.pitch.cumulative):
+            return 0.0
+        return self.pitch.cumulative[number - 1] / self.pitch_radius
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,6 +114,11 @@ class ToothBody(ABC):
     @abstractmethod
     def rim(self) -> float:
         """Inner radius (external), outer radius (internal), thickness below root (face) [m]."""
+
+    @property
+    @abstractmethod
+    def face_width(self) -> float:
+        """Face width, of one half for a herringbone gear [m]."""
 
     @abstractmethod
     def outline(self, u: ArrayLike, w: ArrayLike, side: int) -> Array:

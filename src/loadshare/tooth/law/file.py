@@ -115,6 +115,10 @@ class MeshLaw(Element):
     sampled: Number | None = None
     """Mean deflection at the positions over that of the whole cycle, by slices [-]."""
 
+    carried: dict[str, tuple[Share, ...]] = Field(default_factory=dict)
+    """With pitch deviations, part of T on every pair of teeth by position, named by their numbers,
+    "driver tooth-driven tooth" [-]."""
+
     computed: Stamp
     """What it was computed from."""
 
@@ -137,7 +141,19 @@ class MeshLaw(Element):
                 f"{100.0 * missed:+.1f} % off that of the whole cycle; analysis.sampling = "
                 '"means" carries it right.'
             )
-        return tuple(told)
+        return (*told, *self._most_loaded())
+
+    def _most_loaded(self) -> Iterator[str]:
+        """Yield which teeth are in contact under T, and which carry most."""
+        if not self.carried:
+            return
+        teeth, shares = max(self.carried.items(), key=lambda one: max(one[1]))
+        most = max(shares)
+        where = ", ".join(str(k + 1) for k, share in enumerate(shares) if share == most)
+        yield (
+            f"In contact under T are the teeth {', '.join(self.carried)} (driver's and driven "
+            f"gear's); most is on {teeth}, {100.0 * most:.0f} % at position {where}."
+        )
 
     def as_law(self, assumed: Sequence[str] = ()) -> dict[str, Any]:
         """The table `law` of a mesh: a, b and c, what they are from, and where that holds.
@@ -186,6 +202,7 @@ def law_of(pair: PairFile, found: Ltca) -> MeshLaw:
             "c": [f"{float(value)!r} rad/(N*m)^(2/3)" for value in law.c],
             "misfit": [float(f"{part:.3g}") for part in np.abs(found.misfit).max(axis=1)],
             **_sureness(pair),
+            **_carried(pair, found),
             "computed": computed,
         }
     )
@@ -208,6 +225,21 @@ def _sureness(pair: PairFile) -> dict[str, Any]:
         if pair.analysis.sampling == "points":
             found["sampled"] = float(f"{sampled_deflection(pair):.4g}")
     return found
+
+
+def _carried(pair: PairFile, found: Ltca) -> dict[str, Any]:
+    """Load on the pairs of teeth, where pitch deviations tell teeth apart."""
+    one, two = pair.geometry.driver.gear, pair.geometry.driven.gear
+    if one.pitch is None and two.pitch is None:
+        return {}
+    shares = found.shares()
+    pairs = sorted({number for own in shares for number in own}, reverse=True)
+    return {
+        "carried": {
+            f"{one.tooth_of(k)}-{two.tooth_of(k)}": [float(f"{s.get(k, 0.0):.4g}") for s in shares]
+            for k in pairs
+        }
+    }
 
 
 def law_text(law: MeshLaw) -> str:

@@ -27,10 +27,12 @@ from loadshare.tooth.cylindrical.pair import HelicoidPair, Misalignment
 from loadshare.tooth.face.build import face_gear_pair
 from loadshare.tooth.face.gear import FaceGear, Shaper
 from loadshare.tooth.face.pair import FaceGearPair, FaceMisalignment
+from loadshare.tooth.geometry.body import PitchDeviations
 from loadshare.tooth.pair.model import (
     ABOUT,
     CONTENTS,
     Analysis,
+    Body,
     Cylindrical,
     FaceGearContent,
     HelicoidContent,
@@ -273,15 +275,22 @@ def _face(content: FaceGearContent) -> FaceGearPair:
     cutter = said.shaper
     shift = pinion.profile_shift if cutter.profile_shift is None else cutter.profile_shift
     shaper = Shaper(pinion.module, cutter.teeth, pinion.pressure_angle, shift, cutter.addendum)
-    gear = FaceGear(**(_si(said) | {"shaper": shaper}))
+    gear = FaceGear(**(_si(said) | _pitch(said) | {"shaper": shaper}))
     return face_gear_pair(pinion, gear, FaceMisalignment(**_si(content.misalignment)))
 
 
 def _gear(said: Cylindrical, fitting: dict[str, Any]) -> HelicoidGear:
     """A gear; `fitting` gives what it leaves out."""
-    values = _si(said)
+    values = _si(said) | _pitch(said)
     values["modification"] = Modification(**values["modification"])
     return HelicoidGear(**(fitting | values))
+
+
+def _pitch(said: Body) -> dict[str, Any]:
+    """Pitch deviations of a gear, where it has some."""
+    if said.pitch is None:
+        return {}
+    return {"pitch": PitchDeviations(said.pitch.ahead, said.pitch.first_tooth)}
 
 
 def _si(element: Any) -> dict[str, Any]:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import accumulate
 from typing import Annotated, Literal
 
 from pydantic import Field, Strict
 
 from loadshare.case.element import Element, Rule
 from loadshare.case.quantity import ANGLE, LENGTH, TORQUE, Angle, Dimension, Length, Quantity
+from loadshare.case.words import count
 from loadshare.settings import ALLOWED
 from loadshare.tooth.analysis.ltca import POINTS
 
@@ -22,6 +24,10 @@ Load = Annotated[Quantity, TORQUE.bounded(above=0)]
 Number = Annotated[float, Strict(), Field(ge=-ALLOWED.shape, le=ALLOWED.shape, allow_inf_nan=False)]
 Teeth = Annotated[int, Strict(), Field(ge=4, le=ALLOWED.teeth)]
 Positions = Annotated[int, Strict(), Field(ge=1, le=ALLOWED.positions)]
+
+Deviations = Annotated[tuple[Length, ...], Field(min_length=1)]
+CLOSING = 1e-6
+"""What measured single pitch deviations may add up to around a gear by rounding [m]."""
 
 ABOUT = ("title", "source", "notes", "assumed")
 """The keys that say something about a pair and nothing about its teeth."""
@@ -53,6 +59,32 @@ class Modified(Element):
     """Length along the axis over which the end relief grows [length]."""
 
 
+class Pitch(Element):
+    """Pitch deviations of a gear's loaded flanks, by tooth in the order in which they mesh."""
+
+    single: Deviations | None = None
+    """Of the pitch from each tooth to the next, the last one's to the first [length]."""
+
+    cumulative: Deviations | None = None
+    """How far each tooth stands ahead in the sense of rotation [length]; 0 for teeth left out."""
+
+    first_tooth: Annotated[int, Strict(), Field(ge=1)] = 1
+    """Tooth that meets at the pitch point at the first position, from 1 [-]."""
+
+    def rules(self) -> Iterator[Rule]:
+        """Yield that both lists are given, or none."""
+        if (self.single is None) == (self.cumulative is None):
+            yield Rule("takes one list", allowed="single or cumulative")
+
+    @property
+    def ahead(self) -> tuple[float, ...]:
+        """How far each tooth stands ahead [m]; a long pitch puts the next tooth back."""
+        if self.cumulative is not None:
+            return tuple(value.si for value in self.cumulative)
+        steps = (-value.si for value in (self.single or ())[:-1])
+        return tuple(accumulate(steps, initial=0.0))
+
+
 class Body(Element):
     """What any gear has."""
 
@@ -67,6 +99,26 @@ class Body(Element):
 
     poisson: Annotated[float, Strict(), Field(ge=0, lt=0.5)] = 0.3
     """Poisson's ratio [-]."""
+
+    pitch: Pitch | None = None
+    """Pitch deviations of its teeth."""
+
+    def rules(self) -> Iterator[Rule]:
+        """Yield lists of pitch deviations that do not fit the number of teeth."""
+        pitch = self.pitch
+        if pitch is None:
+            return
+        for key in pitch.given("single", "cumulative"):
+            values = getattr(pitch, key)
+            if len(values) > self.teeth or (key == "single" and len(values) < self.teeth):
+                most = "" if key == "single" else " at most"
+                told = f"has {count(len(values))}"
+                yield Rule(told, ("pitch", key), f"{self.teeth}{most}, one per tooth")
+            elif key == "single" and abs(sum(v.si for v in values)) > CLOSING:
+                off = f"{1e6 * sum(v.si for v in values):.4g} µm"
+                yield Rule(f"adds up to {off} around the gear", ("pitch", key), "0")
+        if pitch.first_tooth > self.teeth:
+            yield Rule("is no tooth", ("pitch", "first_tooth"), f"1 to {self.teeth}")
 
 
 class Cylindrical(Body):

@@ -170,6 +170,18 @@ class GearPair(ABC):
     def overlap_ratio(self) -> float:
         """Overlap ratio ε_β of one half; 0 for spur teeth and face gears."""
 
+    def openings(self, pairs: Array) -> Array:
+        """How far pitch deviations part the flanks of pairs (m,) along their normals [m].
+
+        A tooth that stands ahead is nearer to its partner on the driver, and farther on the driven
+        gear; that the contact line moves along with it is left out.
+        """
+        one, two = self.driver.gear, self.driven.gear
+        if one.pitch is None and two.pitch is None:
+            return np.zeros(len(pairs))
+        late = [self.ratio * two.ahead(int(k)) - one.ahead(int(k)) for k in pairs]
+        return self.arm * np.array(late)
+
     @property
     def ends(self) -> tuple[float, float]:
         """Axial coordinates of the ends of the contact lines on the driver [m]."""
@@ -278,7 +290,7 @@ def positions(
         trace.driver.point,
         trace.driver.normal,
         length,
-        trace.gap,
+        trace.gap + pair.openings(found.pairs)[:, None],
         relative_curvature(trace.driver, trace.driven, across),
         relative_curvature(trace.driver, trace.driven, along),
         _located(pair.driver, trace.driver.point, found.driver),
@@ -341,7 +353,7 @@ def touching(
                 )
         least = np.full(len(phases), np.inf)
         gap, _, trace = least_gap(found, points)
-        np.minimum.at(least, found.position, gap)
+        np.minimum.at(least, found.position, gap + pair.openings(found.pairs))
         apart = np.abs(least) >= TEETH.touching
         if not apart.any():
             return error, found, trace

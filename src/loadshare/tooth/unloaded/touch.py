@@ -102,7 +102,8 @@ def contact_points(pair: GearPair, phase: float) -> tuple[ContactPoint, ...]:
         )
         edges.append(edge if at_edge[i] else "")
     vectors = (part[:, 0] for part in (own.point, own.normal, major, minor))
-    leads = error[0] + turned[:, None] + lead
+    apart = pair.openings(lines.pairs) / pair.arm
+    leads = error[0] + (turned + apart)[:, None] + lead
     numbers = [part[:, 0].tolist() for part in (leads, least, greatest)]
     rows = zip(lines.pairs.tolist(), numbers[0], *vectors, *numbers[1:], edges, strict=True)
     return tuple(ContactPoint(int(number), *parts) for number, *parts in rows)
