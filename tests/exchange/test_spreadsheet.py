@@ -9,11 +9,11 @@ from pathlib import Path
 
 import pytest
 from tests.cli.conftest import on_a_screen_of
-from tests.support import SHIPPED, shipped
+from tests.support import ROOT, SHIPPED, shipped
 
 import loadshare as ls
 from loadshare.errors import CaseError
-from loadshare.exchange.spreadsheet import export_tables, import_tables
+from loadshare.exchange.spreadsheet import export_tables, import_tables, workbook_of
 from loadshare.exchange.spreadsheet.exporting import case_tables
 
 OPERATING = "key,value\ninput,a\noutput,b\ntorque [N*m],100\n"
@@ -213,6 +213,33 @@ def test_a_workbook_needs_its_library(tmp_path, monkeypatch) -> None:
     assert done.exit_code == 2
     assert "is a workbook, which needs openpyxl to be read" in done.stderr
     assert "pip install 'loadshare[spreadsheet]'" in done.stderr
+
+
+def test_a_case_and_its_result_go_into_a_workbook_and_back(tmp_path) -> None:
+    openpyxl = pytest.importorskip("openpyxl")
+    case = shipped("star/floating_sun_3")
+    title = '=HYPERLINK("x")'
+    tables = export_tables(ls.solve(case.replace({"title": title})))
+    (tmp_path / "star.xlsx").write_bytes(workbook_of(tables))
+    assert import_tables(tmp_path / "star.xlsx").data == {**case.to_dict(), "title": title}
+    book = openpyxl.load_workbook(tmp_path / "star.xlsx")
+    assert book.sheetnames == list(tables)
+    kinds = {cell.data_type for sheet in book for row in sheet.iter_rows() for cell in row}
+    assert "f" not in kinds
+    figures = [c.value for row in book["result_meshes"].iter_rows(min_row=2) for c in row]
+    assert any(isinstance(value, float) for value in figures)
+
+
+def test_run_writes_a_workbook_if_it_can(tmp_path, monkeypatch) -> None:
+    pytest.importorskip("openpyxl")
+    case = ROOT / "cases/star/floating_sun_3.toml"
+    book = tmp_path / "star.xlsx"
+    assert on_a_screen_of(200)("run", case, "--tables", book).exit_code == 0
+    assert import_tables(book).data == ls.load_case(case).to_dict()
+    monkeypatch.setitem(sys.modules, "openpyxl", None)
+    done = on_a_screen_of(200)("run", case, "--tables", tmp_path / "other.xlsx")
+    assert done.exit_code == 2
+    assert "needs openpyxl to be written" in done.stderr
 
 
 def test_a_workbook_says_what_its_sheets_say(box, tmp_path) -> None:

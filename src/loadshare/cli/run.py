@@ -11,12 +11,12 @@ import typer
 
 from loadshare.cli.changes import open_case
 from loadshare.cli.console import progress, say
-from loadshare.cli.exits import REFUSED, fail, problems_told, writing
+from loadshare.cli.exits import REFUSED, UNUSABLE, fail, problems_told, writing
 from loadshare.cli.files import write_document, write_text
 from loadshare.cli.options import CaseFile, Method, Solver, Tolerance, changes, output
 from loadshare.cli.refusal import refused_document, told
 from loadshare.errors import Refused
-from loadshare.output import clear, csv_of
+from loadshare.output import clear, csv_of, write_whole
 
 if TYPE_CHECKING:
     from loadshare.case import Case
@@ -26,8 +26,8 @@ Tables = Annotated[
     Path | None,
     typer.Option(
         metavar="FOLDER",
-        file_okay=False,
-        help="Write case and result as CSV tables for a spreadsheet into this folder.",
+        help="Write case and result as CSV tables for a spreadsheet into this folder, or into a "
+        "workbook (.xlsx).",
     ),
 ]
 Loads = Annotated[
@@ -158,10 +158,18 @@ def _end_refused(
 
 
 def _write_tables(folder: Path, result: Result) -> None:
-    from loadshare.exchange.spreadsheet import export_tables
+    from loadshare.exchange.spreadsheet import export_tables, workbook_of
 
     with problems_told():
         made = export_tables(result)
+    if folder.suffix.lower() == ".xlsx":
+        try:
+            book = workbook_of(made)
+        except ImportError:
+            hint = "Install it with: pip install 'loadshare[spreadsheet]'."
+            fail([f"{folder}: a workbook needs openpyxl to be written. {hint}"], UNUSABLE)
+        _write(folder, partial(write_whole, content=book))
+        return
     files = {folder / f"{name}.csv": text for name, text in made.items()}
     clear(files)
     for file, text in files.items():

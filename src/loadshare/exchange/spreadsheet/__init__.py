@@ -1,6 +1,6 @@
-"""Tables of a spreadsheet: a case in, from CSV or a workbook; case and result out, as CSV."""
+"""Tables of a spreadsheet: a case in, from CSV or a workbook; case and result out, likewise."""
 
-from loadshare.exchange.spreadsheet.exporting import export_tables
+from loadshare.exchange.spreadsheet.exporting import export_tables, workbook_of
 from loadshare.exchange.spreadsheet.importing import import_tables, is_spreadsheet
 
-__all__ = ["export_tables", "import_tables", "is_spreadsheet"]
+__all__ = ["export_tables", "import_tables", "is_spreadsheet", "workbook_of"]

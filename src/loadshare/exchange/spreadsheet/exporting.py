@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Iterator, Mapping
+from io import BytesIO, StringIO
 from typing import TYPE_CHECKING, Any
 
 from loadshare.case.content import Content
@@ -41,6 +43,46 @@ def export_tables(result: Result) -> dict[str, str]:
 
     made = dict(case_tables(result.case.to_dict()))
     return made | {FOUND + name: csv_of(frame) for name, frame in frames(result).items()}
+
+
+def workbook_of(tables: Mapping[str, str]) -> bytes:
+    """Return tables as a workbook with a sheet for each; figures of results are numbers there.
+
+    Parameters
+    ----------
+    tables : mapping of str to str
+        As `export_tables` has them.
+
+    Raises
+    ------
+    ImportError
+        Without openpyxl.
+    """
+    from openpyxl import Workbook
+    from openpyxl.cell import WriteOnlyCell
+
+    book = Workbook(write_only=True)
+    for name, text in tables.items():
+        sheet = book.create_sheet(name)
+        for row in csv.reader(StringIO(text, newline="")):
+            cells = []
+            for told in row:
+                cell = WriteOnlyCell(sheet, _figure(told) if name.startswith(FOUND) else told)
+                if isinstance(cell.value, str):
+                    # A text that begins like a formula is none.
+                    cell.data_type = "s"
+                cells.append(cell)
+            sheet.append(cells)
+    content = BytesIO()
+    book.save(content)
+    return content.getvalue()
+
+
+def _figure(text: str) -> str | float:
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def case_tables(data: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
