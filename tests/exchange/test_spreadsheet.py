@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from tests.cli.conftest import on_a_screen_of
-from tests.support import ROOT, SHIPPED, shipped
+from tests.support import CASES, SHIPPED, shipped
 
 import loadshare as ls
 from loadshare.errors import CaseError
@@ -232,7 +232,7 @@ def test_a_case_and_its_result_go_into_a_workbook_and_back(tmp_path) -> None:
 
 def test_run_writes_a_workbook_if_it_can(tmp_path, monkeypatch) -> None:
     pytest.importorskip("openpyxl")
-    case = ROOT / "cases/star/floating_sun_3.toml"
+    case = CASES / "star/floating_sun_3.toml"
     book = tmp_path / "star.xlsx"
     assert on_a_screen_of(200)("run", case, "--tables", book).exit_code == 0
     assert import_tables(book).data == ls.load_case(case).to_dict()

@@ -32,7 +32,8 @@ def split_path(positions: int = 4, **changes: object) -> ls.Case:
     }
     for k, way in ((1, 1.0), (2, -1.0)):
         centre = [f"{v:.17g} mm" for v in (first * math.cos(angle), way * first * math.sin(angle))]
-        gears[f"a{k}"] = {"teeth": WHEEL, "centre": centre}
+        # Wheels side by side, as their tip circles overlap.
+        gears[f"a{k}"] = {"teeth": WHEEL, "centre": [*centre, f"{20 * k} mm"]}
         gears[f"b{k}"] = {"teeth": SMALL, "centre": [*centre, "80 mm"]}
     swing = [1.0 + 0.2 * math.sin(2.0 * math.pi * k / positions) for k in range(positions)]
     laws = [[f"{k * s:.17g} N*m/rad" for s in swing] for k in (1e6, 8e5)]
