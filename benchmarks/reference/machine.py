@@ -156,15 +156,13 @@ class _Writer:
             if gear in self.turns:
                 radius = self.of(self.train.gears[gear].base_radius)
                 load[self.turns[gear]] = self.of(torque) / radius / self.of(self.force)
-        for push, (name, gear) in zip(
-            self.situation.push[0], self.train.gears.items(), strict=True
-        ):
-            parts = self._shift(name, push)
-            if gear.carrier is not None:
-                parts |= self._shift(gear.carrier, push)
-                if gear.carrier in self.turns:
-                    radius = self.of(self.train.gears[gear.carrier].base_radius)
-                    parts[self.turns[gear.carrier]] = self._dot(gear.seat, push) / radius
+        for push, body in zip(self.situation.push[0], self.train.gears.values(), strict=True):
+            parts = self._shift(body.name, push)
+            if body.carrier is not None:
+                parts |= self._shift(body.carrier, push)
+                if body.carrier in self.turns:
+                    radius = self.of(self.train.gears[body.carrier].base_radius)
+                    parts[self.turns[body.carrier]] = self._dot(body.seat, push) / radius
             for at, part in parts.items():
                 load[at] = load.get(at, self.of(0)) + part / self.of(self.force)
         return load
@@ -307,7 +305,7 @@ class _Writer:
     def _root(self, power: float) -> Callable[[Any], Any]:
         """x^(power − 1)."""
         sqrt, cbrt = self.arithmetic.sqrt, self.arithmetic.cbrt
-        return {1.5: sqrt, 10.0 / 9.0: lambda x: cbrt(cbrt(x))}[power]
+        return sqrt if power == 1.5 else lambda x: cbrt(cbrt(x))
 
     def _wall_of(self, stiffness: float, power: float) -> Any:
         linear = self._stiffness(stiffness)

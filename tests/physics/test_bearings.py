@@ -262,3 +262,82 @@ def test_a_turned_train_shares_alike(frame):
 def test_what_does_not_hold_is_told(changes, told):
     with pytest.raises(ls.CaseError, match=told):
         pair().replace(changes)
+
+
+TILT = math.radians(25.0)
+TURN = np.array([[math.cos(TILT), -math.sin(TILT)], [math.sin(TILT), math.cos(TILT)]])
+FULL = TURN @ np.diag([5e7, 3e8]) @ TURN.T
+"""A stiffness that is least and largest at 25 deg to x and y [N/m]."""
+
+
+def on_a_full_matrix(matrix: np.ndarray) -> ls.Case:
+    told = [[f"{v!r} N/m" for v in row] for row in matrix.tolist()]
+    told[1][0] = told[0][1]
+    return pair().replace({"bearings": {}, "gears.a.support": told})
+
+
+@pytest.mark.parametrize("engine", ["vectorised", "compiled"])
+@pytest.mark.parametrize("solver", ["auto", "clarabel"])
+def test_a_gear_on_a_bearing_stiffest_aslant(solver, engine):
+    """It moves by the inverse of the matrix times the force, told along x and y."""
+    case = on_a_full_matrix(FULL)
+    found = ls.solve(case, solver=solver, engine=engine).positions[0]
+    expected = np.linalg.solve(FULL, FORCE * ALONG)
+    assert found.displacement["a"] == pytest.approx(tuple(expected), rel=1e-10)
+    assert found.loads.bearings["a"] == pytest.approx(tuple(FORCE * ALONG), rel=1e-10)
+    assert found.certificate.proved < 1e-12
+    batch = ls.solve_many(case, {"operating.torque [N*m]": np.array([100.0])}, engine=engine)
+    moved = batch.displacement.sel(gear="a").values[0, 0]
+    assert moved == pytest.approx(expected, rel=1e-10)
+
+
+def test_a_full_matrix_of_two_directions_is_two_directions():
+    both = pair().replace({"bearings": {}, "gears.a.support": ["1e8 N/m", "2e8 N/m"]})
+    one, other = (ls.solve(c) for c in (both, on_a_full_matrix(np.diag([1e8, 2e8]))))
+    assert one.positions[0].displacement["a"] == pytest.approx(
+        other.positions[0].displacement["a"], rel=1e-12
+    )
+
+
+def test_a_full_matrix_turns_with_the_train():
+    """Errors, sensitivities and shares of a train that is turned by 25 deg, its matrix with it."""
+    aligned = pair().replace(
+        {
+            "bearings": {},
+            "gears.a.support": ["5e7 N/m", "3e8 N/m"],
+            "errors": {
+                "a": {
+                    "installation": {"amount": "9 um", "direction": "40 deg"},
+                    "eccentricity": {"amount": "5 um", "direction": "10 deg"},
+                }
+            },
+        }
+    )
+    data = aligned.to_dict()
+    place = TURN @ [0.16, 0.0]
+    data["gears"]["b"]["centre"] = [f"{v!r} m" for v in place.tolist()]
+    data["gears"]["a"]["support"] = [[f"{v!r} N/m" for v in row] for row in FULL.tolist()]
+    data["gears"]["a"]["support"][1][0] = data["gears"]["a"]["support"][0][1]
+    data["errors"]["a"]["installation"]["direction"] = "65 deg"
+    data["errors"]["a"]["eccentricity"]["direction"] = "35 deg"
+    keys = ["errors.a.installation.amount", "operating.torque"]
+    one, other = aligned, ls.Case(data)
+    straight, turned = (ls.solve(c).positions[0].displacement["a"] for c in (one, other))
+    assert turned == pytest.approx(tuple(TURN @ straight), rel=1e-9)
+    straight, turned = (ls.sensitivity(c, keys) for c in (one, other))
+    for key in keys:
+        rates = [s.rates[1, key, "rising"].displacement["a"] for s in (straight, turned)]
+        assert rates[1] == pytest.approx(tuple(TURN @ rates[0]), rel=1e-7, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("matrix", "told"),
+    [
+        ([["1e8 N/m", "1e7 N/m"], ["2e7 N/m", "1e8 N/m"]], "is not symmetric"),
+        ([["1e8 N/m", "2e8 N/m"], ["2e8 N/m", "1e8 N/m"]], "not positive in all directions"),
+        ([["1e8 N/m"], ["2e8 N/m"]], "gears.a.support"),
+    ],
+)
+def test_what_is_no_stiffness_is_told(matrix, told):
+    with pytest.raises(ls.CaseError, match=told):
+        pair().replace({"bearings": {}, "gears.a.support": matrix})

@@ -12,6 +12,7 @@ from pydantic import Field, Strict, Tag
 
 from loadshare.case.element import (
     LIST,
+    NESTED,
     TABLE,
     VALUE,
     Element,
@@ -34,6 +35,7 @@ from loadshare.case.quantity import (
     PositiveStiffness,
     Quantity,
     Radius,
+    Stiffness,
     Temperature,
 )
 from loadshare.involute import InvoluteTooth, inv
@@ -262,12 +264,19 @@ class Gear(Element):
                 STIFFNESS.bounded(above=0).or_words("rigid", "free"),
                 Tag(VALUE),
             ]
-            | Annotated[tuple[PositiveStiffness, PositiveStiffness], Tag(LIST)],
-            shaped('"rigid", "free", a stiffness such as "5.5e8 N/m", or a list of 2 of them'),
+            | Annotated[tuple[PositiveStiffness, PositiveStiffness], Tag(LIST)]
+            | Annotated[
+                tuple[tuple[Stiffness, Stiffness], tuple[Stiffness, Stiffness]], Tag(NESTED)
+            ],
+            shaped(
+                '"rigid", "free", a stiffness such as "5.5e8 N/m", a list of 2 of them, or 2 lists'
+            ),
         ]
         | None
     ) = None
     """Bearing: rigid, free, or a stiffness for both or each of two directions [force/length].
+
+    Two lists of 2 are a full matrix, of a bearing whose stiffest direction is neither x nor y.
 
     Left out: free for a gear with a spline or a ring, rigid for any other.
     """
@@ -277,6 +286,7 @@ class Gear(Element):
         if self.copies is not None:
             hint = "Their angles count from that of the centre, about its pole."
             yield Rule("goes with a centre by distance and angle", ("copies",), hint=hint)
+        yield from self._support_rules()
         if self.type == "carrier":
             yield from self._carrier_rules()
             return
@@ -302,6 +312,15 @@ class Gear(Element):
         ):
             yield Rule("is not below outer_radius", ("inner_radius",))
         yield from self._axis_rules()
+
+    def _support_rules(self) -> Iterator[Rule]:
+        if not isinstance(self.support, tuple) or not isinstance(self.support[0], tuple):
+            return
+        (xx, xy), (yx, yy) = ((k.si for k in row) for row in self.support)
+        if xy != yx:
+            yield Rule("is not symmetric", ("support",))
+        elif xx <= 0.0 or xx * yy - xy * yx <= 0.0:
+            yield Rule("is not positive in all directions", ("support",))
 
     def _rim_rules(self) -> Iterator[Rule]:
         if self.ovalisation is None:

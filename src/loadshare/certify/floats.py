@@ -126,7 +126,7 @@ def _drum_touches(state: ClaimedState, gear: str, rests: _Rests) -> Iterator[tup
     for d, ring in enumerate(state.of.train.drums):
         if ring.gear != gear:
             continue
-        frame, ways = state.of.train.gears[gear].frame, state.way[d, :, :, 0]
+        frame, ways = state.of.train.gears[gear].plane, state.way[d, :, :, 0]
         outward = [*(-way / np.linalg.norm(way) for way in ways), ring.across, -ring.across]
         first = len(state.of.flanks) + 4 * d
         for k, way in enumerate(outward):
@@ -140,7 +140,7 @@ def _ring_touches(
     train: Train, gear: str, pulls: Iterable[Pull], rests: _Rests
 ) -> Iterator[tuple[Touch, Array]]:
     """Boundary of a gear's round ring, and its force on it (2,) [N]."""
-    frame = train.gears[gear].frame
+    frame = train.gears[gear].plane
     for pull in pulls:
         if pull.gear != gear or not pull.is_ring:
             continue

@@ -124,7 +124,7 @@ class Table:
         # From displacements of all gears to transverse frames of those that can move.
         self.frames = np.zeros((3 * len(gears), 2 * len(moving)))
         for column, k in enumerate(moving):
-            frame = gears[self.names.gears[k]].frame
+            frame = gears[self.names.gears[k]].plane
             self.frames[3 * k : 3 * k + 3, 2 * column : 2 * column + 2] = frame.T
         self.coords: dict[str, Any] = {
             "sample": np.arange(count),

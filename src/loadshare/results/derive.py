@@ -59,7 +59,7 @@ def result_from(
     stages = train.stages
     return Result(
         frames={
-            n: (tuple(g.frame[0].tolist()), tuple(g.frame[1].tolist()))
+            n: (tuple(g.plane[0].tolist()), tuple(g.plane[1].tolist()))
             for n, g in train.gears.items()
         },
         stages={s.name: s.meshes for s in stages},

@@ -87,12 +87,12 @@ class Loads:
             if gear.rim_of is not None:
                 continue
             own = (
-                gear.frame @ pushed[k]
+                gear.plane @ pushed[k]
                 if gear.support is None
-                else state.claim.support_force[k, :, 0]
+                else gear.told(state.claim.support_force[k, :, 0])
             )
             bearing = self.train.bearings.get(name)
             if bearing is not None:
-                own = own - gear.frame @ state.reaction[of.pulls.index(bearing.name), :, 0]
+                own = own - gear.plane @ state.reaction[of.pulls.index(bearing.name), :, 0]
             found[name] = (float(own[0]), float(own[1]))
         return found

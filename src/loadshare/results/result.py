@@ -173,7 +173,7 @@ class Position:
         The global x, y for a gear whose axis is z.
         """
         gears, moved = self.train.gears, self.claim.displacement
-        plane = {name: gears[name].frame @ p for name, p in moved.items()}
+        plane = {name: gears[name].plane @ p for name, p in moved.items()}
         return {name: (float(p[0]), float(p[1])) for name, p in plane.items()}
 
     @cached_property

@@ -202,7 +202,7 @@ def _slip(answer: Answer, gear: str, before: Vector, after: Vector) -> Slip:
         stage = "slip"
     work = max(float(-friction @ (after - before)), 0.0)
     return Slip(
-        slip=train.gears[gear].frame @ after,
+        slip=train.gears[gear].plane @ after,
         stage=stage,
         friction=spline.bound(train.transmitted(gear, answer.equilibrium.flank_force)),
         dissipated=work,

@@ -99,7 +99,7 @@ def train_of(
             return None
 
     supported = elements(
-        "gears", lambda name, _: replace(geometry.gears[name], support=_support(case, name))
+        "gears", lambda name, _: _supported(geometry.gears[name], _support(case, name))
     )
     # In the order of the walk from the input gear.
     gears = with_harmonics(case, {name: supported[name] for name in geometry.gears})
@@ -173,7 +173,19 @@ def _support(case: spec.Case, name: str) -> Vector | None:
     if isinstance(support, str):
         return np.zeros(2) if support == "free" else None
     both = support if isinstance(support, tuple) else (support, support)
+    if isinstance(both[0], tuple):
+        return np.array([[k.si for k in row] for row in both])
     return np.stack([k.si for k in both], axis=-1)
+
+
+def _supported(gear: Gear, support: Vector | None) -> Gear:
+    """Return a gear on a support: of a full matrix (2, 2), seen from its principal directions."""
+    if support is None or support.shape != (2, 2):
+        return replace(gear, support=support)
+    stiffness, ways = np.linalg.eigh(support)
+    # Right-handed, as the plane is.
+    ways = ways if np.linalg.det(ways) > 0.0 else ways * [1.0, -1.0]
+    return replace(gear, support=stiffness, frame=ways.T @ gear.frame)
 
 
 def _each(
@@ -255,7 +267,7 @@ def _ring(name: str, ring: spec.Ring, gears: Mapping[str, Gear], meshes: dict[st
     gear = gears[name]
     stiffness = _stiffness(ring.stiffness)
     if ring.radius is not None:
-        offset = np.array([q.si for q in ring.offset]) @ gear.frame
+        offset = np.array([q.si for q in ring.offset]) @ gear.plane
         return RoundRing(name, ring.radius.si, offset, stiffness)
     first, second = (gears[n] for n in ring.neighbours or ())
     along = transverse(second.centre - first.centre, gear.axis)
@@ -286,7 +298,7 @@ def _ring(name: str, ring: spec.Ring, gears: Mapping[str, Gear], meshes: dict[st
 
 
 def _bearing(bearing: spec.Bearing, gear: Gear) -> Bearing:
-    offset = np.array([q.si for q in bearing.offset]) @ gear.frame
+    offset = np.array([q.si for q in bearing.offset]) @ gear.plane
     return Bearing(gear.name, bearing.clearance.si, offset, *bearing.wall)
 
 
@@ -340,7 +352,7 @@ def _offset(errors: spec.Errors, gear: Gear, gears: Mapping[str, Gear]) -> Offse
     installation = np.zeros(3)
     if isinstance(errors.installation, spec.Offset):
         amount, direction = errors.installation.amount.si, errors.installation.direction.si
-        installation = polar(amount, direction) @ gear.frame
+        installation = polar(amount, direction) @ gear.plane
     elif errors.installation is not None:
         installation = _vector(errors.installation)
     if errors.pin is not None and gear.carrier is not None:

@@ -56,7 +56,8 @@ class Gear:
     axis : ndarray, shape (3,)
         Unit vector.
     frame : ndarray, shape (2, 3)
-        Unit vectors of the transverse plane; displacements are components along them.
+        Unit vectors of the transverse plane, along which a support's stiffness is told: those of
+        `plane`, or turned to where it is largest and smallest.
     base_radius : float
         r_b [m]; the acting radius of a face gear, the distance of a carrier's outermost pin.
     sense : int
@@ -103,6 +104,20 @@ class Gear:
     frame_of: str | None = None
     rim_of: str | None = None
     harmonic: int = 0
+
+    @property
+    def plane(self) -> NDArray[np.float64]:
+        """Unit vectors of the transverse plane, shape (2, 3), along which components are told."""
+        return transverse_frame(self.axis)
+
+    @property
+    def is_tilted(self) -> bool:
+        """Whether its frame is not that of its plane."""
+        return self.frame is not self.plane
+
+    def told(self, components: Vector) -> Vector:
+        """Components (2,) along `plane` of those along `frame`."""
+        return components @ self.frame @ self.plane.T if self.is_tilted else components
 
     @property
     def running(self) -> int:

@@ -45,7 +45,7 @@ class Offset:
         if frame and gear.carrier is None:
             fixed = turned_about(gear, fixed, -frame)
         turned = _turned(gear.sense * rotation - frame)
-        return np.asarray(fixed + self.eccentricity @ (turned @ gear.frame))
+        return np.asarray(fixed + self.eccentricity @ (turned @ gear.plane))
 
 
 def turned_about(gear: Gear, vector: Vector, angle: float) -> Vector:

@@ -35,6 +35,7 @@ def with_harmonics(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Gear
                 gears[name],
                 name=f"{name}: harmonic {n}",
                 kind="harmonic",
+                frame=gears[name].plane,
                 teeth=None,
                 support=np.full(2, stiffness),
                 held=True,

@@ -132,7 +132,7 @@ def check_turning_frames(draft: Draft) -> Iterator[Problem]:
         gear, path = draft.gears[name], ("gears", name)
         if None not in frames and len(frames) == 1:
             support = gear.support if isinstance(gear.support, tuple) else ()
-            if len({k.si for k in support}) > 1:
+            if len({k if isinstance(k, tuple) else k.si for k in support}) > 1:
                 what = "differs in its two directions, but the housing turns about the set"
                 yield draft.problem((*path, "support"), what, "one stiffness", NEGLECT)
             for section in ("rings", "bearings"):

@@ -111,7 +111,7 @@ def region(
 
 
 def _disc(train: Train, ring: RoundRing) -> Region:
-    x, y = (float(v) for v in train.gears[ring.gear].frame @ ring.offset)
+    x, y = (float(v) for v in train.gears[ring.gear].plane @ ring.offset)
     outline = circle((x, y), ring.radius)
     # Named at the upper right, where neither axis stands.
     outward = (math.sqrt(0.5), math.sqrt(0.5))
@@ -127,7 +127,7 @@ def _drum(
 ) -> Region:
     """Drum between the rings of two neighbours, line by line across it."""
     gear = train.gears[ring.gear]
-    across = gear.frame @ ring.across
+    across = gear.plane @ ring.across
     along = np.array([across[1], -across[0]])
 
     def path(us: Any, vs: Any) -> list[Point]:
@@ -141,8 +141,8 @@ def _drum(
     arcs: list[tuple[str, float, np.ndarray]] = []
     for side, name in enumerate(ring.neighbours):
         exclusion = situation.arc(ring, side)
-        moved = np.array(displacement[name]) @ train.gears[name].frame
-        middle = gear.frame @ (moved - exclusion.start)
+        moved = np.array(displacement[name]) @ train.gears[name].plane
+        middle = gear.plane @ (moved - exclusion.start)
         radius = exclusion.distance - exclusion.clearance
         u, v = middle @ along, middle @ across
         left_over = radius**2 - (lines - v) ** 2

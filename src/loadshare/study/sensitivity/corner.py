@@ -170,6 +170,10 @@ class Corner:
             moved[gear] = np.where(loose[gear], np.nan, pick @ motion.rate * length)
             apart = _largest([other.rate[where] - motion.rate[where] for other in motion.beside])
             error[gear] = np.where(loose[gear], np.nan, (motion.bound(pick) + apart) * length)
+            body = self.train.gears[gear]
+            if body.is_tilted:
+                moved[gear] = body.told(moved[gear])
+                error[gear] = error[gear] @ np.abs(body.frame @ body.plane.T)
         return Motions(torque, bound(np.eye(len(torque))), bound, moved, error)
 
     def _rates(self, motions: Motions) -> Rates:

@@ -97,7 +97,7 @@ def _limit(slopes: list[tuple[Array, Array]]) -> tuple[Array, Array]:
 
 def _stacked(train: Train, found: Equilibrium) -> Array:
     """Torques, then displacements in every gear's frame, side by side."""
-    moved = [gear.frame @ found.displacement[name] for name, gear in train.gears.items()]
+    moved = [gear.plane @ found.displacement[name] for name, gear in train.gears.items()]
     return np.concatenate([list(torques_of(train, found).values()), *moved])
 
 
