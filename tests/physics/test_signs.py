@@ -71,6 +71,8 @@ def test_the_output_takes_the_sum_of_the_loads(name):
     carry.
     """
     train, answers = solved(name)
+    if train.external:
+        pytest.skip("a differential has two speeds, and no ratio")
     output = train.gears[train.output]
     for found in answers:
         taken = sum(
