@@ -98,9 +98,7 @@ def train_of(
             problems.append(_ring_problem(case, name, str(error)))
             return None
 
-    supported = elements(
-        "gears", lambda name, _: _supported(geometry.gears[name], _support(case, name))
-    )
+    supported = elements("gears", lambda name, _: _supported(case, geometry.gears[name]))
     # In the order of the walk from the input gear.
     gears = with_harmonics(case, {name: supported[name] for name in geometry.gears})
     by_layout, warm = case.operating.phases == "layout", grows(case)
@@ -173,16 +171,16 @@ def _support(case: spec.Case, name: str) -> Vector | None:
     if isinstance(support, str):
         return np.zeros(2) if support == "free" else None
     both = support if isinstance(support, tuple) else (support, support)
-    if isinstance(both[0], tuple):
-        return np.array([[k.si for k in row] for row in both])
-    return np.stack([k.si for k in both], axis=-1)
+    return np.stack([k.si for k in both if isinstance(k, spec.Quantity)], axis=-1)
 
 
-def _supported(gear: Gear, support: Vector | None) -> Gear:
-    """Return a gear on a support: of a full matrix (2, 2), seen from its principal directions."""
-    if support is None or support.shape != (2, 2):
-        return replace(gear, support=support)
-    stiffness, ways = np.linalg.eigh(support)
+def _supported(case: spec.Case, gear: Gear) -> Gear:
+    """Return a gear on its support: of a full matrix, seen from the principal directions."""
+    given = case.gears[gear.name].support
+    if not isinstance(given, tuple) or not isinstance(given[0], tuple):
+        return replace(gear, support=_support(case, gear.name))
+    matrix = np.array([[k.si for k in row] for row in given if isinstance(row, tuple)])
+    stiffness, ways = np.linalg.eigh(matrix)
     # Right-handed, as the plane is.
     ways = ways if np.linalg.det(ways) > 0.0 else ways * [1.0, -1.0]
     return replace(gear, support=stiffness, frame=ways.T @ gear.frame)
