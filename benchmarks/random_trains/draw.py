@@ -73,6 +73,38 @@ class _Drawing:
         self._supports()
         if errors := self._errors():
             self.data["errors"] = errors
+        if any(gear.get("carrier") for gear in layout.gears.values()):
+            self._loosely_held()
+
+    def _loosely_held(self) -> None:
+        """Put members of a set in bearings with clearance, of any law, and push them."""
+        dice, data = self.dice, self.data
+        other = {**data.get("splines", {}), **data.get("rings", {})}
+        held = dice.some(tuple(data["gears"]), dice.pick([0.0, 0.0, 0.2, 0.5]))
+        bearings = {gear: self._rolling() for gear in held if gear not in other}
+        for gear in bearings:
+            data["gears"][gear].pop("support", None)
+        if bearings:
+            data["bearings"] = bearings
+        pushed = dice.some(tuple(data["gears"]), dice.pick([0.0, 0.0, 0.0, 0.4]))
+        if pushed:
+            largest = RATED * self.load * dice.pick([0.01, 0.1, 1.0])
+            parts = {g: [dice.between(-largest, largest) for _ in "xy"] for g in pushed}
+            data["operating"]["forces"] = {g: [f"{p!r} N" for p in f] for g, f in parts.items()}
+
+    def _rolling(self) -> dict[str, Any]:
+        """A bearing of balls, of rollers, or as stiff as it is."""
+        dice = self.dice
+        name, power = dice.pick([("ball_", 1.5), ("roller_", 10.0 / 9.0), ("", 1.0)])
+        stiffness = RATED / DEFLECTION**power * dice.spread(1.0)
+        unit = {1.5: "N/m^1.5", 1.0: "N/m"}.get(power, "N/m^(10/9)")
+        bearing: dict[str, Any] = {
+            "clearance": self._play(), f"{name}stiffness": f"{stiffness!r} {unit}"
+        }  # fmt: skip
+        if dice.chance(0.3):
+            offset = 0.3 * DEFLECTION
+            bearing["offset"] = [metres(dice.between(-offset, offset)) for _ in "xy"]
+        return bearing
 
     def _spread(self) -> float:
         """Factor on a stiffness: trains apart by nothing, by a decade, by six, by nine."""

@@ -25,6 +25,7 @@ from loadshare.case import Case
 from loadshare.errors import CaseError, Refused
 from loadshare.results.result import Position
 from loadshare.train import Train, build_train
+from loadshare.train.placed import standing
 from loadshare.train.situations import situation_of
 
 AGREES = 1e-9
@@ -116,7 +117,9 @@ def judged(case: Case) -> dict[str, Any]:
         if crashed:
             finding.outcome, finding.told = "crashed", crashed
         elif train is not None:
-            _compare(case, train, solved.get(index), _told_of(told, index), finding)
+            _compare(
+                case, standing(train, index), solved.get(index), _told_of(told, index), finding
+            )
         findings.append(asdict(finding))
     return {"name": case.name, "seconds": seconds, "positions": findings}
 

@@ -78,7 +78,7 @@ class _Open:
 
     def __init__(self, count: int, positions: Sequence[int]) -> None:
         shape = count, len(positions)
-        self.count = count
+        self.count, self.positions = count, positions
         self.certified, self.determined = np.zeros((2, *shape), dtype=bool)
         self.residual, self.bound, self.displaced = np.full((3, *shape), np.nan)
         self.deflection, self.load = np.full((2, *shape), np.nan)
@@ -144,17 +144,18 @@ def solve_block(
         As for `solve_blocks`.
     """
     block, message = _Open(len(rows), positions), dict[tuple[int, int], str]()
-    abreast = max(1, JOB.together // len(rows))
+    abreast = 1 if machine.train.is_placed_anew else max(1, JOB.together // len(rows))
     for at in range(0, len(positions), abreast):
         some = positions[at : at + abreast]
         columns = slice(at, at + len(some))
         block.situations += [samples.situations(index) for index in some]
         situations = stack(block.situations[at:])
-        found = machine.answer(situations, tolerance, engine, starts=some)
+        here = machine.at(some[0])
+        found = here.answer(situations, tolerance, engine, starts=some)
         block.put(columns, found)
         if least_norm:
             loose = found.passed & ~found.determined
-            least_places(machine, situations, found, np.flatnonzero(loose).tolist(), tolerance)
+            least_places(here, situations, found, np.flatnonzero(loose).tolist(), tolerance)
             block.displaced[:, columns][loose.reshape(-1, len(rows)).T] = np.nan
     for row, p in np.argwhere(~block.certified).tolist():
         try:
@@ -167,9 +168,10 @@ def solve_block(
         message[int(rows[row]), positions[p]] = f"position {positions[p]}: {why}"
         block.refuse(row, p)
     curvature, convex = np.full(block.load.shape, np.nan), np.zeros_like(block.certified)
-    for p, (here, answers) in enumerate(zip(block.situations, block.equilibria, strict=True)):
-        curvature[:, p] = arc_curvature(machine.train, answers)
-        convex[:, p] = is_convex(machine.train, here, answers, block.load[:, p])
+    for p, (situations, answers) in enumerate(zip(block.situations, block.equilibria, strict=True)):
+        train = machine.at(positions[p]).train
+        curvature[:, p] = arc_curvature(train, answers)
+        convex[:, p] = is_convex(train, situations, answers, block.load[:, p])
     return Block(
         rows,
         positions,
@@ -188,9 +190,10 @@ def solve_block(
 
 def _too_far(machine: Machine, block: _Open) -> dict[tuple[int, int], str]:
     """Write how far displacements go where that is not known; return why some are refused."""
-    measuring, refused = machine.measuring, dict[tuple[int, int], str]()
+    refused = dict[tuple[int, int], str]()
     for p, (here, found) in enumerate(zip(block.situations, block.equilibria, strict=True)):
         displaced, deflection = block.displaced[:, p], block.deflection[:, p]
+        measuring = machine.at(block.positions[p]).measuring
         left = np.flatnonzero(np.isnan(displaced))
         if len(left):
             some = here.take(left), found.take(left), deflection[left]

@@ -30,6 +30,7 @@ from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.contradiction import contradiction
 from loadshare.solver.position import Known
 from loadshare.solver.runaway import runaway
+from loadshare.train.placed import standing
 from loadshare.train.situations import situation_of
 from loadshare.train.train import Train
 
@@ -79,6 +80,10 @@ def climb_all(
     Answer or Refused
         In the order of the positions; a refusal where no rung gives a certified answer.
     """
+    if machine.train.is_placed_anew:
+        for index in indices:
+            yield from climb_all(machine.at(index), [index], options, tolerance, engine)
+        return
     quick: dict[int, Answer] = {}
     steps = math.inf
     if engine is not None and machine.train.slip is None:
@@ -115,6 +120,7 @@ def climb(
         If no rung gives a certified answer; the message says what failed at the first rung and
         carries its figures.
     """
+    train = standing(train, index)
     structure = structure_of(train)
     scene = scene_of(structure, situation_of(train, index))
     _refuse_if_contradicted(scene, JOB.plainly)

@@ -24,6 +24,7 @@ from loadshare.solver.hot.iterate import Iterate, at_rest, pushes
 from loadshare.solver.hot.proximal import search
 from loadshare.train import Train
 from loadshare.train.equilibria import Equilibria
+from loadshare.train.placed import standing
 from loadshare.train.situations import Situations, situation_of, stack
 
 
@@ -105,6 +106,8 @@ class Machine:
         self._last: _Start | None = None
         self._starts: dict[int, _Start | None] = {}
         self._own: tuple[tuple[int, ...], Situations] | None = None
+        self._placed: dict[int, Machine] = {}
+        self._like: Machine | None = None
 
     @cached_property
     def structure(self) -> Structure:
@@ -123,8 +126,22 @@ class Machine:
 
     def share(self, other: Machine) -> None:
         """Take over what is reduced of a machine that differs in its situations only."""
+        self._like = other
+        if self.train.is_placed_anew:
+            return
         self.__dict__["structure"], self.__dict__["judge"] = other.structure, other.judge
         self.__dict__["measuring"] = other.measuring
+
+    def at(self, index: int) -> Machine:
+        """Return the machine of a position (1-based): itself, unless its train is placed anew."""
+        if index not in self._placed:
+            train = standing(self.train, index)
+            if train is self.train:
+                return self
+            machine = self._placed[index] = Machine(train)
+            if self._like is not None:
+                machine.share(self._like.at(index))
+        return self._placed[index]
 
     def situations(self, indices: Sequence[int]) -> Situations:
         """Return the train's own situations at some positions, kept for the next time."""

@@ -84,6 +84,7 @@ def search(case: Case | str | Path, position: int = 1, *, seed: int = 0) -> Sear
         As :func:`loadshare.solve`.
     """
     _, machine = prepared(case)
+    machine = machine.at(position)
     (known,) = climb_all(machine, [position], Options(), CERTIFY.tolerance)
     if isinstance(known, Refused):
         raise known

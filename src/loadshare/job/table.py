@@ -14,7 +14,7 @@ from loadshare._version import __version__
 from loadshare.case import Case
 from loadshare.results.dataset import COMPONENTS, VARIABLES, Variable
 from loadshare.train.equilibria import Equilibria
-from loadshare.train.train import Stage
+from loadshare.train.train import Stage, Train
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -114,6 +114,15 @@ EACH = {
 }
 
 
+def _frames(train: Train) -> Array:
+    """From displacements of all gears to components of those that can move."""
+    moving = [(k, gear) for k, gear in enumerate(train.gears.values()) if gear.moves]
+    frames = np.zeros((3 * len(train.gears), 2 * len(moving)))
+    for column, (k, gear) in enumerate(moving):
+        frames[3 * k : 3 * k + 3, 2 * column : 2 * column + 2] = gear.plane.T
+    return frames
+
+
 class Table:
     """Variables of all samples, filled block by block."""
 
@@ -121,11 +130,7 @@ class Table:
         self.names = first.equilibria[0].names
         gears = self.names.train.gears
         moving = [k for k, gear in enumerate(gears.values()) if gear.moves]
-        # From displacements of all gears to transverse frames of those that can move.
-        self.frames = np.zeros((3 * len(gears), 2 * len(moving)))
-        for column, k in enumerate(moving):
-            frame = gears[self.names.gears[k]].plane
-            self.frames[3 * k : 3 * k + 3, 2 * column : 2 * column + 2] = frame.T
+        self.frames = _frames(self.names.train)
         self.coords: dict[str, Any] = {
             "sample": np.arange(count),
             "position": list(first.positions),
@@ -177,7 +182,9 @@ class Table:
         """Return a variable of a block at one position."""
         if name == "displacement":
             flat = answers.displacement.reshape(len(answers.displacement), -1)
-            return (flat @ self.frames).reshape(len(flat), self.frames.shape[1] // 2, 2)
+            train = answers.names.train
+            frames = self.frames if train.placed is None else _frames(train)
+            return (flat @ frames).reshape(len(flat), frames.shape[1] // 2, 2)
         if name in ("share", "pair_share"):
             train = self.names.train
             return shares(torque, tuple(train.meshes), train.stages, pairs=name == "pair_share")

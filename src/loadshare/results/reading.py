@@ -33,6 +33,7 @@ from loadshare.solver.position import of_least_norm
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium, Range
 from loadshare.train.memory import slip_of
+from loadshare.train.placed import standing
 
 AGAIN = "Solve the case again: loadshare run CASE.toml --json FILE."
 
@@ -248,7 +249,7 @@ def _wrong_names(given: _File, train: Train) -> Iterator[Wrong]:
 
 def _position(train: Train, given: _Position, tolerance: float) -> Position:
     found = given.claim.equilibrium(given.position, given.ranges)
-    remembering = given.claim.train(train)
+    remembering = standing(given.claim.train(train), given.position)
     answer = _Claimed(found, certify(remembering, found, tolerance), given.effort)
     return position_of(remembering, given.position, given.claim.flank_force, answer)
 
@@ -290,7 +291,10 @@ def _forgotten(train: Train, positions: Iterable[Position]) -> Iterator[Wrong]:
             if off > ROUND_OFF * size + DIGITS * float(np.abs(after[gear]).max()):
                 told = "is not the slip at the end of the step before"
                 yield (*path, gear), as_given(list(slip)), told, as_given(after[gear].tolist())
-        after = {gear: slip_of(spline, p.equilibrium) for gear, spline in train.splines.items()}
+        after = {
+            gear: train.slip_seen_next(gear, slip_of(spline, p.equilibrium), p.position)
+            for gear, spline in train.splines.items()
+        }
 
 
 def _loosened(positions: Iterable[Position], train: Train) -> Iterator[Wrong]:

@@ -15,12 +15,14 @@ from loadshare.scene.scene import GearRadial, Scene
 from loadshare.scene.structure import ArcElement, RadialElement, Structure, structure_of
 from loadshare.settings import LAWS
 from loadshare.train.memory import SlipFriction, SlipStop
+from loadshare.train.placed import standing
 from loadshare.train.situations import Situations, situation_of
 from loadshare.train.train import Spline, Train
 
 
 def assemble(train: Train, index: int) -> Scene:
     """Assemble the scene of position `index` (1-based) of a train."""
+    train = standing(train, index)
     return scene_of(structure_of(train), situation_of(train, index))
 
 

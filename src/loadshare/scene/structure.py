@@ -330,7 +330,9 @@ class Structure:
 @lru_cache(maxsize=STATICS.trains)
 def structure_of(train: Train) -> Structure:
     """Set up the force method for a train."""
-    at, here, order = coordinates_of(train), situation_of(train, 1), train.order
+    if train.is_placed_anew:
+        raise ValueError("every position of this train has a structure of its own")
+    at, here, order = coordinates_of(train), situation_of(train, train.placed or 1), train.order
     unit = np.eye(at.size)
     shafts, shaft_columns = [], []
     for s, shaft in enumerate(train.shafts.values()):

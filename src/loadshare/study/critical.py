@@ -140,9 +140,10 @@ def critical(
     chosen = wanted_positions(line.first, positions)
     done = 0
     for group in alike((line.first, line.last), chosen):
-        search = Search(line, group[0], low, high)
+        here = line.at(group[0])
+        search = Search(here, group[0], low, high)
         search.run()
-        found = [e for change in search.changes for e in events_of(line, group[0], change)]
+        found = [e for change in search.changes for e in events_of(here, group[0], change)]
         for position in group:
             events += [replace(event, position=position) for event in found]
             unproved += [

@@ -27,7 +27,7 @@ from loadshare.study.positions import loaded
 from loadshare.train import Train, build_train
 from loadshare.train.gear import Vector
 from loadshare.train.memory import slip_of
-from loadshare.train.offset import turned_about
+from loadshare.train.placed import standing
 from loadshare.train.train import Spline
 
 if TYPE_CHECKING:
@@ -150,7 +150,7 @@ def _marched(case: Case, train: Train, progress: Progress | None) -> March:
     before: dict[str, Vector] = {gear: np.zeros(3) for gear in train.splines}
     steps = range(1, train.count + 1)
     for index in steps:
-        remembering = train.remembering(before)
+        remembering = standing(train.remembering(before), index)
         try:
             answer = stepped(remembering, index)
             refused = answer.refused()
@@ -163,7 +163,7 @@ def _marched(case: Case, train: Train, progress: Progress | None) -> March:
         after = {g: _slipped(answer, s, before[g]) for g, s in train.splines.items()}
         slips.append({g: _slip(answer, g, before[g], after[g]) for g in after})
         answers.append(answer)
-        before = {gear: _seen_next(train, gear, slip, index) for gear, slip in after.items()}
+        before = {g: train.slip_seen_next(g, slip, index) for g, slip in after.items()}
         if progress is not None:
             progress(index, train.count)
     assert train.march is not None
@@ -174,15 +174,6 @@ def _marched(case: Case, train: Train, progress: Progress | None) -> March:
         gear=reference,
         slips=tuple(slips),
     )
-
-
-def _seen_next(train: Train, gear: str, slip: Vector, index: int) -> Vector:
-    """Slip as the next step sees it: from its carrier, what stands in the housing turns back."""
-    here = train.gears[gear]
-    if here.frame_of is None or here.carrier is not None or index == train.count:
-        return slip
-    now, then = (train.frame_angle(gear, train.rotations(k)) for k in (index, index + 1))
-    return turned_about(here, slip, now - then)
 
 
 def _slipped(answer: Answer, spline: Spline, before: Vector) -> Vector:

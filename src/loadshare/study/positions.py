@@ -28,5 +28,7 @@ def alike(trains: Iterable[Train], positions: Iterable[int]) -> list[list[int]]:
 
 def _situation(train: Train, position: int) -> tuple[object, ...]:
     """What a position brings, as something to compare."""
+    if train.is_placed_anew:
+        return (position,)
     situation = situation_of(train, position)
     return tuple(getattr(situation, name).tobytes() for name in VARYING)

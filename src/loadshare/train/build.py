@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from loadshare import case as spec
+from loadshare.case.uneven import is_uneven
 from loadshare.contact.law import Law, PowerLaw, TableLaw
 from loadshare.errors import CaseError, Problem
 from loadshare.train.gear import Gear, Vector, cross
@@ -143,6 +144,7 @@ def train_of(
         rotating=operating.rotation == "teeth",
         march=(case.march.gear, case.march.revolutions, case.march.steps) if case.march else None,
         period=geometry.period,
+        uneven=is_uneven(case),
     )
 
 

@@ -21,23 +21,27 @@ def cross(first: Vector, second: Vector) -> Vector:
     return np.array([b * r - c * q, c * p - a * r, a * q - b * p])
 
 
-def transverse_frame(axis: Vector) -> NDArray[np.float64]:
+def transverse_frame(axis: Vector, turned: float = 0.0) -> NDArray[np.float64]:
     """Two unit vectors (2, 3) that span the plane across `axis`, right-handed about it.
 
     The first is the global x direction projected into the plane; y for a gear whose axis is x
-    itself. For an axis along z the frame is the global x, y. Gears along one axis share the array.
+    itself. For an axis along z the frame is the global x, y. Both are turned about the axis by
+    an angle [rad]. Gears along one axis share the array.
     """
-    return _frame_across(tuple(axis.tolist()))
+    return _frame_across(tuple(axis.tolist()), turned)
 
 
-@lru_cache(maxsize=64)
-def _frame_across(along: tuple[float, ...]) -> NDArray[np.float64]:
+@lru_cache(maxsize=256)
+def _frame_across(along: tuple[float, ...], turned: float) -> NDArray[np.float64]:
     axis, seed = np.array(along), np.array([1.0, 0.0, 0.0])
     if abs(axis @ seed) > 1.0 - 1e-9:
         seed = np.array([0.0, 1.0, 0.0])
     first = seed - (seed @ axis) * axis
     first /= np.linalg.norm(first)
     frame = np.array([first, cross(axis, first)])
+    if turned:
+        c, s = np.cos(turned), np.sin(turned)
+        frame = np.array([[c, s], [-s, c]]) @ frame
     frame.flags.writeable = False
     return frame
 
@@ -85,6 +89,9 @@ class Gear:
         displacement is the amplitude of cos nψ and of sin nψ.
     harmonic : int
         n.
+    seen_at : float
+        Angle by which `plane` has turned [rad], where the gear stands as the housing sees it and
+        its components are told as seen from a carrier that turns (see `placed.py`).
     """
 
     name: str
@@ -104,11 +111,12 @@ class Gear:
     frame_of: str | None = None
     rim_of: str | None = None
     harmonic: int = 0
+    seen_at: float = 0.0
 
     @property
     def plane(self) -> NDArray[np.float64]:
         """Unit vectors of the transverse plane, shape (2, 3), along which components are told."""
-        return transverse_frame(self.axis)
+        return transverse_frame(self.axis, self.seen_at)
 
     @property
     def is_tilted(self) -> bool:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from loadshare.train.gear import Gear, Vector
+from loadshare.train.gear import Gear, Vector, transverse_frame
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,7 +45,7 @@ class Offset:
         if frame and gear.carrier is None:
             fixed = turned_about(gear, fixed, -frame)
         turned = _turned(gear.sense * rotation - frame)
-        return np.asarray(fixed + self.eccentricity @ (turned @ gear.plane))
+        return np.asarray(fixed + self.eccentricity @ (turned @ transverse_frame(gear.axis)))
 
 
 def turned_about(gear: Gear, vector: Vector, angle: float) -> Vector:

@@ -22,6 +22,7 @@ from loadshare.train.array_keys import array_unit
 from loadshare.train.build import train_of, with_laws
 from loadshare.train.columns import Column, columns_of
 from loadshare.train.geometry import Geometry, geometry_of
+from loadshare.train.placed import standing
 from loadshare.train.situations import Situations, situations_of
 from loadshare.train.train import Train
 
@@ -67,8 +68,8 @@ class Samples:
 
     def situations(self, index: int) -> Situations:
         """Return the situations at position `index` (1-based) of all samples."""
-        found = situations_of(self._varied, index)
-        return replace(found, train=self.train, count=self.count)
+        found = situations_of(standing(self._varied, index), index)
+        return replace(found, train=standing(self.train, index), count=self.count)
 
     @cached_property
     def _varied(self) -> Train:

@@ -134,6 +134,11 @@ class Train:
     slip : mapping of gear to ndarray (3,), or None
         Slip s₀ [m] of every spline at the position before, for friction with memory; None where
         friction has none.
+    uneven : bool
+        Whether what holds a set that turns is not the same in all directions, so that every
+        position has a train of its own (see `placed.py`).
+    placed : int or None
+        The position whose train this is; then all vectors are as the housing sees them.
     """
 
     name: str
@@ -155,6 +160,8 @@ class Train:
     forces: Mapping[str, Vector] = field(default_factory=dict)
     period: Period | None = None
     slip: Mapping[str, Vector] | None = None
+    uneven: bool = False
+    placed: int | None = None
 
     def remembering(self, slip: Mapping[str, Vector]) -> Train:
         """Return the train with spline friction that starts from a slip [m] of every spline."""
@@ -166,6 +173,11 @@ class Train:
         if self.march is not None:
             return self.march[2]
         return self.positions if self.period is None else self.period.steps(self.positions)
+
+    @property
+    def is_placed_anew(self) -> bool:
+        """Whether every position has a train of its own, which this is not."""
+        return self.uneven and self.placed is None
 
     @cached_property
     def order(self) -> dict[str, int]:
@@ -246,6 +258,8 @@ class Train:
     def offset(self, gear: str, rotation: Mapping[str, float]) -> Vector:
         """Centre offset (3,) [m] of a gear, as seen from the carrier about which it turns.
 
+        As the housing sees it in a train that is placed.
+
         Parameters
         ----------
         gear : str
@@ -255,10 +269,14 @@ class Train:
         errors = self.offsets.get(gear)
         if errors is None:
             return ORIGIN
-        return errors.at(self.gears[gear], rotation[gear], self.frame_angle(gear, rotation))
+        here, turned = self.gears[gear], self.frame_angle(gear, rotation)
+        offset = errors.at(here, rotation[gear], turned)
+        return offset if self.placed is None else turned_about(here, offset, turned)
 
     def push(self, gear: str, rotation: Mapping[str, float]) -> Vector:
         """Force from outside on a gear (3,) [N], as seen from the carrier about which it turns.
+
+        As the housing sees it in a train that is placed.
 
         Parameters
         ----------
@@ -269,7 +287,7 @@ class Train:
         force = self.forces.get(gear)
         if force is None:
             return ORIGIN
-        turned = self.frame_angle(gear, rotation)
+        turned = 0.0 if self.placed is not None else self.frame_angle(gear, rotation)
         return turned_about(self.gears[gear], force, -turned) if turned else force
 
     def frame_angle(self, gear: str, rotation: Mapping[str, float]) -> float:
@@ -287,6 +305,18 @@ class Train:
         carrier = self.gears[here.frame_of]
         along = 1.0 if carrier.axis @ here.axis > 0.0 else -1.0
         return along * carrier.sense * rotation[carrier.name]
+
+    def slip_seen_next(self, gear: str, slip: Vector, index: int) -> Vector:
+        """Slip (3,) [m] at the end of position `index` (1-based) as the next one sees it.
+
+        From a carrier, what stands in the housing turns back; as the housing sees it, in a train
+        whose positions are placed, what stands on a carrier goes round.
+        """
+        here = self.gears[gear]
+        if (here.carrier is not None) != self.uneven or index == self.count:
+            return slip
+        now, then = (self.frame_angle(gear, self.rotations(k)) for k in (index, index + 1))
+        return turned_about(here, slip, then - now if self.uneven else now - then)
 
     def mesh_positions(
         self, index: int, rotation: Mapping[str, float] | None = None

@@ -29,7 +29,6 @@ CHECKS = (
     carriers.check_planet_shafts,
     carriers.check_held,
     carriers.check_planet_errors,
-    carriers.check_turning_frames,
     floats.check_support,
     floats.check_spline_law,
     floats.check_ring_neighbours,

@@ -14,8 +14,6 @@ from loadshare.case.power_flow import rides_on
 from loadshare.case.words import choices
 from loadshare.errors import Problem
 
-NEGLECT = 'With operating.rotation = "neglected" all positions are solved as the set stands first.'
-
 
 def check_carriers(draft: Draft) -> Iterator[Problem]:
     """Yield carriers that are none, and planets that cannot ride on theirs."""
@@ -111,54 +109,6 @@ def check_planet_errors(draft: Draft) -> Iterator[Problem]:
             if ring.neighbours and rides_on(draft.gears, other):
                 what = f"gear {other} rides on a carrier: rings about planets are round"
                 yield draft.problem(("rings", name), what, hint="Give a radius.")
-
-
-def check_turning_frames(draft: Draft) -> Iterator[Problem]:
-    """Yield what does not look the same from a carrier that turns.
-
-    A planetary set is solved as seen from its carrier, and the housing turns backwards about it:
-    what holds the set's other members must be the same in all directions.
-    """
-    operating = draft.operating
-    turns = draft.march is not None or (
-        operating is not None
-        and (operating.positions > 1 or operating.cycle == "common")
-        and operating.rotation == "teeth"
-        and any(gear.teeth for gear in draft.gears.values())
-    )
-    if not turns or not draft.sound("gears", "meshes"):
-        return
-    for name, frames in _frames(draft).items():
-        gear, path = draft.gears[name], ("gears", name)
-        if None not in frames and len(frames) == 1:
-            support = gear.support if isinstance(gear.support, tuple) else ()
-            if len({k if isinstance(k, tuple) else k.si for k in support}) > 1:
-                what = "differs in its two directions, but the housing turns about the set"
-                yield draft.problem((*path, "support"), what, "one stiffness", NEGLECT)
-            for section in ("rings", "bearings"):
-                limit = getattr(draft, section).get(name)
-                if limit is None:
-                    continue
-                if any(part.si for part in limit.offset) or getattr(limit, "neighbours", None):
-                    what = "is not centred on the axis about which the housing turns"
-                    yield draft.problem((section, name), what, hint=NEGLECT)
-        elif gear.support not in (None, "rigid") or draft.floats(name) or name in draft.errors:
-            others = choices(sorted(c for c in frames if c))
-            what = f"moves or has errors, and meshes with planets of {others} and with other gears"
-            yield draft.problem(path, what, hint=NEGLECT)
-
-
-def _frames(draft: Draft) -> dict[str, set[str | None]]:
-    """Carriers whose planets a gear meshes with; None beside them for any other gear."""
-    found: dict[str, set[str | None]] = {
-        name: {name} for name, gear in draft.gears.items() if gear.is_carrier
-    }
-    for mesh in draft.meshes.values():
-        carrier = rides_on(draft.gears, *mesh.ends)
-        for end in mesh.ends:
-            if end in draft.gears and not draft.gears[end].carrier:
-                found.setdefault(end, set()).add(carrier)
-    return {name: frames for name, frames in found.items() if frames != {None}}
 
 
 def _on_rigid_shafts(draft: Draft, start: str) -> set[str]:

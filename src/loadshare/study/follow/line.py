@@ -6,6 +6,7 @@ values; otherwise every value is a train of its own, written in the units of the
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -23,6 +24,7 @@ from loadshare.study.follow.numbers import Numbers, structure_like
 from loadshare.study.parameter import Parameter, Value, applied
 from loadshare.train import Train, build_train
 from loadshare.train.columns import Column
+from loadshare.train.placed import standing
 from loadshare.train.samples import Samples, samples_of
 from loadshare.train.situations import Situations, situation_of
 
@@ -74,13 +76,25 @@ class Line:
 
     def __init__(self, case: Case, parameter: Parameter, start: float, stop: float) -> None:
         self.case, self.parameter = case, parameter
+        self._placed: int | None = None
         self.first, self.last = self.train(start), self.train(stop)
         self._samples = self._array_like(start, stop)
         self._known: dict[float, tuple[Train, Structure]] = {}
 
     def train(self, value: float) -> Train:
         """Build the train at a value."""
-        return build_train(applied(self.case, [self.parameter], [value]))
+        train = build_train(applied(self.case, [self.parameter], [value]))
+        return train if self._placed is None else standing(train, self._placed)
+
+    def at(self, position: int) -> Line:
+        """Return the line as a position (1-based) has it: itself, unless each has its own train."""
+        if not self.first.is_placed_anew:
+            return self
+        line = copy(self)
+        line._placed = position
+        line.first, line.last = (standing(train, position) for train in (self.first, self.last))
+        line._known = {}
+        return line
 
     def _array_like(self, start: float, stop: float) -> Samples | None:
         """Samples that share one machine; None where the parameter changes the machine."""
@@ -106,7 +120,8 @@ class Line:
     @cached_property
     def machine(self) -> Machine:
         """The machine at the start."""
-        return Machine(self._samples.train if self._samples is not None else self.first)
+        machine = Machine(self._samples.train if self._samples is not None else self.first)
+        return machine if self._placed is None else machine.at(self._placed)
 
     @property
     def structure(self) -> Structure:

@@ -18,6 +18,7 @@ from loadshare.study.sensitivity.directional import Motion, Neighbourhood
 from loadshare.study.sensitivity.result import SIDES, Rates, Remark
 from loadshare.study.sensitivity.variation import Variation, torques_of
 from loadshare.train import Train
+from loadshare.train.placed import standing
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,6 +66,7 @@ class Corner:
     """
 
     def __init__(self, train: Train, position: int) -> None:
+        train = standing(train, position)
         self.train, self.position = train, position
         self._answer = certified(train, position).equilibrium
         setting = Setting.at(train, position)

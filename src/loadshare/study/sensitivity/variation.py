@@ -20,6 +20,7 @@ from loadshare.study.sensitivity.branch import Branch, BranchLost, Setting
 from loadshare.study.sensitivity.differences import Derivative, differentiate
 from loadshare.train import Train
 from loadshare.train.equilibrium import Equilibrium
+from loadshare.train.placed import standing
 
 
 class Variation:
@@ -49,7 +50,7 @@ class Variation:
         return self.value.number + amount / self.value.factor
 
     def _at(self, number: float) -> Setting:
-        train = held(self._trains(number), self.cycle)
+        train = held(standing(self._trains(number), self.position), self.cycle)
         return Setting.at(train, self.position, self._structure)
 
     def setting(self, amount: float) -> Setting:

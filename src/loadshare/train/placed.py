@@ -1,0 +1,83 @@
+"""Trains that stand anew at every position, since their surroundings are uneven.
+
+As long as what holds a planetary set is the same in all directions, the set is seen from its
+carrier and looks the same at all positions but for errors and loads. Where it is not, the planets
+are placed where the carrier has taken them, and the train stands as the housing sees it. What is
+told along a gear's `plane` is told as seen from the carrier either way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import lru_cache
+
+from loadshare.train.gear import Gear, Vector
+from loadshare.train.mesh import Mesh
+from loadshare.train.offset import turned_about
+from loadshare.train.ring import RoundRing
+from loadshare.train.train import Train
+from loadshare.train.willis import seen_from
+
+
+def standing(train: Train, index: int) -> Train:
+    """Return the train that the mechanics of position `index` (1-based) are those of.
+
+    The train itself, or if its surroundings are uneven the train with its planets placed.
+    """
+    return _placed(train, index) if train.is_placed_anew else train
+
+
+@lru_cache(maxsize=1024)
+def _placed(train: Train, index: int) -> Train:
+    rotation = train.rotations(index)
+    angle = {name: train.frame_angle(name, rotation) for name in train.gears}
+    gears = {name: _gear(gear, train.gears, angle[name]) for name, gear in train.gears.items()}
+
+    def shift(ring: RoundRing) -> Vector:
+        gear = train.gears[ring.gear]
+        turned = 0.0 if gear.carrier is None else angle[ring.gear]
+        return turned_about(gear, ring.offset, turned)
+
+    return replace(
+        train,
+        gears=gears,
+        meshes={name: _mesh(mesh, train.gears, angle) for name, mesh in train.meshes.items()},
+        rings={
+            name: replace(ring, offset=shift(ring)) if isinstance(ring, RoundRing) else ring
+            for name, ring in train.rings.items()
+        },
+        bearings={
+            name: replace(bearing, offset=shift(bearing))
+            for name, bearing in train.bearings.items()
+        },
+        placed=index,
+    )
+
+
+def _gear(gear: Gear, gears: Mapping[str, Gear], angle: float) -> Gear:
+    if gear.carrier is None:
+        # A harmonic of a rim turns n times as far as its rim.
+        return replace(gear, seen_at=angle * (gear.harmonic or 1))
+    hub = gears[gear.carrier].centre
+    placed = replace(
+        gear,
+        seen_at=angle,
+        centre=hub + turned_about(gear, gear.centre - hub, angle),
+        seat=turned_about(gear, gear.seat, angle),
+    )
+    same = not gear.is_tilted
+    frame = placed.plane if same else turned_about(gear, gear.frame, angle)
+    return replace(placed, frame=frame)
+
+
+def _mesh(mesh: Mesh, gears: Mapping[str, Gear], angle: Mapping[str, float]) -> Mesh:
+    carrier = seen_from(gears, mesh.driver, mesh.driven)
+    if carrier is None:
+        return mesh
+    hub, turned = gears[carrier], angle[carrier]
+    return replace(
+        mesh,
+        drive_normal=turned_about(hub, mesh.drive_normal, turned),
+        coast_normal=turned_about(hub, mesh.coast_normal, turned),
+    )
