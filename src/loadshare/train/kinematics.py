@@ -98,7 +98,7 @@ def settle(
     links = [(n, e, f'meshes."{n}"', mesh_partner) for n, e in meshes.items()]
     links += [(n, e, f'shafts."{n}"', shaft_partner) for n, e in shafts.items()]
     # In a set speeds are those of Willis, and follow later.
-    compare = _against if planetary else _compare
+    compare = _looped if planetary else _compare
     walked: set[str] = set()
     queue = deque([first])
     while queue or (planetary and len(settled) < len(gears)):
@@ -144,17 +144,23 @@ def _of_sets(
     return Kinematics(found, contacts, (), determined)
 
 
-def _against(key: str, known: Gear, found: Gear) -> Iterator[Conflict]:
+def _looped(key: str, known: Gear, found: Gear) -> Iterator[Conflict]:
+    """Tell of a loop over several sets in which no senses fit; whether it locks is not known."""
+    if known.sense != found.sense:
+        yield Conflict(
+            key,
+            f"closes a loop that would turn gear {known.name}, as seen from the carriers on the "
+            "way, against the sense of another path: such loops cannot be solved",
+        )
+
+
+def _compare(key: str, known: Gear, found: Gear) -> Iterator[Conflict]:
     if known.sense != found.sense:
         yield Conflict(
             key,
             f"would turn gear {known.name} against the sense in which another path turns it: "
             "the train would lock",
         )
-
-
-def _compare(key: str, known: Gear, found: Gear) -> Iterator[Conflict]:
-    yield from _against(key, known, found)
     if abs(known.ratio - found.ratio) > RATIO_TOLERANCE * known.ratio:
         yield Conflict(
             key,
