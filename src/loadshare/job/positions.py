@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections import Counter, OrderedDict
+from collections.abc import Hashable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from numbers import Integral
@@ -22,10 +22,11 @@ from loadshare.job.recent import Recent
 from loadshare.later import known
 from loadshare.results.derive import position_of, result_from
 from loadshare.results.result import Result, Stamp
-from loadshare.settings import CERTIFY
+from loadshare.settings import CERTIFY, JOB
 from loadshare.solver import Options
 from loadshare.tooth import resolve
 from loadshare.train import Train, build_train
+from loadshare.train.shape import shape_of
 
 
 class Progress(Protocol):
@@ -183,12 +184,14 @@ def _options(
 
 
 _recent: Recent[tuple[Case, Machine]] = Recent()
+_shapes: OrderedDict[Hashable, Machine] = OrderedDict()
+"""Machines by the shape of their trains, the last ones used at the end."""
 
 
 def prepared(case: Case | str | Path, near: Case | None = None) -> tuple[Case, Machine]:
     """Return a case, its mesh laws computed where it asks for them, and its machine; built once.
 
-    The machine begins at what that of `near` found, if that is still known.
+    What is reduced of a machine is that of the last one whose train had its shape. It begins at what that of `near` found, if that is still known.
     """
     if not isinstance(case, Case):
         case = load_case(case)
@@ -196,8 +199,20 @@ def prepared(case: Case | str | Path, near: Case | None = None) -> tuple[Case, M
     if found is None:
         solved, beside = resolve(case), _recent.of(near)
         machine = Machine(build_train(solved), near=beside[1] if beside else None)
+        _share(machine)
         found = _recent.keep(case, (solved, machine))
     return found
+
+
+def _share(machine: Machine) -> None:
+    """Let a machine have what is reduced of one whose train has its shape, or be the first."""
+    shape = shape_of(machine.train)
+    known = _shapes.setdefault(shape, machine)
+    _shapes.move_to_end(shape)
+    if known is not machine:
+        machine.share(known)
+    while len(_shapes) > JOB.recent:
+        _shapes.popitem(last=False)
 
 
 def wanted_positions(train: Train, positions: Iterable[int] | None) -> list[int]:
