@@ -25,7 +25,7 @@ from loadshare.solver.hot.proximal import search
 from loadshare.train import Train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.placed import standing
-from loadshare.train.situations import Situations, situation_of, stack
+from loadshare.train.situations import Situations, situation_of, situations_of
 
 
 def _parts(count: int, parts: int) -> list[slice]:
@@ -147,7 +147,7 @@ class Machine:
         """Return the train's own situations at some positions, kept for the next time."""
         key = tuple(indices)
         if self._own is None or self._own[0] != key:
-            self._own = key, stack([situation_of(self.train, k) for k in key])
+            self._own = key, situations_of(self.train, key)
         return self._own[1]
 
     def answer(

@@ -191,7 +191,8 @@ _shapes: OrderedDict[Hashable, Machine] = OrderedDict()
 def prepared(case: Case | str | Path, near: Case | None = None) -> tuple[Case, Machine]:
     """Return a case, its mesh laws computed where it asks for them, and its machine; built once.
 
-    What is reduced of a machine is that of the last one whose train had its shape. It begins at what that of `near` found, if that is still known.
+    What is reduced of a machine is that of the last one whose train had its shape. It begins at
+    what that of `near` found, if that is still known.
     """
     if not isinstance(case, Case):
         case = load_case(case)

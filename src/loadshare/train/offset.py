@@ -13,6 +13,8 @@ import numpy as np
 
 from loadshare.train.gear import Gear, Vector, transverse_frame
 
+Angle = float | Vector
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Offset:
@@ -29,33 +31,36 @@ class Offset:
     installation: Vector
     eccentricity: Vector
 
-    def at(self, gear: Gear, rotation: float, frame: float = 0.0) -> Vector:
-        """Offset (3,) [m] of a gear.
+    def at(self, gear: Gear, rotation: Angle, frame: Angle = 0.0) -> Vector:
+        """Offset (…, 3) [m] of a gear.
 
         Parameters
         ----------
         gear : Gear
-        rotation : float
+        rotation : float or ndarray
             By which it has turned in its sense [rad].
-        frame : float
+        frame : float or ndarray
             By which the carrier from which it is seen has turned about the gear's axis [rad]: what
             is fixed in the housing turns backwards, what is fixed on the carrier stands.
         """
         fixed = self.installation
-        if frame and gear.carrier is None:
+        if gear.carrier is None and np.any(frame):
             fixed = turned_about(gear, fixed, -frame)
-        turned = _turned(gear.sense * rotation - frame)
-        return np.asarray(fixed + self.eccentricity @ (turned @ transverse_frame(gear.axis)))
+        turning = turned(self.eccentricity, gear.sense * rotation - frame)
+        return np.asarray(fixed + turning @ transverse_frame(gear.axis))
 
 
-def turned_about(gear: Gear, vector: Vector, angle: float) -> Vector:
-    """Vectors (…, 3) turned about a gear's axis by an angle [rad]."""
+def turned_about(gear: Gear, vector: Vector, angle: Angle) -> Vector:
+    """Vectors (…, 3) turned about a gear's axis by angles (…) [rad]."""
     along = (vector @ gear.axis)[..., None] * gear.axis
-    return np.asarray(along + (vector @ gear.frame.T) @ (_turned(angle) @ gear.frame))
+    return np.asarray(along + turned(vector @ gear.frame.T, angle) @ gear.frame)
 
 
-def _turned(angle: float) -> Vector:
-    return np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+def turned(components: Vector, angle: Angle) -> Vector:
+    """Components (…, 2) turned counter-clockwise by angles (…) [rad]."""
+    x, y = components[..., 0], components[..., 1]
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack([c * x - s * y, s * x + c * y], axis=-1)
 
 
 def polar(amount: float, direction: float) -> Vector:

@@ -1,4 +1,4 @@
-"""What of a train no numbers change that stand in `Situations`: trains of one shape share a machine.
+"""What of a train no numbers of its situations change: trains of one shape share a machine.
 
 What is reduced once per machine (directions, statics of sets, rows of the certificate) follows from
 the geometry and from which elements there are. Loads, errors, clearances, gaps and compliances may

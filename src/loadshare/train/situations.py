@@ -13,12 +13,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from loadshare.contact.arc import Arc
 from loadshare.contact.law import PowerLaw, TableLaw
+from loadshare.train.mesh import Mesh
 from loadshare.train.ring import DrumRing, transverse
 from loadshare.train.train import Train
 
@@ -144,35 +146,54 @@ def situation_of(train: Train, index: int) -> Situations:
     return situations_of(train, index)
 
 
-def situations_of(train: Train, index: int) -> Situations:
-    """Return what a train brings at position `index` (1-based).
+def situations_of(train: Train, index: int | Sequence[int]) -> Situations:
+    """Return what a train brings at a position (1-based), or at several, one after another.
 
-    One row for all samples where no number of the train is an array, S rows where some are.
+    At one position: one row for all samples where no number of the train is an array, S rows where
+    some are. At several, of a train without arrays: a row for each, or one for all.
 
     Raises
     ------
     IndexError
         If there is no such position.
     """
-    rotation = train.rotations(index)
-    position = train.mesh_positions(index, rotation)
-    drums, rounds, meshes = train.drums, train.rounds, train.meshes
-    laws = [m.law(position[n]) for n, m in meshes.items()]
-    powers = [law if isinstance(law, PowerLaw) else PowerLaw(0.0) for law in laws]
+    several = not isinstance(index, int)
+    where: Any = np.array(index, dtype=np.intp) if several else index
+    rotation = train.rotations(where)
+    position = train.mesh_positions(where, rotation)
+    meshes = train.meshes
+    laws = {n: _laws(m, position[n]) for n, m in meshes.items()}
     offset = _table([train.offset(n, rotation) for n in train.gears], 3)
     arrays = {
         "offset": offset,
-        "torque": _table([_torque(train, g, index) for g in train.gears]),
+        "torque": _table([_torque(train, g, where) for g in train.gears]),
         "push": _table([train.push(n, rotation) for n in train.gears], 3),
-        "gap": _table([m.gap(position[n], True) for n, m in meshes.items()]),
+        "gap": _table([_at(m.gaps, position[n]) for n, m in meshes.items()]),
+        "bending": _table([b for b, _, _ in laws.values()]),
+        "hertz": _table([c for _, c, _ in laws.values()]),
+        "table": _tables([tables for _, _, tables in laws.values()]),
+        "arc_shift": arcs_from(train, offset),
+        **_lasting(train),
+    }
+    count = max(map(len, arrays.values()))
+    if not several:
+        return Situations(train=train, count=count, index=np.array([index]), **arrays)
+    return Situations(train=train, count=len(where), index=where, **arrays)
+
+
+_known: WeakKeyDictionary[Train, dict[str, Array]] = WeakKeyDictionary()
+
+
+def _lasting(train: Train) -> dict[str, Array]:
+    """What is the same at all positions, worked out once for a train."""
+    if (known := _known.get(train)) is not None:
+        return known
+    drums, rounds, meshes = train.drums, train.rounds, train.meshes
+    found = _known[train] = {
         "backlash": _table([m.backlash for m in meshes.values()]),
-        "bending": _table([p.b for p in powers]),
-        "hertz": _table([p.c for p in powers]),
-        "table": _tables([law if isinstance(law, TableLaw) else None for law in laws]),
         "clocking": _table([s.clocking for s in train.shafts.values()]),
         "torsion": _table([s.stiffness for s in train.shafts.values()]),
         "support": _table([_support(g.support) for g in train.gears.values()], 2),
-        "arc_shift": arcs_from(train, offset),
         "arc_clearance": _pairs([r.clearances for r in drums]),
         "stop": _pairs([(r.up, r.down) for r in drums]),
         "wall": _table([0.0 if math.isinf(r.stiffness) else 1.0 / r.stiffness for r in drums]),
@@ -181,8 +202,27 @@ def situations_of(train: Train, index: int) -> Situations:
         "round_power": _table([r.power for r in rounds]),
         "spline": _splines(train),
     }
-    count = max(map(len, arrays.values()))
-    return Situations(train=train, count=count, index=np.array([index]), **arrays)
+    return found
+
+
+def _laws(mesh: Mesh, position: Any) -> tuple[Any, Any, Sequence[TableLaw | None]]:
+    """b, c and the table of a mesh at a position in its cycle, or at several of them."""
+    laws = mesh.laws
+    powers = [law if isinstance(law, PowerLaw) else PowerLaw(0.0) for law in laws]
+    tables = [law if isinstance(law, TableLaw) else None for law in laws]
+    b, c = ([getattr(law, name) for law in powers] for name in "bc")
+    chosen = _at(tables, position)
+    several = isinstance(chosen, np.ndarray)
+    return _at(b, position), _at(c, position), chosen.tolist() if several else [chosen]
+
+
+def _at(values: Sequence[Any], position: Any) -> Any:
+    """Of values, one or one per position of a cycle, those at a position or at several."""
+    if len(values) == 1:
+        return values[0]
+    if isinstance(position, int):
+        return values[position % len(values)]
+    return np.array(values)[position % len(values)]
 
 
 def stack(situations: Sequence[Situations]) -> Situations:
@@ -197,7 +237,10 @@ def stack(situations: Sequence[Situations]) -> Situations:
         parts = [arrays[name] for arrays in every]
         # Not-a-number is the same as itself.
         alike = value.tobytes()
-        if all(len(p) == 1 and p.shape == value.shape and p.tobytes() == alike for p in parts):
+        if all(
+            p is value or (len(p) == 1 and p.shape == value.shape and p.tobytes() == alike)
+            for p in parts
+        ):
             together[name] = value
             continue
         if name == "table":
@@ -246,12 +289,12 @@ def _pairs(values: Sequence[tuple[float, float]]) -> Array:
     return table.reshape(len(table), len(values), 2)
 
 
-def _torque(train: Train, gear: str, index: int) -> float:
-    """External torque on a gear [N·m]."""
+def _torque(train: Train, gear: str, index: Any) -> Any:
+    """External torque on a gear [N·m], at a position or at several."""
     external = train.external.get(gear, 0.0)
     if gear != train.input:
         return external
-    return external + train.input_torque[(index - 1) % len(train.input_torque)]
+    return external + _at(train.input_torque, index - 1)
 
 
 def _splines(train: Train) -> Array:
@@ -273,13 +316,17 @@ def _support(support: Array | None) -> Array:
     return np.zeros(2) if support is None else support
 
 
-def _tables(laws: Sequence[TableLaw | None]) -> Array:
-    points = max((len(law.forces) for law in laws if law), default=0)
-    table = np.zeros((1, len(laws), 2, points))
-    for m, law in enumerate(laws):
-        if law:
-            table[0, m, :, : len(law.forces)] = law.forces, law.compressions
-            table[0, m, :, len(law.forces) :] = np.nan
+def _tables(laws: Sequence[Sequence[TableLaw | None]]) -> Array:
+    """Tables of all meshes, each with one for all positions or one for each."""
+    points = max((len(law.forces) for each in laws for law in each if law), default=0)
+    count = max(map(len, laws), default=1) if points else 1
+    table = np.zeros((count, len(laws), 2, points))
+    for m, each in enumerate(laws):
+        for row, law in enumerate(each):
+            if law:
+                rows = row if len(each) > 1 else slice(None)
+                table[rows, m, :, : len(law.forces)] = law.forces, law.compressions
+                table[rows, m, :, len(law.forces) :] = np.nan
     return table
 
 

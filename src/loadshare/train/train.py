@@ -6,13 +6,19 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any, overload
+
+import numpy as np
+from numpy.typing import NDArray
 
 from loadshare.contact.radial import RadialLaw, spline_law
 from loadshare.train.gear import ORIGIN, Gear, Vector
 from loadshare.train.mesh import Approach, Mesh, approach_of
-from loadshare.train.offset import Offset, turned_about
+from loadshare.train.offset import Angle, Offset, turned_about
 from loadshare.train.period import Period
 from loadshare.train.ring import Bearing, DrumRing, Ring, RoundRing
+
+Indices = NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,8 +240,16 @@ class Train:
         known = (n for n, g in self.gears.items() if g.teeth is not None and g.relative)
         return next(known, None) if self.rotating else None
 
-    def rotations(self, index: int) -> dict[str, float]:
+    @overload
+    def rotations(self, index: int) -> dict[str, float]: ...
+
+    @overload
+    def rotations(self, index: Indices) -> dict[str, Vector]: ...
+
+    def rotations(self, index: int | Indices) -> dict[str, float] | dict[str, Vector]:
         """Angle [rad] by which every gear has turned at position `index` (1-based).
+
+        At many positions at once where there is an array of them.
 
         In a mesh cycle the gears turn by one pitch of the gear `cycle` over the cycle, or over the
         common period of all meshes. In a march they turn through whole revolutions.
@@ -245,7 +259,7 @@ class Train:
         IndexError
             If there is no such position.
         """
-        if not 1 <= index <= self.count:
+        if not 1 <= np.min(index) <= np.max(index) <= self.count:
             raise IndexError(f"position {index}: this case has positions 1 to {self.count}")
         step = index - 1
         if self.march is None:
@@ -253,17 +267,18 @@ class Train:
         else:
             gear, revolutions, steps = self.march
             turned = 2.0 * math.pi * revolutions * step / steps / abs(self.gears[gear].ratio)
-        return {name: turned * gear.ratio for name, gear in self.gears.items()}
+        angles: dict[str, Any] = {n: turned * gear.ratio for n, gear in self.gears.items()}
+        return angles
 
-    def offset(self, gear: str, rotation: Mapping[str, float]) -> Vector:
-        """Centre offset (3,) [m] of a gear, as seen from the carrier about which it turns.
+    def offset(self, gear: str, rotation: Mapping[str, Angle]) -> Vector:
+        """Centre offset (…, 3) [m] of a gear, as seen from the carrier about which it turns.
 
         As the housing sees it in a train that is placed.
 
         Parameters
         ----------
         gear : str
-        rotation : mapping of str to float
+        rotation : mapping of str to float or ndarray
             By which every gear has turned [rad].
         """
         errors = self.offsets.get(gear)
@@ -273,30 +288,36 @@ class Train:
         offset = errors.at(here, rotation[gear], turned)
         return offset if self.placed is None else turned_about(here, offset, turned)
 
-    def push(self, gear: str, rotation: Mapping[str, float]) -> Vector:
-        """Force from outside on a gear (3,) [N], as seen from the carrier about which it turns.
+    def push(self, gear: str, rotation: Mapping[str, Angle]) -> Vector:
+        """Force from outside on a gear (…, 3) [N], as seen from the carrier about which it turns.
 
         As the housing sees it in a train that is placed.
 
         Parameters
         ----------
         gear : str
-        rotation : mapping of str to float
+        rotation : mapping of str to float or ndarray
             By which every gear has turned [rad].
         """
         force = self.forces.get(gear)
         if force is None:
             return ORIGIN
         turned = 0.0 if self.placed is not None else self.frame_angle(gear, rotation)
-        return turned_about(self.gears[gear], force, -turned) if turned else force
+        return turned_about(self.gears[gear], force, -turned) if np.any(turned) else force
 
-    def frame_angle(self, gear: str, rotation: Mapping[str, float]) -> float:
+    @overload
+    def frame_angle(self, gear: str, rotation: Mapping[str, float]) -> float: ...
+
+    @overload
+    def frame_angle(self, gear: str, rotation: Mapping[str, Angle]) -> Angle: ...
+
+    def frame_angle(self, gear: str, rotation: Mapping[str, Angle]) -> Angle:
         """Angle [rad] by which the carrier from which a gear is seen has turned about its axis.
 
         Parameters
         ----------
         gear : str
-        rotation : mapping of str to float
+        rotation : mapping of str to float or ndarray
             By which every gear has turned [rad].
         """
         here = self.gears[gear]
@@ -318,9 +339,19 @@ class Train:
         now, then = (self.frame_angle(gear, self.rotations(k)) for k in (index, index + 1))
         return turned_about(here, slip, then - now if self.uneven else now - then)
 
+    @overload
     def mesh_positions(
         self, index: int, rotation: Mapping[str, float] | None = None
-    ) -> dict[str, int]:
+    ) -> dict[str, int]: ...
+
+    @overload
+    def mesh_positions(
+        self, index: Indices, rotation: Mapping[str, Vector] | None = None
+    ) -> dict[str, Indices]: ...
+
+    def mesh_positions(
+        self, index: int | Indices, rotation: Mapping[str, Any] | None = None
+    ) -> dict[str, int] | dict[str, Indices]:
         """Position in its cycle (0-based) at which every mesh stands at position `index` (1-based).
 
         In a mesh cycle all meshes go through theirs together, each from its own phase; over their
@@ -328,7 +359,10 @@ class Train:
         the position that its rotation reaches; others have one law for all positions.
         """
         rotation = rotation or self.rotations(index)
-        return {m: self._mesh_position(m, index - 1, rotation) for m in self.meshes}
+        found = {m: self._mesh_position(m, index - 1, rotation) for m in self.meshes}
+        if isinstance(index, int):
+            return {mesh: int(at) for mesh, at in found.items()}
+        return {mesh: np.asarray(at, dtype=np.intp) for mesh, at in found.items()}
 
     @cached_property
     def _cycle(self) -> float:
@@ -340,11 +374,11 @@ class Train:
         gear = self.gears[self.cycle]
         return 2.0 * math.pi / ((gear.teeth or math.inf) * abs(gear.relative))
 
-    def _mesh_position(self, mesh: str, step: int, rotation: Mapping[str, float]) -> int:
+    def _mesh_position(self, mesh: str, step: Any, rotation: Mapping[str, Any]) -> Any:
         driver, phase = self.gears[self.meshes[mesh].driver], self.meshes[mesh].phase
         if self.march is None and self.period is not None:
             passed = step * self.period.cycles[mesh] % self.count / self.count + phase
-            return math.floor(passed * self.positions + 1e-9) % self.positions
+            return np.floor(passed * self.positions + 1e-9) % self.positions
         if self.march is None or driver.teeth is None:
             # In whole numbers as far as it goes: a position is not to be missed by round-off.
             return (step + math.floor(phase * self.positions + 1e-9)) % self.positions
@@ -354,7 +388,7 @@ class Train:
         cycles = turned * driver.teeth / (2.0 * math.pi) + phase
         # A step that falls on a cycle's start up to round-off belongs to it, not to the end of the
         # one before.
-        return math.floor((cycles % 1.0) * self.positions + 1e-9) % self.positions
+        return np.floor((cycles % 1.0) * self.positions + 1e-9) % self.positions
 
     def levers(self, gear: str) -> dict[str, float]:
         """Torque over a gear's shaft or spline, per unit of every flank's force [m]."""
