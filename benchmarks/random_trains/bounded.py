@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
+
 from benchmarks.reference.machine import Machine
 from benchmarks.reference.settle import Settled
 from loadshare.results.result import Position
@@ -50,8 +52,11 @@ def _errors(
         apart = [of(float(v)) + p * unit for v, p in zip(parts, at.pulls[name], strict=True)]
         yield name, machine.arithmetic.hypot(*apart), NONE * unit
     for gear, i in machine.moves.items():
-        moved = train.gears[gear].frame @ claim.displacement[gear]
+        body = train.gears[gear]
+        moved = body.plane @ claim.displacement[gear]
+        told = body.plane @ body.frame.T
         for k, axis in enumerate("xy"):
             value = float(moved[k])
-            error = abs(of(value) - at.x[i + k] * length)
-            yield f"{gear} {axis}", error, ROUNDING * abs(value) + NONE * length
+            exact = sum(of(float(told[k, j])) * at.x[i + j] for j in range(2))
+            error = abs(of(value) - exact * length)
+            yield f"{gear} {axis}", error, ROUNDING * np.hypot(*moved) + NONE * length

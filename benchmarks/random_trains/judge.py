@@ -6,6 +6,7 @@ import math
 import time
 import traceback
 import warnings
+from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -196,6 +197,21 @@ def solvable(train: Train, index: int) -> bool:
         return True
 
 
+def _told_play(train: Train, spans: Mapping[str, float]) -> dict[str, float]:
+    """How far what is told may move, at most: along `Gear.plane`, of spans along `Gear.frame`."""
+    found = dict(spans)
+    for name, gear in train.gears.items():
+        keys = [f"gear {name} {axis}" for axis in "xy"]
+        along = np.array([found.pop(key, 0.0) for key in keys]) if gear.is_tilted else None
+        if along is not None and along.any():
+            weights = np.abs(gear.plane @ gear.frame.T)
+            weights[:, along == 0.0] = 0.0
+            finite = np.where(np.isinf(along), 1e300, along)
+            told = np.where(weights > 1e-9, weights, 0.0) @ finite
+            found |= {k: float(t) for k, t in zip(keys, told, strict=True) if t > 0.0}
+    return found
+
+
 def misplaced(
     train: Train, found: Position, exact: Reference, machine: Machine, settled: Settled
 ) -> dict[str, float]:
@@ -204,9 +220,9 @@ def misplaced(
     Elsewhere is what is off by more than `PLACED`, and by more than its own bound.
     """
     named, bounds = set(found.undetermined), found.certificate.bound.place
-    free = play(machine, settled.at, NO_FORCE)
+    free = _told_play(train, play(machine, settled.at, NO_FORCE))
     # What hangs on forces of round-off may be called either.
-    loose = play(machine, settled.at, 1e-9)
+    loose = _told_play(train, play(machine, settled.at, 1e-9))
     wrong = {
         name: math.inf
         for name, span in free.items()
@@ -214,7 +230,8 @@ def misplaced(
     }
     moved = max((abs(float(v)) for d in exact.displacement.values() for v in d), default=0.0)
     scale = max(moved, machine.length)
-    for gear, place in exact.displacement.items():
+    for gear, along in exact.displacement.items():
+        place = train.gears[gear].told(np.array([float(v) for v in along]))
         for axis, k in ("x", 0), ("y", 1):
             name = f"gear {gear} {axis}"
             error = abs(found.displacement[gear][k] - float(place[k]))

@@ -65,7 +65,9 @@ def _released(graph: Graph, at: Guess, force: float) -> str:
     place = at.places[graph.name]
     size = float(sum(p * p for p in at.pulls[graph.name])) ** 0.5
     loose = place in ("wall", "stop") and not graph.torque_of and graph.bound == 0
-    return "slip" if loose and graph.reach > 0 and size <= force else place
+    # A power has no stiffness where it begins, and yet holds.
+    moves = graph.reach > 0 or graph.power != 1
+    return "slip" if loose and moves and size <= force else place
 
 
 def _limits(

@@ -96,16 +96,10 @@ def _imbalance(train: Train, situation: Situations) -> tuple[float, tuple[str, .
         plane = train.gears[gear].frame @ direction
         return [(gear, 0, float(plane[0])), (gear, 1, float(plane[1]))]
 
-    for mesh in train.meshes.values():
-        for drive in mesh.flanks:
-            on_driver, on_driven, normal = mesh.direction(drive)
-            column(
-                0.0,
-                (mesh.driver, 2, -math.copysign(1.0, on_driver)),
-                (mesh.driven, 2, -math.copysign(1.0, on_driven)),
-                *push(mesh.driver, -normal),
-                *push(mesh.driven, normal),
-            )
+    for to in train.approaches.values():
+        turns = [(g, 2, -arm / train.gears[g].base_radius) for g, arm in to.turning.items()]
+        moves = [part for g, along in to.shifting.items() for part in push(g, -along)]
+        column(0.0, *turns, *moves)
     for shaft in train.shafts.values():
         ends = (shaft.first, -1.0), (shaft.second, 1.0)
         size = min(train.gears[g].base_radius for g, _ in ends)
@@ -129,6 +123,17 @@ def _imbalance(train: Train, situation: Situations) -> tuple[float, tuple[str, .
     for name, torque in situation.torques.items():
         if (name, 2) in rows:
             load[rows[name, 2]] += torque / train.gears[name].base_radius
+    for (name, gear), force in zip(train.gears.items(), situation.push[0], strict=True):
+        entries = push(name, force)
+        if gear.carrier is not None:
+            arm = train.gears[gear.carrier].base_radius
+            entries += [
+                *push(gear.carrier, force),
+                (gear.carrier, 2, float(force @ gear.seat) / arm),
+            ]
+        for body, axis, value in entries:
+            if (body, axis) in rows:
+                load[rows[body, axis]] += value
     size = float(np.abs(load).max(initial=0.0))
     if size == 0.0:
         return 0.0, ()

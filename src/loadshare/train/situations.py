@@ -238,7 +238,7 @@ def stack(situations: Sequence[Situations]) -> Situations:
         # Not-a-number is the same as itself.
         alike = value.tobytes()
         if all(
-            p is value or (len(p) == 1 and p.shape == value.shape and p.tobytes() == alike)
+            len(p) == 1 and (p is value or (p.shape == value.shape and p.tobytes() == alike))
             for p in parts
         ):
             together[name] = value

@@ -76,6 +76,12 @@ class Bound:
                 columns.coordinates, found.coordinate[row], units, strict=True
             )
         }
+        for gear in gears.values():
+            names = [f"{gear.name} {axis}" for axis in "xy"]
+            if gear.is_tilted and names[0] in place:
+                # Displacements are told along another frame than that of the coordinates.
+                along = np.abs(gear.plane @ gear.frame.T) @ [place[name] for name in names]
+                place |= dict(zip(names, along.tolist(), strict=True))
         relative = float(found.relative[row])
         return cls(relative, torque, forces, place)
 

@@ -117,8 +117,11 @@ def free_set(
         level = law.level(size, carries)
         if level is None:
             ties += list(radial.matrix)
-        elif size <= carries:
+        elif size <= carries and level[1] > 0.0:
             rounds.append(Round(radial, level[1]))
+        elif size <= carries:
+            # Without play it is a point.
+            ties += list(radial.matrix)
         else:
             along = pull / size
             ties.append(np.array([-along[1], along[0]]) @ radial.matrix)

@@ -60,21 +60,46 @@ def places(free: FreeSet) -> Places:
 
 
 def _ranges(free: FreeSet, parts: Sequence[_Part], x: Array) -> dict[str, Range]:
-    """Least and largest values of coordinates, about the least place x."""
+    """Least and largest values of what is told of the coordinates, about the least place x."""
     scene = free.scene
     least_play = PLACES.play * scene.length_unit() + PLACES.inside * float(
         np.abs(x).max(initial=0.0)
     )
     ranges: dict[str, Range] = {}
-    for part in parts:
-        for k in np.flatnonzero(np.abs(part.moves).max(axis=1) > PLACES.loose).tolist():
-            low, high = (
-                float(x[k] + part.reach(sign * part.moves[k]) * sign / free.norm.root[k])
-                for sign in (-1.0, 1.0)
-            )
-            if high - low > least_play:
-                ranges |= _named(scene, k, low, high)
+    for names, where, weights in _told(scene):
+        low = high = float(weights @ x[where])
+        for part in parts:
+            along = (weights / free.norm.root[where]) @ part.moves[where]
+            if np.abs(weights @ part.moves[where]).max() > PLACES.loose:
+                low, high = low - part.reach(-along), high + part.reach(along)
+        if high - low > least_play:
+            ranges |= {
+                name: (shift + rate * low, shift + rate * high) for name, shift, rate in names
+            }
     return ranges
+
+
+def _told(scene: Scene) -> Iterator[tuple[list[tuple[str, float, float]], list[int], Array]]:
+    """Yield what is told: its names with constant and rate, and which coordinates add up to it."""
+    one = np.ones(1)
+    turned = {
+        gear: moved
+        for gear, moved in scene.displacement.items()
+        if scene.train.gears[gear].is_tilted
+    }
+    across = {k for where in turned.values() for k in range(where.start, where.stop)}
+    for k, coordinate in enumerate(scene.coordinates):
+        turning = [
+            (f"gear {gear} rotation", r.constant, r.rate)
+            for gear, r in scene.rotation.items()
+            if r.index == k
+        ]
+        if k not in across:
+            yield turning or [(coordinate, 0.0, 1.0)], [k], one
+    for name, where in turned.items():
+        gear = scene.train.gears[name]
+        for axis, weights in zip("xy", gear.plane @ gear.frame.T, strict=True):
+            yield [(f"gear {name} {axis}", 0.0, 1.0)], [where.start, where.start + 1], weights
 
 
 class _Part:
@@ -179,13 +204,3 @@ def _independent(free: FreeSet) -> Iterator[Array]:
         left &= ~part
         values, vectors = np.linalg.eigh(projector * np.outer(part, part))
         yield vectors[:, values > 0.5]
-
-
-def _named(scene: Scene, k: int, low: float, high: float) -> dict[str, Range]:
-    """Names of what coordinate k stands for, each with its own range."""
-    turning = {
-        f"gear {gear} rotation": (r.constant + r.rate * low, r.constant + r.rate * high)
-        for gear, r in scene.rotation.items()
-        if r.index == k
-    }
-    return turning or {scene.coordinates[k]: (low, high)}

@@ -44,6 +44,9 @@ class Disc:
         """Outward normal (d,) at u and its derivative (d, d)."""
         offset = self.matrix @ u - self.centre
         size = float(np.linalg.norm(offset))
+        if size == 0.0:
+            # At the centre of a disc that is next to a point every direction is as good.
+            return self.matrix.T @ np.array([1.0, 0.0]), np.zeros((self.matrix.shape[1],) * 2)
         along = offset / size
         turning = (np.eye(2) - np.outer(along, along)) / size
         return self.matrix.T @ along, self.matrix.T @ turning @ self.matrix
