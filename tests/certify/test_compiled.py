@@ -127,6 +127,7 @@ def test_arrays_of_any_kind_are_judged_by_the_same_code():
     situations, found = claims(train, [1])
     answers = taken(found, np.zeros(4, dtype=int))
     expected = Judge(train).judge(situations, answers, compiled=True)
+    compiled = len(find_all.signatures)
 
     def strided(array: np.ndarray) -> np.ndarray:
         return np.repeat(array, 2, axis=-1)[..., ::2]
@@ -141,7 +142,7 @@ def test_arrays_of_any_kind_are_judged_by_the_same_code():
         np.testing.assert_array_equal(other.worst, expected.worst)
     single = answers.mapped(lambda array: array.astype(np.float32))
     assert not Judge(train).judge(situations, single, compiled=True).passed.any()
-    assert len(find_all.signatures) == 1
+    assert len(find_all.signatures) == compiled
 
 
 def test_no_answer_at_all():

@@ -22,6 +22,7 @@ from loadshare.compile_watch import Watch, watch
 from loadshare.job import engines
 from loadshare.job.engines import engine_at_hand, engine_named
 from loadshare.job.machine import Machine
+from loadshare.job.warm import warm
 from loadshare.settings import JOB
 from loadshare.solver.hot import vectorised
 from loadshare.train import build_train
@@ -302,6 +303,26 @@ def test_case_by_case_nothing_is_loaded_before_it_is_worth_while_nor_compiled(mo
     monkeypatch.setattr(compilation, "at_hand", lambda *_: True)
     assert engine_at_hand("auto", 1) is compiled.settle
     assert engine_at_hand("vectorised", 1) is vectorised.settle
+
+
+@pytest.mark.parametrize(
+    ("count", "kept", "engine"),
+    [
+        (JOB.few, True, "vectorised"),
+        (JOB.few + 1, True, "compiled"),
+        (JOB.compiling, False, "vectorised"),
+        (JOB.compiling + 1, False, "compiled"),
+    ],
+)
+def test_a_batch_takes_the_engine_that_is_done_first(monkeypatch, count, kept, engine):
+    monkeypatch.setattr(compilation, "at_hand", lambda *_: kept)
+    assert engines.chosen(count) == engine
+
+
+def test_what_is_warm_is_at_hand():
+    """The kernels of one case are those of all."""
+    assert warm() is None
+    assert engines.at_hand()
 
 
 def test_what_is_at_hand_is_all_that_cases_call():

@@ -38,6 +38,7 @@ from loadshare.cli.study.sensitivity import sensitivity
 from loadshare.cli.study.study import study
 from loadshare.cli.study.sweep import sweep
 from loadshare.cli.study.tolerance import tolerance
+from loadshare.cli.warm import warm
 
 app = typer.Typer(
     name="loadshare",
@@ -50,7 +51,7 @@ app = typer.Typer(
 )
 STUDIES = (sweep, critical, sensitivity, tolerance, march, compare, fit, study)
 CASES = (run, batch, report, draw, check, export, *STUDIES)
-for command in (run, batch, report, draw, check, schema, new, ltca, export, *STUDIES):
+for command in (run, batch, report, draw, check, schema, new, ltca, export, warm, *STUDIES):
     app.command(cls=Command)(reads_cases(command) if command in CASES else command)
 app.command("import", cls=Command)(import_machine)
 

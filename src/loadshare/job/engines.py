@@ -33,16 +33,36 @@ def engine_named(name: str, count: int) -> Engine:
     Parameters
     ----------
     name : {"auto", "compiled", "vectorised"}
-        "auto" compiles from a few thousand equilibria on. Where nothing can be compiled, or kept,
-        the vectorised one comes in place of the compiled one.
+        "auto" is the one that `chosen` names. Where nothing can be compiled, or kept, the
+        vectorised one comes in place of the compiled one.
     count : int
         Equilibria to solve.
     """
     if name not in ENGINES:
         raise ValueError(f"unknown engine {name!r}; allowed: {', '.join(ENGINES)}")
-    if name == "vectorised" or (name == "auto" and count <= JOB.few):
+    if (chosen(count) if name == "auto" else name) == "vectorised":
         return vectorised.settle
     return _compiled() or vectorised.settle
+
+
+def chosen(count: int) -> str:
+    """Name the engine that is done first with so many equilibria.
+
+    Up to a few thousand it is the vectorised one. Above, it is the compiled one where that is kept
+    on disk, and where there are so many that compiling takes less time than it saves.
+    """
+    if count <= JOB.few:
+        return "vectorised"
+    return "compiled" if count > JOB.compiling or at_hand() else "vectorised"
+
+
+def at_hand() -> bool:
+    """Whether the compiled engine is there without compiling; what is on disk is loaded."""
+    try:
+        needed = [getattr(import_module(module), name) for module, name in KERNELS]
+    except Exception:  # noqa: BLE001 -- those who ask for the compiled one are told
+        return False
+    return compilation.at_hand(*needed)
 
 
 @dataclass(slots=True)
@@ -76,12 +96,11 @@ def engine_at_hand(name: str, count: int) -> Engine:
     tally.equilibria += count
     if COMPILED[0] not in sys.modules and tally.equilibria <= JOB.loading:
         return vectorised.settle
-    try:
-        needed = [getattr(import_module(module), name) for module, name in KERNELS]
-        from loadshare.solver.hot import compiled
-    except Exception:  # noqa: BLE001 -- those who ask for the compiled one are told
+    if not at_hand():
         return vectorised.settle
-    return compiled.settle if compilation.at_hand(*needed) else vectorised.settle
+    from loadshare.solver.hot import compiled
+
+    return compiled.settle
 
 
 def _compiled() -> Engine | None:

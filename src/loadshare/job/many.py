@@ -128,9 +128,10 @@ def solve_many(
     tolerance : float
         Largest scaled residual of a certified answer, up to 1e-3.
     engine : {"auto", "compiled", "vectorised"}
-        Numba or NumPy; both give the same answers. "auto" compiles from a few thousand equilibria
-        on, which takes one to three minutes of processor time, once in an installation. Where
-        nothing can be compiled, NumPy answers; the log ("loadshare") tells of both.
+        Numba or NumPy; both give the same answers. "auto" is Numba from a few thousand equilibria
+        on where its code is on disk, and from 200 000 on where it has yet to be compiled, which
+        takes one to three minutes of processor time, once in an installation. Where nothing can be
+        compiled, NumPy answers; the log ("loadshare") tells of both.
     workers : int
         Threads.
     least_norm : bool

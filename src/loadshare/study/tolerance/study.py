@@ -17,7 +17,7 @@ import numpy as np
 from loadshare.case import Case, Study
 from loadshare.errors import CaseError, LoadshareError, Problem
 from loadshare.job import Progress
-from loadshare.job.engines import ENGINES
+from loadshare.job.engines import ENGINES, chosen
 from loadshare.job.positions import wanted_positions
 from loadshare.lock import alone_in
 from loadshare.settings import CERTIFY, JOB, TOLERANCE
@@ -199,7 +199,7 @@ def _job(case: Case, name: str, chunk: int, engine: str) -> Job:
     wanted = wanted_positions(build_train(case), block.positions)
     if engine == "auto":
         total = equilibria(samples, rows, len(read.units), len(wanted))
-        engine = "vectorised" if total <= JOB.few else "compiled"
+        engine = chosen(total)
     return Job.of(
         case,
         read,
@@ -355,7 +355,5 @@ def _apart(folder: Folder) -> list[str]:
 
 def _inputs_of(folder: Folder, rows: Iterable[int]) -> list[np.ndarray[Any, Any]]:
     """Draw the inputs of some samples again."""
-    from loadshare.settings import JOB
-
     design = folder.job.designs["samples"]
     return [design.values(row // JOB.block)[row % JOB.block] for row in rows]
