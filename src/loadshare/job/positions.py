@@ -22,11 +22,13 @@ from loadshare.job.recent import Recent
 from loadshare.later import known
 from loadshare.results.derive import position_of, result_from
 from loadshare.results.result import Result, Stamp
+from loadshare.scene.structure import units_of
 from loadshare.settings import CERTIFY, JOB
 from loadshare.solver import Options
 from loadshare.tooth import resolve
 from loadshare.train import Train, build_train
 from loadshare.train.shape import shape_of
+from loadshare.train.situations import situation_of
 
 
 class Progress(Protocol):
@@ -184,8 +186,8 @@ def _options(
 
 
 _recent: Recent[tuple[Case, Machine]] = Recent()
-_shapes: OrderedDict[Hashable, Machine] = OrderedDict()
-"""Machines by the shape of their trains, the last ones used at the end."""
+_shapes: OrderedDict[Hashable, dict[tuple[float, float], Machine]] = OrderedDict()
+"""Machines by the shape of their trains, the last ones used at the end, and by their units."""
 
 
 def prepared(case: Case | str | Path, near: Case | None = None) -> tuple[Case, Machine]:
@@ -206,12 +208,19 @@ def prepared(case: Case | str | Path, near: Case | None = None) -> tuple[Case, M
 
 
 def _share(machine: Machine) -> None:
-    """Let a machine have what is reduced of one whose train has its shape, or be the first."""
+    """Let a machine have what is reduced of one whose train has its shape, or be the first.
+
+    In the same units, so that not a bit of an answer depends on what was solved before.
+    """
+    if machine.train.is_placed_anew:
+        return
     shape = shape_of(machine.train)
-    known = _shapes.setdefault(shape, machine)
+    known = _shapes.setdefault(shape, {})
     _shapes.move_to_end(shape)
-    if known is not machine:
-        machine.share(known)
+    first = next(iter(known.values()), machine).structure
+    like = known.setdefault(units_of(first, situation_of(machine.train, 1)), machine)
+    if like is not machine:
+        machine.share(like)
     while len(_shapes) > JOB.recent:
         _shapes.popitem(last=False)
 

@@ -401,10 +401,8 @@ def structure_of(train: Train) -> Structure:
         1.0,
         1.0,
     )
-    force, length = _units(structure, here)
-    return replace(
-        structure, force=8.0 ** round(math.log(force, 8.0)), length=2.0 ** round(math.log2(length))
-    )
+    force, length = units_of(structure, here)
+    return replace(structure, force=force, length=length)
 
 
 def _flank(at: Coordinates, train: Train, mesh: Mesh, drive: bool) -> tuple[str, str, Array]:
@@ -435,15 +433,29 @@ def _radials(train: Train, at: Coordinates) -> Iterator[RadialElement]:
         yield RadialElement(spline.stop_name, gear, "clearance", k, slipped, origin)
 
 
-def _units(structure: Structure, here: Situations) -> tuple[float, float]:
+def units_of(structure: Structure, here: Situations) -> tuple[float, float]:
+    """Units of force [N] and length [m] that suit a train with these elements.
+
+    Parameters
+    ----------
+    structure : Structure
+    here : Situations
+        Of that train or of one of its shape, at its first position.
+    """
+    force, length = _measures(structure, here)
+    return 8.0 ** round(math.log(force, 8.0)), 2.0 ** round(math.log2(length))
+
+
+def _measures(structure: Structure, here: Situations) -> tuple[float, float]:
     """Force and length that a scene is measured by (see `Scene`)."""
-    train, flanks = structure.train, structure.flanks
+    train, flanks = here.train, [(m, drives) for m, _, drives in structure.flanks]
     radius = [g.base_radius for g in train.gears.values()]
     force = float((np.abs(here.torque[0]) / radius).max(initial=0.0))
     force = max(force, float(np.abs(here.push[0]).max(initial=0.0))) or 1.0
     positions = train.mesh_positions(here.position)
     gaps = structure.gaps_of_flanks(here)[0]
-    drive = [(e, mesh) for e, (_, mesh, drives) in enumerate(flanks) if drives]
+    meshes = tuple(train.meshes.values())
+    drive = [(e, meshes[m]) for e, (m, drives) in enumerate(flanks) if drives]
     if not drive:
         return force, CONTACT.least_length
     yielded = median(mesh.law(positions[mesh.name]).compression(force) for _, mesh in drive)
