@@ -129,9 +129,8 @@ def solve_many(
         Largest scaled residual of a certified answer, up to 1e-3.
     engine : {"auto", "compiled", "vectorised"}
         Numba or NumPy; both give the same answers. "auto" is Numba from a few thousand equilibria
-        on where its code is on disk, and from 200 000 on where it has yet to be compiled, which
-        takes one to three minutes of processor time, once in an installation. Where nothing can be
-        compiled, NumPy answers; the log ("loadshare") tells of both.
+        on where its code is on disk, else from 200 000 on: compiling takes one to three minutes of
+        processor time, once in an installation. Where that fails, NumPy answers, as the log tells.
     workers : int
         Threads.
     least_norm : bool

@@ -117,7 +117,6 @@ def train_of(
     rings = elements("rings", ring_of)
     if problems:
         raise CaseError(problems)
-    operating = case.operating
     offsets = elements("errors", lambda name, e: _offset(e, gears[name], gears), "offsets")
     return Train(
         name=case.name,
@@ -132,20 +131,27 @@ def train_of(
             Stage(n, tuple(s.meshes), tuple(s.groups or (s.meshes,)))
             for n, s in case.stages.items()
         ),
-        input=operating.input,
-        output=operating.output,
-        input_torque=operating.input_torque,
-        # A member of a planetary set may turn against the sense in which its rotation is counted.
-        external={
-            n: -t.si if gears[n].ratio < 0.0 else t.si for n, t in operating.external.items()
-        },
+        **_operation(case.operating, gears),
         forces=_forces(case),
-        positions=operating.positions,
-        rotating=operating.rotation == "teeth",
         march=(case.march.gear, case.march.revolutions, case.march.steps) if case.march else None,
         period=geometry.period,
         uneven=is_uneven(case),
     )
+
+
+def _operation(operating: spec.Operating, gears: Mapping[str, Gear]) -> dict[str, Any]:
+    """Ends, torques and positions of a train."""
+    return {
+        "input": operating.input,
+        "output": operating.output,
+        "input_torque": operating.input_torque,
+        # A member of a planetary set may turn against the sense in which its rotation is counted.
+        "external": {
+            n: -t.si if gears[n].ratio < 0.0 else t.si for n, t in operating.external.items()
+        },
+        "positions": operating.positions,
+        "rotating": operating.rotation == "teeth",
+    }
 
 
 def _vector(lengths: tuple[spec.Quantity, ...]) -> Vector:

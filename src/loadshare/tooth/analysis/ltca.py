@@ -163,18 +163,14 @@ def ltca(
             if progress is not None:
                 progress(len(found) * count // len(places), count)
     contacts = tuple(found[k] for k in range(len(positions)))
-    here = positions[:count], contacts[:count]
     return Ltca(
         rated=torque,
         torque=torques,
-        positions=here[0],
+        positions=positions[:count],
         arm=pair.arm,
         helices=pair.helices,
-        contacts=here[1],
-        lines=tuple(
-            _line_loads(position, problem, under_all)
-            for position, problem, under_all in zip(here[0], problems, here[1], strict=False)
-        ),
+        contacts=contacts[:count],
+        lines=tuple(map(_line_loads, positions[:count], problems[:count], contacts[:count])),
         compliance=compliance.model,
         beside=None if parts_of is None else Beside(parts_of, positions[count:], contacts[count:]),
     )
