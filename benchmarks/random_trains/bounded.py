@@ -59,4 +59,4 @@ def _errors(
             value = float(moved[k])
             exact = sum(of(float(told[k, j])) * at.x[i + j] for j in range(2))
             error = abs(of(value) - exact * length)
-            yield f"{gear} {axis}", error, ROUNDING * np.hypot(*moved) + NONE * length
+            yield f"{gear} {axis}", error, 8.0 * ROUNDING * np.hypot(*moved) + NONE * length

@@ -38,6 +38,7 @@ from loadshare.case.quantity import (
 )
 from loadshare.case.rolling import BALL, ROLLER, bearing_coefficient
 from loadshare.case.words import count
+from loadshare.settings import ALLOWED
 
 PerSection = Annotated[
     Annotated[T, Tag(VALUE)] | Annotated[tuple[T, ...], Field(min_length=1), Tag(LIST)],
@@ -59,7 +60,8 @@ class Shaft(Element):
 
     stiffness: (
         Annotated[
-            Quantity | Literal["rigid"], TORSIONAL_STIFFNESS.bounded(above=0).or_words("rigid")
+            Quantity | Literal["rigid"],
+            TORSIONAL_STIFFNESS.bounded(at_least=ALLOWED.softest).or_words("rigid"),
         ]
         | None
     ) = None
@@ -138,7 +140,7 @@ class Spline(Element):
     friction_force: Load | None = None
     """Friction bound given outright, F_m [force]."""
 
-    friction: Annotated[float, Strict(), Field(ge=0, allow_inf_nan=False)] | None = None
+    friction: Annotated[float, Strict(), Field(ge=0, le=ALLOWED.friction)] | None = None
     """Coefficient of friction [-]; goes with `normal_force` or `radius`."""
 
     normal_force: Load | None = None
@@ -226,7 +228,7 @@ class Ring(Element):
     """Circle: middle of the disc, from the gear's centre [length]."""
 
     stiffness: Annotated[
-        Quantity | Literal["rigid"], STIFFNESS.bounded(above=0).or_words("rigid")
+        Quantity | Literal["rigid"], STIFFNESS.bounded(at_least=ALLOWED.softest).or_words("rigid")
     ] = "rigid"
     """Stiffness of the ring [force/length], or rigid."""
 
@@ -311,7 +313,11 @@ class Bearing(Element):
     """Radial clearance [length]: how far the centre moves before the bearing holds it."""
 
     stiffness: (
-        Annotated[Quantity | Literal["rigid"], STIFFNESS.bounded(above=0).or_words("rigid")] | None
+        Annotated[
+            Quantity | Literal["rigid"],
+            STIFFNESS.bounded(at_least=ALLOWED.softest).or_words("rigid"),
+        ]
+        | None
     ) = None
     """Stiffness from there on [force/length], or rigid."""
 

@@ -227,6 +227,9 @@ def _wrong_positions(given: _File, train: Train) -> Iterator[Wrong]:
     asked, there = given.stamp.positions, [p.position for p in given.positions]
     if not asked:
         yield ("stamp", "positions"), "[]", "is empty", "the positions that were asked for"
+    for at, index in enumerate(asked):
+        if index in asked[:at]:
+            yield ("stamp", "positions", at), f"{index}", "stands there twice", ""
     for at, index in enumerate(there):
         path: Path = ("positions", at, "position")
         if not 1 <= index <= train.count:

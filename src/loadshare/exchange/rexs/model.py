@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+
+from loadshare.settings import ALLOWED
 
 Value = float | bool | str | tuple[float, ...]
 
@@ -28,18 +29,18 @@ class Component:
     attributes: Mapping[str, Value]
 
     def number(self, *names: str) -> float | None:
-        """First of some attributes that is a finite number."""
+        """First of some attributes that is a number of a size that a case may have."""
         for name in names:
             value = self.attributes.get(name)
-            if isinstance(value, float) and math.isfinite(value):
+            if isinstance(value, float) and abs(value) <= ALLOWED.largest:
                 return value
         return None
 
     def vector(self, name: str) -> tuple[float, float, float] | None:
-        """An attribute of three finite numbers."""
+        """An attribute of three numbers of a size that a case may have."""
         value = self.attributes.get(name)
-        if isinstance(value, tuple) and len(value) == 3 and all(map(math.isfinite, value)):
-            return value
+        if isinstance(value, tuple) and len(value) == 3:
+            return value if all(abs(v) <= ALLOWED.largest for v in value) else None
         return None
 
     def holds(self, name: str) -> bool:
