@@ -8,26 +8,24 @@ from typing import Annotated
 
 import typer
 
+from loadshare.cli.completion import kind_names
 from loadshare.cli.exits import UNUSABLE, fail
 from loadshare.cli.files import save_text, tell_written
-from loadshare.cli.options import output
+from loadshare.cli.options import Force, output
 
 
 def new(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the case.")],
-    file: Annotated[
-        Path | None, output("-o", "--output", what="File to write; NAME.toml by default.")
-    ] = None,
+    file: Annotated[Path | None, output(what="File to write; NAME.toml by default.")] = None,
     kind: Annotated[
         str,
         typer.Option(
             metavar="KIND",
             help="split-path, four-branch, star, planetary or two-stage-planetary.",
+            autocompletion=kind_names,
         ),
     ] = "split-path",
-    force: Annotated[
-        bool, typer.Option("--force", help="Overwrite the file if it exists.")
-    ] = False,
+    force: Force = False,
 ) -> None:
     """Write a commented case file that runs, to change into your own."""
     from loadshare.case.starter import KINDS, starter_case
