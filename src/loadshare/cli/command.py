@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import typer
-from typer.core import TyperCommand
+from typer._click.exceptions import NoSuchOption, UsageError
+from typer.core import TyperCommand, TyperGroup
 
 from loadshare.cli.console import begin, tell_note, under_way
 from loadshare.cli.exits import fail
@@ -41,6 +43,9 @@ class Command(TyperCommand):
         except typer.BadParameter as error:
             error.message = error.message.removeprefix(PREFIX)
             raise
+        except NoSuchOption as error:
+            _tell_takers(ctx, error)
+            raise
         if ctx.resilient_parsing:
             # The shell asks what may follow: nothing is done.
             return left
@@ -75,6 +80,56 @@ class Command(TyperCommand):
                 return super().invoke(ctx)
         except KeyboardInterrupt:
             fail([f"Interrupted{under_way()}. {kept()}"], stop.code)
+
+
+class Group(TyperGroup):
+    """The commands together; a word that is none leads to the one that was meant."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Find the command that the first word names.
+
+        Raises
+        ------
+        UsageError
+            If there is none, with the one that is near or does what the word says.
+        """
+        word = args[0]
+        if self.get_command(ctx, word) is not None or word.startswith("-"):
+            return super().resolve_command(ctx, args)
+        from loadshare.case.words import did_you_mean
+
+        meant = did_you_mean(word, [*self.commands, *MEANT])
+        for other, name in MEANT.items():
+            meant = meant.replace(f" {other}?", f" {name}?")
+        if not meant and Path(word).suffix == ".toml":
+            meant = f"To solve a case: loadshare run {word}"
+        raise UsageError(f"No such command {word!r}. {meant}".strip(), ctx)
+
+
+MEANT = {
+    **dict.fromkeys(("solve", "simulate", "calculate"), "run"),
+    **dict.fromkeys(("validate", "verify", "lint"), "check"),
+    **dict.fromkeys(("init", "create"), "new"),
+    **dict.fromkeys(("optimize", "optimise", "vary"), "sweep"),
+    "plot": "draw",
+    "convert": "import",
+    "montecarlo": "tolerance",
+    "help": "--help",
+}
+"""What users call commands that have another name."""
+
+
+def _tell_takers(ctx: Any, error: NoSuchOption) -> None:
+    """Add to an unknown option which commands take it, or the one that is near."""
+    from loadshare.case.words import did_you_mean
+
+    commands = ctx.parent.command.commands.values() if ctx.parent else ()
+    takers = [one.name for one in commands for p in one.params if error.option_name in p.opts]
+    own = [name for p in ctx.command.params for name in p.opts if name.startswith("--")]
+    near = did_you_mean(error.option_name, own)
+    error.possibilities = ()
+    more = f"It is an option of {', '.join(takers)}." if takers else near
+    error.message = f"{error.message}. {more}".strip()
 
 
 def _add_json(ctx: Any) -> None:

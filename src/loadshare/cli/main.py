@@ -19,7 +19,7 @@ from typer.main import get_command
 from loadshare._version import __version__
 from loadshare.cli.batch.command import batch
 from loadshare.cli.check import check
-from loadshare.cli.command import Command
+from loadshare.cli.command import Command, Group
 from loadshare.cli.draw import draw
 from loadshare.cli.everywhere import taking
 from loadshare.cli.exits import room_told
@@ -41,6 +41,7 @@ from loadshare.cli.study.tolerance import tolerance
 
 app = typer.Typer(
     name="loadshare",
+    cls=Group,
     # Plain words survive a pipe, a log and a narrow terminal; boxes do not.
     rich_markup_mode=None,
     pretty_exceptions_enable=False,

@@ -29,9 +29,11 @@ def new(
 ) -> None:
     """Write a commented case file that runs, to change into your own."""
     from loadshare.case.starter import KINDS, starter_case
+    from loadshare.case.words import did_you_mean
 
     if kind not in KINDS:
-        raise typer.BadParameter(f"is none of {', '.join(KINDS)}", param_hint="--kind")
+        told = f"{kind!r} is none of {', '.join(KINDS)}. {did_you_mean(kind, KINDS)}"
+        raise typer.BadParameter(told.strip(), param_hint="--kind")
     title = Path(name.removesuffix(".toml")).name
     if not title:
         raise typer.BadParameter("a case needs a name", param_hint="NAME")

@@ -34,7 +34,7 @@ from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium, Range
 from loadshare.train.memory import slip_of
 
-AGAIN = "Solve the case again: loadshare run CASE.toml --json FILE."
+AGAIN = "Solve the case again: loadshare run CASE.toml -o FILE.json."
 
 
 @dataclass(frozen=True, slots=True)
