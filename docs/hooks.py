@@ -274,8 +274,8 @@ def command_reference() -> str:
         if command.hidden:
             continue
         parts.append(f"## {name}\n\n{_help(command.help)}\n")
-        arguments = [p for p in command.params if p.param_type_name == "argument"]
-        options = [p for p in command.params if p.param_type_name == "option"]
+        arguments = [p for p in command.params if p.param_type_name == "argument" and not p.hidden]
+        options = [p for p in command.params if p.param_type_name == "option" and not p.hidden]
         usage = " ".join(_argument(p) for p in arguments)
         parts.append(f"```text\nloadshare {name} [OPTIONS] {usage}".rstrip() + "\n```\n")
         if arguments:
@@ -284,7 +284,7 @@ def command_reference() -> str:
             parts.append("")
         if options:
             parts.append("| option | takes | default | description |\n|---|---|---|---|")
-            parts += [_option(p) for p in options if not p.hidden]
+            parts += [_option(p) for p in options]
             parts.append("")
     return "\n".join(parts)
 

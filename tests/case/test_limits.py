@@ -178,7 +178,7 @@ def test_what_is_no_file(tmp_path):
     for path in (tmp_path / "pipe", "/dev/zero", "/dev/null"):
         with pytest.raises(ls.CaseError, match="is not a regular file"):
             load_case(path)
-    with pytest.raises(ls.CaseError, match="directory"):
+    with pytest.raises(ls.CaseError, match="is a folder; name a case in it"):
         load_case(tmp_path)
 
 

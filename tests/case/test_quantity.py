@@ -90,7 +90,12 @@ def test_units_that_engineers_write(kind, text, si):
             "the unit kNm is not known. Allowed: a torsional compliance such as "
             '"2e-7 rad/(N*m)". Did you mean rad/(kN*m)?',
         ),
-        (q.Length, "5 kNm", 'the unit kNm is not known. Allowed: a length such as "45.9 mm". '),
+        (
+            q.Length,
+            "5 kNm",
+            "kNm would be kN*m, a torque; a length is needed. "
+            'Allowed: a length such as "45.9 mm". ',
+        ),
         (
             q.Length,
             "5 MM",
@@ -101,7 +106,8 @@ def test_units_that_engineers_write(kind, text, si):
         (
             q.Length,
             "1,5 mm",
-            'is not a number followed by a unit. Allowed: a length such as "45.9 mm". ',
+            'is not a number followed by a unit. Allowed: a length such as "45.9 mm". '
+            "Decimals have a point, and thousands no sign between them.",
         ),
         (
             q.Length,

@@ -132,13 +132,17 @@ def test_a_file_that_cannot_be_read_is_told(tmp_path, drive_text, text, message)
         ("p46.toml", "is a pair of gears; `loadshare ltca` analyses it"),
         ("law.toml", "is the law of a mesh, which names it by law_file"),
         ("result.json", "is a result and no case; `loadshare check` certifies it again"),
-        ("result.nc", "is a result and no case; `loadshare check` certifies it again"),
+        ("result.nc", "is netCDF and no case; if it is a result, `loadshare check` certifies"),
     ],
 )
 def test_another_file_says_what_it_is(tmp_path, cases, name, message):
     pairs = cases / "fgfbstts" / "pairs"
     path = pairs / name if (pairs / name).exists() else tmp_path / name
-    starts = {"law.toml": b'kind = "law"\n', "result.json": b"{}", "result.nc": b"\x89HDF\r\n"}
+    starts = {
+        "law.toml": b'kind = "law"\n',
+        "result.json": b'{"positions": []}',
+        "result.nc": b"\x89HDF\r\n",
+    }
     if path.parent == tmp_path:
         path.write_bytes(starts[name])
     assert message in said(path, path.parent)
@@ -155,12 +159,17 @@ def test_a_file_that_is_not_text_is_told(tmp_path):
     assert said(path, tmp_path) == "latin.toml: is not UTF-8 text at byte 9."
 
 
-def test_an_empty_file_lacks_the_sections_that_every_case_has(tmp_path):
-    assert said(write(tmp_path, empty=""), tmp_path).splitlines() == [
-        "empty.toml: operating: is missing. The operating point: where the power enters and "
+def test_an_empty_file_is_one_problem(tmp_path):
+    told = said(write(tmp_path, empty="\n"), tmp_path)
+    assert told == "empty.toml: is empty; `loadshare new NAME` writes a case to start from."
+
+
+def test_a_case_without_its_sections_lacks_them(tmp_path):
+    assert said(write(tmp_path, bare='title = "x"\n'), tmp_path).splitlines() == [
+        "bare.toml: operating: is missing. The operating point: where the power enters and "
         "leaves, and how much of it.",
-        "empty.toml: gears: is missing. The gears, by name.",
-        "empty.toml: meshes: is missing. The meshes; one named a-b joins the driver a to the "
+        "bare.toml: gears: is missing. The gears, by name.",
+        "bare.toml: meshes: is missing. The meshes; one named a-b joins the driver a to the "
         "driven gear b.",
     ]
 

@@ -66,7 +66,7 @@ def test_every_option_is_in_the_reference():
         assert f"## {name}\n" in page
         for parameter in command.params:
             for flag in (*parameter.opts, *parameter.secondary_opts):
-                if flag.startswith("-"):
+                if flag.startswith("-") and not parameter.hidden:
                     assert f"`{flag}`" in page
 
 

@@ -146,17 +146,17 @@ def worker_scenes(count: int, samples: int, positions: int, indices: int) -> lis
 
 FLOAT = "rings.4.float=0 um:12 um:3"
 FILES: dict[str, tuple[str, ...]] = {
-    "result.json": ("run", "{}/in/case.toml", "--position", "1", "--json", "{}/out/result.json"),
-    "result.nc": ("run", "{}/in/case.toml", "--position", "1", "--netcdf", "{}/out/result.nc"),
-    "result.csv": ("run", "{}/in/case.toml", "--position", "1", "--csv", "{}/out/result.csv"),
-    "gears.csv": ("run", "{}/in/case.toml", "--position", "1", "--tables", "{}/out"),
-    "refused.json": ("run", "{}/in/unheld.toml", "--json", "{}/out/refused.json"),
+    "result.json": ("run", "{}/in/case.toml", "--position", "1", "-o", "{}/out/result.json"),
+    "result.nc": ("run", "{}/in/case.toml", "--position", "1", "-o", "{}/out/result.nc"),
+    "result.csv": ("run", "{}/in/case.toml", "--position", "1", "-o", "{}/out/result.csv"),
+    "gears.csv": ("run", "{}/in/case.toml", "--position", "1", "-o", "{}/out/"),
+    "refused.json": ("run", "{}/in/unheld.toml", "-o", "{}/out/refused.json"),
     "sweep.csv": (
-        *("sweep", "{}/in/case.toml", "--position", "1", "--set", FLOAT),
+        *("sweep", "{}/in/case.toml", "--position", "1", "--over", FLOAT),
         *("-o", "{}/out/sweep.csv"),
     ),
     "sweep.nc": (
-        *("sweep", "{}/in/case.toml", "--position", "1", "--set", FLOAT),
+        *("sweep", "{}/in/case.toml", "--position", "1", "--over", FLOAT),
         *("-o", "{}/out/sweep.nc"),
     ),
     "drawing.svg": ("draw", "{}/in/case.toml", "-o", "{}/out/drawing.svg"),

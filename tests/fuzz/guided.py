@@ -55,7 +55,7 @@ class Trials:
         (self._folder / "case.toml").write_bytes(text)
         data = _read(text) or {}
         case, studies = str(self._folder / "case.toml"), data.get("study")
-        words = ("run", case, "--position", "1", "--json", str(self._folder / "found.json"))
+        words = ("run", case, "--position", "1", "-o", str(self._folder / "found.json"))
         if isinstance(studies, dict) and studies:
             (self._folder / "case.toml").write_text(toml(shortened(data)), encoding="utf-8")
             words = ("study", case, *list(studies)[:1])

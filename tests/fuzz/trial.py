@@ -227,7 +227,7 @@ def _solved(random: Random, folder: Path) -> tuple[str, ...]:
     case = str(folder / "case.toml")
     if random.integers(4) == 0:
         return ("check", case)
-    return ("run", case, "--position", "1", "--json", str(folder / "found.json"))
+    return ("run", case, "--position", "1", "-o", str(folder / "found.json"))
 
 
 def _words(random: Random, folder: Path) -> tuple[str, ...]:
@@ -243,16 +243,16 @@ def _words(random: Random, folder: Path) -> tuple[str, ...]:
         ("run", case, "--position", "1", "--set", f"{key}={value}"),
         ("run", case, "--position", "1", "--set", f"{value}={key}"),
         ("run", case, "--position", "1", "--tolerance", pick(random, NUMBERS)),
-        ("sweep", case, "--position", "1", "--set", f"{key}={grid}"),
-        ("sweep", case, "--position", "1", "--set", f"rings.4.float={grid}"),
-        ("critical", case, key, "--position", "1", "--from", value, "--to", pick(random, NUMBERS)),
+        ("sweep", case, "--position", "1", "--over", f"{key}={grid}"),
+        ("sweep", case, "--position", "1", "--over", f"rings.4.float={grid}"),
+        ("critical", case, "--position", "1", "--over", f"{key}={value}:{pick(random, NUMBERS)}"),
         ("check", case, pick(random, NAMES)),
         ("run", pick(random, NAMES)),
         (pick(random, NAMES), case),
         ("schema", pick(random, NAMES)),
-        ("sensitivity", case, key, "--position", "1", "--with", f"{key}={value}"),
+        ("sensitivity", case, key, "--position", "1", "--set", f"{key}={value}"),
         ("march", case, "--gear", pick(random, NAMES), "--revolutions", pick(random, NUMBERS)),
-        ("march", case, "--steps", "2", "--revolutions", "0.1", "--with", f"{key}={value}"),
+        ("march", case, "--steps", "2", "--revolutions", "0.1", "--set", f"{key}={value}"),
     )
     return tuple(str(word).replace("\x00", "") for word in pick(random, which))
 
@@ -308,7 +308,7 @@ def _imported(words: tuple[str, ...], folder: Path) -> tuple[int, str]:
     if code or wrong:
         return code, wrong
     found = str(folder / "found.json")
-    return _judged(("run", words[-1], "--position", "1", "--json", found), folder)
+    return _judged(("run", words[-1], "--position", "1", "-o", found), folder)
 
 
 def _exchanged(words: tuple[str, ...], folder: Path) -> tuple[int, str]:

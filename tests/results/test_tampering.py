@@ -176,7 +176,11 @@ def told(document: Any) -> str:
         (("stamp", "positions"), [], "stamp.positions = []: is empty"),
         (("input", "gears", "4", "base_radius"), "3 kg", "file.json: input: gears.4.base_radius"),
         (("input", "rings", "4", "float"), "4.1 um", "is not that of the case under input"),
-        (("format",), min(OLDER) - 1, "Solve the case again: loadshare run CASE.toml --json FILE."),
+        (
+            ("format",),
+            min(OLDER) - 1,
+            "again: loadshare run CASE.toml -o FILE.json.",
+        ),
         (("format",), FORMAT + 1, "Load it with that version, or a newer one."),
         (("format",), True, "format = true: was written by"),
         (("refused",), {"message": "no"}, "holds a refusal and no result"),

@@ -71,7 +71,7 @@ def test_sweep(command, tmp_path):
     file = tmp_path / "sweep.csv"
     result = command(
         *("sweep", RING, "--position", 1, "-o", file),
-        *("--set", "rings.4.float=rings.5.float=0 um:10 um:3"),
+        *("--over", "rings.4.float=rings.5.float=0 um:10 um:3"),
     )
     assert result.exit_code == 0
     assert "Sweep of limit_ring: largest Ω, by stage" in result.stdout
@@ -87,8 +87,8 @@ def test_a_narrow_screen_cuts_no_figure(narrow):
     """Two inputs with long names, in eighty columns: every Ω stands whole."""
     result = narrow(
         *("sweep", CASES / "two_path/clocking_error.toml", "--position", 1),
-        *("--set", "shafts.'wheelA-pinionA'.clocking=0 mrad, 1 mrad"),
-        *("--set", "shafts.'wheelB-pinionB'.clocking=0 mrad, 1 mrad"),
+        *("--over", "shafts.'wheelA-pinionA'.clocking=0 mrad, 1 mrad"),
+        *("--over", "shafts.'wheelB-pinionB'.clocking=0 mrad, 1 mrad"),
     )
     assert result.stdout.count("1.0457") == 2 * 3
     assert "by stage and by group alike" in result.stdout
@@ -99,7 +99,7 @@ def test_a_narrow_screen_cuts_no_figure(narrow):
 
 
 def test_a_sweep_with_points_that_cannot_be_solved_tells_them(command):
-    result = command("sweep", RING, "--set", "rings.4.float=-1 um, 1 um", "--position", 1)
+    result = command("sweep", RING, "--over", "rings.4.float=-1 um, 1 um", "--position", 1)
     assert result.exit_code == 1
     assert "certified" in result.stdout
     assert "is negative" in result.stderr
@@ -108,7 +108,7 @@ def test_a_sweep_with_points_that_cannot_be_solved_tells_them(command):
 
 def test_critical(command, tmp_path):
     file = tmp_path / "events.csv"
-    words = ("critical", RING, "rings.4.float", "--from", "0 um", "--to", "12 um", "-o", file)
+    words = ("critical", RING, "--over", "rings.4.float=0 um:12 um", "-o", file)
     result = command(*words)
     assert result.exit_code == 0
     row = next(line for line in result.stdout.splitlines() if "upper stop" in line)
@@ -120,7 +120,7 @@ def test_critical(command, tmp_path):
         events = list(csv.DictReader(lines))
     assert {e["position"] for e in events} == set("12345")
     assert all(e["confirmed"] == "True" for e in events)
-    none = command("critical", RING, "rings.4.float", "--from", "9 um", "--to", "12 um")
+    none = command("critical", RING, "--over", "rings.4.float=9 um:12 um")
     assert "none" in none.stdout
 
 
@@ -133,7 +133,7 @@ def test_sensitivity(command, tmp_path):
     # A ring without float touches on all sides, and presses on one.
     at_kink = command(
         *("sensitivity", RING, "rings.4.float", "--position", 1),
-        *("--with", "rings.4.float=0 um"),
+        *("--set", "rings.4.float=0 um"),
     )
     assert "stands on the verge" in at_kink.stdout
     assert "lower stop" in at_kink.stdout
@@ -158,7 +158,7 @@ def test_compare_and_fit(command, measured, tmp_path):
     assert "pair_share 6-10" in compared.stdout
     assert (tmp_path / "compared.csv").read_text().startswith("measurement,quantity")
     file = tmp_path / "fitted.toml"
-    words = ("--unknown", "errors.6.installation[0]=0 um:100 um", "-o", file)
+    words = ("--over", "errors.6.installation[0]=0 um:100 um", "-o", file)
     fitted = command("fit", measured, *words)
     assert fitted.exit_code == 0
     assert "40.5663" in fitted.stdout
@@ -206,7 +206,7 @@ def test_an_event_that_is_not_confirmed_is_told(command, monkeypatch):
     found = ls.critical(RING, "rings.4.float", "8 um", "9 um", positions=[1])
     doubtful = replace(found, events=(replace(found.events[0], confirmed=False), *found.events[1:]))
     monkeypatch.setattr(room, "critical", lambda *_, **__: doubtful)
-    result = command("critical", RING, "rings.4.float", "--from", "8 um", "--to", "9 um")
+    result = command("critical", RING, "--over", "rings.4.float=8 um:9 um")
     assert result.exit_code == 1
     assert "1 event of 2 not confirmed" in result.stderr
     assert [line.split()[-2] for line in result.stdout.splitlines()[-2:]] == ["NO", "yes"]
@@ -220,23 +220,23 @@ def test_studies_are_listed(command, measured):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("sweep", RING, "--set", "rings.4.float"), "is not of the form"),
-        (("sweep", RING, "--set", "rings.4.flot=0 um:1 um:2"), "Did you mean float"),
-        (("sweep", RING, "--set", "a=0:1:2", "-o", "x.txt"), "must end in"),
-        (("critical", RING, "rings.4.float", "--from", "0 um", "--to", "1 N"), "cannot be told"),
-        (("critical", RING, "rings.4.float", "--from", "0", "--to", "1 um"), "0 has no unit"),
+        (("sweep", RING, "--over", "rings.4.float"), "is not of the form"),
+        (("sweep", RING, "--over", "rings.4.flot=0 um:1 um:2"), "Did you mean float"),
+        (("sweep", RING, "--over", "a=0:1:2", "-o", "x.txt"), "does not tell what to write"),
+        (("critical", RING, "--over", "rings.4.float=0 um:1 N"), "cannot be told"),
+        (("critical", RING, "--over", "rings.4.float=0:1 um"), "0 has no unit"),
         (
-            ("critical", RING, "rings.4.float", "--from", "0 kg", "--to", "1 kg"),
+            ("critical", RING, "--over", "rings.4.float=0 kg:1 kg"),
             "is a mass, a length is needed",
         ),
-        (("critical", RING, "a", "--from", "0", "--to", "1", "--position", 9), "unknown key"),
+        (("critical", RING, "--over", "a=0:1", "--position", 9), "unknown key"),
         (
-            *[("sweep", RING, "--set", "rings.4.float=0 um:1 um:2", "--position", 9)],
+            *[("sweep", RING, "--over", "rings.4.float=0 um:1 um:2", "--position", 9)],
             "positions 1 to 5",
         ),
         (("sensitivity", RING, "rings.4.flot"), "is not in the case"),
-        (("fit", RING, "--unknown", "rings.4.float=1 um"), "is not of the form"),
-        (("fit", RING, "--unknown", "rings.4.float=0 um:1 um"), "holds no measurement"),
+        (("fit", RING, "--over", "rings.4.float=1 um"), "is not of the form"),
+        (("fit", RING, "--over", "rings.4.float=0 um:1 um"), "holds no measurement"),
         (("compare", RING), "holds no measurement"),
         (("march", RING), "march: is missing"),
         (("study", RING, "x"), "study.x: is not in the case"),
@@ -250,7 +250,7 @@ def test_what_cannot_be_done_is_told(command, words, said):
 
 def test_a_refused_study_ends_as_such(command):
     result = command(
-        *("march", CASES / "fgfbstts/full_float.toml", "--with", "splines.4.stick_limit=1 um"),
+        *("march", CASES / "fgfbstts/full_float.toml", "--set", "splines.4.stick_limit=1 um"),
         *("--gear", 4, "--revolutions", 1, "--steps", 2),
     )
     assert result.exit_code == 1

@@ -14,8 +14,8 @@ from loadshare.case.element import Element, elements_in, written
 from loadshare.case.keys import Path, ends_of
 from loadshare.case.origin import Origin
 from loadshare.case.quantity import as_text
-from loadshare.case.translate import translate
-from loadshare.case.words import choices, did_you_mean
+from loadshare.case.translate import hint_at, translate
+from loadshare.case.words import choices
 from loadshare.errors import CaseError, Problem
 from loadshare.settings import ALLOWED
 
@@ -69,10 +69,12 @@ def read_draft(data: Mapping[str, Any], origin: Origin) -> Draft:
     draft = Draft.model_construct()
     draft._data, draft._origin = data, origin
     fields = Content.model_fields
+    if data and not any(key in fields for key in data):
+        draft.tell((), "holds nothing that a case says", choices(fields))
+        return draft
     for key in data:
         if key not in fields:
-            hint = did_you_mean(key, fields)
-            draft.tell((key,), "unknown key", choices(fields), hint)
+            draft.tell((key,), "unknown key", choices(fields), hint_at(key, None, fields))
     for name, about in fields.items():
         if about.is_required() and data.get(name, {}) == {}:
             missing = "is empty" if name in data else "is missing"

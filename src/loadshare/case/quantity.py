@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic_core import PydanticCustomError, core_schema
 
-from loadshare.case.units import COMMON, kind_of, si_factor, written_apart
+from loadshare.case.units import COMMON, KINDS, OTHERS, kind_of, si_factor, written_apart
 from loadshare.case.words import did_you_mean
 from loadshare.settings import ALLOWED
 
@@ -110,7 +110,7 @@ class Dimension:
             raise self._problem(f"{text} has no unit", number=str(text))
         match = _QUANTITY.fullmatch(text) if isinstance(text, str) else None
         if match is None:
-            hint = did_you_mean(text, self.words)
+            hint = did_you_mean(text, self.words) or _slip_in(text)
             raise self._problem("is not a number followed by a unit", hint=hint)
         number, unit = match[1].replace("−", "-"), match[2]
         if not unit:
@@ -118,10 +118,7 @@ class Dimension:
         try:
             factor = si_factor(unit, self.unit)
         except ValueError as error:
-            unknown, apart = str(error), written_apart(unit, self.unit)
-            fitting = [unit for unit in COMMON if si_factor(unit, self.unit) is not None]
-            hint = f"Did you mean {apart}?" if apart else did_you_mean(unknown, fitting)
-            raise self._problem(f"the unit {unknown} is not known", hint=hint) from None
+            raise self._unknown(number, unit, str(error)) from None
         if factor is None:
             kind = kind_of(unit) or f"in {unit}"
             raise self._problem(f"is {kind}, {self.kind} is needed")
@@ -158,6 +155,21 @@ class Dimension:
         words = "".join(f'"{word}", ' for word in self.words)
         return f'{words}{"or " if words else ""}{self.kind} such as "{example}"'
 
+    def _unknown(self, number: str, unit: str, part: str) -> PydanticCustomError:
+        """Return the problem of a unit of which a part is not known."""
+        if unit in OTHERS:
+            hint = _rewritten(number, unit)
+            return self._problem(f"the unit {unit} is not known", hint=hint)
+        apart = written_apart(unit, self.unit)
+        if apart is None:
+            meant = ((written_apart(unit, si), kind) for kind, si in KINDS.items())
+            other, kind = next(((text, kind) for text, kind in meant if text), (None, ""))
+            if other is not None:
+                return self._problem(f"{unit} would be {other}, {kind}; {self.kind} is needed")
+        fitting = [known for known in COMMON if si_factor(known, self.unit) is not None]
+        hint = f"Did you mean {apart}?" if apart else did_you_mean(part, fitting)
+        return self._problem(f"the unit {part} is not known", hint=hint)
+
     def _problem(
         self, message: str, *, hint: str = "", number: str | None = None
     ) -> PydanticCustomError:
@@ -182,6 +194,24 @@ class Dimension:
             "pattern": f"^({'|'.join((*self.words, number))})$",
             "examples": [*self.words, self.example],
         }
+
+
+def _slip_in(text: object) -> str:
+    """Return a sentence on what keeps a text from being a number with a unit, if it is plain."""
+    if not isinstance(text, str):
+        return ""
+    number, _, unit = text.strip().partition(" ")
+    if unit.strip() in OTHERS:
+        return _rewritten(number, unit.strip())
+    if re.match(r"\s*[+\-−]?\d+,\d", text):
+        return "Decimals have a point, and thousands no sign between them."
+    return ""
+
+
+def _rewritten(number: str, unit: str) -> str:
+    """Return a sentence on what to write for a unit that goes by another name."""
+    other = OTHERS[unit]
+    return f"Write {other}." if ":" in other else f'Write "{number} {other}".'
 
 
 def as_text(given: object) -> object:

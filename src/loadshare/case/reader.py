@@ -16,6 +16,7 @@ from loadshare.case.draft import Draft, as_data, read_draft
 from loadshare.case.keys import Path, merge, parse, walk
 from loadshare.case.model import Case
 from loadshare.case.origin import Origin
+from loadshare.case.recognise import KINDS, near_names, what_folder_is, what_is
 from loadshare.case.revise import change, revise
 from loadshare.case.words import as_given
 from loadshare.errors import CaseError, Problem
@@ -24,15 +25,7 @@ from loadshare.outside import OUTSIDE
 from loadshare.settings import ALLOWED
 
 _PLACE = re.compile(r"(.*) \(at (.*)\)", re.DOTALL)
-KINDS = {
-    "helicoid": "a pair of gears; `loadshare ltca` analyses it, and a mesh names it by geometry",
-    "face-gear": "a pair with a face gear; `loadshare ltca` analyses it, and a mesh names it by "
-    "geometry",
-    "law": "the law of a mesh, which names it by law_file",
-}
-"""Files that are no cases, by what they say of themselves."""
-STARTS = (b"{", b"\x89HDF")
-"""How files of results begin."""
+NO_FILE = "no such file or directory"
 _DEEP = f"is nested deeper than {ALLOWED.depth} tables and lists"
 
 
@@ -110,7 +103,7 @@ def _read(
     own = read_toml(path)
     kind = own.get("kind")
     if isinstance(kind, str) and kind in KINDS:
-        raise CaseError([Problem(str(path), "kind", as_given(kind), f"is {KINDS[kind]}")])
+        raise CaseError([Problem(str(path), "kind", as_given(kind), KINDS[kind])])
     base, removals = own.pop("extends", None), own.pop("remove", [])
     data: dict[str, Any] = {}
     files: dict[Path, str] = {}
@@ -195,9 +188,9 @@ def read_toml(path: FilePath) -> dict[str, Any]:
     """
     try:
         held = read_file(path, ALLOWED.bytes)
-        if held.startswith(STARTS):
-            why = "is a result and no case; `loadshare check` certifies it again"
-            raise CaseError([Problem(str(path), "", "", why)])
+        known = what_is(held, path.name)
+        if known is not None:
+            raise CaseError([Problem(str(path), "", "", known)])
         data = tomllib.loads(held.decode("utf-8").replace("\r\n", "\n"))
     except tomllib.TOMLDecodeError as error:
         match = _PLACE.fullmatch(str(error))
@@ -205,6 +198,10 @@ def read_toml(path: FilePath) -> dict[str, Any]:
         why = f"is not valid TOML at {where}: {what.lower()}"
     except UnicodeDecodeError as error:
         why = f"is not UTF-8 text at byte {error.start}"
+    except FileNotFoundError:
+        raise CaseError([Problem(str(path), "", "", NO_FILE, hint=near_names(path))]) from None
+    except IsADirectoryError:
+        why = what_folder_is(path)
     except OSError as error:
         why = (error.strerror or "cannot be read").lower()
     except Unreadable as error:

@@ -124,5 +124,10 @@ def nearest(data: Mapping[str, Any], path: Path) -> str:
         if isinstance(above, Mapping) and path[length] not in above:
             options = {dotted((*path[:length], key)): key for key in above}
             wrong = dotted(path[: length + 1])
-            return did_you_mean(wrong, options) or f"There is no {wrong}."
+            near = did_you_mean(wrong, options)
+            if not near and not length:
+                whole = [dotted((section, *path)) for section in data]
+                there = [key for key in whole if look_up(data, parse(key)) is not None][:1]
+                near = f"Did you mean {there[0]}?" if there else ""
+            return near or f"There is no {wrong}."
     return f"There is no {dotted(path)}."

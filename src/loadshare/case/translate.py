@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
@@ -30,11 +32,78 @@ WANTED = {
     "too_long": "a list of at most {max_length}",
 }
 
-TEETH = ("module", "face_width", "profile_shift", "addendum", "dedendum", "tip_relief")
+SYMBOLS = {
+    **dict.fromkeys(("z", "number_of_teeth"), "teeth"),
+    **dict.fromkeys(("m", "mn", "m_n", "normal_module"), "module"),
+    **dict.fromkeys(("b", "width"), "face_width"),
+    **dict.fromkeys(("alpha", "alpha_n"), "pressure_angle"),
+    **dict.fromkeys(("r_b", "rb"), "base_radius"),
+    **dict.fromkeys(("center", "position"), "centre"),
+    **dict.fromkeys(("n", "rpm"), "speed"),
+    "x": "profile_shift",
+    "beta": "helix_angle",
+    "T": "torque",
+    "P": "power",
+    "k": "stiffness",
+}
+"""What formulas and other programs call the keys of a case."""
+TEETH = ("teeth", "module", "face_width", "profile_shift", "addendum", "dedendum", "tip_relief")
 """Keys that one may expect of a mesh, and that stand elsewhere."""
 OF_TEETH = (
     'Teeth stand with the gears, or in a pair file that the mesh names: geometry = "pair.toml".'
 )
+
+
+def hint_at(key: object, model: type[Element] | None, known: Iterable[str]) -> str:
+    """Return a sentence on a key that is not known where it stands.
+
+    Parameters
+    ----------
+    key : str or int
+    model : type or None
+        The element in which it stands; None for the case as a whole.
+    known : iterable of str
+        Keys that may stand there.
+
+    Returns
+    -------
+    str
+        Which key was meant, or where in a case it belongs; empty if it is like none.
+    """
+    from loadshare.case.content import Content
+
+    options = list(known)
+    name = SYMBOLS.get(str(key), str(key))
+    if name in options:
+        return f"Did you mean {name}?"
+    models = {
+        section: next(elements_in(about.annotation), None)
+        for section, about in Content.model_fields.items()
+    }
+    if model is not None and model not in models.values():
+        return OF_TEETH if name in TEETH and "torque" not in options else did_you_mean(key, options)
+    if name in TEETH and "geometry" in options:
+        return OF_TEETH
+    near = did_you_mean(key, options)
+    if near:
+        return near
+    own = {section: found for section, found in models.items() if section not in ASKING and found}
+    places = [
+        f"[{section}]" if section in SINGLE else f"[{section}.NAME]"
+        for section, found in own.items()
+        if name in _by_key(found)
+    ]
+    if not places:
+        return ""
+    *others, last = places
+    told = f"{', '.join(others)} or {last}" if others else last
+    return f"{name} belongs in {told}."
+
+
+SINGLE = ("operating", "march")
+"""Sections that are one table."""
+ASKING = ("study", "measured")
+"""Sections that say nothing about the machine."""
 
 
 def translate(error: ValidationError, model: type[Element]) -> list[Rule]:
@@ -76,7 +145,8 @@ def _told(error: ErrorDetails, model: type[Element]) -> Rule:
         return Rule(context["said"], path, context["allowed"], context["hint"])
     if kind == "extra_forbidden":
         keys = list(map(str, _fields(model, path[:-1])))
-        hint = OF_TEETH if path[-1] in TEETH else did_you_mean(path[-1], keys)
+        own = model if len(path) == 1 else None
+        hint = hint_at(path[-1], own, keys) if own else did_you_mean(path[-1], keys)
         return Rule("unknown key", path, choices(sorted(keys)), hint)
     if kind == "missing" and isinstance(path[-1], int):
         return Rule(f"has {count(path[-1])}, more are needed", path[:-1])
@@ -91,6 +161,9 @@ def _told(error: ErrorDetails, model: type[Element]) -> Rule:
     if kind == "shape":
         return Rule("is not of a form that can stand here", path, error["msg"])
     wanted = WANTED.get(kind, "another value").format_map(context)
+    inner = _fields(model, path) if wanted == "a table" else {}
+    if inner:
+        wanted += f" of {choices(map(str, inner))}"
     return Rule("cannot stand here", path, wanted)
 
 

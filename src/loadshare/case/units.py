@@ -56,6 +56,22 @@ COMMON = (
     *("kg/m^3", "g/cm^3", "K", "/K", "m/s^2"),
 )
 
+OTHERS = {
+    **dict.fromkeys(("1/min", "U/min", "min-1", "min^-1", "/min", "rev/m"), "rpm"),
+    **dict.fromkeys(("lb-ft", "lbf-ft", "ft-lb", "ft-lbf", "lb*ft", "ft*lb"), "ft*lbf"),
+    **dict.fromkeys(("lb-in", "lbf-in", "in-lb", "in-lbf", "lb*in", "in*lb"), "in*lbf"),
+    **dict.fromkeys(("lb", "lbs"), "lbf"),
+    **dict.fromkeys(("inches", '"'), "in"),
+    **dict.fromkeys(("thou", "mil"), "in: one thousandth is 0.001 in"),
+    **dict.fromkeys(("PS", "CV"), "W, kW or hp: 1 PS is 735.49875 W"),
+    **dict.fromkeys(("kgf", "kp"), "N: 1 kgf is 9.80665 N"),
+    **dict.fromkeys(("°C", "degC", "C"), "K: a rise of 1 °C is 1 K"),
+    "feet": "ft",
+    "bar": "MPa: 1 bar is 0.1 MPa",
+    "psi": "lbf/in^2",
+}
+"""What engineers write for units that go by another name here."""
+
 # The SI unit in which each kind of quantity is kept, by the name that messages use.
 KINDS = {
     "a length": "m",

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterable, Mapping
-from difflib import get_close_matches
+from difflib import SequenceMatcher, get_close_matches
 from typing import Any
 
 from loadshare.case.keys import BARE
 
 LONGEST = 72
+_DIGITS = re.compile(r"\d+")
 
 
 def did_you_mean(word: object, known: Iterable[str]) -> str:
-    """Return a sentence that proposes the nearest known word, or nothing.
+    """Return a sentence that proposes the nearest known word, or those of which it is a part.
+
+    Nothing is proposed that is not near: names that differ in numbers only are different names.
 
     Parameters
     ----------
@@ -27,12 +31,36 @@ def did_you_mean(word: object, known: Iterable[str]) -> str:
     str
         ``Did you mean base_radius?``, or an empty text.
     """
+    if not isinstance(word, str) or not word:
+        return ""
     options = list(known)
-    near: list[str] = []
-    if isinstance(word, str):
-        near = [option for option in options if option.casefold() == word.casefold()]
-        near = near or get_close_matches(word, options, n=1)
-    return f"Did you mean {near[0]}?" if near else ""
+    near = [option for option in options if option.casefold() == word.casefold()]
+    if not near:
+        near = [o for o in get_close_matches(word, options, n=5) if _is_slip(word, o)][:1]
+    near = near[:1] or [option for option in options if _is_part(word, option)][:MOST]
+    if not near:
+        return ""
+    *others, last = near
+    return f"Did you mean {', '.join(others)} or {last}?" if others else f"Did you mean {last}?"
+
+
+MOST = 4
+"""Words that are proposed together."""
+
+
+def _is_slip(word: str, option: str) -> bool:
+    """Whether two words differ as by a slip: not in digits alone, and not in a third of them."""
+    if _DIGITS.sub("", word) == _DIGITS.sub("", option):
+        return False
+    blocks = SequenceMatcher(None, word, option).get_matching_blocks()
+    differing = len(word) + len(option) - 2 * sum(block.size for block in blocks)
+    return differing <= max(2, max(len(word), len(option)) // 3)
+
+
+def _is_part(word: str, option: str) -> bool:
+    """Whether one of two words consists of whole words of the other, as radius of base_radius."""
+    short, long = sorted((word, option), key=len)
+    return len(short) > 2 and re.search(rf"(^|_){re.escape(short)}(_|$)", long) is not None
 
 
 def choices(known: Iterable[str], most: int = 24) -> str:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from loadshare.cli.changes import open_case
+from loadshare.cli.console import say
+from loadshare.cli.everywhere import Json
 from loadshare.cli.exits import UNUSABLE, counted, fail
+from loadshare.cli.files import document_text
 from loadshare.cli.find import find_cases
-from loadshare.cli.options import CasePaths
-from loadshare.errors import CaseError, ResultError
+from loadshare.cli.options import CasePaths, Changes
+from loadshare.errors import CaseError, Problem, ResultError
 
 RESULTS = (".json", ".nc")
 """Endings of result files; all others are cases."""
@@ -22,6 +27,8 @@ def check(
         bool,
         typer.Option("--teeth", help="Tell what follows from teeth and dimensions of gears."),
     ] = False,
+    change: Changes = None,
+    json: Json = False,
 ) -> None:
     """List all problems of case files without solving them; certify result files again.
 
@@ -29,37 +36,42 @@ def check(
     """
     found = find_cases(cases)
     problems = bad = 0
+    record = []
     for path in found:
+        wrong: tuple[Problem, ...] = ()
         try:
-            told = _result(path) if path.suffix in RESULTS else _case(path)
+            told = _result(path) if path.suffix in RESULTS else _case(path, change)
         except (CaseError, ResultError) as error:
             bad += 1
-            problems += len(error.problems)
-            typer.echo(str(error), err=True)
+            wrong = error.problems
+            problems += len(wrong)
+            if not json:
+                typer.echo(str(error), err=True)
         else:
-            typer.echo(f"OK  {path}{told}")
+            say(f"OK  {path}{told}", whole=True)
             if teeth and path.suffix not in RESULTS:
-                _print_teeth(path)
+                _print_teeth(path, change)
+        record.append({"file": str(path), "ok": not wrong, "problems": [asdict(p) for p in wrong]})
+    if json:
+        typer.echo(document_text({"ok": not bad, "files": record}), nl=False)
     if bad:
         noun = "file" if any(path.suffix in RESULTS for path in found) else "case"
         told = f"{counted(problems, 'problem')} in {bad} of {counted(len(found), noun)}."
         fail([told], UNUSABLE)
 
 
-def _case(path: Path) -> str:
-    from loadshare.case import load_case
+def _case(path: Path, change: list[str] | None) -> str:
     from loadshare.train import build_train
 
-    build_train(load_case(path))
+    build_train(open_case(path, change))
     return ""
 
 
-def _print_teeth(path: Path) -> None:
-    from loadshare.case import load_case
+def _print_teeth(path: Path, change: list[str] | None) -> None:
     from loadshare.cli.tables.table import show, table
     from loadshare.report.teeth import teeth_tables
 
-    for found in teeth_tables(load_case(path)):
+    for found in teeth_tables(open_case(path, change)):
         words = [column.title for column in found.columns if not column.figures]
         rows = ([cell.text for cell in row] for row in found.rows)
         show(found.title, table([column.title for column in found.columns], rows, words))

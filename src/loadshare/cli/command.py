@@ -1,15 +1,23 @@
-"""Commands whose messages speak of the command line, not of what checks it."""
+"""How every command reads its words, and how it ends when it is stopped."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import typer
-from typer.core import TyperCommand
+from typer._click.exceptions import NoSuchOption, UsageError
+from typer.core import TyperCommand, TyperGroup
 
-from loadshare.cli.files import ask_for
+from loadshare.cli.console import begin, tell_note, under_way
+from loadshare.cli.exits import fail
+from loadshare.cli.files import ask_for, kept
+from loadshare.cli.forms import Output
+from loadshare.cli.old_words import renewed
 from loadshare.cli.options import OUTPUT
-from loadshare.output import clear
+from loadshare.cli.quiet import hush
+from loadshare.cli.stop import Stop
+from loadshare.output import STANDARD, clear
 
 PREFIX = "Value error, "
 """What pydantic, which reads options for typer, puts before a message."""
@@ -26,13 +34,119 @@ class Command(TyperCommand):
         typer.BadParameter
             If one of them cannot be used.
         """
+        words, notes = renewed(self.name or "", args)
+        if ctx.resilient_parsing and words and words[-1].startswith("-"):
+            # The shell asks for the value of this option; without one, no argument would be read.
+            words = words[:-1]
         try:
-            left = super().parse_args(ctx, args)
+            left = super().parse_args(ctx, words)
         except typer.BadParameter as error:
             error.message = error.message.removeprefix(PREFIX)
             raise
-        named = [(p.opts[-1], ctx.params.get(p.name)) for p in self.params if p.metavar == OUTPUT]
-        asked = [(option, file) for option, file in named if file is not None]
+        except NoSuchOption as error:
+            _tell_takers(ctx, error)
+            raise
+        if ctx.resilient_parsing:
+            # The shell asks what may follow: nothing is done.
+            return left
+        machine = bool(ctx.params.get("json"))
+        if machine and "file" in ctx.params:
+            _add_json(ctx)
+        hush(machine or bool(ctx.params.get("quiet")))
+        for note in notes:
+            tell_note(note)
+        asked = [
+            (p.opts[-1], file)
+            for p in self.params
+            if p.metavar == OUTPUT
+            for file in _files(ctx.params.get(p.name))
+        ]
         ask_for(asked)
-        clear(file for _, file in asked)
+        clear(file for _, file in asked if file != STANDARD)
         return left
+
+    def invoke(self, ctx: Any) -> Any:
+        """Do what was asked; one who stops it is told what is kept, and how to go on.
+
+        Raises
+        ------
+        typer.Exit
+            With 130 after Ctrl-C and 143 after SIGTERM.
+        """
+        begin()
+        stop = Stop()
+        try:
+            with stop:
+                return super().invoke(ctx)
+        except KeyboardInterrupt:
+            fail([f"Interrupted{under_way()}. {kept()}"], stop.code)
+
+
+class Group(TyperGroup):
+    """The commands together; a word that is none leads to the one that was meant."""
+
+    def resolve_command(self, ctx: Any, args: list[str]) -> Any:
+        """Find the command that the first word names.
+
+        Raises
+        ------
+        UsageError
+            If there is none, with the one that is near or does what the word says.
+        """
+        word = args[0]
+        if self.get_command(ctx, word) is not None or word.startswith("-"):
+            return super().resolve_command(ctx, args)
+        from loadshare.case.words import did_you_mean
+
+        meant = did_you_mean(word, [*self.commands, *MEANT])
+        for other, name in MEANT.items():
+            meant = meant.replace(f" {other}?", f" {name}?")
+        if not meant and Path(word).suffix == ".toml":
+            meant = f"To solve a case: loadshare run {word}"
+        raise UsageError(f"No such command {word!r}. {meant}".strip(), ctx)
+
+
+MEANT = {
+    **dict.fromkeys(("solve", "simulate", "calculate"), "run"),
+    **dict.fromkeys(("validate", "verify", "lint"), "check"),
+    **dict.fromkeys(("init", "create"), "new"),
+    **dict.fromkeys(("optimize", "optimise", "vary"), "sweep"),
+    "plot": "draw",
+    "convert": "import",
+    "montecarlo": "tolerance",
+    "help": "--help",
+}
+"""What users call commands that have another name."""
+
+
+def _tell_takers(ctx: Any, error: NoSuchOption) -> None:
+    """Add to an unknown option which commands take it, or the one that is near."""
+    from loadshare.case.words import did_you_mean
+
+    commands = ctx.parent.command.commands.values() if ctx.parent else ()
+    takers = [one.name for one in commands for p in one.params if error.option_name in p.opts]
+    own = [name for p in ctx.command.params for name in p.opts if name.startswith("--")]
+    near = did_you_mean(error.option_name, own)
+    error.possibilities = ()
+    more = f"It is an option of {', '.join(takers)}." if takers else near
+    error.message = f"{error.message}. {more}".strip()
+
+
+def _add_json(ctx: Any) -> None:
+    """Add JSON on standard output to the files that are asked for.
+
+    Raises
+    ------
+    typer.BadParameter
+        If another file goes there.
+    """
+    others = ctx.params["file"] or []
+    if any(output.file == STANDARD for output in others):
+        raise typer.BadParameter("standard output takes one file only", param_hint="--json")
+    ctx.params["file"] = [*others, Output("json", STANDARD)]
+
+
+def _files(given: Any) -> list[Any]:
+    """Return the paths of an option for files: none, one or several."""
+    several = given if isinstance(given, list) else [given]
+    return [getattr(one, "file", one) for one in several if one is not None]

@@ -1,12 +1,20 @@
-"""Where text goes: stdout for answers, stderr for progress and beside a file on stdout."""
+"""Where text goes: stdout for answers, stderr for progress and beside a file on stdout.
+
+With ``--quiet``, and with ``--json``, there are neither answers nor progress in words.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
+import typer
+
 from loadshare.cli.files import is_stdout_taken
+from loadshare.cli.quiet import is_hushed
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -17,6 +25,39 @@ class Tick(Protocol):
 
     def __call__(self, done: int, total: int) -> None:
         """Tell that `done` of `total` are finished."""
+
+
+@dataclass
+class _Stand:
+    """How far what is under way has come."""
+
+    what: str
+    done: int = 0
+    total: int | None = None
+
+
+_at: ContextVar[_Stand | None] = ContextVar("under way", default=None)
+
+
+def begin() -> None:
+    """Note that nothing is under way yet."""
+    _at.set(None)
+
+
+def stand() -> tuple[int, int]:
+    """Return how much is done, and of how much; zeros while that is not known."""
+    known = _at.get()
+    return (known.done, known.total or 0) if known else (0, 0)
+
+
+def under_way() -> str:
+    """Return how far the command has come, as the middle of a sentence; empty if not begun."""
+    known = _at.get()
+    if known is None:
+        return ""
+    if not known.done:
+        return f" before the first of the {known.what} was done"
+    return f" after {known.done:,} of {known.total:,} {known.what}"
 
 
 def console(*, stderr: bool = False) -> Console:
@@ -31,6 +72,8 @@ def console(*, stderr: bool = False) -> Console:
 
 def say(*told: object, style: str | None = None, whole: bool = False) -> None:
     """Print an answer; `whole` leaves its lines to be broken by the terminal, as paths need."""
+    if is_hushed():
+        return
     console().print(*told, style=style, soft_wrap=whole)
 
 
@@ -40,9 +83,15 @@ def say_all(lines: Iterable[str], *, whole: bool = False) -> None:
         say(line, whole=whole)
 
 
+def tell_note(note: str) -> None:
+    """Tell on stderr what is good to know, and changes nothing."""
+    if not is_hushed():
+        typer.echo(f"Note: {note}", err=True)
+
+
 @contextmanager
-def progress(what: str, total: int | None, *, rated: bool = False) -> Iterator[Tick | None]:
-    """Show a progress bar on a terminal; yield None, and show nothing, in a pipe or a log.
+def progress(what: str, total: int | None, *, rated: bool = False) -> Iterator[Tick]:
+    """Count what is done, and show it on a terminal: how much, how much is left, and for how long.
 
     Parameters
     ----------
@@ -51,11 +100,17 @@ def progress(what: str, total: int | None, *, rated: bool = False) -> Iterator[T
     total : int or None
         How many there are; None if that is not known beforehand.
     rated : bool
-        Whether the bar tells rate and time left, for what comes by the thousands.
+        Whether the bar tells a rate, for what comes by the thousands.
     """
+    known = _Stand(what, total=total)
+    _at.set(known)
+
+    def count(done: int, total: int) -> None:
+        known.done, known.total = done, total
+
     screen = console(stderr=True)
-    if not screen.is_terminal:
-        yield None
+    if not screen.is_terminal or is_hushed():
+        yield count
         return
     from rich import progress as bars
     from rich.text import Text
@@ -65,12 +120,14 @@ def progress(what: str, total: int | None, *, rated: bool = False) -> Iterator[T
             speed = task.finished_speed or task.speed
             return Text("" if speed is None else f"{speed:,.0f}/s")
 
-    left = (bars.TextColumn("left"), bars.TimeRemainingColumn())
     columns = (
         bars.TextColumn("{task.description}"),
         bars.BarColumn(),
         bars.MofNCompleteColumn(),
-        *((Rate(), bars.TimeElapsedColumn(), *left) if rated else (bars.TimeElapsedColumn(),)),
+        *([Rate()] if rated else []),
+        bars.TimeElapsedColumn(),
+        bars.TextColumn("left"),
+        bars.TimeRemainingColumn(),
     )
     # Parts of what is rated come seconds apart: a short memory would show no rate between them.
     memory = 300.0 if rated else 30.0
@@ -78,4 +135,9 @@ def progress(what: str, total: int | None, *, rated: bool = False) -> Iterator[T
         *columns, console=screen, transient=True, speed_estimate_period=memory
     ) as bar:
         task = bar.add_task(what, total=total)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+        def tick(done: int, total: int) -> None:
+            count(done, total)
+            bar.update(task, completed=done, total=total)
+
+        yield tick

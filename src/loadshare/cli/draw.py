@@ -3,40 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from loadshare.cli.changes import open_case, read_changes
-from loadshare.cli.exits import UNUSABLE, counted, fail, problems_told, writing
-from loadshare.cli.files import tell_written, write_text
-from loadshare.cli.options import CaseFile, changes, output
-from loadshare.errors import CaseError, LoadshareError, Problem
-from loadshare.output import STANDARD
+from loadshare.cli.exits import UNUSABLE, counted, fail, problems_told
+from loadshare.cli.forms import Output, outputs, write_all
+from loadshare.cli.options import CaseFile, Changes
+from loadshare.errors import CaseError, Problem
 
 if TYPE_CHECKING:
     from loadshare.report.figure import Figure
 
 
+FORMS = ("svg", "png", "pdf", "html", "json")
+
+
 def draw(
     case: CaseFile,
     file: Annotated[
-        Path,
-        output(
-            "-o",
-            "--output",
-            what="Drawing to write: .svg, .png, .pdf, .html or .json; - for SVG on stdout.",
-        ),
-    ] = Path("drawing.svg"),
-    change: Annotated[
-        list[str] | None,
-        changes(
-            "--set",
-            "Change the case, as in gears.6.centre.angle='41 deg'; may be repeated. "
-            "No value removes the key.",
-        ),
+        list[Output] | None,
+        outputs(*FORMS, what="Drawing to write, drawing.svg by default; .json is Vega-Lite"),
     ] = None,
+    change: Changes = None,
 ) -> None:
     """Draw the train of a case to scale, with what does not fit marked.
 
@@ -44,15 +34,8 @@ def draw(
     """
     with problems_told():
         figure, problems = _drawn(case, change or ())
-    with writing(file):
-        try:
-            if file == STANDARD:
-                write_text(file, figure.to_svg())
-            else:
-                figure.save(file)
-        except LoadshareError as error:
-            raise typer.BadParameter(str(error), param_hint="--output") from None
-    tell_written(file, ".")
+    makers = {form: partial(figure.content, form) for form in FORMS}
+    write_all(file or [Output("svg", Path("drawing.svg"))], makers, err=False)
     if problems:
         told = f"{counted(len(problems), 'problem')}; the drawing shows what could be read."
         fail([*map(str, problems), told], UNUSABLE)

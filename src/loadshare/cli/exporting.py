@@ -10,7 +10,7 @@ import typer
 from loadshare.cli.changes import open_case
 from loadshare.cli.exits import REFUSED, fail, problems_told
 from loadshare.cli.files import keep_inputs, save_text, tell_written
-from loadshare.cli.options import CaseFile, changes, output
+from loadshare.cli.options import CaseFile, Changes, output
 
 
 def export(
@@ -18,11 +18,8 @@ def export(
     unit: Annotated[
         Path, typer.Argument(metavar="UNIT", help="REXS file from which the case was imported.")
     ],
-    to: Annotated[Path, output("-o", "--output", what="Copy of it to write.")],
-    change: Annotated[
-        list[str] | None,
-        changes("--set", "Change the case, as in operating.torque='100 N*m'; may be repeated."),
-    ] = None,
+    to: Annotated[Path, output(what="Copy of it to write.")],
+    change: Changes = None,
 ) -> None:
     """Solve a case and write what was found into a copy of its REXS file."""
     from loadshare.errors import Refused

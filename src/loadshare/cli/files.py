@@ -11,6 +11,7 @@ from typing import Any
 import typer
 
 from loadshare.cli.exits import writing
+from loadshare.cli.quiet import is_hushed
 from loadshare.output import STANDARD, write_whole
 
 
@@ -34,14 +35,30 @@ def save_text(path: Path, text: str) -> None:
 
 def tell_written(file: Path, more: str = "", *, err: bool = False) -> None:
     """Tell which file was written, and more; nothing where that was stdout."""
-    if file != STANDARD:
+    if file == STANDARD:
+        return
+    _written.set((*_written.get(), file))
+    if not is_hushed():
         typer.echo(f"Wrote {file}{more}", err=err)
+
+
+_written: ContextVar[tuple[Path, ...]] = ContextVar("written", default=())
+
+
+def kept() -> str:
+    """Return what a command that is stopped leaves behind, and how to go on."""
+    told = ", ".join(map(str, _written.get()))
+    return f"{f'Kept: {told}.' if told else 'Nothing is kept.'} The same command starts again."
 
 
 def write_document(path: Path, document: dict[str, Any]) -> None:
     """Write plain data as a JSON file, whole or not at all."""
-    text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
-    write_text(path, text + "\n")
+    write_text(path, document_text(document))
+
+
+def document_text(document: dict[str, Any]) -> str:
+    """Return plain data as the text of a JSON file."""
+    return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 _asked: ContextVar[tuple[tuple[str, Path], ...]] = ContextVar("outputs", default=())
@@ -50,6 +67,7 @@ _asked: ContextVar[tuple[tuple[str, Path], ...]] = ContextVar("outputs", default
 def ask_for(outputs: Iterable[tuple[str, Path]]) -> None:
     """Note which files the command at hand is to write, by the names of their options."""
     _asked.set(tuple(outputs))
+    _written.set(())
 
 
 def is_stdout_taken() -> bool:

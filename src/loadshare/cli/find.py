@@ -39,7 +39,7 @@ def find_cases(given: Iterable[Path]) -> list[Path]:
     for path in given:
         here = _meant_by(path)
         if not here:
-            typer.echo(f"{path}: no case file there", err=True)
+            typer.echo(f"{path}: {_told_of(path)}", err=True)
         for file in here:
             found.setdefault(file.resolve(), file)
     if not found:
@@ -63,9 +63,17 @@ def _meant_by(path: Path) -> list[Path]:
     return [path]
 
 
+def _told_of(path: Path) -> str:
+    """Return what is said of a folder or pattern that means no case."""
+    from loadshare.case.recognise import what_folder_is
+
+    tables = path.is_dir() and any(path.glob("*.csv"))
+    return f"no case file there: it {what_folder_is(path)}" if tables else "no case file there"
+
+
 def _of_another_kind(file: Path) -> bool:
     """Whether a file says that it is a pair or a law, which cases name and which are no cases."""
-    from loadshare.case.reader import KINDS
+    from loadshare.case.recognise import KINDS
 
     kind = rf"""^kind\s*=\s*["']({"|".join(KINDS)})["']"""
     try:

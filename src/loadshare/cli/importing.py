@@ -11,7 +11,7 @@ import typer
 from loadshare.cli.console import say
 from loadshare.cli.exits import UNUSABLE, counted, fail, problems_told
 from loadshare.cli.files import keep_inputs, save_text, tell_written
-from loadshare.cli.options import output
+from loadshare.cli.options import Force, output
 from loadshare.output import STANDARD
 
 
@@ -25,13 +25,9 @@ def import_machine(
     ],
     to: Annotated[
         Path | None,
-        output(
-            "-o", "--output", what="Case file to write; by default that of the unit with .toml."
-        ),
+        output(what="Case file to write; by default that of the unit with .toml."),
     ] = None,
-    force: Annotated[
-        bool, typer.Option("--force", help="Overwrite the case file if it exists.")
-    ] = False,
+    force: Force = False,
 ) -> None:
     """Turn a gear unit into a case, and tell what was assumed and left out."""
     from loadshare.errors import CaseError

@@ -11,6 +11,7 @@ import typer
 from loadshare.cli.console import progress, say
 from loadshare.cli.exits import REFUSED, fail, problems_told, writing
 from loadshare.cli.files import keep_inputs, save_text
+from loadshare.cli.forms import FOLDER, Output, outputs, write_all
 from loadshare.cli.refusal import told
 from loadshare.cli.tables.table import show, table
 from loadshare.errors import Refused
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
 PICTURES = (".svg", ".png", ".html")
 LAW = "law.toml"
+FORMS = (FOLDER, "toml", "csv")
 
 
 def ltca(
@@ -42,15 +44,12 @@ def ltca(
         Literal["finite elements", "slices"] | None,
         typer.Option(metavar="MODEL", help="finite elements, or slices: much faster, less exact."),
     ] = None,
-    folder: Annotated[
-        Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            metavar="DIR",
-            file_okay=False,
-            help="Folder for tables, pictures and law file; a new one named after the pair "
-            "when left out.",
+    file: Annotated[
+        list[Output] | None,
+        outputs(
+            *FORMS,
+            what="Folder for tables, pictures and law file, a new one named after the pair when "
+            "left out; or the law file or the table alone",
         ),
     ] = None,
 ) -> None:
@@ -59,14 +58,17 @@ def ltca(
     The folder receives law.toml, which a mesh of a case can name as its law_file, table.csv,
     lines.csv, and pictures as SVG, PNG and HTML.
     """
+    from loadshare.tooth.analysis.tables import position_rows
+    from loadshare.tooth.law.file import law_text
     from loadshare.tooth.law.folder import kept_law
     from loadshare.tooth.pair.file import load_pair
 
     load = _torque(torque)
     with problems_told():
         asked = load_pair(pair).revised(torque=load, positions=positions, compliance=compliance)
-    folder = folder or Path(asked.name)
-    keep_inputs([pair], [("--output", folder / LAW)])
+    written = file or [Output(FOLDER, Path(asked.name))]
+    folders = [output.file for output in written if output.form == FOLDER]
+    keep_inputs([pair], [("--output", folder / LAW) for folder in folders])
     _print_heading(asked, pair)
     try:
         with progress("positions", asked.analysis.positions) as tick:
@@ -78,8 +80,14 @@ def ltca(
     _print_summary(asked, found)
     for finding in law.findings:
         say(f"Note: {finding}", whole=True)
-    wrote = list(_written(folder, asked, found, law))
-    typer.echo(f"Wrote {', '.join(file.name for file in wrote)} to {wrote[0].parent}")
+    for folder in folders:
+        wrote = list(_written(folder, asked, found, law))
+        say(f"Wrote {', '.join(file.name for file in wrote)} to {wrote[0].parent}", whole=True)
+    makers = {
+        "toml": lambda: law_text(law),
+        "csv": lambda: _csv(position_rows(found, law)),
+    }
+    write_all([output for output in written if output.form != FOLDER], makers)
 
 
 def _torque(text: str | None) -> float | None:

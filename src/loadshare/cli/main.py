@@ -19,14 +19,14 @@ from typer.main import get_command
 from loadshare._version import __version__
 from loadshare.cli.batch.command import batch
 from loadshare.cli.check import check
-from loadshare.cli.command import Command
+from loadshare.cli.command import Command, Group
 from loadshare.cli.draw import draw
+from loadshare.cli.everywhere import taking
 from loadshare.cli.exits import room_told
 from loadshare.cli.exporting import export
 from loadshare.cli.importing import import_machine
 from loadshare.cli.ltca import ltca
 from loadshare.cli.new import new
-from loadshare.cli.outside import reads_cases
 from loadshare.cli.page import report
 from loadshare.cli.run import run
 from loadshare.cli.schema import schema
@@ -42,18 +42,21 @@ from loadshare.cli.warm import warm
 
 app = typer.Typer(
     name="loadshare",
+    cls=Group,
     # Plain words survive a pipe, a log and a narrow terminal; boxes do not.
     rich_markup_mode=None,
     pretty_exceptions_enable=False,
-    add_completion=False,
     no_args_is_help=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 STUDIES = (sweep, critical, sensitivity, tolerance, march, compare, fit, study)
 CASES = (run, batch, report, draw, check, export, *STUDIES)
+SCRIPTED = (run, *STUDIES)
+"""Commands one of whose files can be JSON, and so be printed by ``--json``."""
 for command in (run, batch, report, draw, check, schema, new, ltca, export, warm, *STUDIES):
-    app.command(cls=Command)(reads_cases(command) if command in CASES else command)
-app.command("import", cls=Command)(import_machine)
+    has = {"json": command in SCRIPTED, "allow_outside": command in CASES, "quiet": True}
+    app.command(cls=Command)(taking(command, *(name for name, wanted in has.items() if wanted)))
+app.command("import", cls=Command)(taking(import_machine, "quiet"))
 
 
 def _tell_version(wanted: bool) -> None:

@@ -8,32 +8,32 @@ from typing import Annotated
 
 import typer
 
+from loadshare.cli.completion import kind_names
 from loadshare.cli.exits import UNUSABLE, fail
 from loadshare.cli.files import save_text, tell_written
-from loadshare.cli.options import output
+from loadshare.cli.options import Force, output
 
 
 def new(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Name of the case.")],
-    file: Annotated[
-        Path | None, output("-o", "--output", what="File to write; NAME.toml by default.")
-    ] = None,
+    file: Annotated[Path | None, output(what="File to write; NAME.toml by default.")] = None,
     kind: Annotated[
         str,
         typer.Option(
             metavar="KIND",
             help="split-path, four-branch, star, planetary or two-stage-planetary.",
+            autocompletion=kind_names,
         ),
     ] = "split-path",
-    force: Annotated[
-        bool, typer.Option("--force", help="Overwrite the file if it exists.")
-    ] = False,
+    force: Force = False,
 ) -> None:
     """Write a commented case file that runs, to change into your own."""
     from loadshare.case.starter import KINDS, starter_case
+    from loadshare.case.words import did_you_mean
 
     if kind not in KINDS:
-        raise typer.BadParameter(f"is none of {', '.join(KINDS)}", param_hint="--kind")
+        told = f"{kind!r} is none of {', '.join(KINDS)}. {did_you_mean(kind, KINDS)}"
+        raise typer.BadParameter(told.strip(), param_hint="--kind")
     title = Path(name.removesuffix(".toml")).name
     if not title:
         raise typer.BadParameter("a case needs a name", param_hint="NAME")

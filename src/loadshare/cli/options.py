@@ -1,14 +1,14 @@
-"""Options that several commands share."""
+"""The options that commands share, each described once."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias
 
 import typer
 
-from loadshare.output import STANDARD
+from loadshare.cli.completion import gear_names, key_names, setting_names
 
 # The words are repeated here because asking the solver room for them would import it for every
 # --help; a test compares them.
@@ -49,39 +49,59 @@ CasePaths = Annotated[
         metavar="CASES", help="Case files, folders of them, or patterns.", show_default=False
     ),
 ]
+Changes = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change the case, as in operating.torque='100 N*m'; may be repeated. No value "
+        "removes the key.",
+        autocompletion=setting_names,
+    ),
+]
+Positions = Annotated[
+    list[int] | None,
+    typer.Option("--position", metavar="K", help="Only this position, from 1; may be repeated."),
+]
+Gear = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME", help="Gear whose revolutions are counted.", autocompletion=gear_names
+    ),
+]
+Force = Annotated[bool, typer.Option("--force", help="Write over the file if it is there already.")]
+OVER = "--over"
 
 
-def changes(name: str, help_: str) -> object:
-    """Return the option for changes to a case."""
-    return typer.Option(name, metavar="KEY=VALUE", help=help_)
+def over(form: str, help_: str) -> Any:
+    """Return the option for the inputs that a study varies, ``KEY=`` and what `form` names."""
+    return typer.Option(
+        OVER, metavar=f"KEY={form}", help=help_, autocompletion=setting_names, show_default=False
+    )
+
+
+def keys(help_: str) -> Any:
+    """Return the argument for keys of a case."""
+    return typer.Argument(metavar="KEY", help=help_, autocompletion=key_names)
 
 
 OUTPUT = "FILE"
 """How an option for a file to write is told from others."""
 
 
-def output(*names: str, what: str, callback: Callable[..., Any] | None = None) -> object:
-    """Return the option for a file to write, which a callback may refuse."""
+def output(*names: str, what: str, callback: Callable[..., Any] | None = None) -> Any:
+    """Return the option for the one file that a command writes, which a callback may refuse."""
     return typer.Option(
-        *names, metavar=OUTPUT, dir_okay=False, writable=True, help=what, callback=callback
+        *(names or ("-o", "--output")),
+        metavar=OUTPUT,
+        dir_okay=False,
+        writable=True,
+        help=what,
+        callback=callback,
     )
 
 
-def ending(*endings: str) -> Callable[[Path | None], Path | None]:
-    """Return a callback that refuses a file of another kind, before anything is solved.
-
-    What goes to stdout is of the first kind.
-    """
-
-    def checked(file: Path | None) -> Path | None:
-        if file is not None and file != STANDARD and file.suffix not in endings:
-            raise typer.BadParameter(f"{file}: must end in {' or '.join(endings)}")
-        return file
-
-    return checked
-
-
-def keys_and_value(text: str, form: str, name: str) -> tuple[tuple[str, ...], str]:
+def split_setting(text: str, form: str, name: str = OVER) -> tuple[tuple[str, ...], str]:
     """Split ``KEY=VALUE`` or ``KEY=KEY=VALUE`` at the equals signs outside of quotes.
 
     Raises
@@ -91,7 +111,25 @@ def keys_and_value(text: str, form: str, name: str) -> tuple[tuple[str, ...], st
     """
     from loadshare.study.parameter import split_outside
 
-    *keys, value = split_outside(text, "=")
-    if not keys or not all(keys) or not value:
+    *found, value = split_outside(text, "=")
+    if not found or not all(found) or not value:
         raise typer.BadParameter(f"{text!r} is not of the form {form}", param_hint=name)
-    return tuple(keys), value
+    return tuple(found), value
+
+
+def ranges_of(given: Iterable[str] | None, form: str) -> dict[tuple[str, ...], tuple[str, str]]:
+    """Return the two ends of every range ``KEY=FROM:TO`` that was asked for, by its keys.
+
+    Raises
+    ------
+    typer.BadParameter
+        For a text of another form.
+    """
+    found = {}
+    for text in given or ():
+        names, ends = split_setting(text, form)
+        start, colon, stop = ends.partition(":")
+        if not colon or not start.strip() or not stop.strip() or ":" in stop:
+            raise typer.BadParameter(f"{text!r} is not of the form {form}", param_hint=OVER)
+        found[names] = start.strip(), stop.strip()
+    return found

@@ -2,32 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from functools import partial
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+from collections.abc import Sequence
+from functools import cache, partial
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NoReturn, TypeAlias
 
 import typer
 
 from loadshare.cli.changes import open_case
 from loadshare.cli.console import progress, say
-from loadshare.cli.exits import REFUSED, UNUSABLE, fail, problems_told, writing
-from loadshare.cli.files import write_document, write_text
-from loadshare.cli.options import CaseFile, Method, Solver, Tolerance, changes, output
+from loadshare.cli.exits import REFUSED, fail, problems_told
+from loadshare.cli.files import document_text, save_text, tell_written
+from loadshare.cli.forms import FOLDER, Output, figure_of, outputs, tables_of, write_all
+from loadshare.cli.options import CaseFile, Changes, Method, Positions, Solver, Tolerance
 from loadshare.cli.refusal import refused_document, told
 from loadshare.errors import Refused
-from loadshare.output import clear, csv_of, write_whole
+from loadshare.output import clear
 
 if TYPE_CHECKING:
     from loadshare.case import Case
     from loadshare.results import Result
 
-Tables = Annotated[
-    Path | None,
+FORMS = ("json", "nc", "csv", "parquet", "xlsx", "html", "svg", "png", "pdf", "toml", "folder")
+PictureName: TypeAlias = Literal["share", "torque", "floats", "law", "train"]
+Picture = Annotated[
+    PictureName,
     typer.Option(
-        metavar="FOLDER",
-        help="Write case and result as CSV tables for a spreadsheet into this folder, or into a "
-        "workbook (.xlsx).",
+        metavar="NAME", help="What .svg, .png and .pdf show: share, torque, floats, law or train."
     ),
 ]
 Loads = Annotated[
@@ -46,17 +46,17 @@ Cycle = Annotated[
 
 def run(
     case: CaseFile,
-    json: Annotated[Path | None, output("--json", what="Write the result as JSON.")] = None,
-    netcdf: Annotated[Path | None, output("--netcdf", what="Write labelled arrays.")] = None,
-    csv: Annotated[Path | None, output("--csv", what="Write torques and Ω as a table.")] = None,
-    tables: Tables = None,
+    file: Annotated[
+        list[Output] | None,
+        outputs(
+            *FORMS, what="Write the result; .html is a report, .toml the case as it was changed"
+        ),
+    ] = None,
+    picture: Picture = "share",
     solver: Solver = "auto",
     method: Method = "newton",
     tolerance: Tolerance = 1e-9,
-    position: Annotated[
-        list[int] | None,
-        typer.Option(metavar="K", help="Solve only this position, from 1; may be repeated."),
-    ] = None,
+    position: Positions = None,
     no_reduce: Annotated[
         bool, typer.Option("--no-reduce", help="Solve the whole scene, leaving nothing out.")
     ] = False,
@@ -76,14 +76,7 @@ def run(
             "path from generous clearance.",
         ),
     ] = False,
-    change: Annotated[
-        list[str] | None,
-        changes(
-            "--set",
-            "Change the case, as in operating.torque='100 N*m'; may be repeated. "
-            "No value removes the key.",
-        ),
-    ] = None,
+    change: Changes = None,
 ) -> None:
     """Solve a case and print load sharing, floats and certificate."""
     from loadshare.cli.tables.result import print_heading, print_result
@@ -107,13 +100,9 @@ def run(
     if explain:
         _print_explanations(loaded, wanted if position else wanted[:1], how)
     if refusal is not None:
-        _end_refused(refusal, loaded.name, json, (netcdf, csv, tables))
+        _end_refused(refusal, loaded.name, file or ())
     assert result is not None
-    _write(json, result.to_json)
-    _write(netcdf, result.to_netcdf)
-    _write(csv, lambda file: write_text(file, csv_of(result.to_frame())))
-    if tables is not None:
-        _write_tables(tables, result)
+    _write(file, result, str(case), picture)
 
 
 def _solved(
@@ -148,32 +137,51 @@ def _print_explanations(case: Case, positions: Sequence[int], how: dict[str, Any
         print_explanation(index, answer)
 
 
-def _end_refused(
-    refusal: Refused, case: str, json: Path | None, others: Sequence[Path | None]
-) -> NoReturn:
+def _end_refused(refusal: Refused, case: str, files: Sequence[Output]) -> NoReturn:
     """Write the refusal as JSON, tell it, and which files were not written."""
-    _write(json, lambda file: write_document(file, refused_document(refusal, case)))
+    written = [output for output in files if output.form == "json"]
+    document = document_text(refused_document(refusal, case))
+    write_all(written, {"json": lambda: document})
     lines = [f"REFUSED  {line}" for line in told(refusal)]
-    fail([*lines, *(f"{f}: not written, for want of an answer" for f in others if f)], REFUSED)
+    others = [output.file for output in files if output not in written]
+    fail([*lines, *(f"{f}: not written, for want of an answer" for f in others)], REFUSED)
 
 
-def _write_tables(folder: Path, result: Result) -> None:
-    from loadshare.exchange.spreadsheet import export_tables, workbook_of
+def _write(files: Sequence[Output] | None, result: Result, case: str, picture: str) -> None:
+    from loadshare.results.writing import netcdf_content
+
+    def report() -> str:
+        from loadshare.report.page import chapter, report_page
+
+        return report_page([chapter(result.case, case, result=result)])
+
+    made = cache(partial(_tables, result))
+
+    def workbook() -> bytes:
+        from loadshare.exchange.spreadsheet import workbook_of
+
+        return workbook_of(made())
+
+    single = [output for output in files or () if output.form != FOLDER]
+    for output in files or ():
+        if output.form == FOLDER:
+            texts = {output.file / f"{name}.csv": text for name, text in made().items()}
+            clear(texts)
+            for name, text in texts.items():
+                save_text(name, text)
+            tell_written(output.file, err=True)
+    frame = tables_of("run", result.to_frame)
+    drawn = figure_of(lambda: getattr(result.plot, picture)())
+    makers = {**frame, **drawn, "json": result.to_json, "nc": lambda: netcdf_content(result)}
+    makers |= {"html": report, "xlsx": workbook, "toml": result.case.to_toml}
+    write_all(single, makers)
+
+
+def _tables(result: Result) -> dict[str, str]:
+    from loadshare.exchange.spreadsheet import export_tables
 
     with problems_told():
-        made = export_tables(result)
-    if folder.suffix.lower() == ".xlsx":
-        try:
-            book = workbook_of(made)
-        except ImportError:
-            hint = "Install it with: pip install 'loadshare[spreadsheet]'."
-            fail([f"{folder}: a workbook needs openpyxl to be written. {hint}"], UNUSABLE)
-        _write(folder, partial(write_whole, content=book))
-        return
-    files = {folder / f"{name}.csv": text for name, text in made.items()}
-    clear(files)
-    for file, text in files.items():
-        _write(file, partial(write_text, text=text))
+        return export_tables(result)
 
 
 def _wanted(positions: list[int] | None, count: int) -> list[int]:
@@ -185,9 +193,3 @@ def _wanted(positions: list[int] | None, count: int) -> list[int]:
         given = ", ".join(map(str, wrong))
         raise typer.BadParameter(f"{given}: this case has {there}", param_hint="--position")
     return wanted
-
-
-def _write(file: Path | None, write: Callable[[Path], object]) -> None:
-    if file is not None:
-        with writing(file):
-            write(file)

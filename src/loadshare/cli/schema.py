@@ -13,9 +13,7 @@ from loadshare.cli.options import output
 
 
 def schema(
-    file: Annotated[
-        Path | None, output("-o", "--output", what="Write it to a file instead of stdout.")
-    ] = None,
+    file: Annotated[Path | None, output(what="Write it to a file instead of stdout.")] = None,
 ) -> None:
     """Print the JSON Schema of a case file, for editors."""
     from loadshare.case import case_schema

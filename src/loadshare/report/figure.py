@@ -123,22 +123,30 @@ class Figure:
                 f"{path}: no picture can be written with the ending {path.suffix or '(none)'!r}. "
                 f"Allowed: {', '.join(ENDINGS)}"
             )
-        content: str | bytes
-        if ending == ".svg":
-            content = self.to_svg()
-        elif ending == ".html":
+        write_whole(path, self.content(ending[1:], scale))
+        return path
+
+    def content(self, form: str, scale: float = 2.0) -> str | bytes:
+        """Return what stands in a file of the picture.
+
+        Parameters
+        ----------
+        form : {"png", "svg", "pdf", "html", "json"}
+        scale : float
+            Pixels of a PNG per unit of the specification.
+        """
+        if form == "svg":
+            return self.to_svg()
+        if form == "html":
             # The page writer of vl-convert leaves texts of the specification unescaped.
             from loadshare.report.page.offline import figure_page
 
             title = self.spec.get("title", "")
-            content = figure_page(self.spec, title["text"] if isinstance(title, dict) else title)
-        elif ending == ".json":
-            content = json.dumps(self.spec, indent=1, ensure_ascii=False) + "\n"
-        else:
-            settings = {"scale": scale} if ending == ".png" else {}
-            content = bytes(self._converted(ending[1:], **settings))
-        write_whole(path, content)
-        return path
+            return figure_page(self.spec, title["text"] if isinstance(title, dict) else title)
+        if form == "json":
+            return json.dumps(self.spec, indent=1, ensure_ascii=False) + "\n"
+        settings = {"scale": scale} if form == "png" else {}
+        return bytes(self._converted(form, **settings))
 
     def to_svg(self, prefix: str = "") -> str:
         """Return the picture as SVG text, the same text for the same picture.

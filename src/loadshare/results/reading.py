@@ -35,7 +35,7 @@ from loadshare.train.equilibrium import Equilibrium, Range
 from loadshare.train.memory import slip_of
 from loadshare.train.placed import standing
 
-AGAIN = "Solve the case again: loadshare run CASE.toml --json FILE."
+AGAIN = "Solve the case again: loadshare run CASE.toml -o FILE.json."
 
 
 @dataclass(frozen=True, slots=True)

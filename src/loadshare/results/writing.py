@@ -32,5 +32,10 @@ def text_of(result: Result) -> str:
 
 def write_netcdf(result: Result, path: str | Path) -> None:
     """Write labelled arrays for any reader of netCDF, and the whole result as an attribute."""
+    write_whole(Path(path), netcdf_content(result))
+
+
+def netcdf_content(result: Result) -> bytes:
+    """Return what stands in a netCDF file of a result."""
     arrays = result.dataset.assign_attrs({DOCUMENT: text_of(result)})
-    write_whole(Path(path), sealed(netcdf_of(arrays)))
+    return sealed(netcdf_of(arrays))

@@ -19,11 +19,13 @@ from loadshare.cli.batch.work import (
     outcomes,
     result_names,
 )
+from loadshare.cli.changes import read_changes
 from loadshare.cli.console import progress
+from loadshare.cli.everywhere import Json
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail, writing
-from loadshare.cli.files import write_document
+from loadshare.cli.files import document_text, write_document
 from loadshare.cli.find import find_cases
-from loadshare.cli.options import CasePaths, Method, Solver, Tolerance
+from loadshare.cli.options import CasePaths, Changes, Method, Solver, Tolerance
 from loadshare.cli.stop import Stop
 from loadshare.errors import LoadshareError
 from loadshare.lock import alone_in
@@ -50,6 +52,8 @@ def batch(
     force: Annotated[
         bool, typer.Option("--force", help="Solve again what is there already.")
     ] = False,
+    change: Changes = None,
+    json: Json = False,
 ) -> None:
     """Solve many cases, keeping what is solved already.
 
@@ -58,9 +62,10 @@ def batch(
     """
     from loky import cpu_count
 
+    changes = read_changes(change or ())
     found = find_cases(cases)
     tasks = [
-        Task(case, name, folder / f"{name}.json", solver, method, tolerance, force)
+        Task(case, name, folder / f"{name}.json", solver, method, tolerance, force, changes)
         for case, name in zip(found, result_names(found), strict=True)
     ]
     with writing(folder):
@@ -76,8 +81,11 @@ def batch(
             settings = {"solver": solver, "method": method, "tolerance": tolerance}
             # First, so that it is told also where nothing can be written.
             print_summary(ordered)
+            document = summary_document(ordered, settings, waiting)
             with writing(summary):
-                write_document(summary, summary_document(ordered, settings, waiting))
+                write_document(summary, document)
+            if json:
+                typer.echo(document_text(document), nl=False)
             if stop.asked:
                 told = f"Interrupted: {len(ordered)} of {len(tasks)} cases done."
                 fail([told, "The same command goes on; what is certified is kept."], stop.code)
@@ -96,8 +104,7 @@ def _done(tasks: Sequence[Task], jobs: int, stop: Stop) -> dict[str, Outcome]:
         with progress("cases", len(tasks)) as tick:
             for outcome in outcomes(tasks, jobs, lambda: stop.asked):
                 done[outcome.name] = outcome
-                if tick is not None:
-                    tick(len(done), len(tasks))
+                tick(len(done), len(tasks))
         stop.over()
     except KeyboardInterrupt:
         stop.asked = True

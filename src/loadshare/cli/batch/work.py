@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from loadshare._version import __version__
 from loadshare.cli.exits import out_of_memory, unwritten
@@ -42,6 +42,8 @@ class Task:
     tolerance : float
     force : bool
         Solve even if the result is there already.
+    changes : dict
+        To the case, as `Case.replace` takes them.
     """
 
     case: Path
@@ -51,6 +53,7 @@ class Task:
     method: str
     tolerance: float
     force: bool
+    changes: dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +123,8 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
     from loadshare.train import build_train
 
     try:
-        case = resolve(load_case(task.case))
+        loaded = load_case(task.case)
+        case = resolve(loaded.replace(task.changes) if task.changes else loaded)
         count = build_train(case).count
         kept, notes = (None, ()) if task.force else _kept(task, case, count)
         if kept is not None:

@@ -2,26 +2,36 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 from loadshare.cli.console import say
 from loadshare.cli.exits import counted
-from loadshare.cli.options import CaseFile
-from loadshare.cli.study.common import Changes, CsvFile, asked, write_table
+from loadshare.cli.forms import TABLES, Makers, Output, outputs, tables_of, write_all
+from loadshare.cli.options import CaseFile, Changes
+from loadshare.cli.study.common import asked
 from loadshare.cli.tables.table import show, table
 
 if TYPE_CHECKING:
     from loadshare.study.compare import Comparison, Deviation
 
 
-def compare(case: CaseFile, file: CsvFile = None, change: Changes = None) -> None:
+def compare(
+    case: CaseFile,
+    file: Annotated[list[Output] | None, outputs(*TABLES)] = None,
+    change: Changes = None,
+) -> None:
     """Compare what was measured with what is computed."""
     from loadshare.study.compare import compare as compared
 
     with asked(case, change, "positions") as (loaded, tick):
         found = compared(loaded, progress=tick)
     show_comparison(found)
-    write_table(file, found.to_frame)
+    write_all(file, made_of_comparison(found))
+
+
+def made_of_comparison(found: Comparison) -> Makers:
+    """Return what makes the files of a comparison."""
+    return tables_of("compare", found.to_frame, chi_square=found.chi_square)
 
 
 def show_comparison(found: Comparison) -> None:

@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from loadshare.cli.console import say
+from loadshare.cli.console import say, tell_note
 from loadshare.cli.exits import counted
-from loadshare.cli.options import CaseFile
-from loadshare.cli.refusal import ranges
-from loadshare.cli.study.common import Changes, CsvFile, Positions, asked, end, write_table
+from loadshare.cli.forms import TABLES, Makers, Output, outputs, tables_of, write_all
+from loadshare.cli.options import OVER, CaseFile, Changes, Positions, over, ranges_of
+from loadshare.cli.refusal import ranges as numbers_told
+from loadshare.cli.study.common import asked, end
 from loadshare.cli.tables.table import show, table
 
 if TYPE_CHECKING:
@@ -24,24 +25,60 @@ SHOWN = 5
 
 def critical(
     case: CaseFile,
-    key: Annotated[
-        list[str],
-        typer.Argument(metavar="KEY", help="Input to vary; several take the same value."),
-    ],
-    start: Annotated[str, typer.Option("--from", metavar="VALUE", help="Where it starts.")],
-    stop: Annotated[str, typer.Option("--to", metavar="VALUE", help="Where it stops.")],
-    file: CsvFile = None,
+    key: Annotated[list[str] | None, typer.Argument(metavar="KEY", hidden=True)] = None,
+    ranges: Annotated[
+        list[str] | None,
+        over(
+            "FROM:TO",
+            "Input to vary and its ends, as in rings.4.float='0 um:12 um'; KEY=KEY=FROM:TO ties "
+            "keys; a star stands for any name.",
+        ),
+    ] = None,
+    start: Annotated[str | None, typer.Option("--from", metavar="VALUE", hidden=True)] = None,
+    stop: Annotated[str | None, typer.Option("--to", metavar="VALUE", hidden=True)] = None,
+    file: Annotated[list[Output] | None, outputs(*TABLES)] = None,
     position: Positions = None,
     change: Changes = None,
 ) -> None:
     """Find where contacts, floats and splines change along an input, exactly."""
     from loadshare.study.critical import critical as found_along
 
+    along, low, high = _range(ranges, key, start, stop)
     with asked(case, change, "positions") as (loaded, tick):
-        found = found_along(loaded, key, start, stop, positions=position, progress=tick)
+        found = found_along(loaded, along, low, high, positions=position, progress=tick)
     show_critical(found)
-    write_table(file, lambda: events_frame(found))
+    write_all(file, made_of_critical(found))
     end(unconfirmed(found))
+
+
+FORM = "KEY=FROM:TO, as in rings.4.float='0 um:12 um'"
+
+
+def _range(
+    given: list[str] | None, key: list[str] | None, start: str | None, stop: str | None
+) -> tuple[list[str], str, str]:
+    """Return the keys to vary and the ends, in the words of today or those of before."""
+    if given:
+        if key or start or stop:
+            raise typer.BadParameter(
+                "says it all: no other key, no --from, no --to", param_hint=OVER
+            )
+        if len(given) > 1:
+            hint = "takes one range; tied keys are written KEY=KEY=FROM:TO"
+            raise typer.BadParameter(hint, param_hint=OVER)
+        ((keys, ends),) = ranges_of(given, FORM).items()
+        return list(keys), *ends
+    if not key or start is None or stop is None:
+        raise typer.BadParameter(f"is missing: {FORM}", param_hint=OVER)
+    tell_note(f"KEY --from FROM --to TO is now {OVER} KEY=FROM:TO.")
+    return key, start, stop
+
+
+def made_of_critical(found: Critical) -> Makers:
+    """Return what makes the files of critical values."""
+    unproved = [{"position": u.position, "from": u.start, "to": u.stop} for u in found.unproved]
+    about = {"parameter": found.parameter.name, "unit": found.parameter.unit}
+    return tables_of("critical", lambda: events_frame(found), **about, unproved=unproved)
 
 
 def unconfirmed(found: Critical) -> list[str]:
@@ -80,7 +117,7 @@ def show_critical(found: Critical) -> None:
         alike.setdefault(row, []).append(e.position)
     words = ("element", "event", "below", "above", *(["confirmed"] if doubtful else []), "at")
     ordered = sorted(alike.items(), key=lambda item: float(item[0][0]))
-    rows = ((*row, ranges(positions)) for row, positions in ordered)
+    rows = ((*row, numbers_told(positions)) for row, positions in ordered)
     made = table((f"{found.parameter.name}{unit}", *words), rows, words)
     made.columns[0].no_wrap = False
     title = f"Events from {found.start:g} to {found.stop:g}{unit}"

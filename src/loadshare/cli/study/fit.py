@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from loadshare.cli.console import say, say_all
-from loadshare.cli.files import save_text, tell_written
-from loadshare.cli.options import CaseFile, keys_and_value
-from loadshare.cli.study.common import Changes, FittedFile, asked
+from loadshare.cli.forms import TABLES, Makers, Output, outputs, tables_of, write_all
+from loadshare.cli.options import CaseFile, Changes, over, ranges_of
+from loadshare.cli.study.common import asked
 from loadshare.cli.study.compare import show_comparison
 from loadshare.cli.tables.table import show, table
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from loadshare.study.fit import Fit
 
 
@@ -22,11 +24,10 @@ def fit(
     case: CaseFile,
     unknown: Annotated[
         list[str],
-        typer.Option(
-            "--unknown",
-            metavar="KEY=LOW:HIGH",
-            help="Input to fit and its bounds, as in errors.6.installation.direction='0 deg:360 "
-            "deg'; may be repeated.",
+        over(
+            "LOW:HIGH",
+            "Input to fit and its bounds, as in errors.6.installation.direction='0 deg:360 deg'; "
+            "may be repeated.",
         ),
     ],
     starts: Annotated[
@@ -35,26 +36,34 @@ def fit(
     seed: Annotated[
         int, typer.Option(metavar="N", min=0, help="Seed of the further starting points.")
     ] = 0,
-    file: FittedFile = None,
+    file: Annotated[list[Output] | None, outputs("toml", *TABLES)] = None,
     change: Changes = None,
 ) -> None:
     """Fit inputs of a case to what was measured."""
     from loadshare.study.fit import fit as fitted
 
-    form = "KEY=LOW:HIGH"
-    unknowns: dict[tuple[str, ...], list[str]] = {}
-    for text in unknown:
-        keys, bounds = keys_and_value(text, form, "--unknown")
-        limits = bounds.split(":")
-        if len(limits) != 2:
-            raise typer.BadParameter(f"{text!r} is not of the form {form}", param_hint="--unknown")
-        unknowns[keys] = limits
+    unknowns = ranges_of(unknown, "KEY=LOW:HIGH")
     with asked(case, change, "starting points", starts) as (loaded, tick):
         found = fitted(loaded, unknowns, starts=starts, seed=seed, progress=tick)
     show_fit(found)
-    if file is not None:
-        save_text(file, found.case.to_toml())
-        tell_written(file, err=True)
+    write_all(file, made_of_fit(found))
+
+
+def made_of_fit(found: Fit) -> Makers:
+    """Return what makes the files of a fit: the fitted case, and tables of what was fitted."""
+
+    def frame() -> pd.DataFrame:
+        import pandas as pd
+
+        rows = [
+            (u.parameter.name, u.parameter.unit, u.start, u.value, u.deviation, u.low, u.high)
+            for u in found.unknowns
+        ]
+        heads = ["unknown", "unit", "start", "fitted", "deviation", "low", "high"]
+        return pd.DataFrame(rows, columns=heads)
+
+    tables = tables_of("fit", frame, chi_square=found.comparison.chi_square)
+    return {**tables, "toml": found.case.to_toml}
 
 
 def show_fit(found: Fit) -> None:

@@ -8,9 +8,20 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from loadshare.cli.console import say
-from loadshare.cli.options import CaseFile
-from loadshare.cli.study.common import Changes, TableFile, asked, write_table
+from loadshare.cli.forms import (
+    FIGURES,
+    TABLES,
+    Makers,
+    Output,
+    figure_of,
+    outputs,
+    tables_of,
+    write_all,
+)
+from loadshare.cli.options import CaseFile, Changes, Gear
+from loadshare.cli.study.common import asked
 from loadshare.cli.tables.table import show, table
+from loadshare.output import netcdf_of
 
 if TYPE_CHECKING:
     from loadshare.study.march import March
@@ -18,14 +29,12 @@ if TYPE_CHECKING:
 
 def march(
     case: CaseFile,
-    gear: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Gear whose revolutions are counted.")
-    ] = None,
+    gear: Gear = None,
     revolutions: Annotated[
         float | None, typer.Option(metavar="X", min=0.0, help="How far to march.")
     ] = None,
     steps: Annotated[int | None, typer.Option(metavar="N", min=1, help="Number of steps.")] = None,
-    file: TableFile = None,
+    file: Annotated[list[Output] | None, outputs(*TABLES, "nc", *FIGURES)] = None,
     change: Changes = None,
 ) -> None:
     """March through revolutions with spline friction that remembers its slip."""
@@ -34,7 +43,16 @@ def march(
     with asked(case, change, "steps") as (loaded, tick):
         found = marched(loaded, gear=gear, revolutions=revolutions, steps=steps, progress=tick)
     show_march(found)
-    write_table(file, found.result.to_frame, lambda: found.dataset)
+    write_all(file, made_of_march(found))
+
+
+def made_of_march(found: March) -> Makers:
+    """Return what makes the files of a march."""
+    return {
+        **tables_of("march", found.result.to_frame),
+        **figure_of(lambda: found.result.plot.share()),
+        "nc": lambda: netcdf_of(found.dataset),
+    }
 
 
 def show_march(found: March) -> None:

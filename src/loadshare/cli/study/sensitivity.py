@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from loadshare.cli.console import say, say_all
-from loadshare.cli.options import CaseFile
-from loadshare.cli.study.common import Changes, Positions, TableFile, asked, write_table
+from loadshare.cli.forms import TABLES, Makers, Output, outputs, tables_of, write_all
+from loadshare.cli.options import CaseFile, Changes, Positions, keys
+from loadshare.cli.study.common import asked
 from loadshare.cli.tables.table import show, table
+from loadshare.output import netcdf_of
 
 if TYPE_CHECKING:
     from loadshare.study.sensitivity import Input, Sensitivity
@@ -29,10 +29,9 @@ ROUND_OFF = 1e-13
 def sensitivity(
     case: CaseFile,
     key: Annotated[
-        list[str] | None,
-        typer.Argument(metavar="KEY", help="Inputs; a star stands for any name. All by default."),
+        list[str] | None, keys("Inputs; a star stands for any name. All by default.")
     ] = None,
-    file: TableFile = None,
+    file: Annotated[list[Output] | None, outputs(*TABLES, "nc")] = None,
     position: Positions = None,
     change: Changes = None,
 ) -> None:
@@ -42,11 +41,13 @@ def sensitivity(
     with asked(case, change, "inputs") as (loaded, tick):
         found = differentiated(loaded, key or None, positions=position, progress=tick)
     show_sensitivity(found)
-    write_table(
-        file,
-        lambda: found.dataset["torque"].to_dataframe().reset_index(),
-        lambda: found.dataset,
-    )
+    write_all(file, made_of_sensitivity(found))
+
+
+def made_of_sensitivity(found: Sensitivity) -> Makers:
+    """Return what makes the files of sensitivities; tables hold those of torques."""
+    made = tables_of("sensitivity", lambda: found.dataset["torque"].to_dataframe().reset_index())
+    return {**made, "nc": lambda: netcdf_of(found.dataset)}
 
 
 def show_sensitivity(found: Sensitivity) -> None:

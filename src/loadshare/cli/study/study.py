@@ -3,44 +3,84 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Annotated, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from loadshare.cli.changes import open_case
+from loadshare.cli.completion import study_names
 from loadshare.cli.console import progress
-from loadshare.cli.options import CaseFile
-from loadshare.cli.study.common import Changes, answered, end
-from loadshare.cli.study.compare import show_comparison
-from loadshare.cli.study.critical import show_critical, unconfirmed
-from loadshare.cli.study.fit import show_fit
-from loadshare.cli.study.march import show_march
-from loadshare.cli.study.sensitivity import show_sensitivity
-from loadshare.cli.study.sweep import open_points, show_sweep
-from loadshare.cli.study.tolerance import refused_samples, show_tolerance
+from loadshare.cli.forms import FIGURES, TABLES, Makers, Output, outputs, write_all
+from loadshare.cli.options import OVER, CaseFile, Changes, over, ranges_of, split_setting
+from loadshare.cli.study.common import answered, end
+from loadshare.cli.study.compare import made_of_comparison, show_comparison
+from loadshare.cli.study.critical import made_of_critical, show_critical, unconfirmed
+from loadshare.cli.study.fit import made_of_fit, show_fit
+from loadshare.cli.study.march import made_of_march, show_march
+from loadshare.cli.study.sensitivity import made_of_sensitivity, show_sensitivity
+from loadshare.cli.study.sweep import made_of_sweep, open_points, show_sweep
+from loadshare.cli.study.tolerance import made_of_tolerance, refused_samples, show_tolerance
 
-SHOWN: dict[str, Callable[[Any], None]] = {
-    "compare": show_comparison,
-    "critical": show_critical,
-    "fit": show_fit,
-    "march": show_march,
-    "sensitivity": show_sensitivity,
-    "sweep": show_sweep,
-    "tolerance": show_tolerance,
+if TYPE_CHECKING:
+    from loadshare.case import Case
+
+
+def _nothing(_: Any) -> list[str]:
+    return []
+
+
+@dataclass(frozen=True)
+class Kind:
+    """How the answer of a kind of study is shown.
+
+    Attributes
+    ----------
+    show : callable
+        Prints it.
+    makers : callable
+        Returns what makes files of it.
+    left_open : callable
+        Returns lines on the questions that the study could not answer.
+    """
+
+    show: Callable[[Any], None]
+    makers: Callable[[Any], Makers]
+    left_open: Callable[[Any], list[str]] = _nothing
+
+
+KINDS = {
+    "compare": Kind(show_comparison, made_of_comparison),
+    "critical": Kind(show_critical, made_of_critical, unconfirmed),
+    "fit": Kind(show_fit, made_of_fit),
+    "march": Kind(show_march, made_of_march),
+    "sensitivity": Kind(show_sensitivity, made_of_sensitivity),
+    "sweep": Kind(show_sweep, made_of_sweep, open_points),
+    "tolerance": Kind(show_tolerance, made_of_tolerance, refused_samples),
 }
-"""What prints each kind of study."""
-OPEN: dict[str, Callable[[Any], list[str]]] = {
-    "critical": unconfirmed,
-    "sweep": open_points,
-    "tolerance": refused_samples,
-}
-"""What tells the questions that a study could not answer."""
+FORMS = (*TABLES, "nc", *FIGURES, "toml")
 
 
 def study(
     case: CaseFile,
     name: Annotated[
-        str | None, typer.Argument(metavar="NAME", help="Which one; left out, all are listed.")
+        str | None,
+        typer.Argument(
+            metavar="NAME",
+            help="Which one; left out, all are listed.",
+            autocompletion=study_names,
+        ),
+    ] = None,
+    varied: Annotated[
+        list[str] | None,
+        over(
+            "VALUES",
+            "What the study varies, in place of what stands in it: as for sweep, critical, fit or "
+            "tolerance; may be repeated.",
+        ),
+    ] = None,
+    file: Annotated[
+        list[Output] | None, outputs(*FORMS, what="Write what its kind can have")
     ] = None,
     change: Changes = None,
 ) -> None:
@@ -56,8 +96,52 @@ def study(
                 typer.echo("The case holds no study: add a table [study.NAME].")
             return
         kind = loaded.study[name].kind if name in loaded.study else ""
+        if kind and varied:
+            loaded = _varied(loaded, name, kind, varied)
         rated = kind == "tolerance"
         with progress(*(("samples", None) if rated else (name, 1)), rated=rated) as tick:
             found = run_study(loaded, name, progress=tick)
-    SHOWN[kind](found)
-    end(OPEN[kind](found) if kind in OPEN else [])
+    asked = KINDS[kind]
+    makers = asked.makers(found)
+    for output in file or ():
+        if output.form not in makers:
+            can = ", ".join(f".{form}" for form in makers)
+            raise typer.BadParameter(
+                f"{output.file}: a {kind} can write {can}", param_hint="--output"
+            )
+    asked.show(found)
+    write_all(file, makers)
+    end(asked.left_open(found))
+
+
+def _varied(case: Case, name: str, kind: str, given: list[str]) -> Case:
+    """Return the case with the inputs of a study as the command line has them.
+
+    Raises
+    ------
+    typer.BadParameter
+        If a study of this kind varies no inputs over values.
+    """
+    from loadshare.case.keys import dotted
+
+    def at(key: str) -> str:
+        return dotted(("study", name, key))
+
+    if kind == "sweep":
+        pairs = (split_setting(text, "KEY=GRID") for text in given)
+        return case.replace({at("over"): {"=".join(keys): grid for keys, grid in pairs}})
+    if kind not in ("critical", "fit", "tolerance"):
+        raise typer.BadParameter(f"a {kind} varies no input over values", param_hint=OVER)
+    ranges = ranges_of(given, "KEY=FROM:TO")
+    if kind == "critical":
+        if len(ranges) > 1:
+            raise typer.BadParameter("takes one range for a critical", param_hint=OVER)
+        ((keys, (low, high)),) = ranges.items()
+        return case.replace({at("keys"): list(keys), at("start"): low, at("stop"): high})
+    if kind == "fit":
+        return case.replace({at("unknowns"): {"=".join(k): list(v) for k, v in ranges.items()}})
+    scatter = {
+        "=".join(keys): {"distribution": "uniform", "low": low, "high": high}
+        for keys, (low, high) in ranges.items()
+    }
+    return case.replace({at("inputs"): scatter})

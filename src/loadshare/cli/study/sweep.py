@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 from loadshare.cli.exits import counted
-from loadshare.cli.options import CaseFile, keys_and_value
-from loadshare.cli.study.common import Changes, Positions, TableFile, asked, end, write_table
+from loadshare.cli.forms import FIGURES, Makers, Output, figure_of, outputs, tables_of, write_all
+from loadshare.cli.options import CaseFile, Changes, Positions, over, split_setting
+from loadshare.cli.study.common import asked, end
 from loadshare.cli.tables.table import show, table
+from loadshare.output import netcdf_of
 from loadshare.report.numbers import omega
 
 if TYPE_CHECKING:
@@ -17,21 +17,21 @@ if TYPE_CHECKING:
 
     from loadshare.study.sweep import Sweep
 
+SWEPT = ("csv", "nc", "parquet", "xlsx", "json", *FIGURES)
 MEANS = {"stage": "omega", "group": "pair_omega"}
 
 
 def sweep(
     case: CaseFile,
-    setting: Annotated[
+    grids: Annotated[
         list[str],
-        typer.Option(
-            "--set",
-            metavar="KEY=GRID",
-            help="Parameter and its values, as in rings.4.float='0 um:12 um:61' (first, last, how "
-            "many) or 'a, b, c'; KEY=KEY=GRID ties keys; a star stands for any name. One or two.",
+        over(
+            "GRID",
+            "Input and its values, as in rings.4.float='0 um:12 um:61' (first, last, how many) or "
+            "'a, b, c'; KEY=KEY=GRID ties keys; a star stands for any name. One or two.",
         ),
     ],
-    file: TableFile = None,
+    file: Annotated[list[Output] | None, outputs(*SWEPT)] = None,
     position: Positions = None,
     change: Changes = None,
 ) -> None:
@@ -39,12 +39,21 @@ def sweep(
     from loadshare.study.sweep import sweep as swept
 
     form = "KEY=GRID, as in rings.4.float='0 um:12 um:61'"
-    over = dict(keys_and_value(text, form, "--set") for text in setting)
+    parameters = dict(split_setting(text, form) for text in grids)
     with asked(case, change, "points") as (loaded, tick):
-        found = swept(loaded, over, positions=position, progress=tick)
+        found = swept(loaded, parameters, positions=position, progress=tick)
     show_sweep(found)
-    write_table(file, found.to_frame, lambda: found.dataset)
+    write_all(file, made_of_sweep(found))
     end(open_points(found))
+
+
+def made_of_sweep(found: Sweep) -> Makers:
+    """Return what makes the files of a sweep."""
+    return {
+        **tables_of("sweep", found.to_frame, case=found.case, passed=found.passed),
+        **figure_of(found.plot),
+        "nc": lambda: netcdf_of(found.dataset),
+    }
 
 
 def open_points(found: Sweep) -> list[str]:

@@ -3,23 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from loadshare.cli.console import Tick, say, say_all
+from loadshare._version import __version__
+from loadshare.cli.completion import study_names
+from loadshare.cli.console import say, say_all, stand
 from loadshare.cli.exits import counted, fail
-from loadshare.cli.options import CaseFile
+from loadshare.cli.files import document_text, tell_written
+from loadshare.cli.forms import (
+    FIGURES,
+    FOLDER,
+    Makers,
+    Output,
+    figure_of,
+    outputs,
+    tables_of,
+    write_all,
+)
+from loadshare.cli.options import CaseFile, Changes, Positions, over, ranges_of
 from loadshare.cli.stop import Stop
-from loadshare.cli.study.common import Changes, asked, end
+from loadshare.cli.study.common import asked, end
 from loadshare.cli.tables.table import show, table
+from loadshare.output import netcdf_of
 from loadshare.report.numbers import NONE
 
 if TYPE_CHECKING:
     from loadshare.study.tolerance.result import Tolerance
     from loadshare.study.tolerance.statistics import Estimate, Summary
 
+FORMS = (FOLDER, "csv", "nc", "parquet", "xlsx", "json", *FIGURES)
 SHOWN = 20
 """Inputs, and messages, that are shown."""
 ROUND_OFF = 1e-12
@@ -31,7 +47,9 @@ def tolerance(
     name: Annotated[
         str | None,
         typer.Argument(
-            metavar="NAME", help="Which study; left out, the case has one of this kind."
+            metavar="NAME",
+            help="Which study; left out, the case has one of this kind.",
+            autocompletion=study_names,
         ),
     ] = None,
     samples: Annotated[
@@ -40,14 +58,20 @@ def tolerance(
     seed: Annotated[
         int | None, typer.Option(metavar="S", min=0, help="Seed, instead of the case's.")
     ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "-o",
-            "--output",
-            metavar="FOLDER",
-            file_okay=False,
-            help="Folder for the samples (Parquet); a study that was killed goes on from there.",
+    ranges: Annotated[
+        list[str] | None,
+        over(
+            "LOW:HIGH",
+            "Input that scatters evenly between two values, as in rings.*.float='0 um:12 um', in "
+            "place of those of [study.NAME]; may be repeated.",
+        ),
+    ] = None,
+    file: Annotated[
+        list[Output] | None,
+        outputs(
+            *FORMS,
+            what="Folder for the samples (Parquet), from which a study that was stopped goes on; "
+            "or a file: tables hold the samples, .json and .nc the statistics",
         ),
     ] = None,
     scheduler: Annotated[
@@ -58,57 +82,92 @@ def tolerance(
     worst: Annotated[
         bool, typer.Option("--worst/--no-worst", help="Look for the worst case as well.")
     ] = True,
+    position: Positions = None,
     change: Changes = None,
 ) -> None:
     """Let inputs scatter as [study.NAME] says, and tell how load sharing does."""
     from loadshare.study.tolerance.study import tolerance as studied
 
+    folders = [output.file for output in file or () if output.form == FOLDER]
+    if len(folders) > 1:
+        raise typer.BadParameter("the samples go into one folder only", param_hint="--output")
+    out = folders[0] if folders else None
+    scatter = {
+        "=".join(keys): {"distribution": "uniform", "low": low, "high": high}
+        for keys, (low, high) in ranges_of(ranges, "KEY=LOW:HIGH").items()
+    }
     stop = Stop()
     with asked(case, change, "samples", None, rated=True) as (loaded, tick):
-        count = _Counted(tick)
         try:
             with stop:
                 found = studied(
                     loaded,
+                    scatter or None,
                     study=name,
                     samples=samples,
                     seed=seed,
+                    positions=position,
                     out=out,
                     scheduler=scheduler,
                     workers=workers,
                     worst=worst,
-                    progress=count,
+                    progress=tick,
                 )
         except KeyboardInterrupt:
-            fail(["Interrupted: " + count.kept(out)], stop.code)
+            fail(["Interrupted: " + _kept(out, *stand())], stop.code)
     show_tolerance(found)
     if out is not None:
-        typer.echo(f"Wrote {out}", err=True)
+        tell_written(out, err=True)
+    write_all([o for o in file or () if o.form != FOLDER], made_of_tolerance(found))
     end(refused_samples(found))
 
 
-class _Counted:
-    """Counts what is done, for the bar and for who is interrupted."""
+def _kept(out: Path | None, done: int, total: int) -> str:
+    """Return what is kept, and how to go on, in words."""
+    if out is None:
+        return "nothing is kept. With -o FOLDER what is solved is, and the same command goes on."
+    if done == total > 0:
+        kept = f"all {total:,} samples are kept in {out}."
+        return f"{kept} The same command looks for the worst case again."
+    told = f"{done:,} of {total:,} samples are" if total else "what was there is"
+    return f"{told} kept in {out}. The same command goes on from there."
 
-    def __init__(self, tick: Tick | None) -> None:
-        self.tick, self.done, self.total = tick, 0, 0
 
-    def __call__(self, done: int, total: int) -> None:
-        self.done, self.total = done, total
-        if self.tick is not None:
-            self.tick(done, total)
+def made_of_tolerance(found: Tolerance) -> Makers:
+    """Return what makes the files of a tolerance study: samples, and statistics."""
+    return {
+        **tables_of("tolerance", found.to_frame),
+        **figure_of(found.plot),
+        "json": lambda: document_text(statistics_document(found)),
+        "nc": lambda: netcdf_of(found.dataset),
+    }
 
-    def kept(self, out: Path | None) -> str:
-        """Return what is kept, and how to go on, in words."""
-        if out is None:
-            return (
-                "nothing is kept. With -o FOLDER what is solved is, and the same command goes on."
-            )
-        if self.done == self.total > 0:
-            kept = f"all {self.total:,} samples are kept in {out}."
-            return f"{kept} The same command looks for the worst case again."
-        done = f"{self.done:,} of {self.total:,} samples are" if self.total else "what was there is"
-        return f"{done} kept in {out}. The same command goes on from there."
+
+def statistics_document(found: Tolerance) -> dict[str, Any]:
+    """Return the statistics of Ω, the worst cases and what was refused as plain data."""
+    return {
+        "question": "tolerance",
+        "version": __version__,
+        "case": found.case,
+        "samples": found.samples,
+        "refused": found.refused,
+        "worst_residual": found.residual,
+        "limit": found.limit,
+        "omega": [
+            {
+                "stage": one.stage,
+                "over": one.over,
+                "mean": one.summary.mean.value,
+                "deviation": one.summary.deviation,
+                "lowest": one.summary.lowest,
+                "highest": one.summary.highest,
+                "quantiles": {f"{k:g}": q.value for k, q in one.summary.quantiles.items()},
+                "exceedance": None if one.exceedance is None else one.exceedance.value,
+            }
+            for one in found.omega
+        ],
+        "worst": [asdict(one) for one in found.worst],
+    }
 
 
 def refused_samples(found: Tolerance) -> list[str]:

@@ -46,6 +46,13 @@ UNITS = {
 CODES = {"float64": "d", "float32": "f"}
 """Arrays as bytes, by the code that the file tells."""
 
+OTHERS = {
+    ".toml": "is a case already; `loadshare run` solves it",
+    ".nc": "is a result, which holds its case: there is nothing to import",
+    ".csv": "is one table; give the folder that holds all tables of a case",
+}
+"""Files that are no gear unit, by their endings."""
+
 DAMAGED = (
     zipfile.BadZipFile,
     zlib.error,
@@ -69,6 +76,8 @@ def read_model(path: Path) -> Model:
     """
     try:
         content = read_file(path, ALLOWED.bytes)
+        if path.suffix.lower() in OTHERS:
+            _refuse(path, OTHERS[path.suffix.lower()])
         if content[:4] == b"PK\x03\x04":
             content = _unpacked(path, content)
     except OSError as error:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from loadshare.case import Case, load_case
 from loadshare.case.reader import load_draft
@@ -74,7 +75,11 @@ class Chapter:
         return [f"loadshare run {name}", f"loadshare report {name} -o report.html"]
 
 
-def chapter_of_file(file: str | Path, progress: Progress | None = None) -> Chapter:
+def chapter_of_file(
+    file: str | Path,
+    progress: Progress | None = None,
+    changes: Mapping[str, Any] | None = None,
+) -> Chapter:
     """Solve a case file and put together its chapter; what is wrong with it becomes part of it.
 
     Parameters
@@ -82,15 +87,23 @@ def chapter_of_file(file: str | Path, progress: Progress | None = None) -> Chapt
     file : path-like
     progress : Progress, optional
         Called after every position.
+    changes : mapping of str to object, optional
+        To the case, as `Case.replace` takes them.
     """
     try:
         case = load_case(file)
+        case = case.replace(changes) if changes else case
         return chapter(case, str(file), progress)
     except CaseError as error:
         return _unusable(str(file), error)
 
 
-def chapter(case: Case, file: str = "", progress: Progress | None = None) -> Chapter:
+def chapter(
+    case: Case,
+    file: str = "",
+    progress: Progress | None = None,
+    result: Result | None = None,
+) -> Chapter:
     """Solve a case and put together its chapter.
 
     Parameters
@@ -100,6 +113,8 @@ def chapter(case: Case, file: str = "", progress: Progress | None = None) -> Cha
         Where it comes from.
     progress : Progress, optional
         Called after every position.
+    result : Result, optional
+        Of the case, where it is solved already.
 
     Raises
     ------
@@ -107,9 +122,8 @@ def chapter(case: Case, file: str = "", progress: Progress | None = None) -> Cha
         If the case cannot be solved at all.
     """
     problems: list[str] = []
-    result: Result | None
     try:
-        result = solve(case, progress=progress)
+        result = result or solve(case, progress=progress)
         outcome = CERTIFIED
     except Refused as refusal:
         result = refusal.partial

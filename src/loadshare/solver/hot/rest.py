@@ -8,7 +8,6 @@ and opens again. So a place in the free room is sought instead. Source: formulat
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import nnls
 
 from loadshare.scene.scene import Array
 from loadshare.settings import EXCHANGE
@@ -68,6 +67,9 @@ def _least(limits: Array, bounds: Array) -> Array | None:
     target = np.zeros(len(columns))
     target[-1] = 1.0
     try:
+        # Imported late: most runs need nothing of SciPy, which takes a third of a second.
+        from scipy.optimize import nnls
+
         weights, _ = nnls(columns, target)
     except RuntimeError:
         return None

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from loadshare.case import Case
 from loadshare.case.keys import Path, dotted, look_up, parse
+from loadshare.case.words import did_you_mean
 from loadshare.errors import CaseError, Problem
 from loadshare.study.parameter import STUDY, Value, leaves, matches, read_value
 from loadshare.study.sensitivity.result import Input
@@ -36,7 +37,9 @@ def inputs_of(case: Case, wanted: str | Sequence[str] | None) -> list[Input]:
             given = look_up(data, parse(pattern))
             what = "is not in the case" if given is None else "is no number with a unit"
             shown = "" if given is None else str(given)
-            problems.append(Problem(STUDY, pattern, shown, what, "an input that the case gives"))
+            hint = did_you_mean(pattern, (item.key for item in _below(data, ())))
+            allowed = "an input that the case gives"
+            problems.append(Problem(STUDY, pattern, shown, what, allowed, hint))
         inputs += meant
     if problems:
         raise CaseError(problems)

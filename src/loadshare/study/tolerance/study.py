@@ -161,7 +161,9 @@ def _asked(case: Case, name: str | None, given: Mapping[str, Any]) -> tuple[Case
             return case.replace({f"study.{NAME}": whole}), NAME
         if len(own) != 1:
             message = "has no tolerance study" if not own else "has several tolerance studies"
-            allowed = ", ".join(own) or 'a table [study.NAME] with kind = "tolerance", or inputs'
+            allowed = (
+                ", ".join(own) or 'a table [study.NAME] with kind = "tolerance", or inputs (--over)'
+            )
             raise CaseError([Problem(case.name, "study", "", message, allowed)])
         (name,) = own
     elif name not in own:

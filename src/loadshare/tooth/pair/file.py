@@ -15,6 +15,7 @@ from pydantic import TypeAdapter, ValidationError
 from loadshare.case.keys import covers, parse, walk
 from loadshare.case.origin import Origin
 from loadshare.case.reader import read_toml
+from loadshare.case.recognise import TAKEN_BY, is_case
 from loadshare.case.translate import translate
 from loadshare.case.words import as_given, choices, did_you_mean
 from loadshare.errors import CaseError, Problem, Refused
@@ -199,6 +200,8 @@ def _content(
 ) -> tuple[HelicoidContent | FaceGearContent | None, list[Problem]]:
     kind = data.get("kind")
     model = CONTENTS.get(kind) if isinstance(kind, str) else None
+    if kind is None and is_case(data):
+        return None, [Problem(origin.file, "", "", TAKEN_BY["case"])]
     if model is None:
         what = "is missing" if kind is None else "is not a kind of pair"
         hint = did_you_mean(kind, CONTENTS)

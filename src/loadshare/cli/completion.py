@@ -1,0 +1,64 @@
+"""What the shell proposes at the TAB key: names that stand in the case that is being typed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+if TYPE_CHECKING:
+    from loadshare.case import Case
+
+
+def setting_names(ctx: typer.Context, incomplete: str) -> list[str]:
+    """Return the keys of the case, each with an equals sign behind it."""
+    return [f"{key}=" for key in key_names(ctx, incomplete)]
+
+
+def key_names(ctx: typer.Context, incomplete: str) -> list[str]:
+    """Return the keys of the case that hold a value, and those of all names of a section."""
+    case = _case(ctx)
+    return [key for key in (_keys(case) if case else ()) if key.startswith(incomplete)]
+
+
+def gear_names(ctx: typer.Context, incomplete: str) -> list[str]:
+    """Return the names of the case's gears."""
+    case = _case(ctx)
+    return [name for name in (case.gears if case else ()) if name.startswith(incomplete)]
+
+
+def study_names(ctx: typer.Context, incomplete: str) -> list[tuple[str, str]]:
+    """Return the studies that the case holds, each with its kind."""
+    case = _case(ctx)
+    held = case.study.items() if case else ()
+    return [(name, block.kind) for name, block in held if name.startswith(incomplete)]
+
+
+def kind_names(incomplete: str) -> list[str]:
+    """Return the kinds of case that `new` writes."""
+    from loadshare.case.starter import KINDS
+
+    return [kind for kind in KINDS if kind.startswith(incomplete)]
+
+
+def _case(ctx: typer.Context) -> Case | None:
+    """Return the case that is named on the line; None where that is no case, or none yet."""
+    from loadshare.case import load_case
+    from loadshare.errors import LoadshareError
+
+    given = ctx.params.get("case")
+    if given is None:
+        return None
+    try:
+        return load_case(Path(given))
+    except (LoadshareError, OSError):
+        return None
+
+
+def _keys(case: Case) -> Iterator[str]:
+    from loadshare.case.keys import dotted
+    from loadshare.study.parameter import leaves
+
+    yield from (dotted(path) for path in leaves(case.to_dict()))

@@ -1,0 +1,222 @@
+"""What an answer can be written as: ``-o FILE`` of every command, its form told by the ending."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from io import BytesIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from loadshare.cli.exits import UNUSABLE, fail, writing
+from loadshare.cli.files import tell_written
+from loadshare.cli.options import OUTPUT
+from loadshare.errors import LoadshareError
+from loadshare.output import STANDARD, csv_of, write_whole
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from loadshare.report.figure import Figure
+
+FORMS = {
+    "json": "JSON file",
+    "nc": "netCDF file",
+    "csv": "table",
+    "parquet": "table",
+    "xlsx": "workbook",
+    "html": "page",
+    "svg": "picture",
+    "png": "picture",
+    "pdf": "picture",
+    "toml": "case",
+    "rexs": "REXS file",
+    "folder": "folder",
+}
+"""Endings of files and what they hold; "folder" stands for a place of many."""
+FIGURES = ("svg", "png", "pdf", "html")
+"""Of a picture; as a page it shows figures under the pointer."""
+TABLES = ("csv", "parquet", "xlsx", "json")
+FOLDER = "folder"
+
+Makers = Mapping[str, Callable[[], str | bytes]]
+"""What makes the content of a file, by the file's form."""
+
+
+@dataclass(frozen=True)
+class Output:
+    """A file to write.
+
+    Attributes
+    ----------
+    form : str
+        One of `FORMS`.
+    file : Path
+    """
+
+    form: str
+    file: Path
+
+
+def read_output(text: str, forms: Sequence[str]) -> Output:
+    """Return the file that is meant by ``FILE`` or ``FORM:FILE``.
+
+    Parameters
+    ----------
+    text : str
+    forms : sequence of str
+        What the command writes; the first goes to standard output if nothing else is said.
+
+    Raises
+    ------
+    typer.BadParameter
+        If the ending, or none, is none of the forms.
+    """
+    told, colon, rest = text.partition(":")
+    if colon and told in FORMS:
+        form, file = told, Path(rest)
+    else:
+        file = Path(text)
+        ending = file.suffix.lower().removeprefix(".")
+        ending = "html" if ending == "htm" else ending
+        if FOLDER in forms and _is_folder(text, ending, mainly=forms[0] == FOLDER):
+            ending = FOLDER
+        form = _first(forms) if file == STANDARD else ending
+    if form in forms and (file != STANDARD or form != FOLDER):
+        return Output(form, file)
+    can = ", ".join(f".{known}" for known in forms if known != FOLDER)
+    more = ", or many files into FOLDER/" if FOLDER in forms else ""
+    if form in FORMS:
+        wrong = f"no {FORMS[form]} comes of this command"
+    elif file.suffix:
+        wrong = f"the ending {file.suffix} does not tell what to write"
+    else:
+        wrong = "it has no ending that tells what to write"
+    raise typer.BadParameter(f"{text}: {wrong}. This command writes {can}{more}.")
+
+
+def _first(forms: Sequence[str]) -> str:
+    """Return the form of what goes to standard output."""
+    return next(form for form in forms if form != FOLDER)
+
+
+def _is_folder(text: str, ending: str, *, mainly: bool) -> bool:
+    """Whether a place for many files is meant, by a command that mainly writes such or not."""
+    return text.endswith(("/", os.sep)) or Path(text).is_dir() or (mainly and ending not in FORMS)
+
+
+def outputs(*forms: str, what: str = "Write what was found") -> Any:
+    """Return the option for files of any of some forms."""
+
+    def checked(made: list[Output] | None) -> list[Output] | None:
+        if made is None:
+            return None
+        if sum(output.file == STANDARD for output in made) > 1:
+            raise typer.BadParameter("only one file can go to standard output (-).")
+        files = [output.file for output in made if output.file != STANDARD]
+        twice = next((file for file in files if files.count(file) > 1), None)
+        if twice is not None:
+            raise typer.BadParameter(f"{twice}: is to be written twice, in different forms.")
+        return made
+
+    endings = ", ".join(f".{form}" for form in forms if form != FOLDER)
+    folder = ", or FOLDER/ for CSV tables" if FOLDER in forms[1:] else ""
+    return typer.Option(
+        "-o",
+        "--output",
+        metavar=OUTPUT,
+        parser=partial(read_output, forms=forms),
+        callback=checked,
+        help=f"{what}: {endings}{folder}. - is stdout ({_first(forms)}). May be repeated.",
+    )
+
+
+def write_all(asked: Iterable[Output] | None, makers: Makers, *, err: bool = True) -> None:
+    """Write what was asked for, each file whole or not at all, and tell it on stderr or stdout.
+
+    Raises
+    ------
+    typer.Exit
+        If one cannot be made or written.
+    """
+    for output in asked or ():
+        try:
+            with writing(output.file):
+                write_whole(output.file, makers[output.form]())
+        except LoadshareError as error:
+            fail([f"{output.file}: not written: {error}"], UNUSABLE)
+        except ModuleNotFoundError as error:
+            if error.name != "openpyxl":
+                raise
+            hint = "Install it with: pip install 'loadshare[spreadsheet]'."
+            fail([f"{output.file}: a workbook needs openpyxl to be written. {hint}"], UNUSABLE)
+        tell_written(output.file, "" if err else ".", err=err)
+
+
+def tables_of(name: str, frame: Callable[[], pd.DataFrame], **about: object) -> Makers:
+    """Return what makes files of a table: CSV, Parquet, a workbook, JSON.
+
+    Parameters
+    ----------
+    name : str
+        Of what was asked, such as ``"sweep"``.
+    frame : callable
+        Makes the table.
+    **about
+        Stands in the JSON file before the rows.
+    """
+
+    def workbook() -> bytes:
+        from loadshare.exchange.spreadsheet import workbook_of
+        from loadshare.exchange.spreadsheet.importing import FOUND
+
+        return workbook_of({f"{FOUND}{name}": csv_of(frame())})
+
+    return {
+        "csv": lambda: csv_of(frame()),
+        "parquet": lambda: _parquet(frame()),
+        "xlsx": workbook,
+        "json": lambda: _json(name, frame(), about),
+    }
+
+
+def figure_of(figure: Callable[[], Figure]) -> Makers:
+    """Return what makes files of a picture."""
+    return {form: partial(_drawn, figure, form) for form in FIGURES}
+
+
+def _drawn(figure: Callable[[], Figure], form: str) -> str | bytes:
+    return figure().content(form)
+
+
+def _parquet(frame: pd.DataFrame) -> bytes:
+    held = BytesIO()
+    frame.infer_objects().convert_dtypes().to_parquet(held, index=False)
+    return held.getvalue()
+
+
+def _json(name: str, frame: pd.DataFrame, about: Mapping[str, object]) -> str:
+    from loadshare._version import __version__
+
+    heads = [str(column) for column in frame.columns]
+    rows = [
+        dict(zip(heads, map(_plain, row), strict=True)) for row in frame.itertuples(index=False)
+    ]
+    document = {"question": name, "version": __version__, **about, "rows": rows}
+    return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def _plain(cell: Any) -> object:
+    """Return a cell as JSON knows it, which has no NaN and no infinity."""
+    import pandas as pd
+
+    value = cell.item() if hasattr(cell, "item") else cell
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    return None if value is pd.NA else value

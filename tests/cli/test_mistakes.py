@@ -1,0 +1,159 @@
+"""Mistakes of a new user, and what leads out of each: a message is judged by what it proposes."""
+
+import pytest
+from tests.cli.conftest import CASES, on_a_screen_of
+from tests.exchange import units
+
+from loadshare.case.words import did_you_mean
+
+BASE = CASES / "fgfbstts/base.toml"
+RING = CASES / "fgfbstts/limit_ring.toml"
+MESH = '[meshes."4-6"]\n'
+GEAR = "[gears.4]\n"
+
+IN_A_CASE = {
+    # Units as they are written elsewhere.
+    MESH + 'stiffness = "8e4 Nm/rad"': "Did you mean N*m/rad?",
+    MESH + 'stiffness = "8e4 Nm"': "Nm would be N*m, a torque; a torsional stiffness is needed.",
+    MESH + 'stiffness = "8e4 N/mm"': "is a stiffness, a torsional stiffness is needed.",
+    MESH + "pressure_angle = 20": '20 has no unit. Allowed: an angle such as "20 deg".',
+    '[operating]\ntorque = "3 kNm"': "Did you mean kN*m?",
+    '[operating]\ntorque = "300 lb-ft"': 'Write "300 ft*lbf".',
+    '[operating]\nspeed = "8780 RPM"': "Did you mean rpm?",
+    '[operating]\nspeed = "8780 1/min"': 'Write "8780 rpm".',
+    '[operating]\nspeed = "8780 U/min"': 'Write "8780 rpm".',
+    '[operating]\npower = "2000 KW"': "Did you mean kW?",
+    '[operating]\npower = "2000 PS"': "Write W, kW or hp: 1 PS is 735.49875 W.",
+    '[gears.2]\nbase_radius = "222,8 mm"': "Decimals have a point",
+    '[gears.2]\nbase_radius = "8 inches"': 'Write "8 in".',
+    '[gears.2]\nbase_radius = "222 MM"': "Did you mean mm?",
+    # Keys in a wrong place, or under another name.
+    MESH + 'module = "5 mm"': "Teeth stand with the gears, or in a pair file",
+    MESH + "teeth = 20": "Teeth stand with the gears, or in a pair file",
+    GEAR + 'module = "5 mm"': "gears.4.teeth: is missing. It goes with module.",
+    GEAR + "z = 20": "Did you mean teeth?",
+    GEAR + 'radius = "20 mm"': "base_radius, inner_radius, outer_radius or tip_radius?",
+    GEAR + 'backlash = "5 um"': "backlash belongs in [meshes.NAME].",
+    GEAR + 'torque = "5 N*m"': "torque belongs in [operating].",
+    GEAR + 'float = "5 um"': "float belongs in [rings.NAME].",
+    GEAR + 'clearance = "5 um"': "belongs in [splines.NAME], [rings.NAME] or [bearings.NAME].",
+    '[gear.4]\nbase_radius = "20 mm"': "Did you mean gears?",
+    '[mesh."4-6"]\npressure_angle = "20 deg"': "Did you mean meshes?",
+    'torque = "3 N*m"': "torque belongs in [operating].",
+    '[errors.6]\neccentricity = "10 um"': "Allowed: a table of amount, direction, phase.",
+    '[errors.6]\ninstallation = "10 um"': "a list of 2 or 3 lengths, or a table of amount",
+    # Names.
+    '[meshes."4-11"]\nstiffness = "1e6 N*m/rad"': '"11" is not a gear. Allowed: 1, 2,',
+    '[operating]\ninput = "sun"': '"sun" is not a gear. Allowed: 1, 2,',
+}
+
+
+@pytest.mark.parametrize(("text", "told"), IN_A_CASE.items(), ids=list(IN_A_CASE))
+def test_a_mistake_in_a_case_is_one_message_that_leads_on(command, tmp_path, text, told):
+    case = tmp_path / "case.toml"
+    case.write_text(f"extends = '{BASE.as_posix()}'\n{text}\n")
+    done = command("run", case)
+    assert done.exit_code == 2
+    assert told in done.stderr
+    assert done.stderr.splitlines()[1:] == ["1 problem; nothing was solved."]
+
+
+@pytest.fixture(scope="module")
+def box(tmp_path_factory):
+    """Files of all kinds, none of which is a case."""
+    folder = tmp_path_factory.mktemp("box")
+    command = on_a_screen_of(80)
+    found = [f"{folder}/result.{form}" for form in ("json", "nc", "csv", "xlsx", "svg", "html")]
+    asked = [word for file in (*found, f"{folder}/tables/") for word in ("-o", file)]
+    assert command("run", RING, "--position", 1, "-q", *asked).exit_code == 0
+    swept = ("sweep", RING, "--over", "rings.4.float=4 um", "--position", 1, "-q", "-o")
+    assert command(*swept, folder / "sweep.json").exit_code == 0
+    (folder / "unit.rexs").write_bytes(units.xml(*units.planetary()))
+    (folder / "pair.toml").write_bytes((CASES / "fgfbstts/pairs/p12.toml").read_bytes())
+    (folder / "law.toml").write_text('kind = "law"\n')
+    (folder / "empty.toml").write_text("")
+    (folder / "sixteen.toml").write_text('title = "x"', encoding="utf-16")
+    (folder / "other.toml").write_text('[tool.ruff]\nline-length = 100\n[project]\nname = "x"\n')
+    return folder
+
+
+WRONG_FILES = {
+    ("run", "result.json"): "is a result and no case; `loadshare check` certifies it again.",
+    ("sweep", "result.nc"): "is netCDF and no case; if it is a result, `loadshare check`",
+    ("run", "sweep.json"): "is the answer of a study and no case",
+    ("run", "result.csv"): "`loadshare import` takes the folder of all tables of a case",
+    ("draw", "result.xlsx"): "`loadshare import` makes a case of the tables",
+    ("run", "result.svg"): "is a picture and no case",
+    ("report", "result.html"): "is a page and no case",
+    ("run", "tables"): "is a folder of tables; `loadshare import` makes a case of them",
+    ("check", "tables"): "is a folder of tables; `loadshare import` makes a case of them",
+    ("run", "unit.rexs"): "is a gear unit in REXS; `loadshare import` makes a case of it",
+    ("run", "pair.toml"): "is a pair with a face gear; `loadshare ltca` analyses it",
+    ("run", "law.toml"): "is the law of a mesh, which names it by law_file",
+    ("run", "empty.toml"): "is empty; `loadshare new NAME` writes a case to start from",
+    ("run", "sixteen.toml"): "is UTF-16 text; save it as UTF-8",
+    ("run", "other.toml"): "holds nothing that a case says",
+    ("run", "pare.toml"): "no such file or directory. Did you mean pair.toml?",
+    ("ltca", BASE): "is a case; `loadshare run` solves it",
+    ("import", BASE): "is a case already; `loadshare run` solves it",
+}
+
+
+@pytest.mark.parametrize(("words", "told"), WRONG_FILES.items(), ids=str)
+def test_a_file_of_another_kind_says_what_it_is_and_who_takes_it(
+    command, box, tmp_path, monkeypatch, words, told
+):
+    monkeypatch.chdir(tmp_path)
+    name, file = words
+    more = {"sweep": ("--over", "a=1"), "import": ("-o", "none.toml")}.get(name, ())
+    done = command(name, box / file, *more)
+    assert done.exit_code == 2
+    assert told in done.stderr
+    assert not (tmp_path / "none.toml").exists()
+
+
+WORDS = {
+    ("solve", BASE): "No such command 'solve'. Did you mean run?",
+    ("slove", BASE): "Did you mean run?",
+    ("plot", BASE): "Did you mean draw?",
+    ("drive.toml",): "To solve a case: loadshare run drive.toml",
+    ("frobnicate", BASE): "No such command 'frobnicate'.",
+    ("run", BASE, "--over", "a=1"): "It is an option of sweep, critical, tolerance, fit, study.",
+    ("run", BASE, "--positions", "1"): "It is an option of ltca.",
+    ("run", BASE, "--sett", "a=1"): "Did you mean --set?",
+    ("new", "x", "--kind", "planetery"): "Did you mean planetary?",
+    ("run", RING, "--set", "rings.4.float"): "is not of the form KEY=VALUE",
+    ("run", RING, "--set", "4.float=4 um"): "Did you mean rings.4.float?",
+    ("run", RING, "--set", "rings.4.flaot=4 um"): "Did you mean float?",
+    ("run", RING, "--set", "gears.4.base_radius=46"): 'Allowed: a length such as "46 mm".',
+    ("sensitivity", RING, "rings.4.flot"): "Did you mean rings.4.float?",
+    ("tolerance", RING): "or inputs (--over)",
+}
+
+
+@pytest.mark.parametrize(("words", "told"), WORDS.items(), ids=str)
+def test_a_mistake_on_the_command_line_leads_on(command, words, told):
+    done = command(*words)
+    assert done.exit_code == 2
+    assert told in " ".join(done.stderr.split())
+
+
+KEYS = ("base_radius", "outer_radius", "teeth", "bore", "profile_shift", "gears.4.float", "planet1")
+
+
+@pytest.mark.parametrize(
+    ("word", "found"),
+    [
+        ("bas_radius", "base_radius"),
+        ("Base_Radius", "base_radius"),
+        ("baseradius", "base_radius"),
+        ("profil_shift", "profile_shift"),
+        ("gears.4.flaot", "gears.4.float"),
+        ("planett1", "planet1"),
+        ("radius", "base_radius or outer_radius"),
+        # What is like a word by a few letters only, or another number, is not near.
+        *((word, "") for word in ("torque", "planet7", "gears.5.float", "stiffness", "x", "", 3)),
+    ],
+)
+def test_nothing_is_proposed_that_is_not_near(word, found):
+    assert did_you_mean(word, KEYS) == (f"Did you mean {found}?" if found else "")
