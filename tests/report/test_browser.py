@@ -145,12 +145,12 @@ def test_tables_sort_by_figures_and_by_words(opened):
 
 
 def test_sorting_works_from_the_keyboard(opened):
-    button = opened.find_element("css selector", "article table th button")
+    button = opened.find_element("css selector", "article table.sortable th button")
     opened.execute_script("arguments[0].focus()", button)
     from selenium.webdriver.common.keys import Keys
 
     button.send_keys(Keys.ENTER)
-    header = opened.find_element("css selector", "article table th")
+    header = opened.find_element("css selector", "article table.sortable th")
     assert header.get_attribute("aria-sort") == "ascending"
 
 

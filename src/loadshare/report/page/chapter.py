@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from loadshare.case import Case, load_case
@@ -17,6 +17,7 @@ from loadshare.report.figures.train import train as draw
 from loadshare.report.numbers import NONE, omega, small
 from loadshare.report.page import answers
 from loadshare.report.page.inputs import input_tables
+from loadshare.report.page.verdict import trust, verdict_tables
 from loadshare.report.records import Cell, Table, table
 from loadshare.report.teeth import teeth_tables
 from loadshare.results import Result
@@ -44,6 +45,10 @@ class Chapter:
         Of the certified positions.
     drawing : Figure or None
     figures : sequence of Figure
+    summary : sequence of Table
+        Of the first screen.
+    trust : mapping of str to str
+        Why the answer can be trusted, and what it rests on.
     tables, inputs, derived : sequence of Table
     """
 
@@ -56,6 +61,8 @@ class Chapter:
     result: Result | None
     drawing: Figure | None
     figures: Sequence[Figure] = ()
+    summary: Sequence[Table] = ()
+    trust: Mapping[str, str] = field(default_factory=dict)
     tables: Sequence[Table] = ()
     inputs: Sequence[Table] = ()
     derived: Sequence[Table] = ()
@@ -125,6 +132,8 @@ def chapter(case: Case, file: str = "", progress: Progress | None = None) -> Cha
         result=result,
         drawing=draw(case),
         figures=tuple(_figures(result)) if result else (),
+        summary=tuple(verdict_tables(result)) if result else (),
+        trust=trust(result) if result else {},
         tables=tuple(_tables(result)) if result else (),
         inputs=tuple(input_tables(case)),
         derived=tuple(teeth_tables(case)),
