@@ -1,6 +1,6 @@
 "use strict";
 // Figures: each has its specification beside it.
-const SMALLEST = 0.8; // of their size; what is still too wide scrolls in its own box
+const SMALLEST = 0.82; // of their size; what is still too wide scrolls in its own box
 
 function wrapped(lines, letters) {
   const found = [];
@@ -42,6 +42,8 @@ async function draw(place) {
     if (width <= room || columns === 1) break;
     columns = Math.max(1, Math.min(columns - 1, Math.floor((columns * room) / width)));
   }
+  place.querySelector("summary").setAttribute("aria-label", `save the picture ${name}`);
+  place.dataset.drawn = "yes";
 }
 for (const place of document.querySelectorAll(".figure")) draw(place).catch(console.error);
 
