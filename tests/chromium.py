@@ -28,12 +28,22 @@ holds the room above and below the letters as well."""
 
 TEXTS = """
 const [root, fraction] = arguments;
+function light(colour) {
+  const [r, g, b] = colour.match(/[\\d.]+/g).map((v) => {
+    const part = v / 255;
+    return part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4;
+  });
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+}
 const frame = root.getBoundingClientRect(), found = [], bad = [];
 for (const text of root.querySelectorAll("text")) {
   const box = text.getBoundingClientRect(), style = getComputedStyle(text);
   if (!text.textContent.trim() || !box.width || style.opacity === "0") continue;
   const m = text.getScreenCTM();
   const size = parseFloat(style.fontSize) * Math.hypot(m.a, m.b);
+  // On white; white itself is the rim of a word, or stands on a colour.
+  const ratio = 1.05 / (light(style.fill) + 0.05);
+  if (ratio > 1.01 && ratio < 4.5) bad.push(`pale, ${ratio.toFixed(2)}: ${text.textContent}`);
   if (box.left < frame.left - 0.5 || box.top < frame.top - 0.5
       || box.right > frame.right + 0.5 || box.bottom > frame.bottom + 0.5)
     bad.push(`cut: ${text.textContent}`);
@@ -53,7 +63,7 @@ for (const text of root.querySelectorAll("text")) {
 }
 return bad;
 """
-"""What overlaps or is cut of the words in a picture."""
+"""What overlaps, is cut or is pale of the words in a picture."""
 
 CONTRAST = """
 function parts(colour) { return colour.match(/[\\d.]+/g).map(Number); }
@@ -165,7 +175,7 @@ def too_wide(browser: Any, width: int) -> int:
 
 
 def badly_set(browser: Any, picture: Any) -> list[str]:
-    """What overlaps or is cut of the words in an SVG element."""
+    """What overlaps, is cut or is pale of the words in an SVG element."""
     return list(browser.execute_script(TEXTS, picture, FRACTION))
 
 
