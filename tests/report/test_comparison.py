@@ -12,6 +12,7 @@ import loadshare as ls
 from loadshare.report.page import chapter, report_page
 from loadshare.report.page.comparison import comparison
 
+BEARING = "force on the bearing or pin"
 MADE = datetime(2024, 5, 1, 12, 30, tzinfo=UTC)
 
 
@@ -40,6 +41,15 @@ def test_twice_the_load_is_twice_every_torque():
     changes = [row[-1].value for row in figures.rows if row[0].text == "torque on the driver"]
     assert changes == pytest.approx([100.0] * len(case.meshes))
     assert not any(row[0].text.startswith("Ω") for row in figures.rows)
+
+
+def test_round_off_is_no_difference():
+    """A bearing that carries 3e-8 N in one case and nothing in the other is not among them."""
+    results = [ls.solve(shipped(f"fgfbstts/{n}")) for n in ("limit_ring", "installation_error")]
+    _, figures, *_ = comparison(["a", "b"], results)
+    told = [r for r in figures.rows if [c.text for c in r[:2]] == [BEARING, "gear 5"]]
+    assert told == []
+    assert any(r[0].text == BEARING for r in figures.rows)
 
 
 def test_what_changes_stands_with_both_figures():

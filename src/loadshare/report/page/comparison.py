@@ -17,7 +17,7 @@ from loadshare.report.words import rest_told
 from loadshare.results import Result
 
 SAME = 1e-9
-"""Relative difference of two figures that is round-off."""
+"""Difference of two figures that is round-off, as a part of the largest figure in their unit."""
 FOLDED = 24
 """Rows from which a table is shown only when asked for."""
 
@@ -69,6 +69,9 @@ def _differing_figures(names: Sequence[str], results: Sequence[Result]) -> Table
     """The figures that differ: Ω, then all others, what changes most first."""
     found = [_figures(result) for result in results]
     shared = [key for key in found[0] if any(key in other for other in found[1:])]
+    largest: dict[str, float] = {}
+    for value, unit in (figure for one in found for figure in one.values()):
+        largest[unit] = max(largest.get(unit, 0.0), abs(value))
     rows: list[tuple[bool, float, list[Cell]]] = []
     for key in shared:
         values = [one[key][0] if key in one else None for one in found]
@@ -76,9 +79,9 @@ def _differing_figures(names: Sequence[str], results: Sequence[Result]) -> Table
         changes = [None if v is None else v - base for v in values[1:]]
         scale = max(abs(v) for v in values if v is not None)
         most = max(abs(c) for c in changes if c is not None)
-        if most <= SAME * scale:
-            continue
         unit = found[0][key][1]
+        if most <= SAME * largest[unit]:
+            continue
         relative = most / abs(base) if base else math.inf
         cells = [Cell(key[0]), Cell(key[1])]
         cells += [Cell(_figure(v, unit, scale), v) for v in values]
