@@ -5,11 +5,19 @@ from functools import cache
 from typing import Any
 
 import pytest
+from tests.chromium import chromium
 from tests.support import CASES, round_ring, shipped
 
 import loadshare as ls
 from loadshare.report.figures.train import train
 from loadshare.report.page import Chapter, chapter_of_file
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory) -> Iterator[Any]:
+    """A headless Chromium without a network."""
+    with chromium(tmp_path_factory.mktemp("profile")) as found:
+        yield found
 
 
 @pytest.fixture(scope="session")

@@ -2,25 +2,11 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-
 import pytest
 from tests.report.pages import EVIL_CASE
 
 from loadshare.report.page import chapter_of_file, save_report
 
-FLAGS = (
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--window-size=1280,1000",
-)
 DRAWN = "return document.querySelectorAll('.figure svg.marks').length"
 PLACES = "return document.querySelectorAll('.figure').length"
 COLUMN = """
@@ -34,39 +20,6 @@ const table = all.find((t) => t.textContent.includes(arguments[0]));
 table.tHead.rows[0].cells[arguments[1]].querySelector("button").click();
 return table.tHead.rows[0].cells[arguments[1]].getAttribute("aria-sort");
 """
-
-
-def _browser_path() -> str | None:
-    return (
-        shutil.which("chromium")
-        or shutil.which("chromium-browser")
-        or shutil.which("google-chrome")
-    )
-
-
-@pytest.fixture(scope="module")
-def browser(tmp_path_factory):
-    """A headless Chromium; without one the tests are skipped, with CI set they fail."""
-    program, driver = _browser_path(), shutil.which("chromedriver")
-    if program is None or driver is None:
-        reason = "no chromium and chromedriver (apt-get install chromium chromium-driver)"
-        if os.environ.get("CI"):
-            pytest.fail(reason)
-        pytest.skip(reason)
-    from selenium import webdriver
-    from selenium.webdriver.chrome.options import Options
-    from selenium.webdriver.chrome.service import Service
-
-    options = Options()
-    options.binary_location = program
-    for flag in (*FLAGS, f"--user-data-dir={tmp_path_factory.mktemp('profile')}"):
-        options.add_argument(flag)
-    options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    found = webdriver.Chrome(options=options, service=Service(driver))
-    # The page must do without a network; the browser has none either.
-    found.set_network_conditions(offline=True, latency=0, throughput=0)
-    yield found
-    found.quit()
 
 
 @pytest.fixture(scope="module")
@@ -145,12 +98,12 @@ def test_tables_sort_by_figures_and_by_words(opened):
 
 
 def test_sorting_works_from_the_keyboard(opened):
-    button = opened.find_element("css selector", "article table th button")
+    button = opened.find_element("css selector", "article table.sortable th button")
     opened.execute_script("arguments[0].focus()", button)
     from selenium.webdriver.common.keys import Keys
 
     button.send_keys(Keys.ENTER)
-    header = opened.find_element("css selector", "article table th")
+    header = opened.find_element("css selector", "article table.sortable th")
     assert header.get_attribute("aria-sort") == "ascending"
 
 

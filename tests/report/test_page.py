@@ -12,7 +12,14 @@ from tests.report.pages import EVIL, EVIL_CASE, Reader
 from tests.support import CASES, shipped
 
 import loadshare as ls
-from loadshare.report.page import chapter, chapter_of_file, report_page, save_report, write_report
+from loadshare.report.page import (
+    chapter,
+    chapter_of_file,
+    offline,
+    report_page,
+    save_report,
+    write_report,
+)
 from loadshare.report.page.inputs import input_tables, written
 
 MADE = datetime(2024, 5, 1, 12, 30, tzinfo=UTC)
@@ -196,3 +203,13 @@ def test_from_python(tmp_path):
 
 def test_the_page_is_the_same_again(ring_page, ring_chapter):
     assert report_page([ring_chapter], made=MADE) == ring_page
+
+
+def test_the_scripts_are_kept_and_a_damaged_copy_is_made_anew(tmp_path, monkeypatch):
+    monkeypatch.setenv("LOADSHARE_CACHE", str(tmp_path))
+    made = offline.scripts.__wrapped__()
+    (kept,) = (tmp_path / "scripts").iterdir()
+    monkeypatch.setattr("vl_convert.javascript_bundle", lambda *_, **__: "made anew </script>")
+    assert offline.scripts.__wrapped__() == made
+    kept.write_bytes(kept.read_bytes()[:-1])
+    assert offline.scripts.__wrapped__() == "made anew <\\/script>"

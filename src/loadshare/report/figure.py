@@ -87,7 +87,8 @@ class Figure:
     @cached_property
     def spec(self) -> dict[str, Any]:
         """Vega-Lite specification, with the look of all pictures."""
-        spec: dict[str, Any] = self.chart.to_dict()
+        # Vega-Lite checks it once more when it draws.
+        spec: dict[str, Any] = self.chart.to_dict(validate=False)
         # Altair writes a configuration of its own, which would set other sizes.
         spec["config"] = CONFIG
         spec["datasets"] = {name: list(rows) for name, rows in spec.get("datasets", {}).items()}

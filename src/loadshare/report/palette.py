@@ -15,7 +15,7 @@ from loadshare.results import Result
 
 INK = "#1f2933"
 """Lines and words."""
-SOFT = "#7b8794"
+SOFT = "#616e7c"
 """What is beside the point: axes, references, notes."""
 FAINT = "#e4e7eb"
 """Grids and areas."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +18,7 @@ from loadshare.report.figures.train import train as draw
 from loadshare.report.numbers import NONE, omega, small
 from loadshare.report.page import answers
 from loadshare.report.page.inputs import input_tables
+from loadshare.report.page.verdict import trust, verdict_tables
 from loadshare.report.records import Cell, Table, table
 from loadshare.report.teeth import teeth_tables
 from loadshare.results import Result
@@ -45,6 +46,10 @@ class Chapter:
         Of the certified positions.
     drawing : Figure or None
     figures : sequence of Figure
+    summary : sequence of Table
+        Of the first screen.
+    trust : mapping of str to str
+        Why the answer can be trusted, and what it rests on.
     tables, inputs, derived : sequence of Table
     """
 
@@ -57,6 +62,8 @@ class Chapter:
     result: Result | None
     drawing: Figure | None
     figures: Sequence[Figure] = ()
+    summary: Sequence[Table] = ()
+    trust: Mapping[str, str] = field(default_factory=dict)
     tables: Sequence[Table] = ()
     inputs: Sequence[Table] = ()
     derived: Sequence[Table] = ()
@@ -139,6 +146,8 @@ def chapter(
         result=result,
         drawing=draw(case),
         figures=tuple(_figures(result)) if result else (),
+        summary=tuple(verdict_tables(result)) if result else (),
+        trust=trust(result) if result else {},
         tables=tuple(_tables(result)) if result else (),
         inputs=tuple(input_tables(case)),
         derived=tuple(teeth_tables(case)),

@@ -6,9 +6,11 @@ import re
 from base64 import b64encode
 from functools import cache
 from hashlib import sha256
+from importlib.metadata import version
 from typing import TYPE_CHECKING, Any
 
 from loadshare.report.vega import vega_lite_version
+from loadshare.tooth.law.folder import read_entry, write_entry
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -17,18 +19,29 @@ if TYPE_CHECKING:
 OWN_SCRIPTS = "OWN_SCRIPTS"
 """Stands in the policy of a page for the hashes of its scripts."""
 SCRIPT = re.compile("<script>(.*?)</script>", re.DOTALL)
+SCRIPTS = "scripts/{}.js"
+"""Their place among the user's caches."""
 EXPOSED = "window.vegaEmbed = vegaEmbed;"
 """What the page's own script needs of the bundle."""
 
 
 @cache
 def scripts() -> str:
-    """JavaScript that draws Vega-Lite specifications, for a script element."""
+    """JavaScript that draws Vega-Lite specifications, for a script element.
+
+    It takes about a second to put together, and is kept among the user's caches.
+    """
     import vl_convert
 
-    bundle = str(vl_convert.javascript_bundle(EXPOSED, vl_version=vega_lite_version()))
-    # A closing tag within a text of the bundle would end the element.
-    return bundle.replace("</script", "<\\/script")
+    parts = (version("vl-convert-python"), vega_lite_version(), EXPOSED)
+    key = sha256("\n".join(parts).encode()).hexdigest()
+    found = read_entry(key, SCRIPTS)
+    if found is None:
+        bundle = str(vl_convert.javascript_bundle(EXPOSED, vl_version=vega_lite_version()))
+        # A closing tag within a text of the bundle would end the element.
+        found = bundle.replace("</script", "<\\/script")
+        write_entry(key, found, SCRIPTS)
+    return found
 
 
 @cache

@@ -13,7 +13,9 @@ from loadshare.case import Case
 from loadshare.output import write_whole
 from loadshare.report.page.answers import effort_told
 from loadshare.report.page.chapter import Chapter, chapter, chapter_of_file, overview
+from loadshare.report.page.comparison import comparison
 from loadshare.report.page.offline import render
+from loadshare.report.records import Table
 
 PACKAGES = ("numpy", "scipy", "clarabel", "altair", "vl-convert-python")
 """Packages on which figures and pictures depend."""
@@ -36,10 +38,19 @@ def report_page(chapters: Iterable[Chapter], made: datetime | None = None) -> st
         title=f"{found[0].title if len(found) == 1 else f'{len(found)} cases'} – load sharing",
         chapters=found,
         overview=overview(found) if len(found) > 1 else None,
+        differences=_differences(found),
         made=made.astimezone(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         versions=versions(),
         effort_told=effort_told,
     )
+
+
+def _differences(chapters: list[Chapter]) -> list[Table]:
+    """What differs between the cases that have an answer; nothing if there are not two."""
+    solved = {n: one.result for n, one in enumerate(chapters, start=1) if one.result}
+    if len(solved) < 2:
+        return []
+    return comparison([f"case {number}" for number in solved], list(solved.values()))
 
 
 def write_report(cases: Iterable[Case | str | Path], path: str | Path) -> list[Chapter]:

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 VARIABLE = "LOADSHARE_CACHE"
 """Environment variable that names another folder."""
 
+LAWS = "laws/{}.toml"
+"""Place of a law in the folder, by its key."""
+
 Tick = Callable[[int, int], None]
 
 
@@ -84,10 +87,10 @@ def key_of(*parts: str) -> str:
     return _digest("\n".join((code_hash(), *parts)))
 
 
-def read_entry(key: str) -> str | None:
+def read_entry(key: str, place: str = LAWS) -> str | None:
     """Text of an entry, or None where there is none or it is damaged."""
     try:
-        file = _file(key)
+        file = _file(key, place)
         if file is None:
             return None
         digest, _, text = file.read_text(encoding="utf-8").partition("\n")
@@ -96,9 +99,9 @@ def read_entry(key: str) -> str | None:
     return text if digest == _digest(text) else None
 
 
-def write_entry(key: str, text: str) -> None:
+def write_entry(key: str, text: str, place: str = LAWS) -> None:
     """Keep a text, whole or not at all; a cache that cannot be written is done without."""
-    file = _file(key)
+    file = _file(key, place)
     if file is None:
         return
     with suppress(OSError):
@@ -115,9 +118,9 @@ def code_hash(room: Path = Path(__file__).parents[1]) -> str:
     return found.hexdigest()
 
 
-def _file(key: str) -> Path | None:
+def _file(key: str, place: str) -> Path | None:
     folder = cache_folder()
-    return None if folder is None else folder / "laws" / f"{key}.toml"
+    return None if folder is None else folder / place.format(key)
 
 
 def _digest(text: str) -> str:

@@ -1,13 +1,51 @@
 "use strict";
 // Figures: each has its specification beside it.
-for (const place of document.querySelectorAll(".figure")) {
+const SMALLEST = 0.82; // of their size; what is still too wide scrolls in its own box
+
+function wrapped(lines, letters) {
+  const found = [];
+  for (const line of [lines].flat()) {
+    let rest = "";
+    for (const word of line.split(" ")) {
+      if (rest && rest.length + word.length >= letters) { found.push(rest); rest = word; }
+      else rest = rest ? `${rest} ${word}` : word;
+    }
+    found.push(rest);
+  }
+  return found;
+}
+// As many panels in a row as there is room for, and titles of many lines rather than cut ones.
+function fitted(spec, room, columns) {
+  const { hconcat, ...rest } = structuredClone(spec);
+  const made = hconcat ? { ...rest, concat: hconcat } : rest;
+  if (made.concat) made.columns = columns;
+  if (made.title && typeof made.title === "object") {
+    made.title.text = wrapped(made.title.text, room / 7);
+    made.title.subtitle = wrapped(made.title.subtitle || [], room / 5.5);
+  }
+  return made;
+}
+async function draw(place) {
   const spec = JSON.parse(place.parentElement.querySelector("script.spec").textContent);
+  const room = place.closest(".pictures").clientWidth;
   const name = place.dataset.name || "figure";
   const actions = { export: { svg: true, png: true }, source: false, compiled: false, editor: false };
   // Expressions are interpreted: the page's policy lets nothing be compiled.
   const how = { renderer: "svg", ast: true, actions, downloadFileName: name };
-  vegaEmbed(place, spec, how).catch(console.error);
+  const panels = (spec.concat || spec.hconcat || [0]).length;
+  let columns = Math.min(spec.columns || panels, panels);
+  for (;;) {
+    await vegaEmbed(place, fitted(spec, room - 20, columns), how);
+    const svg = place.querySelector("svg.marks");
+    const width = Number(svg.getAttribute("width"));
+    svg.style.minWidth = `${Math.floor(SMALLEST * width)}px`;
+    if (width <= room || columns === 1) break;
+    columns = Math.max(1, Math.min(columns - 1, Math.floor((columns * room) / width)));
+  }
+  place.querySelector("summary").setAttribute("aria-label", `save the picture ${name}`);
+  place.dataset.drawn = "yes";
 }
+for (const place of document.querySelectorAll(".figure")) draw(place).catch(console.error);
 
 // Tables: a click on a header sorts by it, another one turns the order round.
 function key(row, column) {

@@ -1,0 +1,114 @@
+"""The first screen of a case: what an engineer asks before anything else."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from loadshare.report import records
+from loadshare.report.numbers import NONE, omega, significant, small
+from loadshare.report.records import Cell, Record, Table, table
+from loadshare.report.units import engineering
+from loadshare.report.words import advice, rest_told, spline_told, undetermined_told
+from loadshare.results import Result
+from loadshare.results.laws import laws_told
+
+DIGITS = 4
+"""Significant digits of forces and torques on the first screen."""
+
+
+def verdict_tables(result: Result) -> Iterator[Table]:
+    """Yield the tables of the first screen: sharing, where floats rest, the largest forces.
+
+    Parameters
+    ----------
+    result : Result
+    """
+    if result.stages:
+        yield sharing(result)
+    if result.positions[0].floats:
+        yield resting(result)
+    yield table(
+        "Largest forces", largest_forces(result), ("what", "where"), ("value",), {"value": "most"}
+    )
+
+
+def sharing(result: Result) -> Table:
+    """Largest Ω of every stage; over the mean of the stage it is K_γ of ISO 6336-1."""
+    rows = []
+    for row in records.omegas(result):
+        value, group = row["over stage"].value, row["over group"].value
+        rows.append(row | {"K": Cell(omega(value), value), "group": Cell(omega(group), group)})
+    alike = all(row["K"].text == row["group"].text for row in rows)
+    figures = ("K",) if alike else ("K", "group")
+    heads = {"K": "Ω = Kγ", "group": "Ω over group", "stage at": "reached at"}
+    return table("Load sharing by stage", rows, ("stage", "stage at"), figures, heads)
+
+
+def resting(result: Result) -> Table:
+    """Where every float rests, in words."""
+    numbers = [p.position for p in result.positions]
+    rows = []
+    for gear in result.positions[0].floats:
+        rests = [p.floats[gear] for p in result.positions]
+        most = max(math.hypot(*rest.reaction) for rest in rests)
+        unit = engineering([most], "N")
+        rows.append(
+            {
+                "gear": Cell(gear),
+                "rests": Cell("; ".join([*rest_told(rests, numbers), *spline_told(rests)])),
+                "reaction": Cell(f"{significant(unit.of(most), DIGITS)} {unit.name}", most),
+            }
+        )
+    heads = {"reaction": "reaction, most"}
+    return table("Where the floats rest", rows, ("gear", "rests"), ("reaction",), heads)
+
+
+def largest_forces(result: Result) -> Iterator[Record]:
+    """Yield the largest force of a flank, force on a bearing, and torque of a shaft."""
+    loads = [(p.position, p.loads) for p in result.positions]
+    kinds = {
+        "flank": ("mesh", "N", [(abs(f), m, k) for k, x in loads for m, f in x.meshes.items()]),
+        "bearing or pin": (
+            "gear",
+            "N",
+            [(math.hypot(*f), g, k) for k, x in loads for g, f in x.bearings.items()],
+        ),
+        "shaft": ("shaft", "N·m", [(abs(t), s, k) for k, x in loads for s, t in x.shafts.items()]),
+    }
+    for what, (part, of, found) in kinds.items():
+        if not found:
+            continue
+        value, name, position = max(found, key=lambda f: f[0])
+        unit = engineering([value], of)
+        where = f"{part} {name}"
+        if len(loads) > 1 and not records.alike(result):
+            where += f", position {position}"
+        yield {
+            "what": Cell(what),
+            "where": Cell(where if value > 0.0 else NONE),
+            "value": Cell(f"{significant(unit.of(value), DIGITS)} {unit.name}", value),
+        }
+
+
+def trust(result: Result) -> Mapping[str, str]:
+    """How far the answer can be trusted, and on what it rests, each in a sentence.
+
+    Parameters
+    ----------
+    result : Result
+    """
+    bound = max(p.certificate.bound.relative for p in result.positions)
+    worst = result.certificate.worst
+    assumed = ", ".join(result.case.assumed)
+    found = {
+        "Residuals": f"at most {small(worst)} scaled; allowed {result.stamp.tolerance:.0e}",
+        "Bound": f"every torque within {small(bound)} of the exact equilibrium's, "
+        "as a part of the largest torque",
+        "Uniqueness": result.uniqueness.told,
+        "Displacements": advice(result) or "small for the geometry in which they were found",
+        "Not determined": "; ".join(undetermined_told(result.positions)),
+        "Assumed": assumed or "nothing is marked as assumed",
+        "Tooth laws": " ".join(laws_told(result.laws)),
+    }
+    return {name: told for name, told in found.items() if told}

@@ -1,0 +1,79 @@
+"""The documentation as it is read: from a folder on disk, without a network, on any screen."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from selenium.webdriver.common.by import By
+from selenium.webdriver.support.ui import WebDriverWait
+from tests.chromium import CONTRAST, NAMES, chromium, on_screen, too_wide
+
+ROOT = Path(__file__).parents[2]
+BARE = "evidence/branches.html"
+"""A single picture, as the benchmarks write it."""
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """All pages, built strictly."""
+    folder = tmp_path_factory.mktemp("site")
+    mkdocs = Path(sys.executable).with_name("mkdocs")
+    found = mkdocs if mkdocs.exists() else shutil.which("mkdocs")
+    if found is None:
+        pytest.skip("no mkdocs")
+    subprocess.run(
+        [found, "build", "--strict", "--quiet", "-d", folder],
+        cwd=ROOT,
+        check=True,
+        env=os.environ | {"NO_MKDOCS_2_WARNING": "1"},
+    )
+    return folder
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    with chromium(tmp_path_factory.mktemp("profile")) as found:
+        yield found
+
+
+@pytest.mark.parametrize("page", ["index.html", "evidence/speed.html"])
+def test_the_search_works_from_a_folder(browser, site, page):
+    on_screen(browser, 1280)
+    browser.get((site / page).as_uri())
+    field = browser.find_element(By.CSS_SELECTOR, "input.md-search__input")
+    field.click()
+    field.send_keys("backlash")
+    found = WebDriverWait(browser, 30).until(
+        lambda b: b.find_elements(By.CSS_SELECTOR, ".md-search-result__link")
+    )
+    browser.get(found[0].get_attribute("href"))
+    assert "backlash" in browser.find_element(By.TAG_NAME, "article").text.lower()
+    assert not [e for e in browser.get_log("browser") if e["level"] == "SEVERE"]
+
+
+@pytest.mark.parametrize(
+    ("width", "dark"),
+    [(390, False), (1280, True), pytest.param(1920, False, marks=pytest.mark.slow)],
+)
+def test_every_page_can_be_read(browser, site, width, dark):
+    """Nothing is wider than the screen, words stand out, controls and pictures have names."""
+    on_screen(browser, width, dark=dark)
+    # What was chosen before goes before what the system wants.
+    browser.get((site / "index.html").as_uri())
+    browser.execute_script("localStorage.clear()")
+    bad = []
+    for page in sorted(site.rglob("*.html")):
+        name = page.relative_to(site).as_posix()
+        if name == BARE:
+            continue
+        browser.get(page.as_uri())
+        found = [*browser.execute_script(CONTRAST), *browser.execute_script(NAMES)]
+        if too_wide(browser, width) > 0:
+            found.append(f"{too_wide(browser, width)} px too wide")
+        bad += [f"{name}: {one}" for one in found]
+    assert bad == []
