@@ -11,6 +11,7 @@ import typer
 from loadshare.cli.exits import UNUSABLE, fail
 from loadshare.cli.files import save_text, tell_written
 from loadshare.cli.options import output
+from loadshare.errors import CaseError
 
 
 def new(
@@ -25,11 +26,19 @@ def new(
             help="split-path, four-branch, star, planetary or two-stage-planetary.",
         ),
     ] = "split-path",
+    example: Annotated[
+        str | None,
+        typer.Option(
+            metavar="CASE",
+            help="Instead, a case that comes with the package, such as star/floating_sun_4.",
+        ),
+    ] = None,
     force: Annotated[
         bool, typer.Option("--force", help="Overwrite the file if it exists.")
     ] = False,
 ) -> None:
     """Write a commented case file that runs, to change into your own."""
+    from loadshare.case.examples import example_text
     from loadshare.case.starter import KINDS, starter_case
 
     if kind not in KINDS:
@@ -40,5 +49,9 @@ def new(
     target = file or Path(name).with_name(f"{title}.toml")
     if target.exists() and not force:
         fail([f"{target}: exists already; --force overwrites it"], UNUSABLE)
-    save_text(target, starter_case(title, kind))
+    try:
+        text = starter_case(title, kind) if example is None else example_text(example)
+    except CaseError as error:
+        fail(map(str, error.problems), UNUSABLE)
+    save_text(target, text)
     tell_written(target, f". Solve it with: loadshare run {quote(str(target))}")
