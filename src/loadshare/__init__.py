@@ -18,28 +18,40 @@ from loadshare.pictures import drawn_by
 
 if TYPE_CHECKING:
     from loadshare.case import Case, load_case
+    from loadshare.case.examples import examples
     from loadshare.case.schema import case_schema
     from loadshare.job import explain, solve
     from loadshare.job.formulation import formulate
     from loadshare.job.many import solve_many
     from loadshare.job.search import search
+    from loadshare.report.figure import Figure
     from loadshare.report.plots import plot
     from loadshare.results import Result, load_result
-    from loadshare.study.compare import compare
-    from loadshare.study.critical import critical
-    from loadshare.study.fit import fit
-    from loadshare.study.march import march
+    from loadshare.study.compare import Comparison, compare
+    from loadshare.study.critical import Critical, critical
+    from loadshare.study.fit import Fit, fit
+    from loadshare.study.march import March, march
     from loadshare.study.named import run_study
-    from loadshare.study.sensitivity import sensitivity
-    from loadshare.study.sweep import sweep
+    from loadshare.study.sensitivity import Sensitivity, sensitivity
+    from loadshare.study.sweep import Sweep, sweep
+    from loadshare.study.tolerance.result import Tolerance
     from loadshare.study.tolerance.study import tolerance
 
 _LAZY = {
     "Case": "loadshare.case",
+    "Comparison": "loadshare.study.compare",
+    "Critical": "loadshare.study.critical",
+    "Figure": "loadshare.report.figure",
+    "Fit": "loadshare.study.fit",
+    "March": "loadshare.study.march",
     "Result": "loadshare.results",
+    "Sensitivity": "loadshare.study.sensitivity",
+    "Sweep": "loadshare.study.sweep",
+    "Tolerance": "loadshare.study.tolerance.result",
     "case_schema": "loadshare.case.schema",
     "compare": "loadshare.study.compare",
     "critical": "loadshare.study.critical",
+    "examples": "loadshare.case.examples",
     "explain": "loadshare.job",
     "fit": "loadshare.study.fit",
     "formulate": "loadshare.job.formulation",
@@ -59,15 +71,24 @@ _LAZY = {
 __all__ = [
     "Case",
     "CaseError",
+    "Comparison",
+    "Critical",
+    "Figure",
+    "Fit",
     "LoadshareError",
+    "March",
     "Problem",
     "Refused",
     "Result",
     "ResultError",
+    "Sensitivity",
+    "Sweep",
+    "Tolerance",
     "__version__",
     "case_schema",
     "compare",
     "critical",
+    "examples",
     "explain",
     "fit",
     "formulate",
@@ -85,11 +106,13 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    """Import what is asked for only when it is asked for, so that the command starts quickly."""
-    if name in _LAZY:
-        return getattr(import_module(_LAZY[name]), name)
-    raise AttributeError(f"module 'loadshare' has no attribute {name!r}")
+if not TYPE_CHECKING:
+    # To a type checker it would say that any name may be asked for.
+    def __getattr__(name: str) -> Any:
+        """Import what is asked for only when it is asked for: the command starts quickly."""
+        if name in _LAZY:
+            return getattr(import_module(_LAZY[name]), name)
+        raise AttributeError(f"module 'loadshare' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
@@ -98,4 +121,4 @@ def __dir__() -> list[str]:
 
 
 # Results and studies offer their pictures without knowing the room that draws them.
-drawn_by(lambda: __getattr__("plot"))
+drawn_by(lambda: import_module(_LAZY["plot"]).plot)

@@ -115,3 +115,18 @@ def test_check_certifies_results_again(command, cases, tmp_path):
     assert result.exit_code == 2
     assert 'bad.json: positions[0].torque."sun-planet1" = ' in result.stderr
     assert "1 problem in 1 of 2 files." in result.stderr
+
+
+def test_new_writes_a_shipped_case_that_stands_alone(command, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("fgfbstts/limit_ring", "star/floating_sun_4"):
+        made = command("new", "own", "--example", name, "--force")
+        assert made.exit_code == 0, made.stderr
+        assert ls.load_case("own.toml") == ls.examples(name)
+    unknown = command("new", "other", "--example", "star/floating_son_4")
+    assert unknown.exit_code == 2
+    assert "star/floating_sun_4" in unknown.stderr
+    bound = command("new", "other", "--example", "fgfbstts/from_geometry")
+    assert bound.exit_code == 2
+    assert "cannot stand alone" in bound.stderr
+    assert not (tmp_path / "other.toml").exists()

@@ -36,6 +36,8 @@ def problems_of_wheel(names: Iterable[str]) -> list[str]:
     package = {n.removeprefix("loadshare/") for n in held if n.startswith("loadshare/")}
     source = ROOT / "src/loadshare"
     wanted = {f.relative_to(source).as_posix() for f in source.rglob("*.py")} | set(NEEDED)
+    cases = ROOT / "cases"
+    wanted |= {f"cases/{f.relative_to(cases).as_posix()}" for f in cases.rglob("*.toml")}
     found = [f"lacks {name}" for name in sorted(wanted - package)]
     other = {
         n for n in held if not n.startswith(("loadshare/", f"loadshare-{version()}.dist-info/"))
@@ -78,6 +80,7 @@ def installed_and_run(file: Path) -> None:
         ):
             raise SystemExit(f"{file.name}: the main job does not pass")
         _output(place, command, "new", "own")
+        _output(place, command, "new", "four", "--example", "star/floating_sun_4")
         _output(place, command, "report", "own.toml", "-o", "own.html")
 
 

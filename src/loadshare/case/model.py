@@ -174,3 +174,8 @@ class Case(Content):
         return f"Case({self._name or 'unnamed'}: {parts})"
 
     __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        from loadshare.case.view import case_view
+
+        return case_view(self).html

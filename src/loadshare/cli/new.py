@@ -12,6 +12,7 @@ from loadshare.cli.completion import kind_names
 from loadshare.cli.exits import UNUSABLE, fail
 from loadshare.cli.files import save_text, tell_written
 from loadshare.cli.options import Force, output
+from loadshare.errors import CaseError
 
 
 def new(
@@ -25,9 +26,17 @@ def new(
             autocompletion=kind_names,
         ),
     ] = "split-path",
+    example: Annotated[
+        str | None,
+        typer.Option(
+            metavar="CASE",
+            help="Instead, a case that comes with the package, such as star/floating_sun_4.",
+        ),
+    ] = None,
     force: Force = False,
 ) -> None:
     """Write a commented case file that runs, to change into your own."""
+    from loadshare.case.examples import example_text
     from loadshare.case.starter import KINDS, starter_case
     from loadshare.case.words import did_you_mean
 
@@ -40,5 +49,9 @@ def new(
     target = file or Path(name).with_name(f"{title}.toml")
     if target.exists() and not force:
         fail([f"{target}: exists already; --force overwrites it"], UNUSABLE)
-    save_text(target, starter_case(title, kind))
+    try:
+        text = starter_case(title, kind) if example is None else example_text(example)
+    except CaseError as error:
+        fail(map(str, error.problems), UNUSABLE)
+    save_text(target, text)
     tell_written(target, f". Solve it with: loadshare run {quote(str(target))}")

@@ -79,10 +79,51 @@ class Figure:
         Short, for a file: "floats".
     chart : altair chart
         To be changed or combined like any other.
+
+    Notes
+    -----
+    Pictures compose as Altair charts do: ``a | b`` side by side, ``a & b`` one above the other,
+    ``a + b`` in one panel. Either may be an Altair chart of one's own, on the right; the outcome is
+    a `Figure`, with the same look and ``save``.
     """
 
     name: str
     chart: alt.TopLevelMixin
+
+    def __or__(self, other: Figure | alt.TopLevelMixin) -> Figure:
+        """Put another picture, or any Altair chart, to the right."""
+        return self._beside(other, "hconcat")
+
+    def __and__(self, other: Figure | alt.TopLevelMixin) -> Figure:
+        """Put another picture, or any Altair chart, below."""
+        return self._beside(other, "vconcat")
+
+    def __add__(self, other: Figure | alt.TopLevelMixin) -> Figure:
+        """Lay another picture of one panel, or any Altair chart of one, over this one.
+
+        Raises
+        ------
+        LoadshareError
+            If either has several panels, which cannot be laid over one another.
+        """
+        import altair as alt
+
+        charts = [self.chart, _chart(other)]
+        if not all(isinstance(c, alt.Chart | alt.LayerChart) for c in charts):
+            raise LoadshareError(
+                f"{self.name}: a picture of several panels cannot be laid over another. Put them "
+                "side by side with |, one above the other with &, or draw `to_dataframe()`"
+            )
+        return Figure(self.name, alt.layer(*charts))
+
+    def _beside(self, other: Figure | alt.TopLevelMixin, how: str) -> Figure:
+        import altair as alt
+
+        joined = getattr(alt, how)(self.chart, _chart(other))
+        # Each keeps the colours and the legend of its own gears.
+        drawn = joined.resolve_scale(color="independent", shape="independent")
+        name = f"{self.name}_{other.name}" if isinstance(other, Figure) else self.name
+        return Figure(name, drawn)
 
     @cached_property
     def spec(self) -> dict[str, Any]:
@@ -173,3 +214,7 @@ class Figure:
     def _repr_mimebundle_(self, *_: object, **__: object) -> dict[str, Any]:
         """Show the picture in a notebook, which draws SVG without any extension."""
         return {"image/svg+xml": self.to_svg()}
+
+
+def _chart(of: Figure | alt.TopLevelMixin) -> Any:
+    return of.chart if isinstance(of, Figure) else of

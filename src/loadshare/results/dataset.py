@@ -259,6 +259,14 @@ def frame(result: Result) -> pd.DataFrame:
     return arrays.assign(worst_residual=("position", worst)).to_dataframe().reset_index()
 
 
+def with_units(table: pd.DataFrame, arrays: xr.Dataset) -> pd.DataFrame:
+    """Return a table of arrays that tells the unit of each of its columns in ``attrs``."""
+    told = {name: arrays[name].attrs.get("units") for name in table if name in arrays.data_vars}
+    known = {name: unit for name, unit in told.items() if unit is not None}
+    table.attrs["units"] = {**known, "worst_residual": "1"} if "worst_residual" in table else known
+    return table
+
+
 def frames(result: Result) -> dict[str, pd.DataFrame]:
     """Tabulate everything by what it is told of: train, meshes, gears, shafts, floats.
 

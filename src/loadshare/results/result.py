@@ -384,3 +384,18 @@ class Result:
         from loadshare.results.dataset import frame
 
         return frame(self)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """The table of `to_frame`, with the unit of every column in ``attrs["units"]``."""
+        from loadshare.results.dataset import with_units
+
+        return with_units(self.to_frame(), self.dataset)
+
+    def to_xarray(self) -> xr.Dataset:
+        """The labelled arrays, `dataset`: every figure with its unit."""
+        return self.dataset
+
+    def _repr_html_(self) -> str:
+        from loadshare.results.view import result_view
+
+        return result_view(self).html

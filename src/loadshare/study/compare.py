@@ -17,6 +17,7 @@ from loadshare.errors import CaseError
 from loadshare.job import Progress, solve
 from loadshare.results import Result
 from loadshare.study.positions import loaded
+from loadshare.view import View, Viewed
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -84,8 +85,8 @@ class Deviation:
         return self.difference / self.target.uncertainty
 
 
-@dataclass(frozen=True)
-class Comparison:
+@dataclass(frozen=True, repr=False)
+class Comparison(Viewed):
     """All measured figures of a case against the computed ones.
 
     Attributes
@@ -115,6 +116,16 @@ class Comparison:
             for d in self.deviations
         ]
         return pd.DataFrame(rows)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """The table of `to_frame`, with the unit of each figure beside it."""
+        table = self.to_frame()
+        return table.assign(unit=[d.target.unit or "1" for d in self.deviations])
+
+    def _view(self) -> View:
+        from loadshare.study.views import comparison_view
+
+        return comparison_view(self)
 
 
 def compare(case: Case | str | FilePath, *, progress: Progress | None = None) -> Comparison:

@@ -9,8 +9,9 @@ either side (`loadshare.study.follow`). What cannot be proved is named.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path as FilePath
+from typing import TYPE_CHECKING
 
 from loadshare.case import Case
 from loadshare.errors import CaseError, Problem
@@ -21,6 +22,10 @@ from loadshare.study.follow.line import Line
 from loadshare.study.follow.search import Search
 from loadshare.study.parameter import RANGE, STUDY, Parameter, grid, named, read_parameter
 from loadshare.study.positions import alike, loaded
+from loadshare.view import View, Viewed
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +47,8 @@ class Unproved:
     why: str
 
 
-@dataclass(frozen=True, slots=True)
-class Critical:
+@dataclass(frozen=True, slots=True, repr=False)
+class Critical(Viewed):
     """Events along a parameter.
 
     Attributes
@@ -81,6 +86,20 @@ class Critical:
     def of(self, kind: str = "", gear: str | None = None) -> tuple[Event, ...]:
         """Events of a kind, of a gear, or both."""
         return tuple(e for e in self.events if kind in e.kind and (gear is None or e.gear == gear))
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """The events as a table, one row each, by the attributes of `Event`."""
+        import pandas as pd
+
+        columns = [f.name for f in fields(Event)]
+        return pd.DataFrame(
+            [[getattr(e, c) for c in columns] for e in self.events], columns=columns
+        )
+
+    def _view(self) -> View:
+        from loadshare.study.views import critical_view
+
+        return critical_view(self)
 
 
 def critical(

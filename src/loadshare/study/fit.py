@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path as FilePath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -30,6 +30,10 @@ from loadshare.study.parameter import (
 )
 from loadshare.study.positions import loaded
 from loadshare.study.sensitivity import Sensitivity, sensitivity
+from loadshare.view import View, Viewed
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +59,8 @@ class Unknown:
     at_bound: bool
 
 
-@dataclass(frozen=True)
-class Fit:
+@dataclass(frozen=True, repr=False)
+class Fit(Viewed):
     """Inputs fitted to measured figures.
 
     Attributes
@@ -103,6 +107,23 @@ class Fit:
     def values(self) -> dict[str, str | float]:
         """Fitted values by parameter, as a case file says them."""
         return {u.parameter.name: Value(u.value, u.parameter.unit).text for u in self.unknowns}
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """The fitted inputs as a table, one row each, in the unit that stands beside them."""
+        import pandas as pd
+
+        rows = [
+            {"input": u.parameter.name, "value": u.value, "deviation": u.deviation}
+            | {"unit": u.parameter.unit or "1", "low": u.low, "high": u.high}
+            | {"start": u.start, "at_bound": u.at_bound}
+            for u in self.unknowns
+        ]
+        return pd.DataFrame(rows)
+
+    def _view(self) -> View:
+        from loadshare.study.views import fit_view
+
+        return fit_view(self)
 
 
 def fit(

@@ -29,8 +29,10 @@ from loadshare.train.gear import Vector
 from loadshare.train.memory import slip_of
 from loadshare.train.placed import standing
 from loadshare.train.train import Spline
+from loadshare.view import View, Viewed
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
 
@@ -56,8 +58,8 @@ class Slip:
     dissipated: float
 
 
-@dataclass(frozen=True)
-class March:
+@dataclass(frozen=True, repr=False)
+class March(Viewed):
     """Certified equilibria along a march, each from the slip of the one before.
 
     Attributes
@@ -88,6 +90,23 @@ class March:
         from loadshare.study.tables import march_dataset
 
         return march_dataset(self)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Torques and coefficients, one row per step and mesh, with the revolutions."""
+        table = self.result.to_dataframe()
+        steps = [p.position for p in self.result.positions]
+        at = dict(zip(steps, self.revolutions, strict=True))
+        table.insert(1, "revolutions", table["position"].map(at))
+        return table
+
+    def to_xarray(self) -> xr.Dataset:
+        """The labelled arrays, `dataset`."""
+        return self.dataset
+
+    def _view(self) -> View:
+        from loadshare.study.views import march_view
+
+        return march_view(self)
 
 
 def march(

@@ -27,6 +27,7 @@ from loadshare.study.parameter import (
 )
 from loadshare.study.positions import loaded
 from loadshare.train import build_train
+from loadshare.view import View, Viewed
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -62,8 +63,8 @@ class Point:
     result: Result | None
 
 
-@dataclass(frozen=True)
-class Sweep:
+@dataclass(frozen=True, repr=False)
+class Sweep(Viewed):
     """A case over a grid.
 
     Attributes
@@ -133,6 +134,21 @@ class Sweep:
         from loadshare.study.tables import sweep_frame
 
         return sweep_frame(self)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """The table of `to_frame`, with the unit of every column in ``attrs["units"]``."""
+        from loadshare.results.dataset import with_units
+
+        return with_units(self.to_frame(), self.dataset)
+
+    def to_xarray(self) -> xr.Dataset:
+        """The labelled arrays, `dataset`."""
+        return self.dataset
+
+    def _view(self) -> View:
+        from loadshare.study.views import sweep_view
+
+        return sweep_view(self)
 
     def to_netcdf(self, path: str | FilePath) -> None:
         """Write the labelled arrays to a netCDF file."""

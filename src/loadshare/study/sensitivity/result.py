@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING, ClassVar
 
 from loadshare.scene.scene import Array
 from loadshare.study.parameter import Value
+from loadshare.view import View, Viewed
 
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 
 SIDES = ("falling", "rising")
@@ -87,8 +89,8 @@ class Remark:
     message: str
 
 
-@dataclass(frozen=True)
-class Sensitivity:
+@dataclass(frozen=True, repr=False)
+class Sensitivity(Viewed):
     """Derivatives of the certified equilibria of a case.
 
     Attributes
@@ -132,3 +134,26 @@ class Sensitivity:
         from loadshare.study.tables import sensitivity_dataset
 
         return sensitivity_dataset(self)
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Derivatives of torques and shares with their stated errors, per SI unit of the input.
+
+        One row per position, input, side and mesh; ``attrs["units"]`` tells the units.
+        """
+        from loadshare.results.dataset import with_units
+
+        names = [n + e for n in ("torque", "share", "pair_share") for e in ("", "_error")]
+        # What an input is, and its factor, belong to the arrays; "error" is that of all torques.
+        arrays = self.dataset[names].reset_coords(
+            ["value", "unit", "factor", "error", "kink"], drop=True
+        )
+        return with_units(arrays.to_dataframe().reset_index(), self.dataset)
+
+    def to_xarray(self) -> xr.Dataset:
+        """The labelled arrays, `dataset`."""
+        return self.dataset
+
+    def _view(self) -> View:
+        from loadshare.study.views import sensitivity_view
+
+        return sensitivity_view(self)

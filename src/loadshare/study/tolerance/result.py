@@ -15,6 +15,7 @@ from loadshare.study.tolerance.indices import Share
 from loadshare.study.tolerance.inputs import Inputs
 from loadshare.study.tolerance.statistics import Estimate, Summary
 from loadshare.study.tolerance.worst import WorstCase
+from loadshare.view import View, Viewed
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -70,8 +71,8 @@ class FloatStatistics:
     pressed: float | None
 
 
-@dataclass(frozen=True, eq=False)
-class Tolerance:
+@dataclass(frozen=True, eq=False, repr=False)
+class Tolerance(Viewed):
     """A tolerance study.
 
     Attributes
@@ -146,6 +147,14 @@ class Tolerance:
         """
         return self.folder.frame(columns)
 
+    def to_dataframe(self, columns: Sequence[str] | None = None) -> pd.DataFrame:
+        """Read the samples, as `to_frame` does; heads tell the unit."""
+        return self.to_frame(columns)
+
+    def to_xarray(self) -> xr.Dataset:
+        """The statistics as labelled arrays, `dataset`."""
+        return self.dataset
+
     @cached_property
     def dataset(self) -> xr.Dataset:
         """Statistics of Ω as labelled arrays: over (over, stage), level, input, bin."""
@@ -164,6 +173,11 @@ class Tolerance:
         """
         drawn: Figure = picture(self, stage, over)
         return drawn
+
+    def _view(self) -> View:
+        from loadshare.study.views import tolerance_view
+
+        return tolerance_view(self)
 
 
 def counted(messages: Sequence[str]) -> dict[str, int]:

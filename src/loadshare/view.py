@@ -1,0 +1,115 @@
+"""What a found thing says of itself: a few lines in a console, a small table in a notebook.
+
+Both are written from one `View`, so that they cannot differ; what does not fit a screen is counted.
+"""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+ROWS = 8
+"""Of a table that are shown."""
+WIDTH = 88
+"""Characters of a line."""
+
+_CELL = 'style="text-align:left;padding:.1em .8em .1em 0"'
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """A title, facts, and the first rows of a table.
+
+    Attributes
+    ----------
+    title : str
+    facts : tuple of (str, str)
+        What is told, and what of it; empty ones are left out.
+    columns : tuple of str
+    rows : tuple of tuple of str
+        As many cells as there are columns.
+    """
+
+    title: str
+    facts: tuple[tuple[str, str], ...] = ()
+    columns: tuple[str, ...] = ()
+    rows: tuple[tuple[str, ...], ...] = ()
+
+    @property
+    def text(self) -> str:
+        """Lines for a console."""
+        lines = [self.title, *(f"{name}: {told}" for name, told in self.facts if told)]
+        shown = [self.columns, *self.rows[:ROWS]] if self.rows else []
+        widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
+        for row in shown:
+            cells = (cell.ljust(width) for cell, width in zip(row, widths, strict=True))
+            lines.append(("  " + "  ".join(cells)).rstrip())
+        if self._left:
+            lines.append(f"  {self._left}")
+        return "\n".join(_cut(" ".join(line.split("\n"))) for line in lines)
+
+    @property
+    def html(self) -> str:
+        """The same for a notebook; every text is escaped, and no script, style or link is used."""
+        facts = "".join(
+            f"<tr><th {_CELL}>{_escaped(name)}</th><td {_CELL}>{_escaped(told)}</td></tr>"
+            for name, told in self.facts
+            if told
+        )
+        parts = [f"<div><strong>{_escaped(self.title)}</strong>"]
+        parts += [f"<table><tbody>{facts}</tbody></table>"] if facts else []
+        if self.rows:
+            head = "".join(f"<th {_CELL}>{_escaped(name)}</th>" for name in self.columns)
+            body = "".join(
+                f"<tr>{''.join(f'<td {_CELL}>{_escaped(cell)}</td>' for cell in row)}</tr>"
+                for row in self.rows[:ROWS]
+            )
+            table = f"<thead><tr>{head}</tr></thead><tbody>{body}</tbody>"
+            parts.append(f"<table>{table}</table>")
+        parts += [f"<p>{_escaped(self._left)}</p>"] if self._left else []
+        return "".join([*parts, "</div>"])
+
+    @property
+    def _left(self) -> str:
+        return f"… and {len(self.rows) - ROWS} more" if len(self.rows) > ROWS else ""
+
+
+class Viewed:
+    """What shows itself by its view, in a console and in a notebook."""
+
+    __slots__ = ()
+
+    def _view(self) -> View:
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        return self._view().text
+
+    def _repr_html_(self) -> str:
+        return self._view().html
+
+
+def figure(value: float | None, form: str = ".4g") -> str:
+    """Write a number; a dash for none."""
+    return "–" if value is None or value != value else format(value, form)
+
+
+def by_name(figures: Any, form: str = ".4f") -> str:
+    """Write named figures, as in ``I 1.0000, system 1.0013``."""
+    return ", ".join(f"{name} {figure(value, form)}" for name, value in dict(figures).items())
+
+
+def listed(values: Sequence[object]) -> str:
+    """Write the first and last of many values."""
+    words = [str(value) for value in values]
+    return ", ".join(words if len(words) <= ROWS else [*words[: ROWS - 1], "…", words[-1]])
+
+
+def _cut(line: str) -> str:
+    return line if len(line) <= WIDTH else f"{line[: WIDTH - 1]}…"
+
+
+def _escaped(text: str) -> str:
+    return html.escape(text, quote=True)
