@@ -7,8 +7,10 @@ and formulas become MathML, which browsers show without any script.
 from __future__ import annotations
 
 import html
+import json
 import re
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import Any, NamedTuple
 
 Schema = Mapping[str, Any]
@@ -74,8 +76,11 @@ ALLOWED = (
 """What a case file may hold, in words; the numbers are those of the settings."""
 
 
-def on_page_markdown(markdown: str, **_: Any) -> str:
+def on_page_markdown(markdown: str, page: Any = None, **_: Any) -> str:
     """Fill in what a page takes from the code."""
+    place = Path(page.file.src_uri) if page is not None else Path()
+    if place.parent.name == "gallery" and place.stem != "index":
+        markdown += f"\n[Download this page as a notebook]({place.stem}.ipynb)\n"
     if CASE_REFERENCE in markdown:
         from loadshare.case.schema import case_schema
 
@@ -88,6 +93,38 @@ def on_page_markdown(markdown: str, **_: Any) -> str:
     if COMMANDS in markdown:
         markdown = markdown.replace(COMMANDS, command_reference())
     return markdown
+
+
+def on_files(files: Any, config: Any, **_: Any) -> Any:
+    """Add the pages of the gallery as notebooks."""
+    from mkdocs.structure.files import File
+
+    for page in sorted((Path(config.docs_dir) / "gallery").glob("*.md")):
+        if page.stem != "index":
+            text = notebook(page.read_text(encoding="utf-8"))
+            files.append(File.generated(config, f"gallery/{page.stem}.ipynb", content=text))
+    return files
+
+
+def notebook(page: str) -> str:
+    """Return a page of the gallery as a notebook that has not been run.
+
+    Python blocks are its cells; what they print, and the pictures they show, it makes itself.
+    """
+    parts = re.split(r"^```python\n(.*?)^```\n", page, flags=re.MULTILINE | re.DOTALL)
+    cells = []
+    for number, part in enumerate(parts):
+        code = number % 2 == 1
+        if number and not code:
+            part = re.sub(r"\A\s*```text\n.*?^```\n", "", part, flags=re.MULTILINE | re.DOTALL)
+            part = re.sub(r"\A\s*!\[[^\]]*\]\([^)]*\)\n", "", part)
+        if text := part.strip():
+            cell: dict[str, Any] = {"cell_type": "code" if code else "markdown", "metadata": {}}
+            cell |= {"id": f"cell-{number}", "source": text.splitlines(keepends=True)}
+            cells.append(cell | ({"execution_count": None, "outputs": []} if code else {}))
+    kernel = {"display_name": "Python 3", "language": "python", "name": "python3"}
+    whole = {"cells": cells, "metadata": {"kernelspec": kernel}, "nbformat": 4, "nbformat_minor": 5}
+    return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
 
 
 def on_page_content(content: str, **_: Any) -> str:

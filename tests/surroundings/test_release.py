@@ -78,11 +78,14 @@ def test_what_a_wheel_must_hold_is_looked_for():
     info = f"loadshare-{distribution.version()}.dist-info"
     whole = [f"loadshare/{f.relative_to(source).as_posix()}" for f in source.rglob("*.py")]
     whole += [f"loadshare/{name}" for name in distribution.NEEDED]
+    cases = ROOT / "cases"
+    whole += [f"loadshare/cases/{f.relative_to(cases).as_posix()}" for f in cases.rglob("*.toml")]
     whole += [f"{info}/licenses/LICENSE", f"{info}/METADATA"]
     assert distribution.problems_of_wheel(whole) == []
     assert distribution.problems_of_wheel([*whole, "tests/a.py"]) == ["holds tests/a.py"]
     assert distribution.problems_of_wheel(whole[:-2]) == ["lacks LICENSE"]
     assert distribution.problems_of_wheel([n for n in whole if "py.typed" not in n])
+    assert distribution.problems_of_wheel([n for n in whole if "floating_sun_4" not in n])
 
 
 def test_what_an_sdist_must_hold_is_looked_for():
