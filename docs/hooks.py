@@ -64,7 +64,6 @@ ALLOWED = (
     ("elements of a section, entries of a list", "{entries}"),
     ("a name", "1 to {name} printable characters"),
     ("a number with its unit", "0, or {smallest:g} to {largest:g} in SI units"),
-    ("a stiffness", "from {softest:g} N/m and {softest:g} N·m/rad on"),
     ("a coefficient of friction", "0 to {friction:g}"),
     ("a unit", "{unit} characters, exponents of up to {power:g}"),
     ("teeth of a gear", "{teeth}"),

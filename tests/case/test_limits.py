@@ -97,24 +97,15 @@ def test_numbers_that_no_machine_has(tmp_path, number, value, key):
 def test_numbers_at_the_limits_are_solved_or_refused(size):
     """They overflow nowhere."""
     case = ls.Case(tomllib.loads(PAIR))
-    for key, unit, least in (
-        ("operating.torque", "N*m", 0.0),
-        ('meshes."a-b".stiffness', "N*m/rad", ALLOWED.softest),
+    for key, unit in (
+        ("operating.torque", "N*m"),
+        ('meshes."a-b".stiffness', "N*m/rad"),
     ):
         try:
-            result = ls.solve(case.replace({key: f"{max(size, least)!r} {unit}"}))
+            result = ls.solve(case.replace({key: f"{size!r} {unit}"}))
         except ls.Refused:
             continue
         assert result.passed
-
-
-def test_softer_than_this_is_refused():
-    """Next to no stiffness makes a displacement without end of the round-off of forces."""
-    case = ls.Case(tomllib.loads(PAIR))
-    with pytest.raises(ls.CaseError, match=r"stiffness .* is below 0\.001 N\*m/rad"):
-        case.replace({'meshes."a-b".stiffness': "0.9e-3 N*m/rad"})
-    with pytest.raises(ls.CaseError, match=r"support .* is below 0\.001 N/m"):
-        case.replace({"gears.a.support": "0.9e-3 N/m"})
 
 
 @pytest.mark.parametrize(

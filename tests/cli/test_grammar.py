@@ -285,6 +285,8 @@ def test_who_stops_a_command_is_told_what_is_kept(command, monkeypatch, number, 
 
     monkeypatch.setattr("loadshare.study.sweep.sweep", stopped)
     handlers = {one: signal.getsignal(one) for one in (signal.SIGINT, signal.SIGTERM)}
+    # A shell lets what it runs in the background ignore it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         done = command("sweep", RING, "--over", "rings.*.float=0 um:12 um:61")
     finally:

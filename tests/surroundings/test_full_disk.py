@@ -35,9 +35,9 @@ MARCH = ("march", RING, "--gear", 4, "--revolutions", 1, "--steps", 1, "-o")
 FIT = ("fit", "BENCH", "--unknown", "errors.6.installation[0]=0 um:100 um", "-o")
 TOLERANCE = ("tolerance", "BENCH", "--workers", 1, "--no-worst", "-o", "DISK/study")
 WRITING = [
-    ("run", SUN, "--json", "DISK/a.json"),
-    ("run", SUN, "--csv", "DISK/a.csv"),
-    ("run", SUN, "--netcdf", "DISK/a.nc"),
+    ("run", SUN, "-o", "DISK/a.json"),
+    ("run", SUN, "-o", "DISK/a.csv"),
+    ("run", SUN, "-o", "DISK/a.nc"),
     ("report", SUN, "-o", "DISK/a.html"),
     *(("draw", SUN, "-o", f"DISK/a.{ending}") for ending in ("svg", "png", "pdf", "html", "json")),
     ("schema", "-o", "DISK/a.json"),
@@ -196,7 +196,7 @@ import resource, signal
 resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 from loadshare.cli.main import main
-main(["run", {str(SUN)!r}, "--json", {str(tmp_path / "a.json")!r}])
+main(["run", {str(SUN)!r}, "-o", {str(tmp_path / "a.json")!r}])
 """
     done = subprocess.run(
         [sys.executable, "-B", "-c", script],

@@ -38,10 +38,10 @@ def wanted(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, bytes, bytes]
 
 def run_in(folder, before="", **settings):
     table, result = folder / "a.csv", folder / "a.json"
-    words = ("run", RING, "--csv", table, "--json", result)
+    words = ("run", RING, "-o", table, "-o", result)
     done = ran(*words, before=before, **settings)
     assert done.returncode == 0, done.stderr
-    assert done.stderr == b""
+    assert all(line.startswith(b"Wrote ") for line in done.stderr.splitlines())
     return done.stdout, table.read_bytes(), result.read_bytes()
 
 

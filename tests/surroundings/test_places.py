@@ -65,7 +65,7 @@ for words in {[[str(w) for w in words] for words in asked]!r}:
 def test_an_output_folder_that_cannot_be_written_is_told(read_only, tmp_path):  # noqa: F811
     home = read_only["HOME"]
     for words, file in (
-        (("run", RING, "--json", f"{home}/a.json"), f"{home}/a.json"),
+        (("run", RING, "-o", f"{home}/a.json"), f"{home}/a.json"),
         (("new", "own", "-o", f"{home}/own.toml"), f"{home}/own.toml"),
         (("batch", CASES / "star", "-o", f"{home}/out"), f"{home}/out"),
         ((*SWEEP, "-o", f"{home}/new/a.csv"), f"{home}/new/a.csv"),

@@ -39,7 +39,6 @@ from loadshare.case.quantity import (
     Temperature,
 )
 from loadshare.involute import InvoluteTooth, inv
-from loadshare.settings import ALLOWED
 
 OF_TEETH = (
     "pressure_angle",
@@ -262,7 +261,7 @@ class Gear(Element):
         Annotated[
             Annotated[
                 Literal["rigid", "free"] | Quantity,
-                STIFFNESS.bounded(at_least=ALLOWED.softest).or_words("rigid", "free"),
+                STIFFNESS.bounded(above=0).or_words("rigid", "free"),
                 Tag(VALUE),
             ]
             | Annotated[tuple[PositiveStiffness, PositiveStiffness], Tag(LIST)]

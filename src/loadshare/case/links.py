@@ -61,7 +61,7 @@ class Shaft(Element):
     stiffness: (
         Annotated[
             Quantity | Literal["rigid"],
-            TORSIONAL_STIFFNESS.bounded(at_least=ALLOWED.softest).or_words("rigid"),
+            TORSIONAL_STIFFNESS.bounded(above=0).or_words("rigid"),
         ]
         | None
     ) = None
@@ -228,7 +228,7 @@ class Ring(Element):
     """Circle: middle of the disc, from the gear's centre [length]."""
 
     stiffness: Annotated[
-        Quantity | Literal["rigid"], STIFFNESS.bounded(at_least=ALLOWED.softest).or_words("rigid")
+        Quantity | Literal["rigid"], STIFFNESS.bounded(above=0).or_words("rigid")
     ] = "rigid"
     """Stiffness of the ring [force/length], or rigid."""
 
@@ -315,7 +315,7 @@ class Bearing(Element):
     stiffness: (
         Annotated[
             Quantity | Literal["rigid"],
-            STIFFNESS.bounded(at_least=ALLOWED.softest).or_words("rigid"),
+            STIFFNESS.bounded(above=0).or_words("rigid"),
         ]
         | None
     ) = None

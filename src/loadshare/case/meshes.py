@@ -35,11 +35,10 @@ from loadshare.case.quantity import (
     Quantity,
 )
 from loadshare.case.words import count
-from loadshare.settings import ALLOWED
 
 LAWS = ("stiffness", "law", "table", "law_file", "geometry")
 
-MeshStiffness = Annotated[Quantity, TORSIONAL_STIFFNESS.bounded(at_least=ALLOWED.softest)]
+MeshStiffness = Annotated[Quantity, TORSIONAL_STIFFNESS.bounded(above=0)]
 Bending = Annotated[Quantity, TORSIONAL_COMPLIANCE.bounded(at_least=0)]
 Hertz = Annotated[Quantity, HERTZ_COMPLIANCE.bounded(at_least=0)]
 TableTorque = Annotated[Quantity, TORQUE.bounded(above=0)]

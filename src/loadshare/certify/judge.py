@@ -63,8 +63,8 @@ class Judge:
         compiled : bool
             With Numba, one answer after another, instead of NumPy: the same verdicts, several
             times as fast once it is compiled. The residuals are then those behind the bound, and
-            the energy gap, which follows from them, is left to single answers. Splines with memory
-            and forces from outside are judged with NumPy all the same.
+            the energy gap, which follows from them, is left to single answers. Splines with memory,
+            forces from outside and what is too soft for that are judged with NumPy all the same.
         bounded : bool
             Whether errors are bounded with every effort; without a bound nothing passes, and with
             Numba nothing but what is bounded at once.
@@ -78,6 +78,8 @@ class Judge:
         self, situations: Situations, answers: Equilibria, tolerance: float, bounded: bool
     ) -> Verdicts:
         found = judged(self.columns, situations, answers)
+        # Of what is next to nothing the energy gap does not follow from forces that are in balance.
+        found.worst[_is_soft(situations, found.load, found.deflection, tolerance)] = np.nan
         for figure, name in ((found.worst, "worst"), (found.displaced, "displaced")):
             left = np.flatnonzero(np.isnan(figure))
             if len(left):
@@ -115,3 +117,21 @@ class Judge:
             # Column by column: rows are too short to be worth a loop each.
             worst = np.maximum.reduce(list(scaled_residuals(state).T))
             return worst, state.load, state.deflection
+
+
+def _is_soft(
+    situations: Situations, load: Array, deflection: Array, tolerance: float
+) -> NDArray[np.bool_]:
+    """Whether a force [N] within the tolerance is more energy in a spring than the tolerance is.
+
+    The gap that an error f of a spring's force leaves is f²/2K, the scale of energies that of loads
+    times deflections.
+    """
+    springs = (situations.spline[..., 0], situations.support.reshape(len(situations.support), -1))
+    soft = np.zeros(len(load), dtype=bool)
+    with np.errstate(all="ignore"):
+        least = 0.5 * tolerance * load / deflection
+    for stiffness in (*springs, situations.round_stiffness):
+        there = np.where(stiffness > 0.0, stiffness, np.inf)
+        soft |= there.min(axis=1, initial=np.inf) < least
+    return soft

@@ -30,8 +30,6 @@ class Allowed(NamedTuple):
     """Number other than zero, in SI units: its cube is a number still."""
     largest: float = 1e40
     """Number in SI units: likewise."""
-    softest: float = 1e-3
-    """Stiffness [N/m], [N·m/rad]: below, the round-off of forces is a displacement without end."""
     friction: float = 1e3
     """Coefficient of friction [-]."""
     teeth: int = 100_000
