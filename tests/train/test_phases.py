@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from tests.support import shipped
 
 import loadshare as ls
 from loadshare.case import Case
@@ -126,7 +127,8 @@ def test_a_law_is_read_at_each_meshs_own_place() -> None:
     case = planetary(18, 36, 90, ["0 deg", "120 deg", "240 deg"])
     stiffness = [f"{1.0 + 0.01 * k!r}e6 N*m/rad" for k in range(20)]
     changes = {f"meshes.sun-p{k}.stiffness": stiffness for k in (1, 2, 3)}
-    case = case.replace({"operating.positions": 20, **changes, "meshes.sun-p2.phase": 0.35})
+    given = {"operating.phases": "together", "meshes.sun-p2.phase": 0.35}
+    case = case.replace({"operating.positions": 20, **changes, **given})
     train = build_train(case)
     assert train.meshes["sun-p2"].phase == 0.35
     for position in ls.solve(case, positions=[1, 7, 20]).positions:
@@ -147,3 +149,15 @@ def test_in_a_march_meshes_of_a_set_pass_by_the_relative_speed() -> None:
         for name, mesh in train.meshes.items():
             place = math.floor((mesh.phase + passed) % 1.0 * 1000 + 1e-6) % 1000
             assert train.mesh_positions(index)[name] == place
+
+
+def test_a_phase_that_contradicts_the_teeth_is_told_with_the_one_that_follows():
+    case = shipped("planetary/four_planets").replace({"operating.positions": 4})
+    laid = {"operating.phases": "layout"}
+    train = build_train(case.replace(laid))
+    name, phase = next((n, m.phase) for n, m in train.meshes.items() if 0.1 < m.phase < 0.9)
+    build_train(case.replace(laid | {f'meshes."{name}".phase': phase}))
+    wrong = {f'meshes."{name}".phase': (phase + 0.05) % 1.0}
+    build_train(case.replace(wrong))
+    with pytest.raises(ls.CaseError, match=rf"contradicts the teeth .* Allowed: {phase:.4g}, or"):
+        build_train(case.replace(laid | wrong))

@@ -6,7 +6,7 @@ It is settled once for all samples that share a machine.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
@@ -24,7 +24,7 @@ from loadshare.train.gear import Gear, Vector, transverse_frame
 from loadshare.train.kinematics import Kinematics, settle
 from loadshare.train.mesh import Contact, contact_of
 from loadshare.train.period import Period, period_of
-from loadshare.train.phases import WHOLE, Meeting, Misfit, phases
+from loadshare.train.phases import MEETS, WHOLE, Meeting, Misfit, phases
 from loadshare.train.willis import Links
 
 
@@ -170,9 +170,22 @@ def _in_phase(case: spec.Case, pairs: Mapping[str, Pair]) -> dict[str, Pair]:
         for m in misfits
         if all(case.gears[g].tooth is not None for g in case.meshes[m.mesh].ends)
     ]
+    told += _phases_against(case, found)
     if told:
         raise CaseError(told)
     return {name: replace(pair, phase=found.get(name, 0.0)) for name, pair in pairs.items()}
+
+
+def _phases_against(case: spec.Case, found: Mapping[str, float]) -> Iterator[Problem]:
+    """Yield phases that are given beside a layout from which others follow."""
+    if case.operating.phases != "layout":
+        return
+    for name, layout in found.items():
+        given = case.meshes[name].phase
+        if given is not None and abs((given - layout + 0.5) % 1.0 - 0.5) > MEETS:
+            path, allowed = ("meshes", name, "phase"), f"{layout:.4g}, or left out"
+            hint = 'With operating.phases = "together" any phases may be given.'
+            yield case.problem(path, "contradicts the teeth and where they stand", allowed, hint)
 
 
 def _misfit_told(case: spec.Case, pair: Pair, misfit: Misfit) -> Problem:
