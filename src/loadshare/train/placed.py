@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import lru_cache
+from weakref import WeakKeyDictionary
 
 from loadshare.train.gear import Gear, Vector
 from loadshare.train.mesh import Mesh
@@ -25,10 +25,18 @@ def standing(train: Train, index: int) -> Train:
 
     The train itself, or if its surroundings are uneven the train with its planets placed.
     """
-    return _placed(train, index) if train.is_placed_anew else train
+    if not train.is_placed_anew:
+        return train
+    # No longer than the train itself: one of many samples holds large arrays.
+    known = _known.setdefault(train, {})
+    if index not in known:
+        known[index] = _placed(train, index)
+    return known[index]
 
 
-@lru_cache(maxsize=1024)
+_known: WeakKeyDictionary[Train, dict[int, Train]] = WeakKeyDictionary()
+
+
 def _placed(train: Train, index: int) -> Train:
     rotation = train.rotations(index)
     angle = {name: train.frame_angle(name, rotation) for name in train.gears}
