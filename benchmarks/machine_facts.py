@@ -31,6 +31,7 @@ def facts() -> dict[str, str]:
         "date": datetime.now(UTC).strftime("%Y-%m-%d"),
         "processor": _processor(),
         "cores": str(os.cpu_count()),
+        "load of the machine (1, 5, 15 min) at the end": _load(),
         "system": f"{platform.system()} {platform.machine()}",
         "python": sys.version.split()[0],
         "BLAS threads": os.environ.get("OPENBLAS_NUM_THREADS", "not set"),
@@ -42,6 +43,14 @@ def facts() -> dict[str, str]:
         except PackageNotFoundError:
             found[package] = "not installed"
     return found
+
+
+def _load() -> str:
+    """Processes that wait for a core, this one included."""
+    try:
+        return ", ".join(f"{load:.2f}" for load in os.getloadavg())
+    except (AttributeError, OSError):
+        return "unknown"
 
 
 def _processor() -> str:

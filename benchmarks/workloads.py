@@ -137,29 +137,38 @@ def workloads(cases: Path, quick: bool) -> list[Workload]:
 
 def branches(quick: bool) -> list[Workload]:
     """Return trains of 4 to 64 branches: elastic pinions, backlash, b + c laws."""
-    found = []
-    for size in SIZES:
-        data = families.split_torque(size).to_dict()
-        del data["operating"]["power"], data["operating"]["speed"], data["assumed"]
-        data["operating"]["torque"] = f"{543.8 * size} N*m"
-        for number in range(1, size // 2 + 1):
-            data["gears"][f"pinion{number}"]["support"] = "1e8 N/m"
-        for mesh in data["meshes"].values():
+    count, few = (100, 2) if quick else (20_000, 8)
+    return [
+        _workload(f"branches-{n}", f"{n} branches", "QP, law", *_branched(n, True), count, few)
+        for n in SIZES
+    ]
+
+
+def linear_branches(quick: bool) -> Workload:
+    """Return a train of eight branches with linear laws: one quadratic programme, no outer loop."""
+    count, few = (100, 8) if quick else (20_000, 40)
+    return _workload("linear-8", "8 branches, linear", "QP", *_branched(8, False), count, few)
+
+
+def _branched(size: int, curved: bool) -> tuple[Case, dict[str, tuple[float, float]]]:
+    data = families.split_torque(size).to_dict()
+    del data["operating"]["power"], data["operating"]["speed"], data["assumed"]
+    data["operating"]["torque"] = f"{543.8 * size} N*m"
+    for number in range(1, size // 2 + 1):
+        data["gears"][f"pinion{number}"]["support"] = "1e8 N/m"
+    for mesh in data["meshes"].values():
+        mesh["backlash"] = "30 um"
+        if curved:
             mesh["law"] = _law(mesh.pop("stiffness"))
-            mesh["backlash"] = "30 um"
-        idlers = [g for g in data["gears"] if g.startswith("idler")]
-        data["errors"] = {
-            g: {"installation": {"amount": "20 um", "direction": "0 deg"}} for g in idlers
-        }
-        draws: dict[str, Any] = {"operating.torque [N*m]": (163.0 * size, 652.0 * size)}
-        for g in idlers:
-            draws[f"errors.{g}.installation.amount [um]"] = (0.0, 40.0)
-            draws[f"errors.{g}.installation.direction [deg]"] = (0.0, 360.0)
-        name = f"branches-{size}"
-        count, few = (100, 2) if quick else (1_000, 8)
-        case = Case(data, name=name)
-        found.append(_workload(name, f"{size} branches", "QP, law", case, draws, count, few))
-    return found
+    idlers = [g for g in data["gears"] if g.startswith("idler")]
+    data["errors"] = {
+        g: {"installation": {"amount": "20 um", "direction": "0 deg"}} for g in idlers
+    }
+    draws: dict[str, Any] = {"operating.torque [N*m]": (163.0 * size, 652.0 * size)}
+    for g in idlers:
+        draws[f"errors.{g}.installation.amount [um]"] = (0.0, 40.0)
+        draws[f"errors.{g}.installation.direction [deg]"] = (0.0, 360.0)
+    return Case(data, name=f"branches-{size}"), draws
 
 
 def _law(stiffness: str) -> dict[str, str]:

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
-from typing import Any
+from dataclasses import asdict, dataclass, field, replace
+from functools import partial
+from typing import Any, TypeVar
 
 import numpy as np
 
 import loadshare as ls
 from benchmarks.peers import PEERS, Entry
+from benchmarks.peers.clock import Clock
 from benchmarks.peers.form import Form, form_of
 from benchmarks.peers.loop import Claim, Failure
 from benchmarks.reference import NoReference, Reference, reference
@@ -22,14 +25,16 @@ from loadshare.scene import assemble
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium
 
-OURS_BATCH, OURS_NUMPY, OURS_SOLVE = "ours, batch", "ours, batch (NumPy)", "ours, solve"
-OURS = (OURS_BATCH, OURS_NUMPY, OURS_SOLVE)
+OURS_BATCH, OURS_NUMPY = "ours, batch", "ours, batch (NumPy)"
+OURS_NEW, OURS_SOLVE = "ours, solve (new case)", "ours, solve (again)"
+OURS = (OURS_BATCH, OURS_NUMPY, OURS_NEW, OURS_SOLVE)
 PATIENCE = 12.0
 """Seconds that one method at one tolerance may take on a workload; then it has had its samples."""
 RUNS = 3
 """Runs of a batch, of which the median counts."""
 
 Tell = Callable[[str], None]
+Answer = TypeVar("Answer")
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,8 +50,13 @@ class Measure:
         Samples that it was given and whose error is known.
     answered, certified : int
         Of these: answers it claims, and answers that pass the certificate at 1e-9.
-    microseconds : float
-        Median time of an answer [µs]; of a batch, its time over its samples.
+    microseconds, cpu : float
+        Median time of an answer, elapsed and of the processor [µs]; of a batch, its time over its
+        samples.
+    inside, inside_cpu : float
+        Of these the time inside the peer's compiled calls [µs]; NaN for what has none of its own.
+    reported : float
+        Time that the peer's solver reports of itself [µs], which may leave updates of its data out.
     median, worst : float
         Relative error of its answers.
     setup : float
@@ -62,6 +72,10 @@ class Measure:
     answered: int
     certified: int
     microseconds: float
+    cpu: float
+    inside: float
+    inside_cpu: float
+    reported: float
     median: float
     worst: float
     setup: float
@@ -82,7 +96,9 @@ class Sample:
         Among the workload's samples; those without a reference are left out.
     case : Case
     train : Train
-    form : Form
+    form, reduced : Form
+        Whole, and with those contacts only that act in the answer of some sample: a better
+        reduction than can be had before all answers are known.
     truth : Reference
     """
 
@@ -90,12 +106,51 @@ class Sample:
     case: Case
     train: Train
     form: Form
+    reduced: Form
     truth: Reference
+
+
+@dataclass(slots=True)
+class Times:
+    """Times of answers [s], one of each kind per answer."""
+
+    wall: list[float] = field(default_factory=list)
+    cpu: list[float] = field(default_factory=list)
+    inside: list[float] = field(default_factory=list)
+    inside_cpu: list[float] = field(default_factory=list)
+    reported: list[float] = field(default_factory=list)
+
+    def take(
+        self, work: Callable[[], Answer], shared: int = 1, clock: Clock | None = None
+    ) -> Answer:
+        """Time some work that answers so many samples at once; what fails is not counted."""
+        if clock is not None:
+            clock.reset()
+        cpu, wall = time.process_time(), time.perf_counter()
+        found = work()
+        wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+        self.wall.append(wall / shared)
+        self.cpu.append(cpu / shared)
+        if clock is not None:
+            self.inside.append(1e-9 * clock.wall / shared)
+            self.inside_cpu.append(1e-9 * clock.cpu / shared)
+            if clock.reported > 0.0:
+                self.reported.append(clock.reported / shared)
+        return found
+
+    def microseconds(self) -> dict[str, float]:
+        """Medians [µs], under the names that they have in `Measure`."""
+        kinds = ("wall", "cpu", "inside", "inside_cpu", "reported")
+        medians = {
+            k: 1e6 * float(np.median(v)) if (v := getattr(self, k)) else math.nan for k in kinds
+        }
+        return {"microseconds": medians.pop("wall"), **medians}
 
 
 def prepare(workload: Workload) -> list[Sample]:
     """Build the samples that peers are given, with their references."""
     samples: list[Sample] = []
+    acting: set[str] = set()
     for number, case in enumerate(workload.cases(workload.peers)):
         train = build_train(case)
         like = samples[0].form if samples else None
@@ -107,8 +162,12 @@ def prepare(workload: Workload) -> list[Sample]:
             truth = reference(train, 1, hint)
         except NoReference:
             continue
-        samples.append(Sample(number, case, train, form_of(assemble(train, 1), like), truth))
-    return samples
+        if hint is not None:
+            for forces in (hint.flank_force, hint.ring_force):
+                acting |= {name for name, force in forces.items() if force > 0.0}
+        form = form_of(assemble(train, 1), like)
+        samples.append(Sample(number, case, train, form, form, truth))
+    return [replace(s, reduced=s.form.only(acting)) for s in samples]
 
 
 def error_of(sample: Sample, torque: dict[str, float], moved: dict[str, np.ndarray]) -> float:
@@ -162,17 +221,17 @@ def measure(
                 continue
             found += [_peer(workload, samples, entry, t) for t in entry.tolerances]
     for k, first in enumerate(found):
-        if first.method in (OURS_BATCH, OURS_SOLVE) and len(found) > 1:
+        if first.method in (OURS_BATCH, OURS_NEW, OURS_SOLVE) and len(found) > 1:
             tell(f"{workload.title}: {first.method}, once more")
             second = _own(workload, samples, first.method)
-            both = 0.5 * (first.microseconds + second.microseconds)
-            found[k] = replace(first, microseconds=both)
+            wall = 0.5 * (first.microseconds + second.microseconds)
+            found[k] = replace(first, microseconds=wall, cpu=0.5 * (first.cpu + second.cpu))
     return found
 
 
 def _own(workload: Workload, samples: Sequence[Sample], name: str) -> Measure:
-    if name == OURS_SOLVE:
-        return _single(workload, samples)
+    if name in (OURS_NEW, OURS_SOLVE):
+        return _single(workload, samples, name)
     return _batch(workload, samples, name)
 
 
@@ -183,7 +242,7 @@ def _summary(
     asked: int,
     errors: list[float],
     certified: int,
-    times: Sequence[float],
+    times: Times,
     setup: float,
     failure: str,
 ) -> Measure:
@@ -194,7 +253,7 @@ def _summary(
         samples=asked,
         answered=len(errors),
         certified=certified,
-        microseconds=1e6 * float(np.median(times)) if len(times) else float("nan"),
+        **times.microseconds(),
         median=float(np.median(errors)) if errors else float("nan"),
         worst=max(errors, default=float("nan")),
         setup=1e3 * setup,
@@ -207,20 +266,25 @@ def _batch(workload: Workload, samples: Sequence[Sample], method: str) -> Measur
     engine = "vectorised" if method == OURS_NUMPY else "compiled"
     keep = ("torque", "displacement")
 
-    def solve(count: int) -> tuple[Any, float]:
-        some = workload.some(count)
-        begun = time.perf_counter()
-        found = ls.solve_many(workload.case, some, keep=keep, engine=engine, workers=1)
-        return found, time.perf_counter() - begun
+    def solve(count: int, times: Times | None = None) -> tuple[Any, float]:
+        some, times = workload.some(count), times or Times()
+        answers = times.take(
+            lambda: ls.solve_many(workload.case, some, keep=keep, engine=engine, workers=1),
+            count * positions,
+        )
+        return answers, times.wall[-1] * count * positions
 
+    positions = build_train(workload.case).count
     _, setup = solve(min(16, workload.count))
     needed = samples[-1].number + 1
     _, seconds = solve(needed)
     count = int(min(workload.count, max(needed, PATIENCE * needed / max(seconds, 1e-6))))
     solve(count)
-    answers, seconds = solve(count)
-    times = [seconds, *(solve(count)[1] for _ in range(RUNS - 1) if seconds < PATIENCE)]
-    each = float(np.median(times)) / answers.certified.size
+    times = Times()
+    answers, seconds = solve(count, times)
+    for _ in range(RUNS - 1):
+        if seconds < PATIENCE:
+            solve(count, times)
     errors = []
     meshes, gears = [str(m) for m in answers.mesh.values], [str(g) for g in answers.gear.values]
     for sample in samples:
@@ -233,68 +297,74 @@ def _batch(workload: Workload, samples: Sequence[Sample], method: str) -> Measur
     every = answers.certified.size
     refused = "" if total == every else f"{every - total} of {every} refused"
     return _summary(
-        workload, method, None, len(samples), errors, len(errors), [each], setup, refused
+        workload, method, None, len(samples), errors, len(errors), times, setup, refused
     )
 
 
-def _single(workload: Workload, samples: Sequence[Sample]) -> Measure:
-    """`loadshare.solve` of a case at all its positions, the second time it is asked."""
-    errors, times, failure = [], [], ""
-    begun = time.perf_counter()
-    ls.solve(samples[0].case, engine="compiled")
-    setup = time.perf_counter() - begun
+def _single(workload: Workload, samples: Sequence[Sample], name: str) -> Measure:
+    """`loadshare.solve` at all positions: of a case never seen, or of one solved just before.
+
+    A case is never seen if no such object was solved or built into a train before; what was learnt
+    of cases with other numbers is known.
+    """
+    errors, times, failure = [], Times(), ""
+    setup = Times()
+    setup.take(lambda: ls.solve(samples[0].case, engine="compiled"))
     for sample in samples:
+        case = (
+            Case(sample.case.to_dict(), name=sample.case.name) if name == OURS_NEW else sample.case
+        )
         try:
-            ls.solve(sample.case, engine="compiled")
-            begun = time.perf_counter()
-            result = ls.solve(sample.case, engine="compiled")
+            if name == OURS_SOLVE:
+                ls.solve(case, engine="compiled")
+            result = times.take(
+                partial(ls.solve, case, engine="compiled"), build_train(sample.case).count
+            )
         except ls.Refused as refused:
             failure = failure or str(refused)
             continue
-        times.append((time.perf_counter() - begun) / len(result.positions))
         position = result.positions[0]
         moved = {g: np.array(p) for g, p in position.displacement.items()}
         errors.append(error_of(sample, dict(position.torque), moved))
     return _summary(
-        workload, OURS_SOLVE, None, len(samples), errors, len(errors), times, setup, failure
+        workload, name, None, len(samples), errors, len(errors), times, setup.wall[0], failure
     )
 
 
 def _peer(workload: Workload, samples: Sequence[Sample], entry: Entry, tolerance: float) -> Measure:
+    forms = [s.reduced if entry.reduced else s.form for s in samples]
     begun = time.perf_counter()
     peer = entry.make(tolerance)
-    peer.prepare(samples[0].form)
+    errors: list[float] = []
+    times = Times()
+    certified, asked, failure = 0, 0, ""
+    clock: Clock | None = getattr(peer, "clock", None)
+    claims: list[Claim | Failure] = []
+    try:
+        peer.prepare(forms[0])
+    except Failure as said:
+        claims = [said] * len(forms)
     setup = time.perf_counter() - begun
     with suppress(Failure):
-        peer.solve(samples[0].form)
-    errors: list[float] = []
-    times: list[float] = []
-    certified, asked, failure = 0, 0, ""
+        peer.solve(forms[0])
     started = time.perf_counter()
-    if hasattr(peer, "solve_many"):
-        forms = [s.form for s in samples]
+    if not claims and hasattr(peer, "solve_many"):
         peer.solve_many(forms)
-        begun = time.perf_counter()
-        claims: list[Claim | Failure] = peer.solve_many(forms)
-        times = [(time.perf_counter() - begun) / len(forms)]
-    else:
-        claims = []
-        for sample in samples:
+        claims = times.take(partial(peer.solve_many, forms), len(forms), clock)
+    elif not claims:
+        for form in forms:
             if time.perf_counter() - started > PATIENCE:
                 break
-            begun = time.perf_counter()
             try:
-                claim: Claim | Failure = peer.solve(sample.form)
-                times.append(time.perf_counter() - begun)
+                claims.append(times.take(partial(peer.solve, form), 1, clock))
             except Failure as said:
-                claim = said
-            claims.append(claim)
-    for sample, claim in zip(samples, claims, strict=False):
+                claims.append(said)
+    for sample, form, claim in zip(samples, forms, claims, strict=False):
         asked += 1
         if isinstance(claim, Failure):
             failure = failure or str(claim)
             continue
-        found = sample.form.equilibrium(claim.x, claim.forces, claim.pulls)
+        found = form.equilibrium(claim.x, claim.forces, claim.pulls)
         certified += certify(sample.train, found).passed
         errors.append(error_of(sample, *claimed(sample.train, found)))
     return _summary(

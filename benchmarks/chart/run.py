@@ -14,9 +14,15 @@ from benchmarks.chart.report import speed_report
 from benchmarks.documents import read_figures, write_figures
 from benchmarks.machine_facts import facts
 from benchmarks.peers import PEERS
-from benchmarks.workloads import branches, workloads
+from benchmarks.workloads import branches, linear_branches, workloads
 
-SCALED = (OURS_BATCH, "Clarabel, update", "DAQP")
+SCALED = (
+    OURS_BATCH,
+    "Clarabel, update",
+    "Clarabel, update, reduced",
+    "DAQP",
+    "DAQP, reduced",
+)
 """Methods on 4 to 64 branches."""
 FIGURES = "speed.json"
 
@@ -35,7 +41,7 @@ def measure_all(cases: Path, quick: bool, tell: Callable[[str], None]) -> dict[s
     """
     begun = time.perf_counter()
     found: list[Measure] = []
-    loads = workloads(cases, quick)
+    loads = [*workloads(cases, quick), linear_branches(quick)]
     for workload in loads:
         tell(f"{workload.title}: references in 50 digits")
         found += measure(workload, (*OURS, *PEERS), tell, prepare(workload))
@@ -89,7 +95,16 @@ def publish(figures: Mapping[str, Any], folder: Path) -> list[Path]:
 
 
 def _measure(plain: Mapping[str, Any]) -> Measure:
-    numbers = ("microseconds", "median", "worst", "setup")
+    numbers = (
+        "microseconds",
+        "cpu",
+        "inside",
+        "inside_cpu",
+        "reported",
+        "median",
+        "worst",
+        "setup",
+    )
     filled: dict[str, Any] = {
         k: float("nan") if k in numbers and v is None else v for k, v in plain.items()
     }

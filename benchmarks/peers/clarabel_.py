@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.peers.clock import Clock
 from benchmarks.peers.form import Array, Form
 from benchmarks.peers.layout import Layout
 from benchmarks.peers.loop import Claim, Failure, settle
@@ -30,6 +31,7 @@ class Clarabel:
 
     def __init__(self, tolerance: float, update: bool, method: str = "newton") -> None:
         self.tolerance, self.update, self.method = tolerance, update, method
+        self.clock = Clock()
         self._solver: Any = None
         self._layout: Layout | None = None
 
@@ -60,14 +62,13 @@ class Clarabel:
         sizes = [(clarabel.ZeroConeT, layout.equal), (clarabel.NonnegativeConeT, layout.below)]
         cones = [kind(size) for kind, size in sizes if size]
         cones += [clarabel.SecondOrderConeT(3)] * layout.discs
-        self._solver = clarabel.DefaultSolver(
+        data = (
             csc_matrix(np.triu(layout.quadratic(form, laws))),
             layout.linear(form, laws),
             layout.sparse(layout.values(rows, compliance)),
             layout.bounds(form, gaps, laws),
-            cones,
-            settings,
         )
+        self._solver = self.clock.call(clarabel.DefaultSolver, *data, cones, settings)
         return self._solver
 
     def _inner(
@@ -76,16 +77,18 @@ class Clarabel:
         layout = self._layout
         if layout is None or not layout.fits(laws):
             layout = self._layout = Layout(form, laws)
-            answer = self._new(form, rows, gaps, compliance, laws).solve()
+            self._new(form, rows, gaps, compliance, laws)
         elif self.update:
-            self._solver.update(
-                q=layout.linear(form, laws),
-                A=layout.values(rows, compliance),
-                b=layout.bounds(form, gaps, laws),
-            )
-            answer = self._solver.solve()
+            data = {
+                "q": layout.linear(form, laws),
+                "A": layout.values(rows, compliance),
+                "b": layout.bounds(form, gaps, laws),
+            }
+            self.clock.call(self._solver.update, **data)
         else:
-            answer = self._new(form, rows, gaps, compliance, laws).solve()
+            self._new(form, rows, gaps, compliance, laws)
+        answer = self.clock.call(self._solver.solve)
+        self.clock.report(answer.solve_time)
         if str(answer.status) not in ("Solved", "AlmostSolved"):
             raise Failure(f"Clarabel: {answer.status}")
         return layout.claim(np.array(answer.x), np.array(answer.z))

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.peers.clock import Clock
 from benchmarks.peers.form import Array, Form
 from benchmarks.peers.loop import Claim, Failure, NotForThis, settle
 from loadshare.contact.radial import RadialLaw
@@ -29,6 +30,7 @@ class Daqp:
 
     def __init__(self, tolerance: float) -> None:
         self.tolerance = tolerance
+        self.clock = Clock()
         self._model: Any = None
 
     def prepare(self, form: Form) -> None:
@@ -90,8 +92,9 @@ class Daqp:
         matrix = self._flexible + np.diag(compliance) if form.curved else None
         ties = self._ties.T.copy() if len(form.arcs.rows) else None
         linear = self._linear(form, gaps)
-        self._model.update(matrix, linear, ties, upper, lower)
-        forces, _, flag, info = self._model.solve()
+        self.clock.call(self._model.update, matrix, linear, ties, upper, lower)
+        forces, _, flag, info = self.clock.call(self._model.solve)
+        self.clock.report(info["solve_time"])
         if flag < 1:
             raise Failure(f"DAQP: exit flag {flag}")
         forces = np.asarray(forces)

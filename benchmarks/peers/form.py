@@ -7,8 +7,8 @@ return is turned back into an equilibrium of the train, and judged like any answ
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -142,6 +142,23 @@ class Form:
                 self.force, self.length
             )
             for g in self.graphs
+        )
+
+    def only(self, names: Collection[str]) -> Form:
+        """Return the same with some of the rows."""
+        kept = np.array([k for k, n in enumerate(self.names) if n in names], dtype=np.intp)
+        arcs = np.isin(self.arcs.rows, kept)
+        some = {
+            f.name: getattr(self.arcs, f.name)[arcs] for f in fields(self.arcs) if f.name != "rows"
+        }
+        return replace(
+            self,
+            names=tuple(self.names[k] for k in kept),
+            arcs=Arcs(rows=np.searchsorted(kept, self.arcs.rows[arcs]), **some),
+            **{
+                name: getattr(self, name)[kept]
+                for name in ("rows", "gaps", "linear", "hertz", "driven", "norms")
+            },
         )
 
     def equilibrium(self, x: Array, forces: Array, pulls: Sequence[Array]) -> Equilibrium:

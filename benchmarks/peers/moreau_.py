@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.peers.clock import Clock
 from benchmarks.peers.form import Array, Form
 from benchmarks.peers.layout import Layout
 from benchmarks.peers.loop import (
@@ -27,6 +28,7 @@ class Moreau:
     def __init__(self, tolerance: float) -> None:
         self.tolerance = tolerance
         self._layout: Layout | None = None
+        self.clock = Clock()
         self._solvers: dict[int, Any] = {}
 
     def prepare(self, form: Form) -> None:
@@ -108,12 +110,13 @@ class Moreau:
                 # Radial laws with different pieces make no batch.
                 return [self._alone(form) for form in forms]
             values = [layout.matrix(u[0], u[2])[self._places] for u in used]
-            solver.setup([self._quadratic] * len(forms), values)
+            self.clock.call(solver.setup, [self._quadratic] * len(forms), values)
             pairs = list(zip(forms, used, strict=True))
-            answer = solver.solve(
+            data = (
                 [layout.linear(f, u[4]) for f, u in pairs],
                 [layout.bounds(f, u[1] + u[3], u[4]) for f, u in pairs],
             )
+            answer = self.clock.call(solver.solve, *data)
             for k in sorted(going):
                 status = solver.info.status[k]
                 if "Solved" not in str(status.name if hasattr(status, "name") else status):

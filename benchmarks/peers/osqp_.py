@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.peers.clock import Clock
 from benchmarks.peers.form import Array, Form
 from benchmarks.peers.layout import Layout
 from benchmarks.peers.loop import Claim, Failure, NotForThis, settle
@@ -18,6 +19,7 @@ class Osqp:
 
     def __init__(self, tolerance: float) -> None:
         self.tolerance = tolerance
+        self.clock = Clock()
         self._solver: Any = None
         self._layout: Layout | None = None
 
@@ -52,10 +54,12 @@ class Osqp:
     ) -> Claim:
         layout = self._layout
         assert layout is not None
+        data = {"q": layout.linear(form, ()), "u": layout.bounds(form, gaps, ())}
         if form.curved:
-            self._solver.update(Ax=layout.values(rows, compliance))
-        self._solver.update(q=layout.linear(form, ()), u=layout.bounds(form, gaps, ()))
-        answer = self._solver.solve(raise_error=False)
+            self.clock.call(self._solver.update, Ax=layout.values(rows, compliance))
+        self.clock.call(self._solver.update, **data)
+        answer = self.clock.call(self._solver.solve, raise_error=False)
+        self.clock.report(answer.info.run_time)
         if answer.info.status not in ("solved", "solved inaccurate"):
             raise Failure(f"OSQP: {answer.info.status}")
         return layout.claim(np.asarray(answer.x), np.asarray(answer.y))

@@ -12,7 +12,11 @@ from benchmarks.peers.loop import Claim
 
 
 class Peer(Protocol):
-    """A way to solve the common problem."""
+    """A way to solve the common problem.
+
+    One that spends its time in compiled calls has an attribute `clock` besides, which knows how
+    much of it.
+    """
 
     def prepare(self, form: Form) -> None:
         """Do once what can be done once for all samples like this one."""
@@ -46,6 +50,8 @@ class Entry:
         How it is used.
     slow : bool
         Takes milliseconds: fewer samples.
+    reduced : bool
+        Is given only those contacts that act in some answer of the workload.
     """
 
     name: str
@@ -55,6 +61,7 @@ class Entry:
     kinds: frozenset[str]
     note: str
     slow: bool = False
+    reduced: bool = False
 
     @property
     def missing(self) -> bool:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.peers.clock import Clock
 from benchmarks.peers.form import Array, Form
 from benchmarks.peers.layout import Layout
 from benchmarks.peers.loop import Claim, Failure, NotForThis, settle
@@ -21,6 +22,7 @@ class Piqp:
 
     def __init__(self, tolerance: float) -> None:
         self.tolerance = tolerance
+        self.clock = Clock()
         self._solver: Any = None
         self._layout: Layout | None = None
         self._dense = True
@@ -69,11 +71,12 @@ class Piqp:
         changed = {"c": layout.linear(form, ()), "h_u": layout.bounds(form, gaps, ())}
         if form.curved:
             changed["G"] = self._rows(rows, compliance)
-        self._solver.update(**changed)
-        status = self._solver.solve()
+        self.clock.call(self._solver.update, **changed)
+        status = self.clock.call(self._solver.solve)
         if "SOLVED" not in str(status) or "UNSOLVED" in str(status):
             raise Failure(f"PIQP: {str(status).removeprefix('Status.')}")
         result = self._solver.result
+        self.clock.report(result.info.run_time)
         return layout.claim(np.array(result.x), np.array(result.z_u))
 
 

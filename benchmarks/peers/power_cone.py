@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from benchmarks.peers.clock import Clock
 from benchmarks.peers.form import Array, Form
 from benchmarks.peers.loop import Claim, Failure, settle
 from loadshare.contact.backends.clarabel_ import cones_of
@@ -19,6 +20,7 @@ class PowerCone:
 
     def __init__(self, tolerance: float) -> None:
         self.tolerance = tolerance
+        self.clock = Clock()
 
     def prepare(self, form: Form) -> None:
         """Nothing is kept."""
@@ -52,9 +54,10 @@ class PowerCone:
         settings.verbose = settings.presolve_enable = False
         settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = self.tolerance
         settings.max_iter = 200
-        answer = clarabel.DefaultSolver(
-            written.quadratic, written.linear, written.matrix, written.bounds, cones, settings
-        ).solve()
+        data = written.quadratic, written.linear, written.matrix, written.bounds
+        solver = self.clock.call(clarabel.DefaultSolver, *data, cones, settings)
+        answer = self.clock.call(solver.solve)
+        self.clock.report(answer.solve_time)
         if str(answer.status) not in ("Solved", "AlmostSolved"):
             raise Failure(f"Clarabel: {answer.status}")
         point = written.point(np.array(answer.x), np.array(answer.z))

@@ -75,7 +75,8 @@ def test_the_map_of_one_family_is_written_and_drawn_again(run, tmp_path):
 
 def test_charts_are_drawn_from_figures(tmp_path):
     def one(workload, method, tolerance, us, worst):
-        return Measure(workload, method, tolerance, 8, 8, 8, us, worst / 10, worst, 1.0, "")
+        times = (us, us, us / 2, us / 2, us / 3)
+        return Measure(workload, method, tolerance, 8, 8, 8, *times, worst / 10, worst, 1.0, "")
 
     measures = [one("law", "ours, batch", None, 5.0, 1e-13), one("law", "DAQP", 1e-9, 900.0, 1e-9)]
     for file in draw_precision(measures, {"law": "b + c law"}, tmp_path):

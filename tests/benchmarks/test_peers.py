@@ -9,6 +9,7 @@ import pytest
 from tests.support import shipped
 
 import loadshare as ls
+from benchmarks.chart.measure import Times
 from benchmarks.peers import PEERS
 from benchmarks.peers.form import form_of
 from benchmarks.peers.loop import Failure, force_of
@@ -51,7 +52,7 @@ def test_a_peer_finds_the_certified_answer(entry, name):
     peer.prepare(form)
     claim = peer.solve(form)
     found = form.equilibrium(claim.x, claim.forces, claim.pulls)
-    limit = {"DAQP": EXACT, "moreau": BATCHED}.get(entry.name, INTERIOR)
+    limit = {"DAQP": EXACT, "DAQP, reduced": EXACT, "moreau": BATCHED}.get(entry.name, INTERIOR)
     # A peer's answer is in balance to its own tolerance; its torques are not proved so closely.
     certificate = certify(train, found, min(limit, CERTIFY.largest))
     assert certificate.worst <= limit, certificate.residuals
@@ -78,3 +79,32 @@ def test_a_missing_peer_is_known_to_be_missing():
     from dataclasses import replace
 
     assert replace(PEERS["DAQP"], package="no_such_package").missing
+
+
+def test_time_inside_the_calls_of_a_peer_is_part_of_all_its_time():
+    entry, form = PEERS["DAQP"], form_of(assemble(build_train(b_and_c_with_errors()), 1))
+    if entry.missing:
+        pytest.skip(f"{entry.package} is not installed")
+    peer, times = entry.make(1e-9), Times()
+    peer.prepare(form)
+    for _ in range(5):
+        times.take(lambda: peer.solve(form), 1, peer.clock)
+    assert all(0.0 < i < w for i, w in zip(times.inside, times.wall, strict=True))
+    assert all(0.0 < r < i for r, i in zip(times.reported, times.inside, strict=True))
+
+
+def test_a_reduced_problem_has_the_same_answer():
+    train = build_train(shipped("fgfbstts/both_errors"))
+    form = form_of(assemble(train, 1))
+    forces = ls.explain(shipped("fgfbstts/both_errors"), 1).equilibrium
+    acting = {n for f in (forces.flank_force, forces.ring_force) for n, v in f.items() if v > 0.0}
+    reduced = form.only(acting)
+    assert set(reduced.names) == acting
+    for name in ("DAQP", "DAQP, reduced"):
+        if PEERS[name].missing:
+            pytest.skip(f"{PEERS[name].package} is not installed")
+        peer = PEERS[name].make(1e-12)
+        peer.prepare(reduced)
+        claim = peer.solve(reduced)
+        found = reduced.equilibrium(claim.x, claim.forces, claim.pulls)
+        assert certify(train, found, EXACT).worst <= EXACT
