@@ -27,7 +27,7 @@ from loadshare.tooth.analysis.ltca import (
     POINTS,
     Model,
     PairCompliance,
-    contact_problem,
+    contact_problems,
     ltca,
     pair_compliance,
 )
@@ -146,7 +146,7 @@ def compare_programmes(pair: HelicoidPair) -> None:
     rows: list[list[str]] = []
     for points in (16, 32, 64):
         position = pair.positions([0.0], points)[0]
-        rows += programme_rows(contact_problem(pair, position, compliance), pair)
+        rows += programme_rows(contact_problems(pair, [position], compliance)[0], pair)
     table(("points", "method", "time [ms]", "worst residual"), rows)
 
 

@@ -17,7 +17,7 @@ from loadshare.tooth.analysis.fit import FIT_LOADS
 from loadshare.tooth.analysis.ltca import (
     Model,
     PairCompliance,
-    contact_problem,
+    contact_problems,
     ltca,
     pair_compliance,
 )
@@ -69,7 +69,7 @@ def single_stiffness(model: Model | None, bore: float | None) -> float:
     compliance, load, found = compliances(gears, model), LINE_LOAD * 0.1, []
     for position in gears.positions([k / 10.0 for k in range(10)], 32):
         for line in position.lines:
-            alone = contact_problem(gears, replace(position, lines=(line,)), compliance)
+            alone = contact_problems(gears, [replace(position, lines=(line,))], compliance)[0]
             found.append(load / solve_contact(alone, load).approach / 0.1 * 1e-9)
     return max(found) * math.cos(HELIX)
 

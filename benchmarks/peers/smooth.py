@@ -62,7 +62,9 @@ class Smooth:
         for graph, law in zip(self.form.graphs, self.laws, strict=True):
             q = graph.matrix @ x - graph.centre
             radius = float(np.linalg.norm(q))
-            low, _ = law.interval(min(radius, law.reach))
+            at = min(radius, law.reach)
+            on = (p for p in law.parts() if p.begin <= at <= p.end)
+            low = min(p.low + p.slope * (at - p.begin) for p in on)
             found.append(q / radius * low if radius > 0.0 else np.zeros(2))
         return found
 

@@ -416,10 +416,10 @@ def moment_balance(state: ClaimedState) -> dict[str, float]:
     """Unbalanced moment over base radius [N] on gears that turn as one, by one of them."""
     train = state.train
     unbalanced = {}
-    for group in state.rigid.groups:
+    for group in state.rigid.paths:
         if not set(train.held) & set(group):
             radius = max(train.gears[g].base_radius for g in group)
-            unbalanced[group[0]] = abs(math.fsum(state.moment[g] for g in group)) / radius
+            unbalanced[next(iter(group))] = abs(math.fsum(state.moment[g] for g in group)) / radius
     return unbalanced
 
 
@@ -490,7 +490,7 @@ def cone_membership(state: ClaimedState, band: float) -> dict[str, float]:
     for pull in state.pulls:
         radius = float(np.linalg.norm(pull.offset))
         size = float(np.linalg.norm(pull.reaction))
-        low, high = pull.law.interval(radius, band)
+        low, high = interval(pull.law, radius, band)
         along = size
         # Within the band it has no direction; along its axis it never pulls.
         frame = state.train.gears[pull.gear].frame
@@ -534,7 +534,7 @@ def energy_gap(state: ClaimedState) -> dict[str, float]:
         # What exceeds a graph's strength is for cone membership to judge.
         size = min(float(np.linalg.norm(pull.reaction)), pull.law.strength)
         primal.append(pull.law.energy(float(np.linalg.norm(pull.offset))))
-        dual += [-pull.law.complementary(size), float(pull.reaction @ pull.centre)]
+        dual += [-complementary(pull.law, size), float(pull.reaction @ pull.centre)]
     forces = [abs(p.force) for p in state.pushes]
     forces += [float(np.linalg.norm(p.reaction)) for p in state.pulls]
     rounding = ROUNDED * math.fsum(map(abs, (*primal, *dual))) + state.resolution * math.fsum(
@@ -617,3 +617,43 @@ UNITS = {
     "energy_gap": "J",
 }
 """The residuals and their units."""
+
+
+def interval(law: RadialLaw, radius: float, band: float = 0.0) -> tuple[float, float]:
+    """Forces [N] that the graph admits within `band` [m] about `radius` [m].
+
+    So an answer that stands on a corner up to round-off is judged by the whole step, and on a
+    steep piece by its place rather than by the force that round-off of the place makes of it.
+    """
+    low, high = math.inf, 0.0
+    begin = 0.0
+    for piece in law.pieces:
+        end = begin + piece.length
+        if begin - band <= radius <= end + band:
+            slope = piece.stiffness
+            for place in (radius - band, radius + band):
+                inner = min(max(place, begin), end) - begin
+                here = piece.force + (slope * inner if slope else 0.0)
+                low, high = min(low, here), max(high, here)
+        begin = end
+    if radius <= band:
+        low = 0.0
+    if radius >= begin - band:
+        low, high = min(low, law.pieces[-1].end_force), math.inf
+    return low, high
+
+
+def complementary(law: RadialLaw, force: float) -> float:
+    """Conjugate energy sup_R (F R − W(R)) [J], exact for every piece."""
+    total = 0.0
+    for piece in law.pieces:
+        over = force - piece.force
+        if over <= 0.0:
+            continue
+        if piece.stiffness > 0.0 and over <= piece.stiffness * piece.length:
+            total += over**2 / (2.0 * piece.stiffness)
+        elif math.isinf(piece.length):
+            return math.inf
+        else:
+            total += over * piece.length - 0.5 * piece.stiffness * piece.length**2
+    return total

@@ -11,7 +11,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.settings import LAWS
+
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 
 class Graph(NamedTuple):
@@ -55,6 +58,35 @@ def wall(reach: Array, stiffness: Array, power: Array, radius: Array) -> tuple[A
     gap = np.where(bent, np.maximum(radius - reach, least), 1.0)
     begin = np.where(bent, reach + gap * (1.0 - 1.0 / power), reach)
     return begin, np.where(bent, power * stiffness * gap ** (power - 1.0), stiffness)
+
+
+def spline_graphs(numbers: Array, torque: Array, *, memory: bool) -> tuple[list[Graph], Flags]:
+    """Graphs of splines that transmit torques [N·m], and whether one has none.
+
+    With memory those of friction and of the stop at the end of the slip; there is then no step
+    where a spline starts to slip.
+
+    Parameters
+    ----------
+    numbers : ndarray, shape (5, …)
+        As `Situations` has them.
+    torque : ndarray, shape (…)
+    memory : bool
+    """
+    stiffness, given, reach, fixed, per_torque = numbers
+    bound = np.where(np.isnan(fixed), per_torque * np.abs(torque), fixed)
+    continuous, free = bound / stiffness, np.isnan(given)
+    stick = np.fmin(given, continuous)
+    lawless = stiffness * given > bound * (1.0 + LAWS.written)
+    lawless |= ~free & (reach < stick)
+    if not memory:
+        stick = np.where((reach < stick) & free, np.inf, stick)
+        return [Graph(stiffness, stick, bound, reach, stiffness)], lawless
+    lawless |= stiffness * given < bound * (1.0 - LAWS.written)
+    zero, endless = np.zeros_like(bound), np.full_like(bound, np.inf)
+    room = np.maximum(reach - continuous, 0.0)
+    friction = Graph(zero, zero, bound, endless, endless)
+    return [friction, Graph(zero, zero, zero, room, endless)], lawless
 
 
 def interval(graph: Graph, radius: Array, band: Array) -> tuple[Array, Array]:

@@ -82,7 +82,7 @@ class Mechanics:
         gears = list(train.gears.values())
         self.order = {g.name: k for k, g in enumerate(gears)}
         self.radius = np.array([g.base_radius for g in gears])
-        self.moving = np.flatnonzero([g.moves for g in gears])
+        self.moving: Numbers = np.flatnonzero([g.moves for g in gears])
         self.frames = np.array([g.frame for g in gears if g.moves]).reshape(-1, 2, 3)
         self._put_flanks()
         self._put_shafts()
@@ -130,9 +130,9 @@ class Mechanics:
     def _put_shafts(self) -> None:
         train, order = self.train, self.order
         rigid, shafts = rigid_shafts(train), list(train.shafts.values())
-        self.groups = [[order[g] for g in group] for group in rigid.groups]
+        self.groups = [[order[g] for g in group] for group in rigid.paths]
         self.shaft = _pairs([(order[s.first], order[s.second]) for s in shafts])
-        self.elastic = np.flatnonzero([not math.isinf(s.stiffness) for s in shafts])
+        self.elastic: Numbers = np.flatnonzero([not math.isinf(s.stiffness) for s in shafts])
         self.beyond = np.zeros((len(shafts), len(order)))
         for w, shaft in enumerate(shafts):
             for gear, sign in rigid.beyond.get(shaft.name, {}).items():

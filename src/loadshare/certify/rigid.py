@@ -14,8 +14,9 @@ class RigidShafts:
 
     Attributes
     ----------
-    groups : tuple of tuple of str
-        Gears that turn as one.
+    paths : tuple of mapping of gear to mapping of shaft to float
+        Gears that turn as one, each with the shafts that lead to it from the first one: +1 where
+        the way is from a shaft's second gear to its first, else −1.
     beyond : mapping of shaft to mapping of gear to float
         The gears beyond every rigid shaft, seen from a held gear (or any gear of a group
         without one). Their balance gives its torque from the first gear to the second, the sum of
@@ -23,14 +24,14 @@ class RigidShafts:
         of rigid ones carries none of its own.
     """
 
-    groups: tuple[tuple[str, ...], ...]
+    paths: tuple[dict[str, dict[str, float]], ...]
     beyond: dict[str, dict[str, float]]
 
 
 def rigid_shafts(train: Train) -> RigidShafts:
     """Walk along the rigid shafts of a train, from held gears and from every gear left."""
     rigid = [s for s in train.shafts.values() if math.isinf(s.stiffness)]
-    groups: dict[str, dict[str, dict[str, float]]] = {}
+    groups: list[dict[str, dict[str, float]]] = []
     reached: set[str] = set()
     for seed in (*train.held, *train.gears):
         if seed in reached:
@@ -45,11 +46,11 @@ def rigid_shafts(train: Train) -> RigidShafts:
                     if near == here and far not in between:
                         between[far] = between[here] | {shaft.name: sign}
                         queue.append(far)
-        groups[seed] = between
+        groups.append(between)
         reached |= between.keys()
     beyond: dict[str, dict[str, float]] = {shaft.name: {} for shaft in rigid}
-    for between in groups.values():
+    for between in groups:
         for gear, path in between.items():
             for name, sign in path.items():
                 beyond[name][gear] = sign
-    return RigidShafts(tuple(tuple(group) for group in groups.values()), beyond)
+    return RigidShafts(tuple(groups), beyond)

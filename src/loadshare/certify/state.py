@@ -11,10 +11,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.certify.graphs import Graph, wall
+from loadshare.certify.graphs import Graph, spline_graphs, wall
 from loadshare.certify.laws import area, interpolated, strain_energy
 from loadshare.certify.mechanics import Mechanics
-from loadshare.settings import CERTIFY, LAWS
+from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 
@@ -249,28 +249,11 @@ class ClaimedState:
 
     @cached_property
     def _spline_graphs(self) -> tuple[list[Graph], Flags]:
-        """Graphs of splines, and whether one has none.
-
-        With memory those of friction and of the stop at the end of the slip; there is then no step
-        where a spline starts to slip.
-        """
-        if not self.of.train.splines:
+        train = self.of.train
+        if not train.splines:
             return [], np.zeros((0, self.count), dtype=bool)
-        stiffness, given, reach, fixed, per_torque = self.here.spline.swapaxes(0, 1)
-        bound = np.where(np.isnan(fixed), per_torque * np.abs(self.transmitted), fixed)
-        continuous = bound / stiffness
-        free = np.isnan(given)
-        stick = np.where(free, continuous, np.minimum(given, continuous))
-        lawless = stiffness * given > bound * (1.0 + LAWS.written)
-        lawless |= ~free & (reach < stick)
-        if self.of.train.slip is None:
-            stick = np.where((reach < stick) & free, np.inf, stick)
-            return [Graph(stiffness, stick, bound, reach, stiffness)], lawless
-        lawless |= stiffness * given < bound * (1.0 - LAWS.written)
-        zero, endless = np.zeros_like(bound), np.full_like(bound, np.inf)
-        room = np.maximum(reach - continuous, 0.0)
-        friction = Graph(zero, zero, bound, endless, endless)
-        return [friction, Graph(zero, zero, zero, room, endless)], lawless
+        numbers = self.here.spline.swapaxes(0, 1)
+        return spline_graphs(numbers, self.transmitted, memory=train.slip is not None)
 
     @cached_property
     def transmitted(self) -> Array:

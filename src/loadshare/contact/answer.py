@@ -161,18 +161,8 @@ def _off_graph(offset: Array, pull: Array, law: RadialLaw, unit: float, length: 
     across = 0.0
     if size > 0.0 and radius > CONTACT.directed * length:
         across = float(np.linalg.norm(pull - size * offset / radius))
-    nearest = np.inf
-    for k, piece in enumerate(law.pieces):
-        start = law.start(k)
-        inner = min(max(radius - start, 0.0), piece.length)
-        force = piece.force + (piece.stiffness * inner if piece.stiffness else 0.0)
-        nearest = min(nearest, max(abs(radius - start - inner) / length, abs(size - force) / unit))
-    for k in range(len(law.pieces) + 1):
-        low, high = law.step(k)
-        if high > low and np.isfinite(start := law.start(k)):
-            force = min(max(size, low), high)
-            nearest = min(nearest, max(abs(radius - start) / length, abs(size - force) / unit))
-    return max(nearest, across / unit)
+    apart = (part.off(radius, size) for part in law.parts())
+    return max(min(max(abs(r) / length, abs(f) / unit) for r, f in apart), across / unit)
 
 
 def _answer(problem: ContactProblem, settled: Settled) -> ContactAnswer:

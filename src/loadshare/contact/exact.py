@@ -16,6 +16,7 @@ import numpy as np
 from loadshare.contact.findings import Work
 from loadshare.contact.kkt import solve_symmetric
 from loadshare.contact.programme import Array, Cone, Point, Programme
+from loadshare.contact.radial import nearest
 from loadshare.settings import CONTACT
 
 _NONE, _BOTH = np.zeros((0, 2)), np.eye(2)
@@ -66,28 +67,10 @@ def identify(programme: Programme, point: Point) -> ActiveSet:
     slack = programme.gaps + compressed - programme.rows @ point.x
     closed = programme.assumed_closed | (forces * (programme.linear + 1.0) > slack)
     graph_states = (
-        _nearest(cone, float(np.linalg.norm(cone.offset(point.x))), float(np.linalg.norm(force)))
+        GraphState(*nearest(cone.law.parts(), _size(cone.offset(point.x)), _size(force)))
         for cone, force in zip(programme.cones, point.cone_forces, strict=True)
     )
     return ActiveSet(tuple(bool(c) for c in closed), tuple(graph_states))
-
-
-def _nearest(cone: Cone, radius: float, force: float) -> GraphState:
-    """Place on the graph that is nearest to (radius, force)."""
-    law = cone.law
-    candidates = []
-    for k, piece in enumerate(law.pieces):
-        begin = law.start(k)
-        inner = min(max(radius - begin, 0.0), piece.length)
-        size = piece.force + (piece.stiffness * inner if piece.stiffness else 0.0)
-        distance = np.hypot(radius - begin - inner, force - size)
-        candidates.append((distance, GraphState(k)))
-    for k in range(len(law.pieces) + 1):
-        low, high = law.step(k)
-        if high > low:
-            distance = np.hypot(radius - law.start(k), force - min(max(force, low), high))
-            candidates.append((distance, GraphState(k, corner=True)))
-    return min(candidates, key=lambda c: float(c[0]))[1]
 
 
 def solve_exact(

@@ -8,8 +8,9 @@ pieces. Written so, its energy is an inf-convolution and every piece is one seco
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +47,40 @@ class Piece:
         return self.force if self.stiffness == 0.0 else self.force + self.stiffness * self.length
 
 
+class Part(NamedTuple):
+    """A piece of a graph, or a step between two.
+
+    Attributes
+    ----------
+    state : object
+        What an element is called that stands on it.
+    begin, end : float
+        Radii [m].
+    low, high : float
+        Forces at the first of them [N].
+    slope : float
+        [N/m].
+    """
+
+    state: Any
+    begin: float
+    end: float
+    low: float
+    high: float
+    slope: float
+
+    def off(self, radius: float, force: float) -> tuple[float, float]:
+        """How far a radius [m] and a force [N] are from it."""
+        inner = min(max(radius, self.begin), self.end)
+        rise = self.slope * (inner - self.begin) if self.slope else 0.0
+        return radius - inner, force - min(max(force, self.low + rise), self.high + rise)
+
+
+def nearest(parts: Iterable[Part], radius: float, force: float) -> Any:
+    """State of the part of a graph that is nearest to a radius and a force, both without units."""
+    return min(parts, key=lambda part: math.hypot(*part.off(radius, force))).state
+
+
 @dataclass(frozen=True, slots=True)
 class RadialLaw:
     """A monotone graph from radius [m] to force [N], as a chain of pieces.
@@ -76,28 +111,16 @@ class RadialLaw:
         high = self.pieces[corner].force if corner < len(self.pieces) else math.inf
         return low, high
 
-    def interval(self, radius: float, band: float = 0.0) -> tuple[float, float]:
-        """Forces [N] that the graph admits within `band` [m] about `radius` [m].
-
-        So an answer that stands on a corner up to round-off is judged by the whole step, and on a
-        steep piece by its place rather than by the force that round-off of the place makes of it.
-        """
-        low, high = math.inf, 0.0
-        begin = 0.0
-        for piece in self.pieces:
-            end = begin + piece.length
-            if begin - band <= radius <= end + band:
-                slope = piece.stiffness
-                for place in (radius - band, radius + band):
-                    inner = min(max(place, begin), end) - begin
-                    here = piece.force + (slope * inner if slope else 0.0)
-                    low, high = min(low, here), max(high, here)
-            begin = end
-        if radius <= band:
-            low = 0.0
-        if radius >= begin - band:
-            low, high = min(low, self.pieces[-1].end_force), math.inf
-        return low, high
+    def parts(self) -> Iterator[Part]:
+        """Yield the pieces, then the steps before and after them, each by number and kind."""
+        for k, piece in enumerate(self.pieces):
+            begin = self.start(k)
+            force, end = piece.force, begin + piece.length
+            yield Part((k, False), begin, end, force, force, piece.stiffness)
+        for k in range(len(self.pieces) + 1):
+            low, high = self.step(k)
+            if high > low:
+                yield Part((k, True), self.start(k), self.start(k), low, high, 0.0)
 
     def level(self, force: float, band: float) -> tuple[float, float] | None:
         """Radii [m] between which the graph admits a force, up to `band` [N]; None for one only."""
@@ -115,21 +138,6 @@ class RadialLaw:
                 break
             total += piece.force * inner + 0.5 * piece.stiffness * inner**2
             left -= inner
-        return total
-
-    def complementary(self, force: float) -> float:
-        """Conjugate energy sup_R (F R − W(R)) [J], exact for every piece."""
-        total = 0.0
-        for piece in self.pieces:
-            over = force - piece.force
-            if over <= 0.0:
-                continue
-            if piece.stiffness > 0.0 and over <= piece.stiffness * piece.length:
-                total += over**2 / (2.0 * piece.stiffness)
-            elif math.isinf(piece.length):
-                return math.inf
-            else:
-                total += over * piece.length - 0.5 * piece.stiffness * piece.length**2
         return total
 
     def scaled(self, force_unit: float, length_unit: float) -> RadialLaw:

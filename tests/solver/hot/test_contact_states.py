@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from tests.certify.oracle import interval
 from tests.reproducible import TRAINS
 from tests.solver.hot.trains import varied
 
@@ -72,7 +73,7 @@ def tells_the_same(law: at.Graph, judge: RadialLaw, lengths: tuple[float, ...]) 
     for length in (*lengths, scale):
         for factor in EVERYWHERE:
             radius = length * factor
-            low, high = judge.interval(radius, 1e-9 * scale)
+            low, high = interval(judge, radius, 1e-9 * scale)
             if math.isinf(high):
                 assert math.isinf(law.last[0])
                 assert radius >= law.reach[0] * (1.0 - 1e-9)
@@ -239,7 +240,7 @@ def test_a_solved_element_stands_on_its_law(name):
             gear, centre = other.train.gears[radial.gear], radial.centre
             radius = float(np.hypot(*(gear.frame @ equilibrium.displacement[radial.gear] - centre)))
             size = float(np.linalg.norm(equilibrium.radial_reaction[radial.name]))
-            low, high = law.interval(radius, 1e-13)
+            low, high = interval(law, radius, 1e-13)
             load = max(equilibrium.flank_force.values())
             assert low - 1e-9 * load <= size <= high + 1e-9 * load
             place = int(found.states[row, machine.structure.rows + j])

@@ -10,7 +10,8 @@ from tests.tooth.geometry.samples import face_gear, face_pair, gear, pair
 
 from loadshare.tooth.cylindrical.body import HelicoidBody, root_curve
 from loadshare.tooth.face.body import FaceBody
-from loadshare.tooth.unloaded.positions import position
+from loadshare.tooth.geometry.body import turned
+from loadshare.tooth.unloaded.positions import positions
 
 BODIES = [
     HelicoidBody(gear()),
@@ -102,6 +103,11 @@ def test_sides_mirror_each_other(body):
     np.testing.assert_allclose(one * [1.0, -1.0, 1.0], other, atol=1e-15)
 
 
+def to_space(body, points, rotation):
+    """Points of the gear turned by `rotation` [rad], in the fixed frame."""
+    return turned(points, rotation) @ body.placement.axes.T + body.placement.origin
+
+
 @pytest.mark.parametrize(
     "mesh",
     [
@@ -114,7 +120,7 @@ def test_sides_mirror_each_other(body):
 )
 def test_contact_lines_lie_on_the_outlines(mesh):
     # Ties frames, rotations, tooth numbers, sides and flank coordinates together.
-    at = position(mesh, 0.3, 7)
+    at = positions(mesh, [0.3], 7)[0]
     for line in at.lines:
         for body, rotation, uw, side, step, gap in (
             (mesh.driver, at.driver_rotation, line.driver_uw, 1, 1, 0.0),
@@ -128,9 +134,9 @@ def test_contact_lines_lie_on_the_outlines(mesh):
             ),
         ):
             turn = rotation + 2.0 * math.pi * step * line.pair / body.teeth
-            outline = body.to_space(body.outline(*uw.T, side), turn)
+            outline = to_space(body, body.outline(*uw.T, side), turn)
             reached = line.points + np.asarray(gap)[..., None] * line.normals
             np.testing.assert_allclose(outline, reached, atol=1e-12)
             assert ((uw > -1e-9) & (uw < 1.0 + 1e-9)).all()
-            back = body.to_body(body.to_space(outline, 0.7), 0.7)
+            back = body.to_body(to_space(body, outline, 0.7), 0.7)
             np.testing.assert_allclose(back, outline, atol=1e-15)

@@ -17,7 +17,7 @@ from loadshare.tooth.face.flank import (
     undercut_limit,
 )
 from loadshare.tooth.face.pair import FaceMisalignment
-from loadshare.tooth.unloaded.positions import position, positions, transmission_error
+from loadshare.tooth.unloaded.positions import positions, transmission_error
 from loadshare.tooth.unloaded.touch import contact_points
 
 
@@ -72,7 +72,7 @@ def test_gap_grows_with_the_relative_curvature():
     # along the major axis; the next term is of relative size s over a radius.
     mesh = face_pair()
     point = next(p for p in contact_points(mesh, 0.1) if p.pair == 0)
-    at = position(mesh, 0.1, 201)
+    at = positions(mesh, [0.1], 201)[0]
     line = next(x for x in at.lines if x.pair == 0)
     way = (line.points - point.point) @ point.major
     near = np.abs(way) < 4e-3
@@ -177,7 +177,7 @@ def test_turning_by_one_pitch_gives_the_same_position():
 def test_many_positions_at_once_are_those_one_by_one():
     mesh = face_pair(off=FaceMisalignment(shaft_angle=3e-4, offset=50e-6))
     for at in positions(mesh, 4, 9):
-        one = position(mesh, at.phase, 9)
+        one = positions(mesh, [at.phase], 9)[0]
         assert at.transmission_error == pytest.approx(one.transmission_error, abs=1e-14)
         assert [line.pair for line in at.lines] == [line.pair for line in one.lines]
         for two, line in zip(one.lines, at.lines, strict=True):

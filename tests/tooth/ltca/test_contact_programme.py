@@ -8,12 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import nnls
 from tests.tooth.ltca.hertz import PointContact, compression
+from tests.tooth.ltca.judged import certify_contact
 
 from loadshare.contact.backends.backend import SOLVERS, backend
 from loadshare.errors import Refused
 from loadshare.settings import TEETH
 from loadshare.tooth.contact import programme as contact_programme
-from loadshare.tooth.contact.certificate import certify_contact
 from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
 from loadshare.tooth.contact.programme import by_interface, exchange, solve_contact, solve_contacts
 from loadshare.tooth.contact.strips import StripLine, contact_modulus, half_width

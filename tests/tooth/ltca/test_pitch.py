@@ -7,7 +7,7 @@ import pytest
 from tests.tooth.use.pairs import FACE, SPUR, written
 
 from loadshare.errors import CaseError
-from loadshare.tooth.analysis.ltca import PairCompliance, contact_problem, ltca
+from loadshare.tooth.analysis.ltca import PairCompliance, contact_problems, ltca
 from loadshare.tooth.compliance.slices import Slices
 from loadshare.tooth.contact.programme import solve_contact
 from loadshare.tooth.cylindrical.build import helicoid_pair
@@ -52,10 +52,11 @@ def test_a_tooth_that_stands_back_waits_for_the_load():
     np.testing.assert_allclose(late.gap, opening, rtol=1e-9)
     np.testing.assert_allclose(first.gap, 0.0, atol=1e-12)
     models = independent(gears)
-    both = contact_problem(gears, place, models)
+    both = contact_problems(gears, [place], models)[0]
     touching = replace(late, gap=late.gap - opening)
     alone = [
-        contact_problem(gears, replace(place, lines=(line,)), models) for line in (touching, first)
+        contact_problems(gears, [replace(place, lines=(line,))], models)[0]
+        for line in (touching, first)
     ]
 
     closing = _load_for(alone[1], opening)

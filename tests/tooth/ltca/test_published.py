@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from loadshare.tooth.analysis.ltca import PairCompliance, contact_problem, ltca, pair_compliance
+from loadshare.tooth.analysis.ltca import PairCompliance, contact_problems, ltca, pair_compliance
 from loadshare.tooth.compliance.slices import Slices
 from loadshare.tooth.contact.programme import solve_contact
 from loadshare.tooth.cylindrical.gear import HelicoidGear
@@ -72,7 +72,7 @@ def test_single_pair_stiffness_stands_near_the_tests():
     found = []
     for position in gears.positions(np.arange(5) / 5.0, 24):
         for line in position.lines:
-            alone = contact_problem(gears, replace(position, lines=(line,)), compliance)
+            alone = contact_problems(gears, [replace(position, lines=(line,))], compliance)[0]
             found.append(load / solve_contact(alone, load).approach / 0.1 * 1e-9)
     assert max(found) * math.cos(HELIX) == pytest.approx(SINGLE, rel=0.10)
 

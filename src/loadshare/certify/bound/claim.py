@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.twofold import Twofold, exact, minus, plus, product, quotient
-from loadshare.certify.graphs import wall
-from loadshare.settings import LAWS
+from loadshare.certify.graphs import spline_graphs, wall
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 
@@ -54,10 +53,6 @@ class Claim:
         here = here.take(rows) if here.count > 1 else here
         limits = None if self.limits is None else self.limits[rows]
         return Claim(self.columns, here, answers, self.fine, self.slack, limits)
-
-    def _each(self, array: Array) -> Array:
-        """An array of the situations with one row for every claim."""
-        return np.broadcast_to(array, (self.count, *array.shape[1:]))
 
     @cached_property
     def coordinates(self) -> Array:
@@ -261,25 +256,13 @@ class Claim:
             radius = np.sqrt((where**2).sum(axis=2))
             law = here.round_radius, here.round_stiffness, here.round_power
             found[:, :first, 3], found[:, :first, 4] = wall(*law, radius)
-        for k in range(len(train.splines)):
-            stiffness, given, reach, fixed, per_torque = self._each(here.spline[:, k]).T
-            torque = np.abs(self.torque_on_splines[:, k])
-            bound = np.where(np.isnan(fixed), per_torque * torque, fixed)
-            until = bound / stiffness
-            stick = np.where(np.isnan(given), until, np.fmin(given, until))
-            drops = stiffness * given > bound * (1.0 + LAWS.written)
-            faulty = drops | (~np.isnan(given) & (reach < stick))
-            if train.slip is None:
-                stick = np.where((reach < stick) & np.isnan(given), np.inf, stick)
-                parts = [(stiffness, stick, bound, reach, stiffness)]
-            else:
-                zero, endless = np.zeros(self.count), np.full(self.count, np.inf)
-                room = np.maximum(reach - until, 0.0)
-                parts = [(zero, zero, bound, endless, endless), (zero, zero, zero, room, endless)]
-            for j, part in enumerate(parts):
-                values = np.stack(part, axis=1)
-                values[faulty] = np.nan
-                found[:, first + k + j * len(train.splines)] = values
+        if count := len(train.splines):
+            numbers, memory = np.moveaxis(here.spline, 2, 0), train.slip is not None
+            graphs, faulty = spline_graphs(numbers, self.torque_on_splines, memory=memory)
+            for at, graph in enumerate(graphs):
+                part = found[:, first + at * count : first + (at + 1) * count]
+                for k, figure in enumerate(graph):
+                    part[:, :, k] = np.where(faulty, np.nan, figure)
         if self.limits is not None:
             found[:, :, 2:4] = np.where(np.isnan(found[:, :, 2:4]), np.nan, self.limits)
         return found

@@ -23,8 +23,9 @@ from numpy.typing import NDArray
 
 from loadshare.certify.bound.statics import Statics
 from loadshare.certify.bound.twofold import Twofold, quotient, two_product
+from loadshare.certify.mechanics import mechanics_of
+from loadshare.certify.rigid import rigid_shafts
 from loadshare.settings import BOUND
-from loadshare.train.mesh import Mesh
 from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
@@ -62,6 +63,8 @@ class Columns:
 
     Attributes
     ----------
+    order, moving, elastic_shafts, all_flanks, meshes, tabled
+        As in `Mechanics`: `all_flanks` are its flanks, `meshes` the mesh of each.
     coordinates : tuple of str
         Names, "gear rotation" or "gear x", "gear y".
     turns : dict of gear to Turn
@@ -81,7 +84,10 @@ class Columns:
 
     def __init__(self, train: Train) -> None:
         self.train = train
-        self.order = {g: k for k, g in enumerate(train.gears)}
+        of = mechanics_of(train)
+        self.order, self.moving, self.elastic_shafts = of.order, of.moving, of.elastic
+        self.all_flanks, self.meshes = tuple(of.flanks), of.mesh_of
+        self.tabled = np.array(of.tabled, dtype=np.intp)
         self.turns, names = _turns(train)
         self.places: dict[str, int] = {}
         self.slips: dict[str, int] = {}
@@ -116,35 +122,10 @@ class Columns:
         self._statics: dict[bytes, Statics] = {}
 
     @cached_property
-    def elastic_shafts(self) -> NDArray[np.intp]:
-        """Numbers of the shafts that yield."""
-        shafts = self.train.shafts.values()
-        return np.flatnonzero([not math.isinf(s.stiffness) for s in shafts])
-
-    @cached_property
     def shaft_arms(self) -> Array:
         """First base radius of every shaft that yields [m]."""
         gears, shafts = self.train.gears, list(self.train.shafts.values())
         return np.array([gears[shafts[k].first].base_radius for k in self.elastic_shafts])
-
-    @cached_property
-    def moving(self) -> NDArray[np.intp]:
-        """Numbers of the gears that can be displaced."""
-        return np.array([self.order[gear] for gear in self.places], dtype=np.intp)
-
-    @cached_property
-    def tabled(self) -> NDArray[np.intp]:
-        """Flanks with a tabulated law."""
-        return np.flatnonzero([hasattr(m.laws[0], "forces") for m, _ in self.all_flanks])
-
-    @cached_property
-    def loads(self) -> Array:
-        """Part of every gear's torque in f, shape (gears, n) [1/m]."""
-        part = np.zeros((len(self.order), len(self.coordinates)))
-        for gear, turn in self.turns.items():
-            if turn.coordinate is not None:
-                part[self.order[gear], turn.coordinate] = 1.0 / turn.radius
-        return part
 
     @cached_property
     def pushed(self) -> Array:
@@ -183,11 +164,6 @@ class Columns:
         return found
 
     @cached_property
-    def all_flanks(self) -> tuple[tuple[Mesh, bool], ...]:
-        """Flanks that can touch: mesh, drive or coast."""
-        return tuple((m, d) for m in self.train.meshes.values() for d in m.flanks)
-
-    @cached_property
     def constants(self) -> tuple[Array, tuple[tuple[int, bool], ...]]:
         """What lengths take from clockings and centre offsets, and where flanks have their gaps.
 
@@ -210,11 +186,6 @@ class Columns:
                 for j, lag in self.turns[gear].shafts:
                     on[j, at] -= sign * lag * arm
         return on, tuple((order[m.name], d) for m, d in self.all_flanks)
-
-    @cached_property
-    def meshes(self) -> NDArray[np.intp]:
-        """Number of the mesh of every flank."""
-        return np.array([mesh for mesh, _ in self.constants[1]], dtype=np.intp)
 
     @cached_property
     def units(self) -> Array:
@@ -391,28 +362,16 @@ class Columns:
 
 def _turns(train: Train) -> tuple[dict[str, Turn], list[str]]:
     """How every gear turns, and the names of the rotations."""
-    shafts = list(train.shafts.values())
-    ways: dict[str, tuple[tuple[int, float], ...]] = {}
+    order = {name: k for k, name in enumerate(train.shafts)}
     turns: dict[str, Turn] = {}
     names: list[str] = []
-    for start in (*train.held, *train.gears):
-        if start in ways:
-            continue
-        ways[start], group = (), [start]
-        for gear in group:
-            for k, shaft in enumerate(shafts):
-                if not math.isinf(shaft.stiffness) or gear not in (shaft.first, shaft.second):
-                    continue
-                # The second gear of a shaft lags the first by its clocking.
-                ahead = gear == shaft.first
-                other = shaft.second if ahead else shaft.first
-                if other not in ways:
-                    ways[other] = (*ways[gear], (k, 1.0 if ahead else -1.0))
-                    group.append(other)
-        radius = max(train.gears[g].base_radius for g in group)
-        held = start in train.held
-        for gear in group:
-            turns[gear] = Turn(None if held else len(names), radius, ways[gear])
-        if not held:
-            names.append(f"{start} rotation")
+    for paths in rigid_shafts(train).paths:
+        first, radius = next(iter(paths)), max(train.gears[g].base_radius for g in paths)
+        coordinate = None if first in train.held else len(names)
+        for gear, path in paths.items():
+            # The second gear of a shaft lags the first by its clocking.
+            lags = tuple((order[shaft], -sign) for shaft, sign in path.items())
+            turns[gear] = Turn(coordinate, radius, lags)
+        if coordinate is not None:
+            names.append(f"{first} rotation")
     return turns, names

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from loadshare.contact.programme import Array, Point, Programme
 
@@ -13,17 +15,8 @@ if TYPE_CHECKING:
     from scipy.sparse import csc_matrix
 
 
-@dataclass
-class _Block:
-    """Rows of A and b that belong to one cone."""
-
-    cone: tuple[str, float]
-    rows: list[dict[int, float]] = field(default_factory=list)
-    bounds: list[float] = field(default_factory=list)
-
-    def add(self, row: dict[int, float], bound: float) -> None:
-        self.rows.append(row)
-        self.bounds.append(bound)
+Row = tuple[dict[int, float], float]
+"""Entries of a row of A by column, and its bound."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,13 +48,13 @@ class ConicForm:
     matrix: csc_matrix
     bounds: Array
     cones: tuple[tuple[str, float], ...]
-    row_of: list[int]
+    row_of: NDArray[np.intp]
     cone_rows: tuple[int, ...]
     size: int
 
     def point(self, z: Array, dual: Array) -> Point:
         """Read coordinates, contact forces and radial forces from a primal-dual answer."""
-        forces = np.array([dual[r] for r in self.row_of])
+        forces = np.asarray(dual)[self.row_of]
         # The offset equation Px − Σs = m has the multiplier that stationarity in x reads as Pᵀν.
         radial = np.array([dual[r : r + 2] for r in self.cone_rows]).reshape(-1, 2)
         return Point(np.asarray(z[: self.size], dtype=float), forces, radial)
@@ -80,66 +73,57 @@ def conic_form(programme: Programme) -> ConicForm:
         charges.append(charge)
         return int(n) + len(costs) - 1
 
-    equal, below = _Block(("zero", 0)), _Block(("nonnegative", 0))
-    others: list[_Block] = []
-    places: list[tuple[_Block, int]] = []
-    for e, gap in enumerate(programme.gaps):
-        row = {j: float(v) for j, v in enumerate(programme.rows[e]) if v}
-        if programme.linear[e] > 0.0:
-            row[variable(1.0, 0.0)] = -float(np.sqrt(programme.linear[e]))
-        if programme.hertz[e] > 0.0:
-            w = variable(0.0, 0.0)
-            energy = variable(0.0, 0.4 * float(programme.hertz[e]) ** -1.5)
-            row[w] = -1.0
-            power = _Block(("power", 0.4))
-            power.add({energy: -1.0}, 0.0)
-            power.add({}, 1.0)
-            power.add({w: -1.0}, 0.0)
-            others.append(power)
-        block = equal if programme.assumed_closed[e] else below
-        places.append((block, len(block.rows)))
-        block.add(row, float(gap))
-    cone_places = []
+    equal: list[Row] = []
+    below: list[Row] = []
+    others: list[tuple[tuple[str, float], list[Row]]] = []
+    contacts: list[int] = []  # where each stands in its block
+    for e, closed in enumerate(programme.assumed_closed):
+        entries = _entries(programme.rows[e])
+        b, c = float(programme.linear[e]), float(programme.hertz[e])
+        if b > 0.0:
+            entries[variable(1.0, 0.0)] = -math.sqrt(b)
+        if c > 0.0:
+            w, energy = variable(0.0, 0.0), variable(0.0, 0.4 * c**-1.5)
+            entries[w] = -1.0
+            power: list[Row] = [({energy: -1.0}, 0.0), ({}, 1.0), ({w: -1.0}, 0.0)]
+            others.append((("power", 0.4), power))
+        block = equal if closed else below
+        contacts.append(len(block))
+        block.append((entries, float(programme.gaps[e])))
+    offsets: list[int] = []
     for cone in programme.cones:
         parts = []
         for piece in cone.law.pieces:
-            s = (variable(piece.stiffness, 0.0), variable(piece.stiffness, 0.0))
+            s = variable(piece.stiffness, 0.0), variable(piece.stiffness, 0.0)
             t = variable(0.0, piece.force)
             parts.append(s)
-            disc = _Block(("second-order", 3))
-            disc.add({t: -1.0}, 0.0)
-            disc.add({s[0]: -1.0}, 0.0)
-            disc.add({s[1]: -1.0}, 0.0)
-            others.append(disc)
+            others.append((("second-order", 3.0), [({k: -1.0}, 0.0) for k in (t, *s)]))
             if np.isfinite(piece.length):
-                below.add({t: 1.0}, float(piece.length))
-        cone_places.append(len(equal.rows))
-        for axis in range(2):
-            row = {j: float(v) for j, v in enumerate(cone.matrix[axis]) if v}
-            row |= {s[axis]: -1.0 for s in parts}
-            equal.add(row, float(cone.centre[axis]))
-    blocks = [b for b in (equal, below, *others) if b.rows]
-    first = {id(b): sum(len(c.rows) for c in blocks[:k]) for k, b in enumerate(blocks)}
-    entries = [
-        (first[id(b)] + k, j, v)
-        for b in blocks
-        for k, row in enumerate(b.rows)
-        for j, v in row.items()
-    ]
-    total, size = sum(len(b.rows) for b in blocks), n + len(costs)
-    data = np.array([v for _, _, v in entries])
-    where = ([i for i, _, _ in entries], [j for _, j, _ in entries])
+                below.append(({t: 1.0}, float(piece.length)))
+        offsets.append(len(equal))
+        for axis, centre in enumerate(cone.centre.tolist()):
+            entries = _entries(cone.matrix[axis])
+            equal.append((entries | {s[axis]: -1.0 for s in parts}, centre))
+    blocks = [(("zero", float(len(equal))), equal), (("nonnegative", float(len(below))), below)]
+    blocks = [block for block in (*blocks, *others) if block[1]]
+    rows = [row for _, block in blocks for row in block]
+    found = [(i, j, v) for i, (entries, _) in enumerate(rows) for j, v in entries.items()]
+    at, columns, data = ([entry[k] for entry in found] for k in range(3))
     quadratic = np.diag(np.concatenate([np.zeros(n), np.array(costs)]))
     quadratic[:n, :n] = np.triu(programme.stiffness)
     return ConicForm(
         quadratic=csc_matrix(quadratic),
         linear=np.concatenate([-programme.load, np.array(charges)]),
-        matrix=csc_matrix((data, where), shape=(total, size)),
-        bounds=np.array([v for b in blocks for v in b.bounds]),
-        cones=tuple(
-            (b.cone[0], b.cone[1] if b.cone[0] == "power" else float(len(b.rows))) for b in blocks
-        ),
-        row_of=[first[id(b)] + k for b, k in places],
-        cone_rows=tuple(first[id(equal)] + k for k in cone_places),
+        matrix=csc_matrix((data, (at, columns)), shape=(len(rows), n + len(costs))),
+        bounds=np.array([bound for _, bound in rows]),
+        cones=tuple(cone for cone, _ in blocks),
+        row_of=np.where(programme.assumed_closed, 0, len(equal))
+        + np.array(contacts, dtype=np.intp),
+        cone_rows=tuple(offsets),
         size=n,
     )
+
+
+def _entries(row: Array) -> dict[int, float]:
+    """Entries that are not zero, by column."""
+    return {j: v for j, v in enumerate(row.tolist()) if v}

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.contact.radial import Part, nearest
 from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import FOLLOW
@@ -90,39 +91,27 @@ def read_states(structure: Structure, numbers: Numbers, found: Equilibrium, x: A
         radius = float(np.linalg.norm(numbers.vectors[0, both] @ x - numbers.gap[0, both]))
         size = float(np.linalg.norm(found.radial_reaction[radial.name])) / structure.force
         law = at.graph(numbers.radial[:, j], transmitted[[j]], radius)
-        states[structure.rows + j] = _nearest(law, radius, size)
+        states[structure.rows + j] = nearest(_parts(law), radius, size)
     return states
 
 
-def _nearest(law: at.Graph, radius: float, size: float) -> int:
-    """Piece or step of a radial law that is nearest to a radius and force."""
-
-    def off(part: tuple[int, float, float, float, float, float]) -> float:
-        _, begin, end, low, high, slope = part
-        inner = min(max(radius, begin), end)
-        rise = slope * (inner - begin) if slope else 0.0
-        return float(np.hypot(radius - inner, size - min(max(size, low + rise), high + rise)))
-
-    return min(_parts(law), key=off)[0]
-
-
-def _parts(law: at.Graph) -> Iterator[tuple[int, float, float, float, float, float]]:
-    """Yield state, radii between, forces between at the first one, and slope: pieces, steps."""
+def _parts(law: at.Graph) -> Iterator[Part]:
+    """Yield the pieces and steps of a radial law."""
     first, stick, bound, reach, last = (float(v[0]) for v in law[:5])
     if np.isinf(stick):
-        yield at.STICK, 0.0, np.inf, 0.0, 0.0, first
+        yield Part(at.STICK, 0.0, np.inf, 0.0, 0.0, first)
         return
     if stick > 0.0:
-        yield at.STICK, 0.0, stick, 0.0, 0.0, first
+        yield Part(at.STICK, 0.0, stick, 0.0, 0.0, first)
     if reach > stick:
         # Inside a ring nothing acts; a spline without friction may have some beside.
-        yield at.SLIP if first > 0.0 else at.OPEN, stick, reach, bound, bound, 0.0
+        yield Part(at.SLIP if first > 0.0 else at.OPEN, stick, reach, bound, bound, 0.0)
     if np.isfinite(last):
-        yield at.STOP, reach, np.inf, bound, bound, last
+        yield Part(at.STOP, reach, np.inf, bound, bound, last)
     if bound > first * stick:
-        yield at.CORNER if stick > 0.0 else at.PINNED, stick, stick, first * stick, bound, 0.0
+        yield Part(at.CORNER if stick > 0.0 else at.PINNED, stick, stick, first * stick, bound, 0.0)
     if np.isinf(last):
-        yield at.WALL if reach > 0.0 else at.PINNED, reach, reach, bound, np.inf, 0.0
+        yield Part(at.WALL if reach > 0.0 else at.PINNED, reach, reach, bound, np.inf, 0.0)
 
 
 def read_pieces(

@@ -176,13 +176,6 @@ def ltca(
     )
 
 
-def contact_problem(
-    pair: GearPair, position: MeshPosition, compliance: PairCompliance
-) -> ContactProblem:
-    """Contact problem of one position; see :func:`contact_problems`."""
-    return contact_problems(pair, (position,), compliance)[0]
-
-
 def contact_problems(
     pair: GearPair, positions: Sequence[MeshPosition], compliance: PairCompliance
 ) -> tuple[ContactProblem, ...]:

@@ -237,16 +237,6 @@ class Ltca:
         ]
 
     @cached_property
-    def largest_pressure(self) -> Array:
-        """Largest pressure (K, L) [Pa]."""
-        return np.array(
-            [
-                [max(float(one.pressure.max()) for one in lines) for lines in row]
-                for row in self.lines
-            ]
-        )
-
-    @cached_property
     def edges(self) -> tuple[EdgeContact, ...]:
         """Every load on an edge of the flanks."""
         return tuple(

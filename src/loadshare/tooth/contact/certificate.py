@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from loadshare.settings import TEETH
-from loadshare.tooth.contact.problem import ContactBatch, ContactProblem
+from loadshare.tooth.contact.problem import ContactBatch
 from loadshare.tooth.geometry.body import Array
 
 
@@ -43,22 +43,6 @@ class ContactCertificate:
         return {n: r for n, r in self.residuals.items() if not r <= self.tolerance}
 
 
-def certify_contact(
-    problem: ContactProblem,
-    load: float,
-    force: Array,
-    approach: float,
-    tolerance: float = TEETH.tolerance,
-) -> ContactCertificate:
-    """Judge the forces (N,) [N] and the approach [m] claimed for a load [N].
-
-    Nothing is raised for a wrong answer; figures that are not numbers fail.
-    """
-    return certify_contacts(
-        problem.alone, np.array([load]), force[None], np.array([approach]), tolerance
-    )[0]
-
-
 def certify_contacts(
     batch: ContactBatch,
     load: Array,
@@ -66,7 +50,10 @@ def certify_contacts(
     approach: Array,
     tolerance: float = TEETH.tolerance,
 ) -> tuple[ContactCertificate, ...]:
-    """Judge forces (K, N) [N] and approaches (K,) [m] claimed for loads (K,) [N]."""
+    """Judge forces (K, N) [N] and approaches (K,) [m] claimed for loads (K,) [N].
+
+    Nothing is raised for a wrong answer; figures that are not numbers fail.
+    """
     with np.errstate(invalid="ignore"):
         yielded = batch.yielded(force)
         distance = yielded + batch.gap - approach[:, None]

@@ -179,11 +179,6 @@ class ToothBody(ABC):
         placed: Array = (points - self.placement.origin) @ self.placement.axes
         return turned(placed, -np.asarray(rotation))
 
-    def to_space(self, points: Array, rotation: Array | float) -> Array:
-        """Carry points (..., 3) from the gear turned by `rotation` [rad] to the fixed frame."""
-        placed: Array = turned(points, rotation) @ self.placement.axes.T + self.placement.origin
-        return placed
-
 
 def turned(points: Array, angle: Array | float) -> Array:
     """Points (..., 3) turned about z by angles (...) [rad]."""

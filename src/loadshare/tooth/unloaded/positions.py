@@ -248,11 +248,6 @@ class GearPair(ABC):
         return positions(self, phases, points_per_line)
 
 
-def position(pair: GearPair, phase: float, points_per_line: int) -> MeshPosition:
-    """Unloaded contact at one phase; see :func:`positions`."""
-    return positions(pair, [phase], points_per_line)[0]
-
-
 def positions(
     pair: GearPair, phases: int | Sequence[float], points_per_line: int
 ) -> tuple[MeshPosition, ...]:

@@ -1,0 +1,12 @@
+"""The certificate of a single contact."""
+
+import numpy as np
+
+from loadshare.tooth.contact.certificate import ContactCertificate, certify_contacts
+from loadshare.tooth.contact.problem import ContactProblem
+
+
+def certify_contact(problem: ContactProblem, load, force, approach) -> ContactCertificate:
+    """The verdict on forces (N,) [N] and the approach [m] claimed for a load [N]."""
+    claimed = np.array([load]), force[None], np.array([approach])
+    return certify_contacts(problem.alone, *claimed)[0]
