@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
-from typing import Any, get_origin
+from typing import Any, TypeVar, get_origin
 
 from pydantic import ConfigDict, PrivateAttr, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
@@ -13,11 +13,14 @@ from loadshare.case.content import ENDS, Content, Sections
 from loadshare.case.element import Element, elements_in, written
 from loadshare.case.keys import Path, ends_of
 from loadshare.case.origin import Origin
+from loadshare.case.place import Vector
 from loadshare.case.quantity import as_text
 from loadshare.case.translate import hint_at, translate
 from loadshare.case.words import choices
 from loadshare.errors import CaseError, Problem
 from loadshare.settings import ALLOWED
+
+Found = TypeVar("Found")
 
 
 class Draft(Sections):
@@ -26,6 +29,7 @@ class Draft(Sections):
     model_config = ConfigDict(frozen=False)
 
     _problems: list[Problem] = PrivateAttr(default_factory=list)
+    _known: dict[str, Any] = PrivateAttr(default_factory=dict)
 
     @property
     def data(self) -> Mapping[str, Any]:
@@ -41,6 +45,17 @@ class Draft(Sections):
         """Add a problem with a key."""
         self._problems.append(self.problem(path, message, allowed, hint))
 
+    def once(self, name: str, find: Callable[[], Found]) -> Found:
+        """Return what several checks look at, found once all elements have been read."""
+        if name not in self._known:
+            self._known[name] = find()
+        found: Found = self._known[name]
+        return found
+
+    def centres(self) -> dict[str, Vector]:
+        """Return the centres of the gears [m], of those for which they are told or follow."""
+        return self.once("centres", super().centres)
+
     def names(self, section: str) -> list[str]:
         """Return the names of all elements of a section, the invalid ones as well."""
         table = self._data.get(section)
@@ -51,7 +66,11 @@ class Draft(Sections):
         return all(len(self.names(name)) == len(getattr(self, name)) for name in sections)
 
 
-def read_draft(data: Mapping[str, Any], origin: Origin) -> Draft:
+def read_draft(
+    data: Mapping[str, Any],
+    origin: Origin,
+    before: tuple[Sections, Mapping[str, Any]] | None = None,
+) -> Draft:
     """Read each element of a case on its own, so that none hides the problems of another.
 
     Parameters
@@ -60,15 +79,22 @@ def read_draft(data: Mapping[str, Any], origin: Origin) -> Draft:
         A case as plain data.
     origin : Origin
         Where its keys stand.
+    before : (Sections, mapping), optional
+        A case that was read, and its plain data: what of the two is the same object is not read
+        again.
 
     Returns
     -------
     Draft
         The valid elements and the problems of the others.
     """
-    draft = Draft.model_construct()
-    draft._data, draft._origin = data, origin
     fields = Content.model_fields
+    # With all values given: looking for defaults takes longer than reading a small case.
+    draft = Draft.model_construct(**{name: _nothing(about) for name, about in _fields().items()})
+    draft._data, draft._origin = data, origin
+    if before is not None and list(before[1].get("gears", ())) != list(data.get("gears", ())):
+        # A name a-b may tell other gears.
+        before = None
     if data and not any(key in fields for key in data):
         draft.tell((), "holds nothing that a case says", choices(fields))
         return draft
@@ -80,7 +106,7 @@ def read_draft(data: Mapping[str, Any], origin: Origin) -> Draft:
             missing = "is empty" if name in data else "is missing"
             draft.tell((name,), missing, hint=about.description or "")
         elif name in data:
-            _read_section(draft, name, about)
+            _read_section(draft, name, about, before)
     return draft
 
 
@@ -118,9 +144,27 @@ def _as_data(given: Any, depth: int) -> Any:
     return as_text(given)
 
 
-def _read_section(draft: Draft, name: str, about: FieldInfo) -> None:
+def _nothing(about: FieldInfo) -> Any:
+    return about.default if about.default_factory is None else {}
+
+
+@cache
+def _fields() -> Mapping[str, FieldInfo]:
+    return Draft.model_fields
+
+
+def _read_section(
+    draft: Draft,
+    name: str,
+    about: FieldInfo,
+    before: tuple[Sections, Mapping[str, Any]] | None,
+) -> None:
     model = next(elements_in(about.annotation), None)
     value = draft.data[name]
+    known = before[1].get(name) if before is not None else None
+    if before is not None and value is known:
+        setattr(draft, name, getattr(before[0], name))
+        return
     if isinstance(value, Mapping | list) and len(value) > ALLOWED.entries:
         draft.tell((name,), f"has {len(value)} entries", f"at most {ALLOWED.entries}")
         return
@@ -131,8 +175,12 @@ def _read_section(draft: Draft, name: str, about: FieldInfo) -> None:
         if element is not None:
             setattr(draft, name, element)
     else:
+        read = getattr(before[0], name) if before is not None and isinstance(known, Mapping) else {}
         for key, item in value.items():
             path = (name, key)
+            if key in read and known is not None and known[key] is item:
+                getattr(draft, name)[key] = read[key]
+                continue
             if not key.strip() or not key.isprintable() or len(key) > ALLOWED.name:
                 draft.tell(path, "cannot be a name", f"1 to {ALLOWED.name} printable characters")
             element = _read(draft, path, _with_ends(draft, path, item), model)

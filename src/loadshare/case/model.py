@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path as FilePath
 from typing import Any
 
@@ -15,9 +15,9 @@ from loadshare.case.checks import check
 from loadshare.case.content import ABOUT, Content
 from loadshare.case.copies import with_copies
 from loadshare.case.draft import as_data, read_draft
-from loadshare.case.keys import covers, parse
+from loadshare.case.keys import Path, covers, parse
 from loadshare.case.origin import Origin
-from loadshare.case.revise import revise
+from loadshare.case.revise import differing, revise
 from loadshare.errors import CaseError
 from loadshare.output import write_whole
 
@@ -58,8 +58,12 @@ class Case(Content):
         **sections: Any,
     ) -> None:
         data = as_data({**(content or {}), **sections})
-        data, origin = with_copies(data, origin or Origin(name or "case", outside=True))
-        draft = read_draft(data, origin)
+        self._take(data, origin or Origin(name or "case", outside=True), name, None)
+
+    def _take(self, data: dict[str, Any], origin: Origin, name: str, before: Case | None) -> None:
+        """Read plain data, but for what it shares with a case before, and check all of it."""
+        data, origin = with_copies(data, origin)
+        draft = read_draft(data, origin, None if before is None else (before, before._data))
         problems = [*draft.problems, *check(draft)]
         if problems:
             raise CaseError(problems)
@@ -143,7 +147,16 @@ class Case(Content):
             If a path leads nowhere, or with all problems of the changed case.
         """
         data, origin = revise(self._data, self._origin, changes)
-        return Case(data, name=self._name, origin=origin)
+        changed = type(self).__new__(type(self))
+        changed._take(data, origin, self._name, self)
+        return changed
+
+    def differences(self, before: Case) -> Iterator[tuple[Path, Any, Any]]:
+        """Yield where the case differs from another: the key, and what stands there in both.
+
+        None where nothing does. Where one was made from the other by `replace`, this takes no time.
+        """
+        return differing(before._data, self._data)
 
     def is_assumed(self, key: str) -> bool:
         """Tell whether an input is marked as assumed, itself or as part of what is.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -23,7 +23,7 @@ def revise(
     Parameters
     ----------
     data : mapping
-        A case as plain data; left as it is.
+        A case as plain data; left as it is, and shared but for the tables that change.
     origin : Origin
         Where its keys stand.
     changes : mapping of str to object
@@ -39,7 +39,8 @@ def revise(
     CaseError
         If a path leads nowhere.
     """
-    changed = copy.deepcopy(dict(data))
+    changed = dict(data)
+    owned: set[int] = set()
     moved = set()
     problems = []
     for key, value in changes.items():
@@ -48,6 +49,7 @@ def revise(
         except ValueError:
             problems.append(Problem(CHANGES, key, as_given(as_data(value)), "is not a key path"))
             continue
+        _own(changed, path, owned)
         lost = change(changed, path, as_data(value))
         if lost is None:
             moved.add(path)
@@ -63,6 +65,19 @@ def revise(
         if not any(known[:length] in moved for length in range(1, len(known) + 1))
     }
     return changed, replace(origin, files=files | dict.fromkeys(moved, CHANGES))
+
+
+def _own(data: dict[str, Any], path: Path, owned: set[int]) -> None:
+    """Put copies in place of the tables and lists above a key, but for those that are copies."""
+    holder: Any = data
+    for step in path[:-1]:
+        below = look_up(holder, (step,))
+        if not isinstance(below, dict | list):
+            return
+        if id(below) not in owned:
+            below = holder[step] = copy.copy(below)
+            owned.add(id(below))
+        holder = below
 
 
 def change(data: dict[str, Any], path: Path, value: Any) -> str | None:
@@ -102,6 +117,20 @@ def change(data: dict[str, Any], path: Path, value: Any) -> str | None:
         holder[step] = value
         return None
     return nearest(data, path)
+
+
+def differing(before: Any, after: Any, above: Path = ()) -> Iterator[tuple[Path, Any, Any]]:
+    """Yield where plain data differ: the key, and what stands there; None for nothing."""
+    if before is after:
+        return
+    if isinstance(before, Mapping) and isinstance(after, Mapping):
+        for key in {**before, **after}:
+            yield from differing(before.get(key), after.get(key), (*above, key))
+    elif isinstance(before, list) and isinstance(after, list) and len(before) == len(after):
+        for k, (one, other) in enumerate(zip(before, after, strict=True)):
+            yield from differing(one, other, (*above, k))
+    elif type(before) is not type(after) or before != after:
+        yield above, before, after
 
 
 def nearest(data: Mapping[str, Any], path: Path) -> str:

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from loadshare.certify.pulls import Pull, pulls_of
-from loadshare.certify.state import ClaimedState
-from loadshare.train.train import Train
+from loadshare.certify.state import ClaimedState, size
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+STAGES = ("stick", "slip", "stop")
+"""Of a spline, in the order of the pieces of its graph."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,113 +98,206 @@ def float_states(
         Relative band: a margin within band × deflection, or a reaction above band × load with no
         margin left, is contact.
     """
-    train = state.of.train
-    near, pressed = band * float(state.deflection[0]), band * float(state.load[0])
-    pulls = pulls_of(state)
-    found = {}
-    for gear in train.floating:
-        settled = not {f"gear {gear} x", f"gear {gear} y"} & {*undetermined}
-        rests = _Rests(settled, near, pressed)
-        touches = [*_drum_touches(state, gear, rests), *_ring_touches(train, gear, pulls, rests)]
-        spline = [p for p in pulls if p.gear == gear and not p.is_ring]
-        found[gear] = _float_state(state, gear, rests, touches, spline)
-    return found
+    rests = Rests(state, [undetermined], band)
+    return {gear: rests.one(gear) for gear in state.of.train.floating}
 
 
-@dataclass(frozen=True, slots=True)
-class _Rests:
-    """What counts as contact: whether the place is determined, and the bands [m], [N]."""
+class Boundaries(NamedTuple):
+    """Boundaries of a float's region in S claims, and their forces on it.
 
-    settled: bool
-    near: float
-    pressed: float
+    Attributes
+    ----------
+    names : tuple of str
+    margin, force : ndarray, shape (boundaries, S)
+        Distance left [m], size of the reaction [N].
+    normal : ndarray, shape (boundaries, 2, S)
+        Outward, in the gear's transverse frame.
+    touching : ndarray of bool, shape (boundaries, S)
+    reaction : ndarray, shape (2, S)
+        Of all of them [N].
+    """
 
-    def touching(self, margin: float, force: float) -> bool:
-        """Whether a centre lies on a boundary."""
-        return (self.settled and margin <= self.near) or force > self.pressed
-
-
-def _drum_touches(state: ClaimedState, gear: str, rests: _Rests) -> Iterator[tuple[Touch, Array]]:
-    """Boundaries of a gear's drum, and their forces on it (2,) [N]."""
-    for d, ring in enumerate(state.of.train.drums):
-        if ring.gear != gear:
-            continue
-        frame, ways = state.of.train.gears[gear].plane, state.way[d, :, :, 0]
-        outward = [*(-way / np.linalg.norm(way) for way in ways), ring.across, -ring.across]
-        first = len(state.of.flanks) + 4 * d
-        for k, way in enumerate(outward):
-            force, margin = float(state.ring_force[d, k, 0]), -float(state.approach[first + k, 0])
-            normal, touching = frame @ way, rests.touching(margin, force)
-            name = state.of.contacts[first + k]
-            yield Touch(name, margin, force, _pair(normal), touching), -force * normal
+    names: tuple[str, ...]
+    margin: Array
+    force: Array
+    normal: Array
+    touching: Flags
+    reaction: Array
 
 
-def _ring_touches(
-    train: Train, gear: str, pulls: Iterable[Pull], rests: _Rests
-) -> Iterator[tuple[Touch, Array]]:
-    """Boundary of a gear's round ring, and its force on it (2,) [N]."""
-    frame = train.gears[gear].plane
-    for pull in pulls:
-        if pull.gear != gear or not pull.is_ring:
-            continue
-        radius, force = pull.radius, frame @ pull.reaction
-        size = float(np.linalg.norm(force))
-        outward = frame @ pull.offset / radius if radius > 0.0 else np.zeros(2)
-        margin = pull.play - radius
-        touching = rests.touching(margin, size)
-        yield Touch(pull.name, margin, size, _pair(outward), touching), force
+class Rests:
+    """Where the floats of a train rest in S claims.
 
+    Parameters
+    ----------
+    state : ClaimedState
+    undetermined : sequence of collection of str
+        Coordinates that the forces of each claim do not determine.
+    band : float
+        As for `float_states`.
+    """
 
-def _float_state(
-    state: ClaimedState,
-    gear: str,
-    rests: _Rests,
-    touches: list[tuple[Touch, Array]],
-    spline: list[Pull],
-) -> FloatState:
-    boundaries = sorted((touch for touch, _ in touches), key=lambda t: -t.force)
-    on = [t for t in boundaries if t.touching]
-    friction = None
-    if spline:
-        train = state.of.train
-        torque = float(state.transmitted[list(train.splines).index(gear), 0])
-        friction = train.splines[gear].bound(torque)
-    return FloatState(
-        gear=gear,
-        state="on boundary" if on else "inside" if rests.settled else "undetermined",
-        boundary=" + ".join(t.name.split(": ")[-1] for t in on) or None,
-        margin=min((t.margin for t in boundaries), default=None),
-        normal=on[0].normal if on else None,
-        reaction=_pair(sum((force for _, force in touches), np.zeros(2))),
-        boundaries=tuple(boundaries),
-        spline=_stage(spline, rests) if spline else None,
-        spline_force=float(np.linalg.norm(sum(p.reaction for p in spline))) if spline else 0.0,
-        friction=friction,
-    )
+    def __init__(
+        self, state: ClaimedState, undetermined: Iterable[Collection[str]], band: float
+    ) -> None:
+        self.state, self.gears = state, state.of.train.floating
+        places = [{f"gear {gear} x", f"gear {gear} y"} for gear in self.gears]
+        settled = [[place.isdisjoint(names) for place in places] for names in undetermined]
+        self._settled = np.array(settled, dtype=bool).reshape(state.count, len(places)).T
+        self._near, self._pressed = band * state.deflection, band * state.load
+        self._boundaries: dict[str, Boundaries] = {}
+
+    def settled(self, gear: str) -> Flags:
+        """Whether the forces determine the place of a float, (S,)."""
+        return np.asarray(self._settled[self.gears.index(gear)])
+
+    def boundaries(self, gear: str) -> Boundaries:
+        """Return the boundaries of a float's region."""
+        if gear not in self._boundaries:
+            parts = [*self._of_drums(gear), *self._of_rings(gear)]
+            names = tuple(name for each, *_ in parts for name in each)
+            none = np.zeros((0, self.state.count))
+            margin, force = (np.concatenate([none, *(p[k] for p in parts)]) for k in (1, 2))
+            normal, pushed = (
+                np.concatenate([np.zeros((0, 2, self.state.count)), *(p[k] for p in parts)])
+                for k in (3, 4)
+            )
+            touching = self.settled(gear) & (margin <= self._near) | (force > self._pressed)
+            self._boundaries[gear] = Boundaries(
+                names, margin, force, normal, touching, pushed.sum(axis=0)
+            )
+        return self._boundaries[gear]
+
+    def _of_drums(self, gear: str) -> Iterable[tuple[tuple[str, ...], Array, Array, Array, Array]]:
+        """Boundaries of its drums: names, margins, forces, outward normals, forces on the gear."""
+        state, of = self.state, self.state.of
+        plane = of.train.gears[gear].plane
+        for d, ring in enumerate(of.train.drums):
+            if ring.gear != gear:
+                continue
+            arcs = -state.way[d] / size(state.way[d])[:, None]
+            stops = np.stack([ring.across, -ring.across])[..., None]
+            stops = np.broadcast_to(stops, (2, 3, state.count))
+            normal, force = plane @ np.concatenate([arcs, stops]), state.ring_force[d]
+            own = slice(first := len(of.flanks) + 4 * d, first + 4)
+            pushed = -force[:, None] * normal
+            yield of.contacts[own], -state.approach[own], force, normal, pushed
+
+    def _of_rings(self, gear: str) -> Iterable[tuple[tuple[str, ...], Array, Array, Array, Array]]:
+        """Boundaries of its round rings, likewise."""
+        state, of = self.state, self.state.of
+        plane, first = of.train.gears[gear].plane, len(of.pulls) - len(of.train.rounds)
+        for r, ring in enumerate(of.train.rounds):
+            if ring.gear != gear:
+                continue
+            radius, pushed = state.radius[first + r], plane @ state.reaction[first + r]
+            outward = plane @ state.offset[first + r] / np.where(radius > 0.0, radius, 1.0)
+            margin = state.here.round_radius[r] - radius
+            name = (of.pulls[first + r],)
+            yield name, margin[None], size(pushed, axis=0)[None], outward[None], pushed[None]
+
+    @cached_property
+    def margin(self) -> Array:
+        """Smallest distance to a boundary [m], (floats, S); not a number without one."""
+        every = [self.boundaries(gear).margin for gear in self.gears]
+        least = [m.min(axis=0) if len(m) else np.full(self.state.count, np.nan) for m in every]
+        return self._over_floats(least)
+
+    @cached_property
+    def on_boundary(self) -> Flags:
+        """Whether a boundary is touched, (floats, S)."""
+        every = [np.any(self.boundaries(gear).touching, axis=0) for gear in self.gears]
+        return np.array(every, dtype=bool).reshape(len(self.gears), self.state.count)
+
+    @cached_property
+    def reaction(self) -> Array:
+        """Force of all boundaries [N], (floats, 2, S)."""
+        return self._over_floats([self.boundaries(gear).reaction for gear in self.gears], 2)
+
+    def _over_floats(self, values: list[Array], *inner: int) -> Array:
+        return np.array(values).reshape(len(self.gears), *inner, self.state.count)
+
+    def rest(self, gear: str) -> NDArray[np.str_]:
+        """Words for where a float rests, (S,): the boundaries it touches, or its state."""
+        found = self.boundaries(gear)
+        order = np.argsort(-found.force, axis=0, kind="stable")
+        touched = np.where(np.take_along_axis(found.touching, order, axis=0), order, -1)
+        kinds, which = np.unique(
+            np.vstack([touched, self.settled(gear)]), axis=1, return_inverse=True
+        )
+        words = []
+        for *on, settled in kinds.T.tolist():
+            told = " + ".join(found.names[b].split(": ")[-1] for b in on if b >= 0)
+            words.append(told or ("inside" if settled else "undetermined"))
+        return np.array(words, dtype=str)[which.reshape(-1)]
+
+    def stage(self, gear: str) -> NDArray[np.intp]:
+        """Stage of its spline, (S,), as a number of `STAGES`; −1 of a gear without one.
+
+        The last piece of its graph that its radius has entered and its force has reached. With
+        memory its parts are friction and clearance. Where both hold the slip, how they share the
+        force is open; it sticks if friction could do it alone.
+        """
+        state, splines = self.state, list(self.state.of.train.splines)
+        if gear not in splines:
+            return np.full(state.count, -1)
+        k, pressed = splines.index(gear), self._pressed
+        near = np.where(self.settled(gear), self._near, np.inf)
+        first, stick, bound, reach, _ = (figure[k] for figure in state.graph)
+        radius = state.radius[k]
+        if state.of.train.slip is not None:
+            stop = size(state.reaction[k + len(splines)], axis=0)
+            total = size(state.reaction[k] + state.reaction[k + len(splines)], axis=0)
+            sticks = (radius <= near) & (total <= bound + pressed)
+            return np.where(sticks, 0, np.where(stop > pressed, 2, 1))
+        force = size(state.reaction[k], axis=0)
+        pieces = (
+            (stick > 0.0, 0.0, 0.0, first),
+            (reach > stick, stick, bound, np.zeros(())),
+            (np.isfinite(stick), reach, bound, first),
+        )
+        found = np.select([there for there, *_ in pieces], range(3))
+        for number, (there, start, held, stiffness) in enumerate(pieces):
+            more = np.where(np.isinf(near) & (stiffness > 0.0), pressed, -pressed)
+            found[there & (radius >= start - near) & (force >= held + more)] = number
+        return found
+
+    def stage_told(self, gear: str) -> NDArray[np.str_]:
+        """Stage of its spline in words, (S,); empty of a gear without one."""
+        return np.array([*STAGES, ""])[self.stage(gear)]
+
+    def one(self, gear: str) -> FloatState:
+        """Return what there is to say of a float in the first claim."""
+        found, state = self.boundaries(gear), self.state
+        touches = [
+            Touch(name, float(margin), float(force), _pair(normal), bool(touching))
+            for name, margin, force, normal, touching in zip(
+                found.names,
+                found.margin[:, 0],
+                found.force[:, 0],
+                found.normal[:, :, 0],
+                found.touching[:, 0],
+                strict=True,
+            )
+        ]
+        boundaries = sorted(touches, key=lambda t: -t.force)
+        on = [t for t in boundaries if t.touching]
+        settled, stage = bool(self.settled(gear)[0]), int(self.stage(gear)[0])
+        own = [q for q, k in enumerate(state.of.pulled) if state.of.gears[k] == gear]
+        own = own[: len(own) - sum(ring.gear == gear for ring in state.of.train.rounds)]
+        return FloatState(
+            gear=gear,
+            state="on boundary" if on else "inside" if settled else "undetermined",
+            boundary=" + ".join(t.name.split(": ")[-1] for t in on) or None,
+            margin=min((t.margin for t in boundaries), default=None),
+            normal=on[0].normal if on else None,
+            reaction=_pair(found.reaction[:, 0]),
+            boundaries=tuple(boundaries),
+            spline=STAGES[stage] if own else None,
+            spline_force=float(size(state.reaction[own, :, 0].sum(axis=0), axis=0)),
+            friction=float(state.graph.bound[own[0], 0]) if own else None,
+        )
 
 
 def _pair(vector: Array) -> tuple[float, float]:
     return float(vector[0]), float(vector[1])
-
-
-def _stage(parts: list[Pull], rests: _Rests) -> str:
-    """Stage of a spline: the last piece that its radius has entered and its force has reached.
-
-    With memory its parts are friction and clearance. Where both hold the slip, how they share the
-    force is open; it sticks if friction could do it alone.
-    """
-    near, pressed = rests.near if rests.settled else math.inf, rests.pressed
-    if len(parts) > 1:
-        friction, stop = parts
-        total = float(np.linalg.norm(friction.reaction + stop.reaction))
-        if friction.radius <= near and total <= friction.law.strength + pressed:
-            return "stick"
-        return "stop" if stop.force > pressed else "slip"
-    (pull,) = parts
-    radius, force = pull.radius, pull.force
-    stage = pull.law.pieces[0].name
-    for k, piece in enumerate(pull.law.pieces):
-        more = pressed if math.isinf(near) and piece.stiffness > 0.0 else -pressed
-        if radius >= pull.law.start(k) - near and force >= piece.force + more:
-            stage = piece.name
-    return stage

@@ -259,35 +259,43 @@ class Measuring:
 
     def _largest(self, name: str, values: Array) -> Measure:
         at = first_of_largest(values)
-        return Measure(max(float(values[at]), 0.0), self._where(name, at), *self.bounds[name])
+        bounds = self.bounds.get(name, (None, None))
+        return Measure(max(float(values[at]), 0.0), self._where(name, at), *bounds)
 
     def _where(self, name: str, element: int) -> str:
+        if name in ("centre", "rotation"):
+            return f"gear {self.of.gears[element]}"
         if name == "ring":
             return f"ring {self.train.drums[element // 2].gear}"
         return f"mesh {self.of.flanks[element][0].name}"
+
+    def every(
+        self, situations: Situations, answers: Equilibria, deflection: Array
+    ) -> dict[str, Array]:
+        """Return all that is measured on S answers, element by element, each (elements, S).
+
+        Parameters are those of `bounded`. Shifts over backlashes are negative where there is none.
+        """
+        of, shifts = self.of, answers.displacement + situations.offset
+        shifts = shifts.reshape(len(answers.rotation), -1).T
+        found = {
+            "centre": np.sqrt((answers.displacement**2).sum(axis=2)).T / of.radius[:, None],
+            "rotation": np.abs(answers.rotation).T,
+        }
+        backlash = situations.backlash[:, of.mesh_of].T
+        some = np.isfinite(backlash) & (backlash > 0.0)
+        if some.any():
+            size = np.hypot(of.pushing @ shifts, self.across @ shifts)
+            found["backlash"] = np.where(some, size / np.where(some, backlash, 1.0), -1.0)
+        found |= self.bounded(situations, answers, deflection)
+        return {name: found[name] for name in TOLD if name in found}
 
     def one(
         self, situation: Situations, answers: Equilibria, deflection: float
     ) -> dict[str, Measure]:
         """Return all figures of a single answer."""
-        names = list(self.train.gears)
-        moved = np.sqrt((answers.displacement[0] ** 2).sum(axis=1)) / self.of.radius
-        turned = np.abs(answers.rotation[0])
-        found = {
-            "centre": Measure(float(moved.max()), f"gear {names[first_of_largest(moved)]}"),
-            "rotation": Measure(float(turned.max()), f"gear {names[first_of_largest(turned)]}"),
-        }
-        shifts = (answers.displacement + situation.offset).reshape(-1)
-        size = np.hypot(self.of.pushing @ shifts, self.across @ shifts)
-        backlash = situation.backlash[0, self.of.mesh_of]
-        some = np.flatnonzero(np.isfinite(backlash) & (backlash > 0.0))
-        if len(some):
-            share = size[some] / backlash[some]
-            at = first_of_largest(share)
-            found["backlash"] = Measure(float(share[at]), self._where("", int(some[at])))
-        for name, values in self.bounded(situation, answers, np.array([deflection])).items():
-            found[name] = self._largest(name, values[:, 0])
-        return {name: found[name] for name in TOLD if name in found}
+        every = self.every(situation, answers, np.array([deflection]))
+        return {name: self._largest(name, values[:, 0]) for name, values in every.items()}
 
 
 def validity(

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from loadshare.certify import Certificate
 from loadshare.certify.bound import Bound, bound_of
@@ -26,6 +27,80 @@ from loadshare.train.train import Train
 HOT, SEARCHED = "hot path", "proximal search"
 
 
+class Solved:
+    """What the hot path found in situations of one machine, handed out one by one.
+
+    Parameters
+    ----------
+    machine : Machine
+    situations : Situations
+        S of them.
+    found : Answers
+        To them.
+    tolerance : float
+        Of their certificates.
+
+    Attributes
+    ----------
+    first : dict of int to Equilibria
+        Answers whose place forces leave open, by number, as the hot path found them; the arrays
+        hold their places of least norm.
+    """
+
+    def __init__(
+        self, machine: Machine, situations: Situations, found: Answers, tolerance: float
+    ) -> None:
+        self.machine, self.situations, self.found = machine, situations, found
+        self.tolerance = tolerance
+        self.first: dict[int, Equilibrium] = {}
+        self._least: dict[int, Equilibrium] = {}
+
+    @cached_property
+    def small(self) -> NDArray[np.bool_]:
+        """Whether displacements are known to be clear of where they are refused, (S,)."""
+        found = self.found
+        deflection = found.verdicts.deflection
+        moved = self.machine.measuring.worst(
+            self.situations, found.equilibria, deflection, refusal=True
+        )
+        return np.asarray(moved < JOB.small)
+
+    def answer(self, row: int, index: int, train: Train) -> Answer:
+        """Return an answer that passed, of position `index` of a train."""
+        flanks, forces = self.found.equilibria.names.flanks, self.found.equilibria.flank_force
+        return Answer(
+            train,
+            index,
+            SEARCHED if self.found.searched[row] else HOT,
+            dict(zip(flanks, forces[row].tolist(), strict=True)),
+            partial(self._placed, row, index, train),
+            partial(_record, self.machine, self.found, row),
+            bool(self.small[row]),
+        )
+
+    def least(self, rows: Sequence[int]) -> dict[int, Equilibrium]:
+        """Move answers whose place is open to their least ones, and return these by number."""
+        loose = [r for r in rows if r not in self._least and not self.found.determined[r]]
+        if loose:
+            index = np.broadcast_to(self.situations.index, len(self.found.passed)).tolist()
+            self.first |= {r: self.found.equilibria.one(r, index[r]) for r in loose}
+            self._least |= least_places(
+                self.machine, self.situations, self.found, loose, self.tolerance
+            )
+        return {r: self._least[r] for r in rows if r in self._least}
+
+    def _placed(self, row: int, index: int, train: Train) -> tuple[Equilibrium, Certificate]:
+        """Return an answer at its place of least norm, and its certificate."""
+        equilibrium = self.least([row]).get(row) or self.found.equilibria.one(row, index)
+        first = self.first.get(row, equilibrium)
+        claimed = self.found.equilibria.part(slice(row, row + 1))
+        torques = float(self.found.verdicts.bounds.relative[row])
+        prove = partial(_bound, train, equilibrium, first)
+        return equilibrium, certify_later(
+            train, equilibrium, claimed, self.tolerance, torques, prove
+        )
+
+
 def hot_answers(
     machine: Machine,
     indices: Sequence[int],
@@ -35,42 +110,9 @@ def hot_answers(
     """Answer what the hot path can, by position."""
     situations = machine.situations(indices)
     found = machine.answer(situations, tolerance, engine_at_hand(engine, len(indices)))
-    deflection = found.verdicts.deflection
-    moved = machine.measuring.worst(situations, found.equilibria, deflection, refusal=True)
-    small = (moved < JOB.small).tolist()
-    flanks, forces = found.equilibria.names.flanks, found.equilibria.flank_force
-    answers = {}
-    for row in np.flatnonzero(found.passed).tolist():
-        index = indices[row]
-        answers[index] = Answer(
-            machine.train,
-            index,
-            SEARCHED if found.searched[row] else HOT,
-            dict(zip(flanks, forces[row].tolist(), strict=True)),
-            partial(_placed, machine, situations, found, row, index, tolerance),
-            partial(_record, machine, found, row),
-            small[row],
-        )
-    return answers
-
-
-def _placed(
-    machine: Machine,
-    situations: Situations,
-    found: Answers,
-    row: int,
-    index: int,
-    tolerance: float,
-) -> tuple[Equilibrium, Certificate]:
-    """Return an answer at its place of least norm, and its certificate."""
-    train, first = machine.train, found.equilibria.one(row, index)
-    equilibrium = first
-    if not found.determined[row]:
-        equilibrium = least_places(machine, situations, found, [row], tolerance)[row]
-    claimed = found.equilibria.part(slice(row, row + 1))
-    torques = float(found.verdicts.bounds.relative[row])
-    prove = partial(_bound, train, equilibrium, first)
-    return equilibrium, certify_later(train, equilibrium, claimed, tolerance, torques, prove)
+    solved = Solved(machine, situations, found, tolerance)
+    passed = np.flatnonzero(found.passed).tolist()
+    return {indices[r]: solved.answer(r, indices[r], machine.train) for r in passed}
 
 
 def _bound(train: Train, equilibrium: Equilibrium, first: Equilibrium) -> Bound:

@@ -25,8 +25,10 @@ from loadshare.results.result import Result, Stamp
 from loadshare.scene.structure import units_of
 from loadshare.settings import CERTIFY, JOB
 from loadshare.solver import Options
-from loadshare.tooth import resolve
-from loadshare.train import Train, build_train
+from loadshare.train import Train
+from loadshare.train.alike import train_alike
+from loadshare.train.build import train_of, with_laws
+from loadshare.train.geometry import Geometry, geometry_of
 from loadshare.train.shape import shape_of
 from loadshare.train.situations import situation_of
 
@@ -47,7 +49,6 @@ def solve(
     tolerance: float = CERTIFY.tolerance,
     positions: Iterable[int] | None = None,
     engine: str = "auto",
-    near: Case | None = None,
     progress: Progress | None = None,
 ) -> Result:
     """Find and certify the equilibrium of a case at every position.
@@ -70,8 +71,6 @@ def solve(
         Of the hot path: NumPy, or Numba, which takes a minute to compile the first time. "auto" is
         Numba once it was used in this process, or a hundred positions were solved and it is kept on
         disk. Answers are the same but for round-off.
-    near : Case, optional
-        A case that differs little, solved just before, at whose answer the search begins.
     progress : Progress, optional
         Called after every position.
 
@@ -98,7 +97,7 @@ def solve(
     True
     """
     tolerance = checked_tolerance(tolerance)
-    case, machine = prepared(case, near)
+    case, machine = prepared(case)
     options, settle = _options(solver, method, reduce, engine)
     wanted = wanted_positions(machine.train, positions)
     answers: list[Answer] = []
@@ -185,29 +184,40 @@ def _options(
     return Options(method=method, reduce=reduce), engine if hot else None
 
 
-_recent: Recent[tuple[Case, Machine]] = Recent()
+_recent: Recent[tuple[Case, Machine, Geometry]] = Recent()
 _shapes: OrderedDict[Hashable, dict[tuple[float, float], Machine]] = OrderedDict()
 """Machines by the shape of their trains, the last ones used at the end, and by their units."""
 
 
-def prepared(case: Case | str | Path, near: Case | None = None) -> tuple[Case, Machine]:
+def prepared(case: Case | str | Path) -> tuple[Case, Machine]:
     """Return a case, its mesh laws computed where it asks for them, and its machine; built once.
 
-    What is reduced of a machine is that of the last one whose train had its shape. It begins at
-    what that of `near` found, if that is still known.
+    What is reduced of a machine is that of the last one whose train had its shape. A case that
+    differs in numbers from one before has its geometry.
     """
     if not isinstance(case, Case):
         case = load_case(case)
     found = _recent.of(case)
     if found is None:
-        solved, beside = resolve(case), _recent.of(near)
-        machine = Machine(build_train(solved), near=beside[1] if beside else None)
-        _share(machine)
-        found = _recent.keep(case, (solved, machine))
-    return found
+        solved = with_laws(case)
+        train, geometry = _built(solved)
+        machine = Machine(train)
+        share(machine)
+        found = _recent.keep(case, (solved, machine, geometry))
+    return found[:2]
 
 
-def _share(machine: Machine) -> None:
+def _built(case: Case) -> tuple[Train, Geometry]:
+    """Return the train of a case and its geometry."""
+    for before, machine, geometry in _recent:
+        train = train_alike(case, (before, geometry, machine.train))
+        if train is not None:
+            return train, geometry
+    geometry = geometry_of(case)
+    return train_of(case, geometry), geometry
+
+
+def share(machine: Machine) -> None:
     """Let a machine have what is reduced of one whose train has its shape, or be the first.
 
     In the same units, so that not a bit of an answer depends on what was solved before.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Iterator
 from typing import Generic, TypeVar
 
 from loadshare.case import Case
@@ -16,6 +17,10 @@ class Recent(Generic[Made]):
 
     def __init__(self) -> None:
         self._made: deque[tuple[Case, object, Made]] = deque(maxlen=JOB.recent)
+
+    def __iter__(self) -> Iterator[Made]:
+        """What was made, the last first."""
+        return (made for _, _, made in reversed(self._made))
 
     def of(self, case: Case | None, what: object = None) -> Made | None:
         """Return what was made of a case; None where it is not known.

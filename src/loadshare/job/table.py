@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 
 from loadshare._version import __version__
 from loadshare.case import Case
-from loadshare.results.dataset import COMPONENTS, VARIABLES, Variable
+from loadshare.results.dataset import VARIABLES, Variable
+from loadshare.results.figures import COMPONENTS
+from loadshare.results.share import mesh_torques, shares
 from loadshare.train.equilibria import Equilibria
-from loadshare.train.train import Stage, Train
+from loadshare.train.train import Train
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,36 +25,6 @@ if TYPE_CHECKING:
     from loadshare.job.positions import Progress
 
 Array = NDArray[np.float64]
-
-
-def mesh_torques(answers: Equilibria) -> tuple[Array, tuple[str, ...]]:
-    """Return torques at the drivers [N·m], drive less coast, (S, meshes), and the meshes."""
-    meshes = answers.names.train.meshes
-    lever = np.zeros((answers.flank_force.shape[1], len(meshes)))
-    flank = 0
-    for m, mesh in enumerate(meshes.values()):
-        for drive in mesh.flanks:
-            lever[flank, m] = mesh.lever(drive)
-            flank += 1
-    return answers.flank_force @ lever, tuple(meshes)
-
-
-def shares(torque: Array, meshes: tuple[str, ...], stages: Iterable[Stage], pairs: bool) -> Array:
-    """Return Ω of every mesh, shape (S, meshes): over its stage's mean, or over its group's.
-
-    NaN for a mesh of no stage, and where a group carries nothing.
-    """
-    found = np.full_like(torque, np.nan)
-    order = {m: k for k, m in enumerate(meshes)}
-    with np.errstate(invalid="ignore", divide="ignore"):
-        for stage in stages:
-            for group in stage.groups if pairs else (stage.meshes,):
-                columns = [order[m] for m in group]
-                mean = torque[:, columns].mean(axis=1)
-                found[:, columns] = (
-                    torque[:, columns] / np.where(mean != 0.0, mean, np.nan)[:, None]
-                )
-    return found
 
 
 EVERY = ("sample", "position")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,20 +10,17 @@ import numpy as np
 
 from loadshare.case.words import as_given
 from loadshare.results.differences import DIGITS, ROUND_OFF
+from loadshare.results.figures import COMPONENTS
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-    from loadshare.results.result import Position, Result
+    from loadshare.results.result import Result
 
 
 JUDGED_ARRAYS = ("residual", "torque_bound")
 """Figures of certificates, which are round-off themselves (see `differences.JUDGED`)."""
-COMPONENTS = ("x", "y")
-"""Of a displacement in the gear's transverse frame."""
-DETERMINED = (np.nan, np.nan)
-"""Ends of the range of what is determined."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,14 +32,11 @@ class Variable:
     dims : tuple of str
         Beside the position. The first names elements.
     units, long_name : str
-    read : callable
-        Value at a position for one name of the first dimension; None where there is none.
     """
 
     dims: tuple[str, ...]
     units: str
     long_name: str
-    read: Callable[[Position, str], object] = lambda position, name: None
 
     def labelled(self, values: np.ndarray, *over: str) -> tuple[Any, ...]:
         """Return values as xarray takes them, the dimensions `over` before the variable's own."""
@@ -51,127 +45,60 @@ class Variable:
 
 
 VARIABLES = {
-    "torque": Variable(("mesh",), "N·m", "torque on the driver", lambda p, m: p.torque[m]),
-    "coast_torque": Variable(
-        ("mesh",), "N·m", "torque on the coast flank", lambda p, m: p.coast_torque[m]
-    ),
-    "share": Variable(
-        ("mesh",), "1", "load-sharing coefficient, stage mean", lambda p, m: p.share.get(m)
-    ),
-    "pair_share": Variable(
-        ("mesh",), "1", "load-sharing coefficient, group mean", lambda p, m: p.pair_share.get(m)
-    ),
-    "mesh_position": Variable(
-        ("mesh",), "1", "position of the mesh in its own cycle", lambda p, m: p.mesh_position[m]
-    ),
-    "mesh_force": Variable(
-        ("mesh",), "N", "force along the line of action", lambda p, m: p.loads.meshes[m]
-    ),
+    "torque": Variable(("mesh",), "N·m", "torque on the driver"),
+    "coast_torque": Variable(("mesh",), "N·m", "torque on the coast flank"),
+    "share": Variable(("mesh",), "1", "load-sharing coefficient, stage mean"),
+    "pair_share": Variable(("mesh",), "1", "load-sharing coefficient, group mean"),
+    "mesh_position": Variable(("mesh",), "1", "position of the mesh in its own cycle"),
+    "mesh_force": Variable(("mesh",), "N", "force along the line of action"),
     "transmission_error": Variable(
         ("side",),
         "rad",
         "rotation of the input beyond the kinematic one, referred to input or output",
-        lambda p, side: p.elastic.transmission_error[side],
     ),
     "torsional_stiffness": Variable(
         ("side",),
         "N·m/rad",
         "tangent stiffness from input to output, referred to input or output",
-        lambda p, side: p.elastic.torsional_stiffness[side],
     ),
     "mesh_transmission_error": Variable(
-        ("mesh",),
-        "m",
-        "transmission error along the line of action",
-        lambda p, m: p.elastic.mesh_transmission_error[m],
+        ("mesh",), "m", "transmission error along the line of action"
     ),
-    "mesh_stiffness": Variable(
-        ("mesh",),
-        "N/m",
-        "tangent stiffness along the line of action",
-        lambda p, m: p.elastic.mesh_stiffness[m],
-    ),
-    "mesh_torsional_stiffness": Variable(
-        ("mesh",),
-        "N·m/rad",
-        "tangent stiffness at the driver",
-        lambda p, m: p.elastic.mesh_torsional_stiffness[m],
-    ),
-    "shaft_torque": Variable(
-        ("shaft",),
-        "N·m",
-        "torque from the first gear to the second",
-        lambda p, s: p.loads.shafts[s],
-    ),
+    "mesh_stiffness": Variable(("mesh",), "N/m", "tangent stiffness along the line of action"),
+    "mesh_torsional_stiffness": Variable(("mesh",), "N·m/rad", "tangent stiffness at the driver"),
+    "shaft_torque": Variable(("shaft",), "N·m", "torque from the first gear to the second"),
     "gear_torque": Variable(
-        ("gear",),
-        "N·m",
-        "torque from outside, counter-clockwise about the gear's axis",
-        lambda p, g: p.loads.gears[g],
+        ("gear",), "N·m", "torque from outside, counter-clockwise about the gear's axis"
     ),
     "bearing_force": Variable(
         ("gear", "component"),
         "N",
         "force on the bearing or the pin in the gear's transverse frame",
-        lambda p, g: p.loads.bearings[g],
     ),
-    "rotation": Variable(("gear",), "rad", "elastic rotation", lambda p, g: p.rotation[g]),
+    "rotation": Variable(("gear",), "rad", "elastic rotation"),
     "displacement": Variable(
-        ("gear", "component"),
-        "m",
-        "displacement of the centre in the gear's transverse frame",
-        lambda p, g: p.displacement[g],
+        ("gear", "component"), "m", "displacement of the centre in the gear's transverse frame"
     ),
     "rotation_range": Variable(
-        ("gear", "end"),
-        "rad",
-        "least and largest rotation where forces leave it open",
-        lambda p, g: p.undetermined.get(f"gear {g} rotation", DETERMINED),
+        ("gear", "end"), "rad", "least and largest rotation where forces leave it open"
     ),
     "displacement_range": Variable(
         ("gear", "component", "end"),
         "m",
         "least and largest displacement where forces leave it open",
-        lambda p, g: [p.undetermined.get(f"gear {g} {axis}", DETERMINED) for axis in COMPONENTS],
     ),
-    "margin": Variable(
-        ("float",),
-        "m",
-        "distance to the nearest boundary of the float's region",
-        lambda p, g: p.floats[g].margin,
-    ),
-    "on_boundary": Variable(
-        ("float",),
-        "1",
-        "1 where the float rests on a boundary",
-        lambda p, g: p.floats[g].state == "on boundary",
-    ),
-    "reaction": Variable(
-        ("float", "component"),
-        "N",
-        "force of the ring on the float",
-        lambda p, g: p.floats[g].reaction,
-    ),
+    "margin": Variable(("float",), "m", "distance to the nearest boundary of the float's region"),
+    "on_boundary": Variable(("float",), "1", "1 where the float rests on a boundary"),
+    "reaction": Variable(("float", "component"), "N", "force of the ring on the float"),
     "torque_bound": Variable(
-        ("mesh",),
-        "N·m",
-        "largest distance of the torque from the exact equilibrium's",
-        lambda p, m: p.certificate.bound.torque.get(m),
+        ("mesh",), "N·m", "largest distance of the torque from the exact equilibrium's"
     ),
-    "residual": Variable(
-        ("figure",),
-        "1",
-        "scaled residual of the certificate",
-        lambda p, name: p.certificate.residuals[name].scaled,
-    ),
+    "residual": Variable(("figure",), "1", "scaled residual of the certificate"),
     "validity": Variable(
-        ("measure",),
-        "1",
-        "size of the displacements for the geometry in which they were found",
-        lambda p, name: getattr(p.validity.measures.get(name), "value", None),
+        ("measure",), "1", "size of the displacements for the geometry in which they were found"
     ),
 }
-"""Every variable of a result; samples and studies take theirs from here."""
+"""Every variable of a result, an attribute of `Figures`; samples and studies take theirs here."""
 
 
 def dataset(result: Result) -> xr.Dataset:
@@ -185,27 +112,17 @@ def dataset(result: Result) -> xr.Dataset:
     """
     import xarray as xr
 
-    positions, stamp = result.positions, result.stamp
-    first = positions[0]
-    names: dict[str, list[str]] = {
-        "mesh": list(first.torque),
-        "gear": list(first.rotation),
-        "shaft": list(first.loads.shafts),
-        "side": list(first.elastic.transmission_error),
-        "component": list(COMPONENTS),
-        "end": ["least", "largest"],
-        "float": list(first.floats),
-        "figure": list(first.certificate.residuals),
-        "measure": [name for name, _, _ in result.validity],
-    }
+    parts, stamp = result.figures, result.stamp
+    # A train that is placed may have a shift to tell at some positions only.
+    measures = list(dict.fromkeys(m for part in parts for m in part.measured))
+    names = {**parts[0].names, "measure": measures}
     data = {}
     for name, variable in VARIABLES.items():
-        rows = [[variable.read(p, n) for n in names[variable.dims[0]]] for p in positions]
-        shape = [len(positions), *(len(names[dim]) for dim in variable.dims)]
-        data[name] = variable.labelled(np.array(rows, dtype=float).reshape(shape), "position")
+        values = np.concatenate([part.told(name, names) for part in parts])
+        data[name] = variable.labelled(values, "position")
     return xr.Dataset(
         data,
-        coords={"position": [p.position for p in positions], **names},
+        coords={"position": [p.position for p in result.positions], **names},
         attrs={
             "title": stamp.title or stamp.case,
             "case": stamp.case,

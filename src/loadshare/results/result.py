@@ -15,6 +15,8 @@ from loadshare.certify.validity import Measure, Validity, validity
 from loadshare.pictures import picture
 from loadshare.results.claim import Claim, Pair, claim_of
 from loadshare.results.elastic import Elastic
+from loadshare.results.figures import Figures
+from loadshare.results.judged import figures_of
 from loadshare.results.laws import LawUse, laws_of
 from loadshare.results.loads import Loads
 from loadshare.settings import CERTIFY
@@ -183,14 +185,20 @@ class Position:
         return {mesh: k + 1 for mesh, k in self.train.mesh_positions(index).items()}
 
     @cached_property
+    def figures(self) -> Figures:
+        """All that it tells, as arrays of one answer."""
+        (found,) = figures_of([self])
+        return found
+
+    @property
     def loads(self) -> Loads:
         """Forces of meshes and on bearings, torques of shafts and from outside."""
-        return Loads(self.train, self.equilibrium)
+        return Loads(self.figures)
 
-    @cached_property
+    @property
     def elastic(self) -> Elastic:
         """Transmission errors and stiffnesses of the train and of its meshes."""
-        return Elastic(self.train, self.equilibrium)
+        return Elastic(self.figures)
 
     @property
     def undetermined(self) -> Mapping[str, Pair]:
@@ -324,6 +332,11 @@ class Result:
     def floats(self) -> tuple[Mapping[str, FloatState], ...]:
         """Rest of every float, one mapping per position."""
         return tuple(p.floats for p in self.positions)
+
+    @cached_property
+    def figures(self) -> list[Figures]:
+        """All that it tells, as arrays over the positions; those of one train together."""
+        return figures_of(self.positions)
 
     @cached_property
     def dataset(self) -> xr.Dataset:

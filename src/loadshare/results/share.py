@@ -5,7 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.train.equilibria import Equilibria
 from loadshare.train.train import Stage
+
+Array = NDArray[np.float64]
 
 
 def coefficients(
@@ -48,4 +54,36 @@ def largest(
         found[stage.name] = max(known, default=None)
     known = [v for v in found.values() if v is not None]
     found["system"] = max(known, default=None)
+    return found
+
+
+def mesh_torques(answers: Equilibria) -> tuple[Array, tuple[str, ...]]:
+    """Return torques at the drivers [N·m], drive less coast, (S, meshes), and the meshes."""
+    meshes = answers.names.train.meshes
+    lever = np.zeros((answers.flank_force.shape[1], len(meshes)))
+    flank = 0
+    for m, mesh in enumerate(meshes.values()):
+        for drive in mesh.flanks:
+            lever[flank, m] = mesh.lever(drive)
+            flank += 1
+    return answers.flank_force @ lever, tuple(meshes)
+
+
+def shares(
+    torque: Array, meshes: tuple[str, ...], stages: Iterable[Stage], pairs: bool = False
+) -> Array:
+    """Return Ω of every mesh, shape (S, meshes): over its stage's mean, or over its group's.
+
+    NaN for a mesh of no stage, and where a group carries nothing.
+    """
+    found = np.full_like(torque, np.nan)
+    order = {m: k for k, m in enumerate(meshes)}
+    with np.errstate(invalid="ignore", divide="ignore"):
+        for stage in stages:
+            for group in stage.groups if pairs else (stage.meshes,):
+                columns = [order[m] for m in group]
+                mean = torque[:, columns].mean(axis=1)
+                found[:, columns] = (
+                    torque[:, columns] / np.where(mean != 0.0, mean, np.nan)[:, None]
+                )
     return found

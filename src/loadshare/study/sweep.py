@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 from itertools import product
 from math import prod
 from pathlib import Path as FilePath
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from loadshare.case import Case
-from loadshare.errors import CaseError, Problem, Refused
-from loadshare.job import Progress, solve
+from loadshare.errors import CaseError, Problem
+from loadshare.job import Progress
+from loadshare.job.answered import Answered, answer_samples
+from loadshare.later import known
 from loadshare.output import csv_of, netcdf_of, write_whole
 from loadshare.pictures import picture
 from loadshare.settings import ALLOWED
@@ -36,12 +42,14 @@ if TYPE_CHECKING:
     from loadshare.report.figure import Figure
     from loadshare.results import Result
 
+Array = NDArray[np.float64]
+
 CERTIFIED, PARTLY, REFUSED, INVALID = "certified", "partly refused", "refused", "invalid"
 MOST = 2
 """Parameters of a sweep."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class Point:
     """What was found at one point of a sweep.
 
@@ -53,14 +61,19 @@ class Point:
         "certified", "partly refused" (some positions), "refused", or "invalid" (no usable case).
     message : str
         Why not, where it is not certified.
-    result : Result or None
-        Of the certified positions.
+    find : callable
+        Returns `result`.
     """
 
     values: tuple[float, ...]
     status: str
     message: str
-    result: Result | None
+    find: Callable[[], Result | None] = field(repr=False)
+
+    @cached_property
+    def result(self) -> Result | None:
+        """Of the certified positions."""
+        return self.find()
 
 
 @dataclass(frozen=True, repr=False)
@@ -71,6 +84,7 @@ class Sweep(Viewed):
     ----------
     case : str
         Name of the case.
+    title : str
     parameters : tuple of Parameter
     grids : tuple of tuple of float
         Values of each parameter, in its unit.
@@ -78,13 +92,20 @@ class Sweep(Viewed):
         Positions of the case.
     points : tuple of Point
         The last parameter runs fastest.
+    answered : Answered
+        What was solved.
+    usable : tuple of int
+        Numbers of the points that were solved.
     """
 
     case: str
+    title: str
     parameters: tuple[Parameter, ...]
     grids: tuple[tuple[float, ...], ...]
     count: int
     points: tuple[Point, ...]
+    answered: Answered = field(repr=False)
+    usable: tuple[int, ...] = field(repr=False)
 
     @property
     def passed(self) -> bool:
@@ -97,6 +118,25 @@ class Sweep(Viewed):
         from loadshare.study.tables import sweep_dataset
 
         return sweep_dataset(self)
+
+    def largest(self, kind: str, point: int) -> dict[str, float | None]:
+        """Return the largest Ω of every stage and of the system at a point, given by its number.
+
+        Parameters
+        ----------
+        kind : {"omega", "pair_omega"}
+            By the mean of the stage or of the group.
+        point : int
+        """
+        every = {stage: float(values[point]) for stage, values in self.shares[kind].items()}
+        return {stage: None if math.isnan(value) else value for stage, value in every.items()}
+
+    @cached_property
+    def shares(self) -> dict[str, dict[str, Array]]:
+        """Largest Ω at all points, by kind and stage; not a number without one."""
+        from loadshare.study.tables import largest_shares
+
+        return largest_shares(self)
 
     def plot(
         self,
@@ -166,7 +206,7 @@ def sweep(
     positions: Sequence[int] | None = None,
     progress: Progress | None = None,
 ) -> Sweep:
-    """Solve a case at every point of a grid, each from the one before.
+    """Solve a case at every point of a grid.
 
     Parameters
     ----------
@@ -178,7 +218,7 @@ def sweep(
     positions : sequence of int, optional
         1-based positions; all by default.
     progress : Progress, optional
-        Called after every point.
+        Called now and then with points done and in all.
 
     Returns
     -------
@@ -213,23 +253,60 @@ def sweep(
     total = prod(len(values) for values in grids)
     if total > ALLOWED.points:
         raise too_many("sweep", total)
-    points: list[Point] = []
-    unusable: list[CaseError] = []
-    near: Case | None = None
-    for values in product(*grids):
+    points = np.array(list(product(*grids)))
+    refused: dict[int, CaseError] = {}
+    try:
+        _check_corners(case, chosen, points)
+        answered = answer_samples(case, _samples(chosen, points), positions, progress)
+    except CaseError as error:
+        refused = _unusable(case, chosen, points)
+        if len(refused) in (0, total):
+            # No point makes a case: the keys themselves are wrong.
+            raise refused.get(0, error) from None
+        some = np.delete(points, list(refused), axis=0)
+        answered = answer_samples(case, _samples(chosen, some), positions, progress)
+    usable = tuple(k for k in range(total) if k not in refused)
+    found = {k: _point(tuple(points[k].tolist()), answered, s) for s, k in enumerate(usable)}
+    for k, why in refused.items():
+        found[k] = Point(tuple(points[k].tolist()), INVALID, str(why), known(None))
+    return Sweep(
+        case=case.name,
+        title=case.title,
+        parameters=tuple(chosen),
+        grids=tuple(grids),
+        count=len(answered.positions),
+        points=tuple(found[k] for k in range(total)),
+        answered=answered,
+        usable=usable,
+    )
+
+
+def _samples(chosen: Sequence[Parameter], values: Array) -> dict[str, Array]:
+    """Return the points as `solve_many` takes them."""
+    return {
+        f"{key} [{parameter.unit}]" if parameter.unit else key: values[:, number]
+        for number, parameter in enumerate(chosen)
+        for key in parameter.keys
+    }
+
+
+def _check_corners(case: Case, chosen: Sequence[Parameter], values: Array) -> None:
+    """Let the checks of a case judge the corners of the grid that samples do not try."""
+    low, high = values.min(axis=0), values.max(axis=0)
+    if len(chosen) > 1:
+        applied(case, chosen, (low[0], high[1]))
+        applied(case, chosen, (high[0], low[1]))
+
+
+def _unusable(case: Case, chosen: Sequence[Parameter], values: Array) -> dict[int, CaseError]:
+    """Return why points have no usable case, by number."""
+    found = {}
+    for number, at in enumerate(values.tolist()):
         try:
-            changed = applied(case, chosen, values)
-            points.append(_solved(changed, values, positions, near))
-            near = changed
+            build_train(applied(case, chosen, at))
         except CaseError as error:
-            unusable.append(error)
-            points.append(Point(values, INVALID, str(error), None))
-        if progress is not None:
-            progress(len(points), total)
-    if len(unusable) == len(points):
-        # No point makes a case: the keys themselves are wrong.
-        raise unusable[0]
-    return Sweep(case.name, tuple(chosen), tuple(grids), _count(case, points), tuple(points))
+            found[number] = error
+    return found
 
 
 def _check_apart(parameters: Sequence[Parameter]) -> None:
@@ -242,17 +319,12 @@ def _check_apart(parameters: Sequence[Parameter]) -> None:
             seen[key] = parameter.name
 
 
-def _count(case: Case, points: Sequence[Point]) -> int:
-    found = [len(p.result.positions) for p in points if p.result is not None]
-    return max(found, default=build_train(case).count)
-
-
-def _solved(
-    case: Case, values: tuple[float, ...], positions: Sequence[int] | None, near: Case | None
-) -> Point:
-    try:
-        result = solve(case, positions=positions, near=near)
-    except Refused as refusal:
-        partial = refusal.partial
-        return Point(values, PARTLY if partial else REFUSED, str(refusal), partial)
-    return Point(values, CERTIFIED, "", result)
+def _point(values: tuple[float, ...], answered: Answered, sample: int) -> Point:
+    """Return what became of a point."""
+    refused = answered.refused(sample)
+    whole = len(refused) == len(answered.positions)
+    status = REFUSED if whole else PARTLY if refused else CERTIFIED
+    if any(isinstance(error, CaseError) for error in refused):
+        status = INVALID
+    message = "\n".join(map(str, refused))
+    return Point(values, status, message, partial(answered.result, sample))

@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from loadshare._version import __version__
-from loadshare.results.dataset import COMPONENTS, VARIABLES
+from loadshare.results.dataset import VARIABLES
+from loadshare.results.figures import COMPONENTS
+from loadshare.results.share import mesh_torques, shares
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
-    from loadshare.results import Result
+    from loadshare.job.answered import Part
     from loadshare.study.march import March
     from loadshare.study.sensitivity import Sensitivity
     from loadshare.study.sweep import Sweep
-
-NONE = np.array(np.nan)
 
 
 def sweep_dataset(sweep: Sweep) -> xr.Dataset:
@@ -42,72 +44,139 @@ def sweep_dataset(sweep: Sweep) -> xr.Dataset:
         p.name: (p.name, np.array(values), {"units": p.unit or "1", "keys": ", ".join(p.keys)})
         for p, values in zip(sweep.parameters, sweep.grids, strict=True)
     }
-    words = {
+    data: dict[str, object] = {
         "status": (dims, np.array([p.status for p in sweep.points]).reshape(shape)),
         "message": (dims, np.array([p.message for p in sweep.points]).reshape(shape)),
     }
-    results = [p.result for p in sweep.points]
-    first = next((r for r in results if r is not None), None)
     attributes = {"case": sweep.case, "loadshare_version": __version__}
-    if first is None:
-        return xr.Dataset(words, coords=coords, attrs=attributes)
-    attributes["title"] = first.stamp.title
-    positions = sorted({p.position for r in results if r for p in r.positions})
-    model = first.dataset.reindex(position=positions)
-    parts = [r.dataset.reindex(position=positions) if r else None for r in results]
-    data: dict[str, object] = dict(words)
-    for name, variable in model.items():
-        arrays = [p[name].values if p is not None else np.full(variable.shape, NONE) for p in parts]
-        stacked = np.array(arrays).reshape(shape + variable.shape)
-        data[str(name)] = ((*dims, *map(str, variable.dims)), stacked, variable.attrs)
-    stages = list(first.omega)
+    filled = _filled(sweep, (*VARIABLES, *WORDS))
+    if not filled.positions:
+        return xr.Dataset(data, coords=coords, attrs=attributes)
+    attributes["title"] = sweep.title
+    for name, variable in VARIABLES.items():
+        values = filled.arrays[name].reshape(*shape, *filled.arrays[name].shape[1:])
+        data[name] = variable.labelled(values, *dims, "position")
+    omegas = sweep.shares
     for name, label in (("omega", "stage mean"), ("pair_omega", "group mean")):
-        filled = [[_figure(r, name, stage) for stage in stages] for r in results]
+        values = np.stack(list(omegas[name].values()), axis=-1)
         attrs = {"units": "1", "long_name": f"largest load-sharing coefficient, {label}"}
-        data[name] = ((*dims, "stage"), np.array(filled).reshape((*shape, len(stages))), attrs)
-    floats = [str(name) for name in model["float"].values]
+        data[name] = ((*dims, "stage"), values.reshape(*shape, -1), attrs)
     for name, label in (("rest", "where the float rests"), ("spline", "stage of the spline")):
-        filled_words = [
-            [[_word(r, k, g, name) for g in floats] for k in positions] for r in results
-        ]
-        stacked = np.array(filled_words, dtype=str).reshape((*shape, len(positions), len(floats)))
-        data[name] = ((*dims, "position", "float"), stacked, {"long_name": label})
-    coords |= {str(n): model[n].values for n in model.coords} | {"stage": stages}
+        values = filled.arrays[name]
+        values = values.astype(str).reshape(*shape, *values.shape[1:])
+        data[name] = ((*dims, "position", "float"), values, {"long_name": label})
+    coords |= {"position": list(filled.positions), **filled.names, "stage": list(omegas["omega"])}
     return xr.Dataset(data, coords=coords, attrs=attributes)
 
 
-def _figure(result: Result | None, name: str, stage: str) -> float:
-    value = getattr(result, name)[stage] if result is not None else None
-    return np.nan if value is None else float(value)
+@dataclass(frozen=True, eq=False)
+class _Filled:
+    """Figures of all points: arrays over points, positions and the names of what is told of."""
+
+    positions: tuple[int, ...]
+    names: dict[str, list[str]]
+    arrays: dict[str, np.ndarray]
 
 
-def _word(result: Result | None, position: int, gear: str, name: str) -> str:
-    for p in result.positions if result is not None else ():
-        if p.position == position:
-            rest = p.floats[gear]
-            return (rest.spline or "") if name == "spline" else (rest.boundary or rest.state)
-    return ""
+def _filled(sweep: Sweep, wanted: Sequence[str]) -> _Filled:
+    """Put together figures of the parts of a sweep, at positions that have an answer anywhere."""
+    parts = [part for part in sweep.answered.parts if len(part.there)]
+    positions = sorted({k for part in parts for k in _answered(part)[1].tolist()})
+    names = {**parts[0].figures.names} if parts else {}
+    if "validity" in wanted:
+        every = (m for part in parts for m in part.figures.measured)
+        names["measure"] = list(dict.fromkeys(every))
+    arrays: dict[str, np.ndarray] = {}
+    for part in parts:
+        rows, index = _answered(part)
+        at = np.array(sweep.usable)[rows], np.searchsorted(positions, index)
+        for name in wanted:
+            words = name in WORDS
+            values = getattr(part.figures, name) if words else part.figures.told(name, names)
+            if name not in arrays:
+                shape = len(sweep.points), len(positions), *values.shape[1:]
+                none, kind = ("", object) if words else (np.nan, None)
+                arrays[name] = np.full(shape, none, dtype=kind)
+            arrays[name][at] = values
+    return _Filled(tuple(positions), names, arrays)
+
+
+def _answered(part: Part) -> tuple[np.ndarray, np.ndarray]:
+    """Samples and positions of what has an answer in a part."""
+    each = len(part.rows)
+    return part.rows[part.there % each], np.array(part.positions)[part.there // each]
+
+
+WORDS = ("rest", "spline")
+"""Figures of floats that are words."""
+TABULATED = ("torque", "coast_torque", "share", "pair_share")
+"""Figures in the table of a sweep."""
+
+
+def largest_shares(sweep: Sweep) -> dict[str, dict[str, np.ndarray]]:
+    """Return the largest Ω of every stage and of the system at all points, by mean and stage.
+
+    "omega" by the mean of the stage, "pair_omega" by that of the group; not a number without one.
+    """
+    stages: dict[str, tuple[str, ...]] = {}
+    found: dict[str, dict[str, np.ndarray]] = {}
+    for part in sweep.answered.parts:
+        answers, train = part.solved.found.equilibria, part.solved.machine.train
+        torque, meshes = mesh_torques(answers)
+        torque[list(part.refused)] = np.nan
+        for number, answer in part.others.items():
+            torque[number] = [
+                sum(m.lever(d) * answer.flank_force[m.flank_name(d)] for d in m.flanks)
+                for m in train.meshes.values()
+            ]
+        stages = {s.name: s.meshes for s in train.stages}
+        points = np.array(sweep.usable)[part.rows]
+        for name in ("omega", "pair_omega"):
+            share = shares(torque, meshes, train.stages, pairs=name == "pair_omega")
+            each = found.setdefault(
+                name, {s: np.full(len(sweep.points), np.nan) for s in (*stages, "system")}
+            )
+            for stage, own in (
+                *stages.items(),
+                ("system", [m for s in stages.values() for m in s]),
+            ):
+                columns = [meshes.index(m) for m in own]
+                largest = np.fmax.reduce(share[:, columns], axis=1, initial=np.nan)
+                largest = np.fmax.reduce(largest.reshape(-1, len(points)), axis=0)
+                each[stage][points] = np.fmax(each[stage][points], largest)
+    return found
 
 
 def sweep_frame(sweep: Sweep) -> pd.DataFrame:
     """Tabulate a sweep: point by position by mesh; a refused point has one row with its message."""
     import pandas as pd
 
-    frames = []
-    for point in sweep.points:
-        table = (
-            pd.DataFrame({"position": [pd.NA]}) if point.result is None else point.result.to_frame()
-        )
-        for number, (parameter, value) in enumerate(
-            zip(sweep.parameters, point.values, strict=True)
-        ):
-            label = f"{parameter.name} [{parameter.unit}]" if parameter.unit else parameter.name
-            table.insert(number, label, value)
-        frames.append(table.assign(status=point.status, message=point.message))
-    table = pd.concat([f.astype(object) for f in frames], ignore_index=True)
-    # A refused point may come first; what became of a point stands last all the same.
-    last = ["status", "message"]
-    return table[[c for c in table if c not in last] + last]
+    filled = _filled(sweep, (*TABULATED, "residual"))
+    worst = filled.arrays.get("residual", np.full((len(sweep.points), 0, 1), np.nan)).max(axis=2)
+    point, position = np.nonzero(~np.isnan(worst))
+    meshes = filled.names.get("mesh", [])
+    columns: dict[str, Any] = {}
+    number = np.repeat(point, len(meshes))
+    at = np.array(filled.positions, dtype=int)[position]
+    columns["position"] = np.repeat(at, len(meshes)).astype(object)
+    columns["mesh"] = np.tile(np.array(meshes, dtype=object), len(point))
+    for name in TABULATED:
+        columns[name] = filled.arrays[name][point, position].reshape(-1) if len(point) else []
+    columns["worst_residual"] = np.repeat(worst[point, position], len(meshes))
+    table = pd.DataFrame(columns, index=number)
+    empty = [k for k in range(len(sweep.points)) if k not in set(point.tolist())]
+    if empty:
+        table = pd.concat([table, pd.DataFrame({"position": [pd.NA] * len(empty)}, index=empty)])
+    else:
+        table["position"] = table["position"].astype(int)
+    table = table.sort_index(kind="stable")
+    order = table.index.to_numpy()
+    for k, parameter in enumerate(sweep.parameters):
+        label = f"{parameter.name} [{parameter.unit}]" if parameter.unit else parameter.name
+        table.insert(k, label, np.array([p.values[k] for p in sweep.points])[order])
+    for name in ("status", "message"):
+        table[name] = np.array([getattr(p, name) for p in sweep.points], dtype=object)[order]
+    return table.reset_index(drop=True)
 
 
 def sensitivity_dataset(found: Sensitivity) -> xr.Dataset:

@@ -30,9 +30,11 @@ def sweep_view(found: Sweep) -> View:
         (
             *(f"{v:g}" for v in point.values),
             point.status,
-            by_name(point.result.omega) if point.result else point.message.partition("\n")[0],
+            by_name(found.largest("omega", k))
+            if point.status in ("certified", "partly refused")
+            else point.message.partition("\n")[0],
         )
-        for point in found.points
+        for k, point in enumerate(found.points)
     )
     heads = (f"{p.name} [{p.unit}]" if p.unit else p.name for p in found.parameters)
     columns = (*heads, "status", "largest Ω")

@@ -58,7 +58,7 @@ def check_loaded_meshes(draft: Draft) -> Iterator[Problem]:
     external = [*draft.operating.external, *(n for n, g in draft.gears.items() if g.held)]
     ahead = reach([draft.operating.input, *external], taken)
     behind = reach([draft.operating.output, *external], backwards(taken))
-    turned = from_the_other_end(draft.operating, draft.gears, draft.meshes, draft.shafts)
+    turned = _turned(draft)
     for name, mesh in draft.meshes.items():
         first, last = (mesh.driven, mesh.driver) if turned else (mesh.driver, mesh.driven)
         if first not in ahead or last not in behind:
@@ -97,9 +97,14 @@ def _known(draft: Draft) -> bool:
 
 def _steps(draft: Draft) -> Steps:
     """The steps of the torque from the input on, along the names of the meshes or against them."""
-    taken = steps(draft.gears, draft.meshes, draft.shafts)
-    if draft.operating is None or not from_the_other_end(
-        draft.operating, draft.gears, draft.meshes, draft.shafts
-    ):
-        return taken
-    return backwards(taken)
+    taken = draft.once("steps", lambda: steps(draft.gears, draft.meshes, draft.shafts))
+    return backwards(taken) if _turned(draft) else taken
+
+
+def _turned(draft: Draft) -> bool:
+    """Whether the input stands where the meshes' names put the output."""
+    operating = draft.operating
+    if operating is None:
+        return False
+    elements = draft.gears, draft.meshes, draft.shafts
+    return draft.once("turned", lambda: from_the_other_end(operating, *elements))

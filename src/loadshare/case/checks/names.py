@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
+from functools import lru_cache
 
 from loadshare.case.content import ABOUT, ENDS, FLOATS
 from loadshare.case.draft import Draft
@@ -174,15 +175,29 @@ def check_measured_positions(draft: Draft) -> Iterator[Problem]:
 
 def check_assumed_patterns(draft: Draft) -> Iterator[Problem]:
     """Yield patterns of `assumed` that match no key of the case."""
-    known = [path for path in walk(draft.data) if path[0] not in ABOUT]
-    for number, pattern in enumerate(draft.assumed):
+    known = tuple(path for path in walk(draft.data) if path[0] not in ABOUT)
+    for number, wrong in _unmatched(draft.assumed, known):
         path = ("assumed", number)
+        if wrong == NO_PATH:
+            yield draft.problem(path, wrong, 'a text such as "gears.*.base_radius"')
+        else:
+            hint = did_you_mean(draft.assumed[number], [dotted(key) for key in known])
+            yield draft.problem(path, wrong, hint=hint)
+
+
+NO_PATH = "is not a key path"
+
+
+@lru_cache(maxsize=16)
+def _unmatched(assumed: tuple[str, ...], known: tuple[Path, ...]) -> list[tuple[int, str]]:
+    """Patterns, by number, that match no key, and what is wrong with each."""
+    found = []
+    for number, pattern in enumerate(assumed):
         try:
             wanted = parse(pattern)
         except ValueError:
-            yield draft.problem(path, "is not a key path", 'a text such as "gears.*.base_radius"')
-            continue
-        if not any(covers(wanted, key) for key in known):
-            names = [dotted(key) for key in known]
-            hint = did_you_mean(pattern, names)
-            yield draft.problem(path, "matches no key of the case", hint=hint)
+            found.append((number, NO_PATH))
+        else:
+            if not any(covers(wanted, key) for key in known):
+                found.append((number, "matches no key of the case"))
+    return found

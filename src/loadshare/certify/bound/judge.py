@@ -121,8 +121,30 @@ def completed(
     return Bounds(columns, relative, None, None, None)
 
 
-def _boxes(claim: Claim, rigorous: bool) -> Bounds:
-    """Bound all forces and coordinates."""
+def torque_bounds(
+    columns: Columns, situations: Situations, answers: Equilibria, relative: Array
+) -> Array:
+    """Bound the torques of all meshes, (S, meshes) [N·m], of claims that are bounded already.
+
+    Parameters
+    ----------
+    columns : Columns
+    situations : Situations
+    answers : Equilibria
+    relative : ndarray, shape (S,)
+        Largest error of a mesh's torque over the largest torque: what each mesh has where a closer
+        look would take more than one glance.
+    """
+    with np.errstate(all="ignore"):
+        claim = Claim(columns, situations, answers, fine=False)
+        scale, largest = _scales(claim)
+        box = quick_boxes(claim, first_acts(claim), scale)
+        found = columns.over_meshes(_torques(columns, box.force, np.abs(answers.flank_force)))
+        return np.asarray(np.fmin(found, (relative * largest)[:, None]))
+
+
+def _scales(claim: Claim) -> tuple[Array, Array]:
+    """Load [N] and largest torque of a flank or from outside [N·m] of claims, (S,)."""
     columns, torque, answers = claim.columns, claim.situations.torque, claim.answers
     radius = np.array([g.base_radius for g in columns.train.gears.values()])
     flanks = np.abs(answers.flank_force)
@@ -131,7 +153,13 @@ def _boxes(claim: Claim, rigorous: bool) -> Bounds:
     scale = np.maximum(flanks.max(axis=1, initial=0.0), pushed)
     largest = (flanks * columns.arms).max(axis=1, initial=0.0)
     largest = np.maximum(largest, np.abs(torque).max(axis=1, initial=0.0))
-    scale, largest = (np.where(v > 0.0, v, 1.0) for v in (scale, largest))
+    return np.where(scale > 0.0, scale, 1.0), np.where(largest > 0.0, largest, 1.0)
+
+
+def _boxes(claim: Claim, rigorous: bool) -> Bounds:
+    """Bound all forces and coordinates."""
+    columns, flanks = claim.columns, np.abs(claim.answers.flank_force)
+    scale, largest = _scales(claim)
     first, *others = BOUND.still if columns.train.slip is not None else BOUND.still[:1]
     box, relative = _proved(with_held_slips(claim, scale, first), scale, largest, rigorous)
     for still in others:

@@ -1,4 +1,4 @@
-r"""Stiffness of a train at a claim, with the contact states that the claim has.
+r"""Stiffness of a train at claims, with the contact states that the claims have.
 
 What acts is one row each along which it yields by a compliance: a scalar column, or of a pair its
 line and what is across. With rows A, compliances D and a load f,
@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,57 +28,73 @@ from loadshare.certify.bound.one import columns_of
 from loadshare.certify.bound.statics import Statics
 from loadshare.settings import BOUND
 from loadshare.train.equilibria import Equilibria
-from loadshare.train.equilibrium import Equilibrium
-from loadshare.train.situations import situation_of
+from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Tangent:
-    """How a train yields to a little more load.
+class Tangents:
+    """How a train yields to a little more load, at each of S claims.
 
     Attributes
     ----------
-    flanks : ndarray, shape (flanks,)
+    train : Train
+    flanks : ndarray, shape (S, flanks)
         Stiffness of every flank along its line of action at the force that it carries [N/m]; 0
         where it is open.
+    rows : list of Rows
+        What acts, claim by claim.
+    """
+
+    train: Train
+    flanks: Array
+    rows: list[Rows]
+
+    def torsion(self, gear: str) -> Array:
+        """Torque on a gear per rotation of it, (S,) [N·m/rad].
+
+        0 where nothing resists, infinite where nothing yields.
+        """
+        turn = columns_of(self.train).turns[gear]
+        if turn.coordinate is None:
+            return np.full(len(self.rows), np.inf)
+        load = np.zeros(len(columns_of(self.train).coordinates))
+        load[turn.coordinate] = 1.0
+        statics: dict[bytes, Statics] = {}
+        for rows in self.rows:
+            key = rows.directions.tobytes()
+            if key not in statics:
+                statics[key] = Statics.of(rows.directions)
+        yields = np.array([r.yields(load, statics[r.directions.tobytes()]) for r in self.rows])
+        with np.errstate(divide="ignore"):
+            return np.asarray(turn.radius**2 / yields)
+
+
+class Rows(NamedTuple):
+    """What acts in a claim.
+
+    Attributes
+    ----------
     directions, compliance : ndarray, shape (rows, n) and (rows,)
-        What acts: its direction over the coordinates, and how it yields [m/N].
+        Its direction over the coordinates, and how it yields [m/N].
     pushing : ndarray, shape (n, splines)
         Force of friction at every coordinate, per torque over a spline [1/m].
     shrinking : ndarray, shape (rows, splines)
         What friction takes of the length of a row, per torque over a spline [1/N].
     twist : ndarray, shape (splines, rows)
         Torque over a spline per force of a row, positive as claimed [m].
-    train : Train
     """
 
-    flanks: Array
     directions: Array
     compliance: Array
     pushing: Array
     shrinking: Array
     twist: Array
-    train: Train
 
-    def torsion(self, gear: str) -> float:
-        """Torque on a gear per rotation of it [N·m/rad].
-
-        0 where nothing resists, infinite where nothing yields.
-        """
-        turn = columns_of(self.train).turns[gear]
-        if turn.coordinate is None:
-            return math.inf
-        load = np.zeros(self.directions.shape[1])
-        load[turn.coordinate] = 1.0
-        yields = self._yields(load)
-        return math.inf if yields == 0.0 else turn.radius**2 / yields
-
-    def _yields(self, load: Array) -> float:
-        """Compliance of a load, in its own direction [m/N]."""
-        known = Statics.of(self.directions)
+    def yields(self, load: Array, known: Statics) -> float:
+        """Compliance of a load, in its own direction [m/N]; `known` is of the directions."""
         d, n = self.compliance, known.redundant
         borne = known.particular @ load
         if np.abs(self.directions.T @ borne - load).max() > BOUND.loose:
@@ -89,6 +106,8 @@ class Tangent:
         by_gap = basis / values[kept] @ basis.T
         by_load = known.particular - by_gap @ (d[:, None] * known.particular)
         first = by_load @ load
+        if not len(self.twist):
+            return float(first @ (d * first))
         pushed = by_load @ self.pushing - by_gap @ self.shrinking
         around = np.eye(len(self.twist)) + self.twist @ pushed
         torque = np.linalg.pinv(around) @ (self.twist @ first)
@@ -96,58 +115,58 @@ class Tangent:
         return float(first @ (d * force - self.shrinking @ torque))
 
 
-def tangent_of(train: Train, answer: Equilibrium) -> Tangent:
-    """Return how a train yields at an answer, what carries there taken to go on carrying.
+def tangents_of(train: Train, situations: Situations, answers: Equilibria) -> Tangents:
+    """Return how a train yields at S answers, what carries there taken to go on carrying.
 
     Parameters
     ----------
     train : Train
-    answer : Equilibrium
+    situations : Situations
+    answers : Equilibria
     """
     columns = columns_of(train)
-    claim = Claim(columns, situation_of(train, answer.index), Equilibria.of(train, answer))
+    claim = Claim(columns, situations, answers)
     with np.errstate(all="ignore"):
         act = first_acts(claim)
         scale = np.maximum(np.abs(claim.forces).max(axis=1, initial=0.0), np.finfo(float).tiny)
         found = elements(claim, act, scale, np.zeros(act.shape, bool), BOUND.softest)
-    directions, compliance, pushing, shrinking = _rows(claim, found)
-    scalar = np.flatnonzero(found.active[0, : columns.first_pair])
-    flanks = scalar[scalar < columns.flanks.stop]
-    twist = np.zeros((len(columns.moments), len(directions)))
-    twist[:, : len(flanks)] = columns.moments[:, flanks]
-    twist *= np.sign(claim.torque_on_splines[0])[:, None]
-    stiffness = np.zeros(columns.flanks.stop)
-    stiffness[flanks] = 1.0 / found.soft[0, flanks]
-    return Tangent(stiffness, directions, compliance, pushing, shrinking, twist, train)
+    last = columns.flanks.stop
+    soft = np.where(found.active[:, :last], found.soft[:, :last], np.inf)
+    with np.errstate(divide="ignore"):
+        return Tangents(train, 1.0 / soft, [_rows(claim, found, k) for k in range(claim.count)])
 
 
-def _rows(claim: Claim, found: Elements) -> tuple[Array, Array, Array, Array]:
-    """Directions and compliances of what acts, and what follows the torques over splines."""
+def _rows(claim: Claim, found: Elements, row: int) -> Rows:
+    """Directions and compliances of what acts in a claim, and what follows torques over splines."""
     columns, matrix = claim.columns, claim.columns.matrix.high
-    scalar = np.flatnonzero(found.active[0, : columns.first_pair])
-    directions, yields = list(matrix[scalar]), found.soft[0, scalar].tolist()
+    scalar = np.flatnonzero(found.active[row, : columns.first_pair])
+    directions, yields = list(matrix[scalar]), found.soft[row, scalar].tolist()
     none = np.zeros(len(columns.moments))
     pushing, shrinking = np.zeros((len(columns.coordinates), len(none))), [none] * len(scalar)
-    acts = found.act[0, found.act.shape[1] - columns.pairs :]
-    for k, (act, line) in enumerate(zip(acts, found.line[0], strict=True)):
+    acts = found.act[row, found.act.shape[1] - columns.pairs :]
+    for k, (act, line) in enumerate(zip(acts, found.line[row], strict=True)):
         if act == Act.OPEN:
             continue
         at = columns.first_pair + 2 * k
         pair = matrix[at : at + 2]
-        soft = np.diag(found.soft[0, at : at + 2]) + found.skew[0, k] * np.eye(2)[::-1]
+        soft = np.diag(found.soft[row, at : at + 2]) + found.skew[row, k] * np.eye(2)[::-1]
         along = np.array([1.0, 0.0]) if act in (Act.STICK, Act.PINNED) else line
         ways = [np.array([-along[1], along[0]])]
         shrinking.append(none)
         if act != Act.SLIP:
             ways.append(along)
-            shrinking.append(found.shrinks[0, k] * columns.splined[k])
+            shrinking.append(found.shrinks[row, k] * columns.splined[k])
         directions += [way @ pair for way in ways]
         yields += [float(way @ soft @ way) for way in ways]
-        pushing += np.outer(line @ pair, found.follows[0, k] * columns.splined[k])
-    shape = (len(directions), len(columns.coordinates))
-    return (
-        np.array(directions).reshape(shape),
+        pushing += np.outer(line @ pair, found.follows[row, k] * columns.splined[k])
+    flanks = scalar[scalar < columns.flanks.stop]
+    twist = np.zeros((len(columns.moments), len(directions)))
+    twist[:, : len(flanks)] = columns.moments[:, flanks]
+    twist *= np.sign(claim.torque_on_splines[row])[:, None]
+    return Rows(
+        np.array(directions).reshape(-1, len(columns.coordinates)),
         np.array(yields),
         pushing,
         np.array(shrinking).reshape(len(directions), len(none)),
+        twist,
     )

@@ -76,18 +76,17 @@ def show_sweep(found: Sweep) -> None:
 
 
 def _table(found: Sweep, kind: str) -> Table:
-    first = next((p.result for p in found.points if p.result is not None), None)
-    stages = list(first.omega) if first is not None else []
+    stages = list(found.largest(kind, 0))
     heads = [f"{p.name} [{p.unit}]" if p.unit else p.name for p in found.parameters]
     # Where every point is certified, a column that says so would only take room.
     status = [] if found.passed else ["status"]
     rows = (
         (
             *(f"{value:.6g}" for value in point.values),
-            *(omega(getattr(point.result, kind, {}).get(stage)) for stage in stages),
+            *map(omega, found.largest(kind, k).values()),
             *([point.status] if status else []),
         )
-        for point in found.points
+        for k, point in enumerate(found.points)
     )
     made = table((*heads, *(f"Ω {stage}" for stage in stages), *status), rows, words=status)
     for column in made.columns[: len(heads)]:

@@ -12,7 +12,7 @@ from loadshare.case import Case
 from loadshare.errors import CaseError
 from loadshare.job.block import Block
 from loadshare.job.many import solve_blocks
-from loadshare.job.table import mesh_torques, shares
+from loadshare.results.share import mesh_torques, shares
 from loadshare.scene.scene import Array
 from loadshare.study.tolerance.inputs import Inputs
 from loadshare.train.equilibria import Equilibria

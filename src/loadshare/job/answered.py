@@ -1,0 +1,205 @@
+"""Samples of a case, solved together, each of which can be looked at as if it were solved alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from loadshare.case import Case
+from loadshare.errors import CaseError, Refused
+from loadshare.job.answer import Answer
+from loadshare.job.engines import engine_at_hand
+from loadshare.job.hot import Solved
+from loadshare.job.ladder import AUTO, climb
+from loadshare.job.machine import Machine
+from loadshare.job.positions import Progress, result_of, share, wanted_positions
+from loadshare.results.figures import Figures
+from loadshare.results.result import Result
+from loadshare.settings import CERTIFY, JOB
+from loadshare.solver import Options
+from loadshare.tooth import resolve
+from loadshare.train import build_train
+from loadshare.train.placed import standing
+from loadshare.train.samples import Samples, samples_of
+from loadshare.train.situations import stack
+
+Unanswered = Refused | CaseError
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Samples of one machine at positions that are solved together, position by position.
+
+    Attributes
+    ----------
+    rows : ndarray of int, shape (S,)
+        Numbers of the samples.
+    positions : tuple of int
+    samples : Samples
+    solved : Solved
+        S answers for every position.
+    others : dict of int to Answer
+        What the ladder found, by number among these.
+    refused : dict of int to exception
+        What has no answer, likewise.
+    """
+
+    rows: NDArray[np.intp]
+    positions: tuple[int, ...]
+    samples: Samples
+    solved: Solved
+    others: dict[int, Answer]
+    refused: dict[int, Unanswered]
+
+    def numbers(self, row: int) -> Iterator[tuple[int, int]]:
+        """Yield number and position of every answer to a sample, given by its place in `rows`."""
+        for p, index in enumerate(self.positions):
+            yield p * len(self.rows) + row, index
+
+    @cached_property
+    def there(self) -> NDArray[np.intp]:
+        """Numbers of what has an answer."""
+        every = np.arange(len(self.rows) * len(self.positions))
+        return np.delete(every, list(self.refused))
+
+    @cached_property
+    def figures(self) -> Figures:
+        """What there is of answers tells, as arrays in the order of `there`."""
+        solved, answers = self.solved, self.solved.found.equilibria
+        proved = solved.found.verdicts.bounds.relative.copy()
+        hot = [k for k in self.there.tolist() if k not in self.others]
+        found = {**solved.least(hot), **{k: a.equilibrium for k, a in self.others.items()}}
+        for number, answer in self.others.items():
+            answers.put(number, answer.equilibrium)
+            proved[number] = answer.certificate.proved
+        return Figures(
+            solved.machine.train,
+            solved.situations.take(self.there),
+            answers.take(self.there),
+            [found[k].undetermined if k in found else {} for k in self.there.tolist()],
+            proved[self.there],
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Answered:
+    """Answers to samples of a case.
+
+    Attributes
+    ----------
+    positions : tuple of int
+        1-based, as they were asked for.
+    parts : tuple of Part
+    """
+
+    positions: tuple[int, ...]
+    parts: tuple[Part, ...]
+
+    def of(self, sample: int) -> Iterator[tuple[Part, int]]:
+        """Yield the parts that hold a sample, and its place there."""
+        for part in self.parts:
+            for row in np.flatnonzero(part.rows == sample).tolist():
+                yield part, row
+
+    def refused(self, sample: int) -> tuple[Unanswered, ...]:
+        """Return why a sample has no answer at some positions, in their order."""
+        return tuple(
+            part.refused[k]
+            for part, row in self.of(sample)
+            for k, _ in part.numbers(row)
+            if k in part.refused
+        )
+
+    def result(self, sample: int) -> Result | None:
+        """Return a sample as `solve` would: its certified positions, None if there are none."""
+        answers: list[Answer] = []
+        case = train = None
+        for part, row in self.of(sample):
+            if case is None or train is None:
+                case = resolve(part.samples.one(row))
+                train = build_train(case)
+            for k, index in part.numbers(row):
+                if k in part.others:
+                    answers.append(part.others[k])
+                elif k not in part.refused:
+                    answers.append(part.solved.answer(k, index, standing(train, index)))
+        if case is None or train is None or not answers:
+            return None
+        options = Options(solver=AUTO)
+        return result_of(case, train, answers, options, CERTIFY.tolerance, self.positions)
+
+
+def answer_samples(
+    case: Case,
+    samples: Mapping[str, ArrayLike],
+    positions: Iterable[int] | None = None,
+    progress: Progress | None = None,
+) -> Answered:
+    """Solve and certify samples of a case, all together.
+
+    Parameters
+    ----------
+    case : Case
+    samples : mapping of str to array_like
+        As for `solve_many`.
+    positions : iterable of int, optional
+        1-based positions; all by default.
+    progress : Progress, optional
+        Called now and then with samples done and in all.
+
+    Raises
+    ------
+    CaseError
+        If a key or a value cannot be used.
+    ValueError
+        If a position does not exist.
+    """
+    groups = samples_of(case, samples)
+    wanted = tuple(wanted_positions(groups[0][1].train, positions))
+    total, done = sum(len(rows) for rows, _ in groups), 0
+    each = max(1, JOB.together // len(wanted))
+    parts = []
+    for rows, group in groups:
+        machine = Machine(group.train)
+        share(machine)
+        abreast = [(k,) for k in wanted] if group.train.is_placed_anew else [wanted]
+        for at in range(0, len(rows), each):
+            some = slice(at, at + each)
+            taken = group if len(rows) <= each else group.take(some)
+            parts += [_part(machine, rows[some], taken, indices) for indices in abreast]
+            done += len(rows[some])
+            if progress is not None:
+                progress(done, total)
+    return Answered(wanted, tuple(parts))
+
+
+def _part(
+    machine: Machine, rows: NDArray[np.intp], samples: Samples, positions: tuple[int, ...]
+) -> Part:
+    """Solve samples at some positions; what the hot path leaves climbs the ladder."""
+    here = machine.at(positions[0])
+    situations = stack([samples.situations(index) for index in positions])
+    engine = engine_at_hand("auto", situations.count)
+    found = here.answer(situations, CERTIFY.tolerance, engine, starts=positions)
+    solved = Solved(here, situations, found, CERTIFY.tolerance)
+    part = Part(rows, positions, samples, solved, {}, {})
+    for k in np.flatnonzero(~(found.passed & solved.small)).tolist():
+        p, row = divmod(k, len(rows))
+        try:
+            train = standing(build_train(resolve(samples.one(row))), positions[p])
+            if found.passed[k]:
+                answer = solved.answer(k, positions[p], train)
+            else:
+                answer = climb(train, positions[p], Options(), CERTIFY.tolerance, JOB.steps)
+                part.others[k] = answer
+            because: Unanswered | None = answer.refused()
+        except (CaseError, Refused) as refusal:
+            because = refusal
+        if because is not None:
+            part.others.pop(k, None)
+            part.refused[k] = because
+    return part

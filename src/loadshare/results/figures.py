@@ -1,0 +1,322 @@
+"""Everything that answers tell, as arrays: the claims of many, or of one, worked out at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.certify.bound import torque_bounds
+from loadshare.certify.bound.one import columns_of
+from loadshare.certify.bound.tangent import Tangents, tangents_of
+from loadshare.certify.floats import Rests
+from loadshare.certify.mechanics import mechanics_of
+from loadshare.certify.residuals import RESIDUALS, pushed_by_rings, scaled_residuals
+from loadshare.certify.state import ClaimedState
+from loadshare.certify.validity import measuring
+from loadshare.results.share import shares
+from loadshare.settings import CERTIFY
+from loadshare.train.equilibria import Equilibria
+from loadshare.train.equilibrium import Range
+from loadshare.train.situations import Situations
+from loadshare.train.train import Train
+
+Array = NDArray[np.float64]
+
+COMPONENTS = ("x", "y")
+"""Of a displacement in the gear's transverse frame."""
+SIDES = ("input", "output")
+"""To which what is told of the whole train is referred."""
+
+
+class Figures:
+    """What S answers of a train tell; every array has them as its first axis.
+
+    Elements stand in the order of the train; what there is not is not a number.
+
+    Parameters
+    ----------
+    train : Train
+        As the answers stand: placed, and remembering, where it is.
+    situations : Situations
+    answers : Equilibria
+        At their places of least norm.
+    undetermined : sequence of mapping of coordinate to (float, float)
+        What the forces of each answer leave open.
+    proved : ndarray, shape (S,)
+        Largest distance of a torque from the exact one, over the largest torque.
+    """
+
+    def __init__(
+        self,
+        train: Train,
+        situations: Situations,
+        answers: Equilibria,
+        undetermined: Sequence[Mapping[str, Range]],
+        proved: Array,
+    ) -> None:
+        self.train, self.situations, self.answers = train, situations, answers
+        self.undetermined, self.proved = undetermined, proved
+        self.count = len(answers.rotation)
+
+    @cached_property
+    def state(self) -> ClaimedState:
+        """The claims seen as mechanics."""
+        with np.errstate(all="ignore"):
+            return ClaimedState(mechanics_of(self.train), self.situations, self.answers)
+
+    def _over_meshes(self, figures: Array) -> Array:
+        """Sums of figures of flanks, (S, flanks), over those of every mesh."""
+        return np.asarray(columns_of(self.train).over_meshes(figures))
+
+    @cached_property
+    def _flank_torque(self) -> Array:
+        """Torque of every flank on the gear that its mesh names first [N·m], (S, flanks)."""
+        levers = [mesh.lever(drive) for mesh, drive in columns_of(self.train).all_flanks]
+        return np.asarray(self.answers.flank_force * np.array(levers))
+
+    @cached_property
+    def torque(self) -> Array:
+        """Torque on the driver, drive less coast [N·m], (S, meshes)."""
+        return self._over_meshes(self._flank_torque)
+
+    @cached_property
+    def coast_torque(self) -> Array:
+        """Part on the coast flank [N·m], (S, meshes)."""
+        return self._over_meshes(np.maximum(-self._flank_torque, 0.0))
+
+    @cached_property
+    def share(self) -> Array:
+        """Ω over the stage's mean, (S, meshes)."""
+        return shares(self.torque, tuple(self.train.meshes), self.train.stages)
+
+    @cached_property
+    def pair_share(self) -> Array:
+        """Ω over the group's mean, (S, meshes)."""
+        return shares(self.torque, tuple(self.train.meshes), self.train.stages, pairs=True)
+
+    @cached_property
+    def mesh_position(self) -> Array:
+        """Position at which every mesh stands in its own cycle, from 1, (S, meshes)."""
+        index = np.broadcast_to(self.situations.index, self.count)
+        every = self.train.mesh_positions(index).values()
+        return np.array([at + 1 for at in every]).reshape(-1, self.count).T
+
+    @cached_property
+    def mesh_force(self) -> Array:
+        """Force of every mesh along its line of action, drive less coast [N], (S, meshes)."""
+        signs = [1.0 if drive else -1.0 for _, drive in columns_of(self.train).all_flanks]
+        return self._over_meshes(self.answers.flank_force * np.array(signs))
+
+    @cached_property
+    def shaft_torque(self) -> Array:
+        """Torque of every shaft from its first gear to its second [N·m], (S, shafts)."""
+        shafts = len(self.train.shafts)
+        return self.state.torque.T if shafts else np.zeros((self.count, 0))
+
+    @cached_property
+    def gear_torque(self) -> Array:
+        """Torque from outside on every gear, counter-clockwise about its axis [N·m], (S, gears).
+
+        Loads; and on the output and on held gears what balances all others.
+        """
+        of, state = self.state.of, self.state
+        torque = np.broadcast_to(state.here.torque, (len(of.order), self.count)).copy()
+        for group in of.groups:
+            for held in (gear for gear in group if gear in of.held):
+                torque[held] -= state.moment[group].sum(axis=0)
+        senses = [np.nan if g.rim_of else g.sense for g in self.train.gears.values()]
+        return np.asarray(torque.T * np.array(senses) + 0.0)
+
+    @cached_property
+    def bearing_force(self) -> Array:
+        """Force of every gear on its bearing, of a planet on its pin [N], (S, gears, 2).
+
+        In its frame; supports and bearings with clearance together. Those of splines and rings
+        stand apart.
+        """
+        of, state = self.state.of, self.state
+        pushing = of.pushing.reshape(-1, len(of.order), 3)
+        pushed = -np.einsum("egk,es->gks", pushing, state.claim.flank_force)
+        pushed += pushed_by_rings(state)
+        if state.pushed is not None:
+            pushed += state.pushed[1]
+        found = np.full((self.count, len(of.order), 2), np.nan)
+        for k, (name, gear) in enumerate(self.train.gears.items()):
+            if gear.rim_of is not None:
+                continue
+            own = pushed[k].T @ gear.plane.T
+            if gear.support is not None:
+                own = gear.told(state.claim.support_force[k].T)
+            bearing = self.train.bearings.get(name)
+            if bearing is not None:
+                own = own - state.reaction[of.pulls.index(bearing.name)].T @ gear.plane.T
+            found[:, k] = own
+        return found
+
+    @cached_property
+    def _tangents(self) -> Tangents:
+        return tangents_of(self.train, self.situations, self.answers)
+
+    @property
+    def _ratio(self) -> float:
+        """Speed of the output over that of the input."""
+        return abs(self.train.gears[self.train.output].ratio)
+
+    @cached_property
+    def transmission_error(self) -> Array:
+        """Loaded transmission error of the train, referred to input and output [rad], (S, 2).
+
+        How far the input turns beyond what its ratio to the output says; positive in its running
+        sense, in which the output lags behind. Referred to the output it is smaller by the ratio of
+        the speeds.
+        """
+        ahead = self.answers.rotation[:, self.train.order[self.train.input]]
+        return np.stack([ahead, ahead * self._ratio], axis=1)
+
+    @cached_property
+    def torsional_stiffness(self) -> Array:
+        """Tangent stiffness dT/dφ, referred to input and output [N·m/rad], (S, 2).
+
+        Of the torque on the input by its rotation, the output held. What carries is taken to go on
+        carrying, what slips to go on slipping. 0 where nothing resists.
+        """
+        stiffness, ratio = self._tangents.torsion(self.train.input), self._ratio**2
+        output = stiffness / ratio if ratio else np.zeros(self.count)
+        return np.stack([stiffness, output], axis=1)
+
+    @cached_property
+    def mesh_transmission_error(self) -> Array:
+        """Loaded transmission error of every mesh along its line of action [m], (S, meshes).
+
+        How far the base circle of the gear that drives runs ahead of the other's, seen from their
+        carrier: r₁φ₁ − r₂φ₂.
+        """
+        arms = np.zeros((len(self.train.gears), len(self.train.meshes)))
+        for m, mesh in enumerate(self.train.meshes.values()):
+            turning = self.train.approaches[mesh.flank_name(True)].turning
+            for gear, arm in turning.items():
+                arms[self.train.order[gear], m] = arm
+        return np.asarray((self.answers.rotation[:, :, None] * arms).sum(axis=1))
+
+    @cached_property
+    def mesh_stiffness(self) -> Array:
+        """Tangent stiffness of every mesh along its line of action, (S, meshes) [N/m].
+
+        At its force; of both flanks where both carry, 0 where none does.
+        """
+        return self._over_meshes(self._tangents.flanks)
+
+    @cached_property
+    def mesh_torsional_stiffness(self) -> Array:
+        """The same as torque by angle at the gear that the mesh names first [N·m/rad]."""
+        radii = np.array([mesh.told_radius for mesh in self.train.meshes.values()])
+        return np.asarray(self.mesh_stiffness * radii**2)
+
+    @property
+    def rotation(self) -> Array:
+        """Elastic rotation of every gear [rad], (S, gears)."""
+        return self.answers.rotation
+
+    @cached_property
+    def displacement(self) -> Array:
+        """Displacement of every centre in the gear's transverse frame [m], (S, gears, 2)."""
+        planes = np.array([gear.plane for gear in self.train.gears.values()])
+        return np.asarray(np.einsum("gak,sgk->sga", planes, self.answers.displacement))
+
+    def _ranges(self, what: str) -> Array:
+        """Least and largest value of what is open of every gear, (S, gears, 2)."""
+        found = np.full((self.count, len(self.train.gears), 2), np.nan)
+        for s, open_ in enumerate(self.undetermined):
+            for g, gear in enumerate(self.train.gears if open_ else ()):
+                found[s, g] = open_.get(f"gear {gear} {what}", np.nan)
+        return found
+
+    @cached_property
+    def rotation_range(self) -> Array:
+        """Least and largest rotation where forces leave it open [rad], (S, gears, 2)."""
+        return self._ranges("rotation")
+
+    @cached_property
+    def displacement_range(self) -> Array:
+        """Least and largest displacement where forces leave it open [m], (S, gears, 2, 2)."""
+        return np.stack([self._ranges(axis) for axis in COMPONENTS], axis=2)
+
+    @cached_property
+    def _rests(self) -> Rests:
+        with np.errstate(all="ignore"):
+            return Rests(self.state, self.undetermined, CERTIFY.band)
+
+    @property
+    def margin(self) -> Array:
+        """Distance of every float to its nearest boundary [m], (S, floats)."""
+        return self._rests.margin.T
+
+    @property
+    def on_boundary(self) -> NDArray[np.bool_]:
+        """Whether every float rests on a boundary, (S, floats)."""
+        return self._rests.on_boundary.T
+
+    @property
+    def reaction(self) -> Array:
+        """Force of its rings on every float [N], (S, floats, 2)."""
+        return np.moveaxis(self._rests.reaction, 2, 0)
+
+    @cached_property
+    def rest(self) -> NDArray[np.str_]:
+        """Where every float rests, in words, (S, floats)."""
+        words = [self._rests.rest(gear) for gear in self.train.floating]
+        return np.array(words, dtype=str).reshape(-1, self.count).T
+
+    @cached_property
+    def spline(self) -> NDArray[np.str_]:
+        """Stage of every float's spline, (S, floats); empty without one."""
+        words = [self._rests.stage_told(gear) for gear in self.train.floating]
+        return np.array(words, dtype=str).reshape(-1, self.count).T
+
+    @cached_property
+    def torque_bound(self) -> Array:
+        """Largest distance of every torque from the exact equilibrium's [N·m], (S, meshes)."""
+        columns = columns_of(self.train)
+        return torque_bounds(columns, self.situations, self.answers, self.proved)
+
+    @cached_property
+    def residual(self) -> Array:
+        """Scaled residuals of the certificate, (S, figures), in the order of `RESIDUALS`."""
+        with np.errstate(all="ignore"):
+            return scaled_residuals(self.state)
+
+    @cached_property
+    def measured(self) -> dict[str, Array]:
+        """Size of the displacements for the geometry, by what is measured, (S,) each."""
+        every = measuring(self.train).every(self.situations, self.answers, self.state.deflection)
+        largest = {name: values.max(axis=0) for name, values in every.items()}
+        return {name: np.where(v < 0.0, np.nan, v) for name, v in largest.items()}
+
+    @cached_property
+    def names(self) -> dict[str, list[str]]:
+        """Names along the axes after the first."""
+        train = self.train
+        return {
+            "mesh": list(train.meshes),
+            "gear": list(train.gears),
+            "shaft": list(train.shafts),
+            "side": list(SIDES),
+            "component": list(COMPONENTS),
+            "end": ["least", "largest"],
+            "float": list(train.floating),
+            "figure": list(RESIDUALS),
+        }
+
+    def by_name(self, name: str, dim: str) -> dict[str, float]:
+        """Return a figure of the first answer, by the names along an axis."""
+        return dict(zip(self.names[dim], getattr(self, name)[0].tolist(), strict=True))
+
+    def told(self, name: str, names: Mapping[str, Sequence[str]]) -> Array:
+        """Return a figure by its name as numbers; sizes of displacements in the order of names."""
+        if name != "validity":
+            return np.asarray(getattr(self, name), dtype=float)
+        none = np.full(self.count, np.nan)
+        return np.stack([self.measured.get(m, none) for m in names["measure"]], axis=1)

@@ -1,0 +1,54 @@
+"""Trains of cases that differ in numbers only: what does not change is not built again."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from loadshare.case import Case
+from loadshare.case.content import ABOUT
+from loadshare.case.quantity import NUMBER
+from loadshare.train.array_keys import array_unit
+from loadshare.train.build import train_of
+from loadshare.train.columns import Column
+from loadshare.train.geometry import Geometry
+from loadshare.train.train import Train
+
+_NUMBER = re.compile(NUMBER)
+
+
+def train_alike(case: Case, base: tuple[Case, Geometry, Train]) -> Train | None:
+    """Return the train of a case, built from that of a case before; None if they differ in more.
+
+    In more, that is, than in numbers that become arrays in a table of samples (see `array_keys`):
+    then the geometry is the same.
+
+    Parameters
+    ----------
+    case : Case
+    base : (Case, Geometry, Train)
+        Another case, its mesh laws given, with its geometry and its train.
+
+    Raises
+    ------
+    CaseError
+        As `build_train`.
+    """
+    for path, before, after in case.differences(base[0]):
+        if path[0] in ABOUT:
+            continue
+        numbers = [_number(value) for value in (before, after)]
+        if None in numbers:
+            return None
+        if array_unit(case, Column(path, "", np.array(numbers, dtype=float))) is None:
+            return None
+    return train_of(case, base[1], (base[0], base[2]))
+
+
+def _number(value: object) -> float | None:
+    """Return the number of a value as a case file has it, whatever its unit; None of a word."""
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return float(value)
+    match = _NUMBER.match(value.strip()) if isinstance(value, str) else None
+    return float(match[0].replace("−", "-")) if match else None
