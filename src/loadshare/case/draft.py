@@ -92,7 +92,7 @@ def read_draft(
     # With all values given: looking for defaults takes longer than reading a small case.
     draft = Draft.model_construct(**{name: _nothing(about) for name, about in _fields().items()})
     draft._data, draft._origin = data, origin
-    if before is not None and list(before[1].get("gears", ())) != list(data.get("gears", ())):
+    if before is not None and [*before[1]["gears"]] != draft.names("gears"):
         # A name a-b may tell other gears.
         before = None
     if data and not any(key in fields for key in data):
