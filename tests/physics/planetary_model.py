@@ -103,7 +103,9 @@ class Set:
             Members that cannot turn.
         """
         size, to = len(self.names), self.names
-        stiff, load = np.zeros((size, size)), np.zeros(size)
+        # Soft bearings beside stiff teeth: what double precision leaves of a flank's approach is
+        # not enough for what it is compared with.
+        stiff, load = np.zeros((size, size), np.longdouble), np.zeros(size, np.longdouble)
         load[to[member + "t"]] = torque
         fixed = {to[name + "t"] for name in held}
         stiff[to["ringt"], to["ringt"]] += self.torsion
@@ -115,7 +117,7 @@ class Set:
                 else:
                     fixed.add(at)
         flanks = self.flanks()
-        rows = np.zeros((len(flanks), size))
+        rows = np.zeros((len(flanks), size), np.longdouble)
         for e, (row, _, _) in enumerate(flanks):
             for at, value in row.items():
                 rows[e, at] = value
@@ -123,7 +125,7 @@ class Set:
         springs = np.array([stiffness for *_, stiffness in flanks])
         seats = [self._seat(k) for k in range(len(self.angles))]
         free = np.array([k for k in range(size) if k not in fixed])
-        x = np.zeros(size)
+        x = np.zeros(size, np.longdouble)
 
         def energy(x: Array) -> tuple[float, Array, Array]:
             near = rows @ x + start
@@ -133,7 +135,7 @@ class Set:
             second = stiff + (rows * np.where(near > 0.0, springs, 0.0)[:, None]).T @ rows
             for matrix, error in seats:
                 away = matrix @ x - error
-                far = float(np.hypot(*away))
+                far = np.hypot(*away)
                 beyond = far - self.clearance
                 if beyond > 0.0:
                     k, unit = self.supports["planet"], away / far
@@ -147,11 +149,11 @@ class Set:
         while left:
             left -= 1
             value, slope, second = energy(x)
-            here = second[np.ix_(free, free)]
+            here = second[np.ix_(free, free)].astype(float)
             scale = (0.0 if near else 1e-13) * np.trace(here) / len(free)
             move = np.zeros(size)
             move[free] = -np.linalg.lstsq(
-                here + scale * np.eye(len(free)), slope[free], rcond=1e-15
+                here + scale * np.eye(len(free)), slope[free].astype(float), rcond=1e-15
             )[0]
             length = 1.0
             while length > 1e-12:
@@ -164,7 +166,8 @@ class Set:
             if np.abs(slope[free]).max() <= 1e-9 * abs(torque):
                 # A few more for what rounding leaves.
                 near, left = True, min(left, 6)
-        return x, springs * np.maximum(rows @ x + start, 0.0)
+        force = springs * np.maximum(rows @ x + start, 0.0)
+        return x.astype(float), force.astype(float)
 
     def _seat(self, k: int) -> tuple[Array, Array]:
         """A planet's way from its pin per coordinate, and the pin's error."""

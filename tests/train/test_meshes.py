@@ -71,7 +71,7 @@ def meshed(pair: tuple[Gear, Gear], sense: int) -> tuple[Gear, Gear, Mesh]:
     """The pair with the driver running in `sense`, settled by the kinematics."""
     first = Gear(**{s: getattr(pair[0], s) for s in Gear.__slots__} | {"sense": sense})
     found = settle({"a": first, "b": pair[1]}, {"a-b": ("a", "b")}, {}, "a")
-    contact = found.contacts["a-b"]
+    contact = contact_of(found.gears["a"], found.gears["b"])
     radii = first.base_radius, pair[1].base_radius
     normals = (contact.normal(ANGLE, True), contact.normal(ANGLE, False))
     mesh = Mesh("a-b", "a", "b", radii, *normals, (PowerLaw(1e-9),), (0.0,), 1e-4)

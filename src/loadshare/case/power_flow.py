@@ -17,16 +17,21 @@ def steps(
 ) -> Steps:
     """Return the steps of the torque: driver to driven over meshes, either way over shafts.
 
-    In a planetary set it goes either way over meshes and pins: which member drives is no matter of
-    names.
+    In a train with planetary sets it goes either way over all meshes and pins: which member drives
+    is no matter of names, nor which way the power of a loop over several sets goes round.
     """
     found = [mesh.ends for mesh in meshes.values()]
     both = [shaft.ends for shaft in shafts.values()]
-    both += [step for step in found if rides_on(gears, *step)]
+    both += found if has_sets(gears) else []
     both += [(name, gear.carrier) for name, gear in gears.items() if gear.carrier]
     for a, b in both:
         found += [(a, b), (b, a)]
     return found
+
+
+def has_sets(gears: Mapping[str, Gear]) -> bool:
+    """Tell whether a train has planetary sets, in which the load tells the flanks."""
+    return any(gear.carrier for gear in gears.values())
 
 
 def rides_on(gears: Mapping[str, Gear], *names: str) -> str | None:

@@ -226,6 +226,7 @@ def _mesh(name: str, mesh: spec.Mesh, pair: Pair, by_layout: bool) -> Mesh:
         backlash=backlash,
         turned=pair.turned,
         phase=pair.phase if mesh.phase is None and by_layout else mesh.phase or 0.0,
+        counted=pair.counted,
     )
 
 

@@ -15,14 +15,14 @@ import numpy as np
 from loadshare import case as spec
 from loadshare.case.line_of_action import LineOfAction, backlash_of_teeth, line_of_action
 from loadshare.case.place import axis_of
-from loadshare.case.power_flow import against_the_names, rides_on
+from loadshare.case.power_flow import against_the_names, has_sets
 from loadshare.case.teeth import tooth_counts
 from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
 from loadshare.settings import ALLOWED
 from loadshare.train.gear import Gear, Vector, transverse_frame
 from loadshare.train.kinematics import Kinematics, settle
-from loadshare.train.mesh import Contact, contact_of
+from loadshare.train.mesh import running_contact
 from loadshare.train.period import Period, period_of
 from loadshare.train.phases import MEETS, WHOLE, Meeting, Misfit, phases
 from loadshare.train.willis import Links
@@ -44,6 +44,8 @@ class Pair:
         Part of its cycle at which it stands at the first position, where teeth tell it [-].
     backlash : float
         Along the line of action, where the mesh has it follow from its teeth [m].
+    counted : (int, int)
+        See `Mesh`.
     """
 
     driver: Gear
@@ -53,6 +55,7 @@ class Pair:
     line: LineOfAction
     phase: float = 0.0
     backlash: float = math.inf
+    counted: tuple[int, int] = (1, 1)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,7 +97,7 @@ def geometry_of(case: spec.Case) -> Geometry:
         problems.append(case.problem("march.gear", "does not turn", "a gear that turns"))
     if problems:
         raise CaseError(problems)
-    pairs = _pairs(case, kinematics.gears, kinematics.contacts)
+    pairs = _pairs(case, kinematics.gears)
     period = _period(case, kinematics.gears) if common else None
     return Geometry(kinematics.gears, _in_phase(case, pairs), period)
 
@@ -161,7 +164,7 @@ def _in_phase(case: spec.Case, pairs: Mapping[str, Pair]) -> dict[str, Pair]:
         return tooth.half_angle_at(pair.line.pressure_angle)
 
     meetings = {
-        name: Meeting(p.driver, p.driven, (half(p.driver, p), half(p.driven, p)))
+        name: Meeting(p.driver, p.driven, (half(p.driver, p), half(p.driven, p)), p.counted)
         for name, p in pairs.items()
     }
     found, misfits = phases(meetings)
@@ -253,8 +256,8 @@ def _gear(
 
 
 def _pressed(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, int]:
-    """Which flanks of planets the load presses (see `Links.pressed`)."""
-    if not any(gear.carrier for gear in gears.values()):
+    """Which flanks of a train with planetary sets the load presses (see `Links.pressed`)."""
+    if not has_sets(case.gears):
         return {}
     links = Links.of(
         gears,
@@ -269,9 +272,7 @@ def _pressed(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, int]:
     return links.pressed(torques, free)
 
 
-def _pairs(
-    case: spec.Case, gears: Mapping[str, Gear], contacts: Mapping[str, Contact]
-) -> dict[str, Pair]:
+def _pairs(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Pair]:
     """Meshes with the flanks that the torque presses, whichever way it runs through them."""
     flows = against_the_names(case.operating, case.gears, case.meshes, case.shafts)
     against = all(flows or (False,))
@@ -281,14 +282,15 @@ def _pairs(
         line = line_of_action(mesh, case.gears, centres)
         if line is None:
             raise ValueError(f"no line of action: {name}")
-        driver, driven, contact = gears[mesh.driver], gears[mesh.driven], contacts[name]
-        coast = pressed[name] < 0 if rides_on(case.gears, *mesh.ends) else against
+        driver, driven = gears[mesh.driver], gears[mesh.driven]
+        # Where the load presses neither, the names tell.
+        coast = pressed[name] < 0 if pressed.get(name) else against
         turned = coast and not mesh.given("backlash", "normal_backlash")
         if turned:
             driver, driven = driven, driver
-            contact = contact_of(driver, driven)
+        contact, counted = running_contact(driver, driven)
         normals = [contact.normal(line.pressure_angle, drive) for drive in (True, False)]
-        pair = Pair(driver, driven, (normals[0], normals[1]), turned, line)
+        pair = Pair(driver, driven, (normals[0], normals[1]), turned, line, counted=counted)
         if mesh.backlash == "teeth":
             left = backlash_of_teeth(mesh, case.gears, centres)
             pair = replace(pair, backlash=math.inf if left is None else left)

@@ -8,11 +8,10 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass, replace
 
 from loadshare.train.gear import Gear
-from loadshare.train.mesh import Contact, MeshGeometryError, contact_of
+from loadshare.train.mesh import MeshGeometryError, contact_of
 from loadshare.train.planetary import members
 
 RATIO_TOLERANCE = 1e-3
@@ -29,19 +28,17 @@ class Conflict:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Kinematics:
-    """Gears with their senses and ratios, the contacts of the meshes, and what contradicts.
+    """Gears with their senses and ratios, and what contradicts.
 
     Attributes
     ----------
     gears : mapping of str to Gear
-    contacts : mapping of str to Contact
     conflicts : tuple of Conflict
     determined : bool
         Whether all speeds follow from that of the input.
     """
 
     gears: Mapping[str, Gear]
-    contacts: Mapping[str, Contact]
     conflicts: tuple[Conflict, ...]
     determined: bool = True
 
@@ -66,7 +63,6 @@ def settle(
     planetary = any(gear.kind == "carrier" or gear.held for gear in gears.values())
     settled = {first: gears[first]}
     walks = {first: first}
-    contacts: dict[str, Contact] = {}
     conflicts: list[Conflict] = []
 
     def mesh_partner(name: str, here: str) -> Iterator[Gear]:
@@ -75,8 +71,8 @@ def settle(
         try:
             if here == driver:
                 # Where the driven gear turns to does not enter.
-                contacts[name] = contact_of(settled[here], gears[driven])
-                sense, other = contacts[name].driven_sense, driven
+                forward = contact_of(settled[here], gears[driven])
+                sense, other = forward.driven_sense, driven
             else:
                 trial = replace(gears[driver], sense=1)
                 forward = contact_of(trial, gears[driven])
@@ -97,8 +93,6 @@ def settle(
 
     links = [(n, e, f'meshes."{n}"', mesh_partner) for n, e in meshes.items()]
     links += [(n, e, f'shafts."{n}"', shaft_partner) for n, e in shafts.items()]
-    # In a set speeds are those of Willis, and follow later.
-    compare = _looped if planetary else _compare
     walked: set[str] = set()
     queue = deque([first])
     while queue or (planetary and len(settled) < len(gears)):
@@ -117,15 +111,11 @@ def settle(
                     settled[found.name] = found
                     walks[found.name] = walks[here]
                     queue.append(found.name)
-                else:
-                    conflicts += compare(key, known, found)
+                elif not planetary:
+                    conflicts += _compare(key, known, found)
     if planetary and not conflicts:
-        return _of_sets(settled, meshes, shafts, walks, first)
-    for name, (driver, driven) in meshes.items():
-        if name not in contacts and driver in settled and driven in settled:
-            with suppress(MeshGeometryError):
-                contacts[name] = contact_of(settled[driver], settled[driven])
-    return Kinematics(settled, contacts, tuple(conflicts))
+        return _of_sets(_as_shafts_turn(settled, shafts), meshes, shafts, walks, first)
+    return Kinematics(settled, tuple(conflicts))
 
 
 def _of_sets(
@@ -139,19 +129,29 @@ def _of_sets(
     try:
         found, determined = members(gears, meshes, shafts, walks, first)
     except ValueError as error:
-        return Kinematics(gears, {}, (Conflict("operating.input", str(error)),))
-    contacts = {name: contact_of(found[a], found[b]) for name, (a, b) in meshes.items()}
-    return Kinematics(found, contacts, (), determined)
+        return Kinematics(gears, (Conflict("operating.input", str(error)),))
+    return Kinematics(found, (), determined)
 
 
-def _looped(key: str, known: Gear, found: Gear) -> Iterator[Conflict]:
-    """Tell of a loop over several sets in which no senses fit; whether it locks is not known."""
-    if known.sense != found.sense:
-        yield Conflict(
-            key,
-            f"closes a loop that would turn gear {known.name}, as seen from the carriers on the "
-            "way, against the sense of another path: such loops cannot be solved",
-        )
+def _as_shafts_turn(
+    gears: Mapping[str, Gear], shafts: Mapping[str, tuple[str, str]]
+) -> dict[str, Gear]:
+    """Return gears whose senses are those of what they share shafts with.
+
+    In a loop over several sets the walk may come back with the other sense. Any sense does to count
+    a rotation in: the meshes tell (see `Mesh.along`), shafts need not.
+    """
+    found = dict(gears)
+    together: dict[str, set[str]] = {}
+    for ends in shafts.values():
+        joined = set().union(*(together.get(end, {end}) for end in ends))
+        together |= dict.fromkeys(joined, joined)
+    for name, gear in gears.items():
+        for other in together.pop(name, ()):
+            together.pop(other, None)
+            along = 1 if found[other].axis @ gear.axis > 0.0 else -1
+            found[other] = replace(found[other], sense=along * gear.sense)
+    return found
 
 
 def _compare(key: str, known: Gear, found: Gear) -> Iterator[Conflict]:

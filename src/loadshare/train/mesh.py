@@ -135,6 +135,10 @@ class Mesh:
         has one flank only, and that flank is the one it presses.
     phase : float
         Part of its cycle at which it stands at the first position [-].
+    counted : (int, int)
+        1 where a rotation of driver and of driven gear is counted in the sense in which the drive
+        flank goes with the driver and pushes the driven gear, −1 where against it: in planetary
+        sets senses follow from shafts, and in a loop over several sets they may contradict.
     """
 
     name: str
@@ -148,6 +152,7 @@ class Mesh:
     backlash: float
     turned: bool = False
     phase: float = 0.0
+    counted: tuple[int, int] = (1, 1)
 
     @property
     def told_radius(self) -> float:
@@ -181,9 +186,10 @@ class Mesh:
 
     def direction(self, drive: bool) -> tuple[float, float, Vector]:
         """Coefficients of δ on φ_driver [m], φ_driven [m] and the relative offset (3,)."""
+        driver, driven = (s * r for s, r in zip(self.counted, self.radii, strict=True))
         if drive:
-            return self.radii[0], -self.radii[1], self.drive_normal
-        return -self.radii[0], self.radii[1], self.coast_normal
+            return driver, -driven, self.drive_normal
+        return -driver, driven, self.coast_normal
 
     def approach(
         self,
@@ -243,6 +249,16 @@ def approach_of(mesh: Mesh, drive: bool, gears: Mapping[str, Gear]) -> Approach:
         other = gears[mesh.driven if end == mesh.driver else mesh.driver]
         shifting |= bent(end, other, push, gears)
     return Approach(turning, shifting)
+
+
+def running_contact(driver: Gear, driven: Gear) -> tuple[Contact, tuple[int, int]]:
+    """Contact of two gears as they run, seen from their carrier, and how they are counted in it.
+
+    See `Mesh.counted`.
+    """
+    way = -1 if driver.relative < 0.0 else 1
+    contact = contact_of(replace(driver, sense=way * driver.sense), driven)
+    return contact, (way, contact.driven_sense * driven.sense)
 
 
 def contact_of(driver: Gear, driven: Gear) -> Contact:

@@ -37,25 +37,33 @@ class Meeting:
     driver, driven : Gear
     halves : (float, float)
         Half the angle of a tooth of each at the pitch circle [rad].
+    counted : (int, int)
+        See `Mesh`: the phase counts in the sense in which the drive flank goes.
     """
 
     driver: Gear
     driven: Gear
     halves: tuple[float, float]
+    counted: tuple[int, int] = (1, 1)
 
     def passed(self, gear: str, tooth: float) -> float:
         """Pitches by which the flank of a tooth at an angle [rad] is past the pitch point."""
-        drives = gear == self.driver.name
-        here = self.driver if drives else self.driven
-        half = self.halves[0] if drives else -self.halves[1]
-        along = here.sense * (tooth - self._towards(gear))
+        here, sense = self._counted(gear)
+        half = self.halves[0] if here is self.driver else -self.halves[1]
+        along = sense * (tooth - self._towards(gear))
         return round(here.teeth or 0.0) * (along + half) / (2.0 * math.pi)
 
     def tooth(self, gear: str, phase: float) -> float:
         """Angle of a tooth of a gear [rad] in a phase."""
-        here = self.driver if gear == self.driver.name else self.driven
+        here, sense = self._counted(gear)
         pitches = phase - self.passed(gear, 0.0)
-        return here.sense * 2.0 * math.pi * pitches / round(here.teeth or math.inf)
+        return sense * 2.0 * math.pi * pitches / round(here.teeth or math.inf)
+
+    def _counted(self, gear: str) -> tuple[Gear, int]:
+        """One of the two gears, and the sense in which its part of the phase counts."""
+        if gear == self.driver.name:
+            return self.driver, self.counted[0] * self.driver.sense
+        return self.driven, self.counted[1] * self.driven.sense
 
     def _towards(self, gear: str) -> float:
         """Direction of the pitch point from a gear's centre [rad], in its frame."""

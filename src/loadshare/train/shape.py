@@ -54,7 +54,7 @@ def _gear(gear: Gear) -> tuple[Any, ...]:
 
 
 def _mesh(mesh: Mesh) -> tuple[Any, ...]:
-    kept = (mesh.name, mesh.driver, mesh.driven, mesh.radii, mesh.turned, mesh.phase)
+    kept = (mesh.name, mesh.driver, mesh.driven, mesh.radii, mesh.turned, mesh.phase, mesh.counted)
     flanks = (_bytes(mesh.drive_normal), _bytes(mesh.coast_normal), math.isinf(mesh.backlash))
     laws = tuple(
         (law.b > 0.0, law.c > 0.0) if isinstance(law, PowerLaw) else law for law in mesh.laws

@@ -382,9 +382,7 @@ class Train:
         if self.march is None or driver.teeth is None:
             # In whole numbers as far as it goes: a position is not to be missed by round-off.
             return (step + math.floor(phase * self.positions + 1e-9)) % self.positions
-        turned = rotation[driver.name]
-        if driver.frame_of is not None:
-            turned = rotation[self.input] * driver.relative
+        turned = rotation[self.input] * abs(driver.relative)
         cycles = turned * driver.teeth / (2.0 * math.pi) + phase
         # A step that falls on a cycle's start up to round-off belongs to it, not to the end of the
         # one before.

@@ -3,9 +3,10 @@ r"""Planetary sets: how fast every member turns, and which flanks its torque pre
 In a set the speeds are those relative to the carrier c (Willis), the members' own less the
 carrier's about their axes; rigid links of any other kind are the same in a set at rest,
 
-.. math:: r_i (\omega_i - \omega_c) = r_j (\omega_j - \omega_c), \qquad \omega_a = \omega_b,
+.. math:: \pm r_i (\omega_i - \omega_c) = \pm r_j (\omega_j - \omega_c), \qquad \omega_a = \omega_b,
 
-each along the sense in which the member's rotation is counted. Written as :math:`C \omega = 0` the
+each along the sense in which the member's rotation is counted, with the signs of `Mesh.counted`.
+Written as :math:`C \omega = 0` the
 torques that links pass on balance the load by the transpose, :math:`C^T f = T`. Source:
 formulation, section 12.
 """
@@ -19,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.train.gear import Gear
+from loadshare.train.mesh import running_contact
 
 Array = NDArray[np.float64]
 Ends = tuple[str, str]
@@ -55,7 +57,8 @@ class Links:
         rows = []
         for driver, driven in meshes.values():
             row = np.zeros(len(order))
-            for name, sign in ((driver, 1.0), (driven, -1.0)):
+            _, counted = running_contact(gears[driver], gears[driven])
+            for name, sign in ((driver, counted[0]), (driven, -counted[1])):
                 row[order[name]] += sign * gears[name].base_radius
             carrier = seen_from(gears, driver, driven)
             if carrier is not None:
@@ -77,7 +80,7 @@ class Links:
         Raises
         ------
         ValueError
-            If nothing can turn.
+            If the input cannot turn; the message names what holds it.
         """
         names = list(self.gears)
         fixed = [k for k, name in enumerate(names) if self.gears[name].held]
@@ -87,8 +90,13 @@ class Links:
         due = np.zeros(len(matrix))
         due[-1] = 1.0
         found, _, rank, _ = np.linalg.lstsq(matrix, due, rcond=1e-9)
-        if np.abs(matrix @ found - due).max() > LOCKED:
-            raise ValueError("the train would lock: its gears hold one another")
+        left = np.abs(matrix @ found - due)
+        if left.max() > LOCKED:
+            # What has no part in the contradiction fits exactly.
+            parts = [*self.names, *(f"{names[k]} (held)" for k in fixed)]
+            holding = [part for part, off in zip(parts, left[:-1], strict=True) if off > LOCKED**2]
+            told = f"{', '.join(holding[:-1])} and {holding[-1]}" if holding[1:] else holding[0]
+            raise ValueError(f"cannot turn, the train would lock: {told} hold one another")
         still = np.abs(found) <= NOISE
         speeds = np.where(still, 0.0, found / found[names.index(driving)]).tolist()
         return dict(zip(names, speeds, strict=True)), bool(rank == len(names))

@@ -1,0 +1,201 @@
+"""Drives whose power goes round in loops, and other odd ones, against rigid bodies that touch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from tests.physics.drives import MODULE, Drive
+
+import loadshare as ls
+from loadshare.errors import CaseError
+from loadshare.train import build_train
+
+Built = tuple[Drive, str, str]
+"""A drive, its input, its output."""
+
+
+def simple_set(drive: Drive, tag: str, sun: int, planet: int, planets: int = 3) -> None:
+    """A sun, planets and a ring."""
+    drive.gear(f"s{tag}", sun)
+    drive.gear(f"r{tag}", -(sun + 2 * planet))
+    drive.carrier(f"c{tag}")
+    distance = 0.5 * MODULE * (sun + planet)
+    for (name,) in drive.planets(f"c{tag}", {f"p{tag}": planet}, distance, planets):
+        drive.mesh(f"s{tag}", name)
+        drive.mesh(name, f"r{tag}", 6e8)
+
+
+def double_set(drive: Drive, tag: str) -> None:
+    """Two planets that mesh on every way from sun to ring."""
+    drive.gear(f"s{tag}", 30)
+    drive.carrier(f"c{tag}")
+    inner = 0.5 * MODULE * 50
+    reach = 0.0
+    for k in range(3):
+        turn = 2.0 * np.pi * k / 3.0
+        near = inner * np.array([np.cos(turn), np.sin(turn)])
+        way = np.array([np.cos(turn + 0.9), np.sin(turn + 0.9)])
+        far = near + 0.5 * MODULE * 40 * way
+        reach = float(np.hypot(*far))
+        drive.gear(f"p{tag}{k}", 20, tuple(near), carrier=f"c{tag}")
+        drive.gear(f"q{tag}{k}", 20, tuple(far), carrier=f"c{tag}")
+    drive.gear(f"r{tag}", -round(2.0 * reach / MODULE) - 20)
+    # A radius that fits: the teeth are of no matter here.
+    for k in range(3):
+        way = drive.places[f"q{tag}{k}"] / reach
+        where = 0.5 * MODULE * (-drive.teeth[f"r{tag}"] - 20) * way
+        drive.places[f"q{tag}{k}"] = where
+        drive.gears[f"q{tag}{k}"]["centre"] = [f"{v:.17g} m" for v in where]
+        # The inner planet stands where it meshes with both.
+        out = float(np.hypot(*where))
+        a, b = inner, 0.5 * MODULE * 40
+        along = (out**2 + a**2 - b**2) / (2.0 * out)
+        aside = -np.sqrt(a**2 - along**2)
+        near = along * way + aside * np.array([-way[1], way[0]])
+        drive.places[f"p{tag}{k}"] = near
+        drive.gears[f"p{tag}{k}"]["centre"] = [f"{v:.17g} m" for v in near]
+        drive.mesh(f"s{tag}", f"p{tag}{k}")
+        drive.mesh(f"p{tag}{k}", f"q{tag}{k}")
+        drive.mesh(f"q{tag}{k}", f"r{tag}", 6e8)
+
+
+def simple_beside_double(backlash: float | None) -> Built:
+    """Suns on one shaft, rings on another: seen from the carriers they turn against each other."""
+    drive = Drive(backlash)
+    simple_set(drive, "1", 24, 24)
+    double_set(drive, "2")
+    drive.gears["c2"]["held"] = True
+    drive.shaft("s1", "s2")
+    drive.shaft("r1", "r2", 5e6)
+    drive.support("s1", 3e8)
+    return drive, "s1", "c1"
+
+
+def layshaft(backlash: float | None) -> Built:
+    """A layshaft drives the ring in the sense of the sun's shaft: a power split."""
+    drive = Drive(backlash)
+    simple_set(drive, "1", 24, 24)
+    drive.gear("in", 30)
+    drive.gear("outer", 80)
+    # Both gears of the layshaft on one axis: as far from the centre either way.
+    drive.gear("lay2", 30, (0.5 * MODULE * 110, 0.0))
+    drive.gear("lay1", 80, (0.5 * MODULE * 110, 0.0))
+    drive.mesh("in", "lay1")
+    drive.mesh("lay2", "outer")
+    drive.shaft("in", "s1")
+    drive.shaft("lay1", "lay2")
+    drive.shaft("outer", "r1")
+    drive.support("s1", 2e8)
+    drive.support("c1", 5e8)
+    return drive, "in", "c1"
+
+
+def recirculating(backlash: float | None) -> Built:
+    """A layshaft drives the carrier against the ring: more power goes round than comes in."""
+    drive = Drive(backlash)
+    simple_set(drive, "1", 24, 24, 4)
+    drive.gear("in", 30)
+    drive.gear("outer", 34)
+    drive.gear("lay1", 80, (0.5 * MODULE * 110, 0.0))
+    drive.gear("lay2", 76, (0.5 * MODULE * 110, 0.0))
+    drive.mesh("in", "lay1")
+    drive.mesh("lay2", "outer")
+    drive.shaft("in", "s1")
+    drive.shaft("lay1", "lay2")
+    drive.shaft("outer", "c1")
+    drive.support("s1", 2e8)
+    return drive, "in", "r1"
+
+
+def simpson(backlash: float | None) -> Built:
+    """One shaft for both suns, the first carrier with the second ring: low gear of a Simpson set."""
+    drive = Drive(backlash)
+    simple_set(drive, "1", 30, 21)
+    simple_set(drive, "2", 30, 21)
+    drive.shaft("s1", "s2")
+    drive.shaft("c1", "r2")
+    drive.gears["c2"]["held"] = True
+    drive.support("s2", 1e8)
+    return drive, "r1", "c1"
+
+
+LOOPS: dict[str, Callable[[float | None], Built]] = {
+    f.__name__: f for f in (simple_beside_double, layshaft, recirculating, simpson)
+}
+
+
+@pytest.mark.parametrize("backlash", [None, 8e-5])
+@pytest.mark.parametrize("torque", [700.0, -700.0])
+@pytest.mark.parametrize("name", LOOPS)
+def test_a_loop_over_sets_is_that_of_rigid_bodies(
+    name: str, torque: float, backlash: float | None
+) -> None:
+    drive, driving, output = LOOPS[name](backlash)
+    case = drive.case(driving, output, torque)
+    train = build_train(case)
+    held = {n for n, g in drive.gears.items() if g.get("held")}
+    speeds = drive.machine().speeds(driving, held)
+    mine = {n: g.sense * g.ratio for n, g in train.gears.items()}
+    assert mine == pytest.approx(speeds, abs=1e-11 * max(map(abs, speeds.values())))
+
+    found = ls.solve(case).positions[0]
+    forces = found.equilibrium.flank_force
+    ways: dict[str, int] = {}
+    for mesh in train.meshes.values():
+        first, _, _ = drive.meshes[mesh.name]
+        carrier = drive.gears[drive.meshes[mesh.name][0]].get("carrier")
+        carrier = carrier or drive.gears[drive.meshes[mesh.name][1]].get("carrier")
+        relative = speeds[first] - (speeds[carrier] if carrier else 0.0)
+        ways[mesh.name] = 1 if relative > 0.0 else -1
+        if mesh.turned:
+            ways[mesh.name] *= -1
+    x, expected = drive.machine(ways).solve({driving: torque}, held | {output})
+    most = max(expected.values())
+    for mesh in train.meshes.values():
+        ccw = ways[mesh.name] > 0
+        for flank, drives in ((f"{mesh.name} {'ccw' if ccw else 'cw'}", True),) + (
+            ((f"{mesh.name} {'cw' if ccw else 'ccw'}", False),) if backlash else ()
+        ):
+            assert forces[mesh.flank_name(drives)] == pytest.approx(
+                expected[flank], abs=1e-9 * most
+            ), flank
+    moved = found.equilibrium.displacement
+    for body in drive.floats:
+        at = 3 * list(drive.places).index(body)
+        assert moved[body][:2] == pytest.approx(x[at + 1 : at + 3], abs=1e-12)
+    # What comes in goes out, and the housing takes the difference of the torques.
+    outside = found.loads.gears
+    assert outside[driving] == pytest.approx(torque)
+    power = sum(outside[n] * speeds[n] for n in outside if n not in held)
+    assert power == pytest.approx(0.0, abs=1e-8 * abs(torque))
+
+
+def test_what_cannot_turn_is_refused_with_what_holds_it() -> None:
+    drive, _, _ = simple_beside_double(None)
+    drive.gears["c1"]["held"] = True
+    with pytest.raises(CaseError, match=r"cannot turn.* s1-s2, r1-r2, .*c1 \(held\)") as refused:
+        build_train(drive.case("s1", "r1", 100.0))
+    assert 'operating.input = "s1"' in str(refused.value)
+    drive, driving, _ = layshaft(None)
+    drive.gears["c1"]["held"] = True
+    with pytest.raises(CaseError, match=r"in-lay1, lay2-outer, .* c1 \(held\) hold one another"):
+        build_train(drive.case(driving, "r1", 100.0))
+
+
+@pytest.mark.parametrize("name", ["simple_beside_double", "layshaft", "recirculating"])
+def test_meshes_of_a_loop_go_through_their_cycles_as_a_march_does(name: str) -> None:
+    drive, driving, output = LOOPS[name](None)
+    for gear, teeth in drive.teeth.items():
+        drive.gears[gear]["teeth"] = abs(teeth)
+    common = build_train(drive.case(driving, output, 100.0, cycle="common", positions=8))
+    assert common.period is not None
+    turns = float(common.period.revolutions)
+    march = {"gear": driving, "revolutions": turns, "steps": common.count}
+    marched = build_train(drive.case(driving, output, 100.0, positions=8).replace({"march": march}))
+    some = np.arange(1, common.count + 1, max(common.count // 500, 1))
+    one, other = common.mesh_positions(some), marched.mesh_positions(some)
+    for mesh in one:
+        # A step that falls between two positions may round either way.
+        assert np.mean(one[mesh] == other[mesh]) > 0.98, mesh
