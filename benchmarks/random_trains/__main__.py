@@ -8,7 +8,7 @@ command goes on where it was. Tables are over all trains of the seed that are on
 from __future__ import annotations
 
 from benchmarks import kept
-from benchmarks.random_trains.run import PROBLEMS, SETS, STRESS, run, write_failures
+from benchmarks.random_trains.run import LOOPED, PROBLEMS, SETS, STRESS, run, write_failures
 from benchmarks.random_trains.table import text
 
 ABOUT = """# Random trains
@@ -27,6 +27,12 @@ Planetary sets are drawn, simple, stepped and with planets that mesh with one an
 held, driven and driving, floating, on splines, in rings or on elastic mounts, and every position of
 each is solved and compared with a reference in 50 digits, as [random trains](random-trains.md) are.
 """
+LOOPS_ABOUT = """# Random loops
+
+Planetary sets are drawn as for [random planetary sets](planetary-sets.md), none of whose members is
+held: a layshaft joins one to the input or the output, in either sense, so that the power goes round
+in a loop. Every position is solved and compared with a reference in 50 digits.
+"""
 MAP = """# Stability map in 50 digits
 
 The problems of the [stability map](stability.md), {count} of {problems}, each compared with a
@@ -41,9 +47,12 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--stress", action="store_true", help="the stability map's problems, all")
     parser.add_argument("--planetary", action="store_true", help="planetary sets")
+    parser.add_argument("--loops", action="store_true", help="planetary sets with a loop")
     asked = parser.parse_args()
     numbers = kept.numbers(asked)
     seed = SETS - asked.seed if asked.planetary else asked.seed
+    if asked.loops:
+        seed = LOOPED - asked.seed
     if asked.stress:
         seed, numbers = STRESS, range(PROBLEMS)
 
@@ -53,6 +62,8 @@ def main() -> None:
     about = MAP.format(count=len(rows), problems=PROBLEMS) if asked.stress else ABOUT
     if asked.planetary:
         words, about = f"{words} --planetary", SETS_ABOUT
+    if asked.loops:
+        words, about = f"{words} --loops", LOOPS_ABOUT
     kept.publish(asked.page, about, f"benchmarks.random_trains {words}", text(rows))
     if count:
         print(f"\n{count} trains at fault are in {asked.out / 'failing'}.")  # noqa: T201

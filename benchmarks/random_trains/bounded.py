@@ -50,7 +50,8 @@ def _errors(
     for name, pulled in claim.radial_reaction.items():
         parts = train.gears[machine.graphs[name].gear].frame @ pulled
         apart = [of(float(v)) + p * unit for v, p in zip(parts, at.pulls[name], strict=True)]
-        yield name, machine.arithmetic.hypot(*apart), NONE * unit
+        turned = 8.0 * ROUNDING * np.hypot(*parts)
+        yield name, machine.arithmetic.hypot(*apart), turned + NONE * unit
     for gear, i in machine.moves.items():
         body = train.gears[gear]
         moved = body.plane @ claim.displacement[gear]

@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 from benchmarks.random_trains.dice import Dice
-from benchmarks.random_trains.layouts import Layout, double_star, star, stepped_star
+from benchmarks.random_trains.layouts import (
+    Layout,
+    double_star,
+    polar,
+    pressure,
+    star,
+    stepped_star,
+)
 
 
 def _carried(star: Callable[[Dice], Layout]) -> Callable[[Dice], Layout]:
@@ -36,9 +44,44 @@ def _carried(star: Callable[[Dice], Layout]) -> Callable[[Dice], Layout]:
     return drawn
 
 
+def _split(star: Callable[[Dice], Layout]) -> Callable[[Dice], Layout]:
+    """Return a star as a set two of whose members a layshaft joins: a loop, none is held."""
+
+    def drawn(dice: Dice) -> Layout:
+        layout = _carried(star)(dice)
+        held = next((n for n, gear in layout.gears.items() if gear.pop("held", False)), "")
+        if layout.gears.pop("housing", None):
+            held = layout.shafts.pop()[0]
+        angle, about, far = pressure(dice), dice.between(0.05, 0.1), dice.between(0.05, 0.1)
+        small = dice.between(0.3, 0.8) * (about + far)
+        place = polar((about + far) / math.cos(angle), dice.angle())
+        layout.gear("g1", about, 0j, -0.5)
+        layout.gear("l1", far, place, -0.5)
+        layout.gear("l2", about + far - small, place, -0.7)
+        layout.gear("g2", small, 0j, -0.7)
+        layout.meshes |= {("g1", "l1"): angle, ("l2", "g2"): angle}
+        joined = dice.pick([layout.input, layout.output])
+        if dice.chance(0.7):
+            # Of sun and ring: only their senses may contradict those of the layshaft.
+            if held == "carrier":
+                layout.output, held = held, layout.output
+            joined = layout.output if layout.input == "carrier" else layout.input
+        layout.shafts += [(joined, "g1"), ("l1", "l2"), ("g2", held)]
+        layout.floats |= {"l1": None, "l2": None}
+        return layout
+
+    return drawn
+
+
 PLANETARY: dict[str, Callable[[Dice], Layout]] = {
     "planetary": _carried(star),
     "stepped planetary": _carried(stepped_star),
     "double planetary": _carried(double_star),
 }
-"""Every structure, by name."""
+"""Every structure of a single set, by name."""
+LOOPS: dict[str, Callable[[Dice], Layout]] = {
+    "split planetary": _split(star),
+    "split stepped planetary": _split(stepped_star),
+    "split double planetary": _split(double_star),
+}
+"""Every structure with a loop."""

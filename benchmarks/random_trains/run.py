@@ -11,7 +11,7 @@ import loadshare as ls
 from benchmarks import kept
 from benchmarks.random_trains.draw import draw
 from benchmarks.random_trains.judge import NO_TORQUE, judged
-from benchmarks.random_trains.planetary import PLANETARY
+from benchmarks.random_trains.planetary import LOOPS, PLANETARY
 from benchmarks.stress.families import FAMILIES
 from benchmarks.stress.problem import COUNT
 from loadshare.case import Case
@@ -20,6 +20,8 @@ STRESS = -1
 """In the place of a seed: the problems of the stability map, family after family."""
 SETS = -2
 """In the place of seed 0: planetary sets; those of seed n at n less."""
+LOOPED = -1000
+"""In the place of seed 0: sets with a loop; those of seed n at n less."""
 PROBLEMS = len(FAMILIES) * COUNT
 """Of the stability map."""
 FAILURES = ("wrong", "refused", "open", "crashed")
@@ -49,6 +51,8 @@ def case_of(seed: int, number: int) -> Case:
     """Return a train of a seed, or a problem of the stability map (`STRESS`)."""
     if seed == STRESS:
         return list(FAMILIES.values())[number // COUNT].problem(number % COUNT).case
+    if seed <= LOOPED:
+        return draw(LOOPED - seed, number, LOOPS)
     if seed <= SETS:
         return draw(SETS - seed, number, PLANETARY)
     return draw(seed, number)

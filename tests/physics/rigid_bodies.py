@@ -163,7 +163,9 @@ class Machine:
             # What is loose is left where it is, but is moved on where it is pushed.
             scale = 1e-13 * np.trace(here) / len(free)
             move = np.zeros(self.size)
-            move[free] = np.linalg.solve(here + scale * np.eye(len(free)), -slope[free].astype(float))
+            move[free] = np.linalg.solve(
+                here + scale * np.eye(len(free)), -slope[free].astype(float)
+            )
             length = 1.0
             while energy(x + length * move)[0] > value + 1e-4 * length * (slope @ move):
                 length *= 0.5
@@ -175,4 +177,6 @@ class Machine:
                 # A few more for what rounding leaves.
                 left = min(left, 5)
         forces = k * np.maximum(rows @ x - gaps, 0.0)
-        return x.astype(float), {t.name: float(f) for t, f in zip(self.touches, forces, strict=True)}
+        return x.astype(float), {
+            t.name: float(f) for t, f in zip(self.touches, forces, strict=True)
+        }

@@ -14,9 +14,19 @@ import loadshare as ls
 from benchmarks.kept import known
 from benchmarks.random_trains.draw import LAYOUTS, draw
 from benchmarks.random_trains.judge import AGREES, judged
-from benchmarks.random_trains.run import PROBLEMS, SETS, STRESS, failures, one, run
+from benchmarks.random_trains.run import (
+    LOOPED,
+    PROBLEMS,
+    SETS,
+    STRESS,
+    case_of,
+    failures,
+    one,
+    run,
+)
 from benchmarks.random_trains.table import text
 from loadshare.job.hot import HOT, SEARCHED
+from loadshare.train import build_train
 
 SEED = 7
 
@@ -59,6 +69,13 @@ def test_drawn_trains_are_solved_as_the_reference_has_them():
 
 def test_drawn_planetary_sets_are_solved_as_the_reference_has_them():
     found = ({"seed": SETS, "number": k, **one(SETS, k)} for k in range(25))
+    assert not [f"{row['name']}: {line}" for row in found for line in failures(row)]
+
+
+def test_drawn_loops_over_sets_are_solved_as_the_reference_has_them():
+    trains = [build_train(case_of(LOOPED, k)) for k in range(20)]
+    assert any(a != b for t in trains for a, b in (m.counted for m in t.meshes.values()))
+    found = ({"seed": LOOPED, "number": k, **one(LOOPED, k)} for k in range(20))
     assert not [f"{row['name']}: {line}" for row in found for line in failures(row)]
 
 

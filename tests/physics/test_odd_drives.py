@@ -110,7 +110,7 @@ def recirculating(backlash: float | None) -> Built:
 
 
 def simpson(backlash: float | None) -> Built:
-    """One shaft for both suns, the first carrier with the second ring: low gear of a Simpson set."""
+    """One shaft for both suns, first carrier with second ring: low gear of a Simpson set."""
     drive = Drive(backlash)
     simple_set(drive, "1", 30, 21)
     simple_set(drive, "2", 30, 21)
