@@ -59,17 +59,18 @@ STARTS = {
     "pdf": b"%PDF",
     "toml": b"",
 }
+MEASURED = (
+    *("--set", "measured.tried.position=1"),
+    *("--set", 'measured.tried.pair_share={ "6-10" = 0.99 }'),
+    *("--set", "measured.tried.uncertainty=0.01"),
+)
 ASKED = {
     "run": (("--position", 1), (*FILES, "toml")),
     "sweep": (("--over", "rings.4.float=0 um, 4 um", "--position", 1), FILES),
-    "critical": (
-        ("--over", "rings.4.float=7 um:9 um", "--position", 1),
-        ("csv", "parquet", "xlsx", "json"),
-    ),
-    "sensitivity": (
-        ("rings.*.float", "--position", 1),
-        ("csv", "parquet", "xlsx", "json", "nc"),
-    ),
+    "critical": (("--over", "rings.4.float=7 um:9 um", "--position", 1), FILES),
+    "sensitivity": (("rings.*.float", "--position", 1), FILES),
+    "compare": (MEASURED, FILES),
+    "fit": ((*MEASURED, "--over", "rings.4.float=1 um:9 um"), (*FILES, "toml")),
     "march": (("--gear", 4, "--revolutions", 1, "--steps", 1), FILES),
     "tolerance": (
         *[("--over", "rings.*.float=1 um:9 um", "--samples", 16, "--position", 1, "--no-worst")],
@@ -149,7 +150,7 @@ def test_the_ending_or_a_word_tells_the_form(text, form, file):
         (("run", RING, "-o", "x.txt"), ".txt does not tell what to write. This command writes"),
         (("run", RING, "-o", "x"), "it has no ending that tells what to write"),
         (("sweep", RING, "--over", "a=1", "-o", "x.toml"), "no case comes of this command"),
-        (("compare", RING, "-o", "x.svg"), "no picture comes of this command"),
+        (("compare", RING, "-o", "x.toml"), "no case comes of this command"),
         (("run", RING, "-o", "-", "-o", "csv:-"), "only one file can go to standard output"),
         (("run", RING, "-o", "-", "--json"), "standard output takes one file only"),
         (("run", RING, "-o", "x.csv", "-o", "json:x.csv"), "is to be written twice"),

@@ -11,11 +11,13 @@ import typer
 from loadshare.cli.changes import open_case
 from loadshare.cli.console import say
 from loadshare.cli.everywhere import Json
-from loadshare.cli.exits import UNUSABLE, counted, fail
+from loadshare.cli.exits import UNUSABLE, fail
 from loadshare.cli.files import document_text
 from loadshare.cli.find import find_cases
 from loadshare.cli.options import CasePaths, Changes
+from loadshare.cli.waiting import echo
 from loadshare.errors import CaseError, Problem, ResultError
+from loadshare.report.numbers import counted
 
 RESULTS = (".json", ".nc")
 """Endings of result files; all others are cases."""
@@ -46,14 +48,14 @@ def check(
             wrong = error.problems
             problems += len(wrong)
             if not json:
-                typer.echo(str(error), err=True)
+                echo(str(error), err=True)
         else:
             say(f"OK  {path}{told}", whole=True)
             if teeth and path.suffix not in RESULTS:
                 _print_teeth(path, change)
         record.append({"file": str(path), "ok": not wrong, "problems": [asdict(p) for p in wrong]})
     if json:
-        typer.echo(document_text({"ok": not bad, "files": record}), nl=False)
+        echo(document_text({"ok": not bad, "files": record}), nl=False)
     if bad:
         noun = "file" if any(path.suffix in RESULTS for path in found) else "case"
         told = f"{counted(problems, 'problem')} in {bad} of {counted(len(found), noun)}."

@@ -17,6 +17,7 @@ from loadshare.cli.old_words import renewed
 from loadshare.cli.options import OUTPUT
 from loadshare.cli.quiet import hush
 from loadshare.cli.stop import Stop
+from loadshare.cli.waiting import waiting
 from loadshare.output import STANDARD, clear
 
 PREFIX = "Value error, "
@@ -76,7 +77,7 @@ class Command(TyperCommand):
         begin()
         stop = Stop()
         try:
-            with stop:
+            with stop, waiting():
                 return super().invoke(ctx)
         except KeyboardInterrupt:
             fail([f"Interrupted{under_way()}. {kept()}"], stop.code)

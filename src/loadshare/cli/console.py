@@ -11,10 +11,9 @@ from contextvars import ContextVar
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
-import typer
-
 from loadshare.cli.files import is_stdout_taken
 from loadshare.cli.quiet import is_hushed
+from loadshare.cli.waiting import echo, speak
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -67,6 +66,7 @@ def console(*, stderr: bool = False) -> Console:
     """
     from rich.console import Console
 
+    speak()
     return Console(stderr=stderr or is_stdout_taken(), markup=False, emoji=False, highlight=False)
 
 
@@ -86,7 +86,7 @@ def say_all(lines: Iterable[str], *, whole: bool = False) -> None:
 def tell_note(note: str) -> None:
     """Tell on stderr what is good to know, and changes nothing."""
     if not is_hushed():
-        typer.echo(f"Note: {note}", err=True)
+        echo(f"Note: {note}", err=True)
 
 
 @contextmanager

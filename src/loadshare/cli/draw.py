@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from loadshare.cli.changes import open_case, read_changes
-from loadshare.cli.exits import UNUSABLE, counted, fail, problems_told
+from loadshare.cli.exits import UNUSABLE, fail, problems_told
 from loadshare.cli.forms import Output, outputs, write_all
 from loadshare.cli.options import CaseFile, Changes
 from loadshare.errors import CaseError, Problem
+from loadshare.report.numbers import counted
 
 if TYPE_CHECKING:
     from loadshare.report.figure import Figure

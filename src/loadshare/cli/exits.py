@@ -12,8 +12,10 @@ from typing import NoReturn
 
 import typer
 
+from loadshare.cli.waiting import echo
 from loadshare.errors import CaseError
 from loadshare.output import NotWritten
+from loadshare.report.numbers import counted
 
 REFUSED = 1
 """An answer was refused, or one case of many failed."""
@@ -35,13 +37,8 @@ def fail(lines: Iterable[str], code: int) -> NoReturn:
         Always.
     """
     for line in lines:
-        typer.echo(line, err=True)
+        echo(line, err=True)
     raise typer.Exit(code)
-
-
-def counted(number: int, noun: str) -> str:
-    """Return a number of things in words: ``1 problem``, ``2 problems``."""
-    return f"{number} {noun}" + ("" if number == 1 else "s")
 
 
 @contextmanager
@@ -94,7 +91,7 @@ def room_told() -> Iterator[None]:
         if told is None:
             raise
         with suppress(OSError):
-            typer.echo(told, err=True)
+            echo(told, err=True)
         raise SystemExit(UNUSABLE) from None
 
 

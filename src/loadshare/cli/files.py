@@ -12,6 +12,7 @@ import typer
 
 from loadshare.cli.exits import writing
 from loadshare.cli.quiet import is_hushed
+from loadshare.cli.waiting import echo
 from loadshare.output import STANDARD, write_whole
 
 
@@ -39,7 +40,7 @@ def tell_written(file: Path, more: str = "", *, err: bool = False) -> None:
         return
     _written.set((*_written.get(), file))
     if not is_hushed():
-        typer.echo(f"Wrote {file}{more}", err=err)
+        echo(f"Wrote {file}{more}", err=err)
 
 
 _written: ContextVar[tuple[Path, ...]] = ContextVar("written", default=())

@@ -6,10 +6,9 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
-import typer
-
 from loadshare.cli.exits import UNUSABLE, fail
 from loadshare.cli.files import keep_inputs
+from loadshare.cli.waiting import echo
 from loadshare.input import Unreadable, read_file
 from loadshare.settings import ALLOWED
 
@@ -39,7 +38,7 @@ def find_cases(given: Iterable[Path]) -> list[Path]:
     for path in given:
         here = _meant_by(path)
         if not here:
-            typer.echo(f"{path}: {_told_of(path)}", err=True)
+            echo(f"{path}: {_told_of(path)}", err=True)
         for file in here:
             found.setdefault(file.resolve(), file)
     if not found:

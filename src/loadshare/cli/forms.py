@@ -17,6 +17,7 @@ import typer
 from loadshare.cli.exits import UNUSABLE, fail, writing
 from loadshare.cli.files import tell_written
 from loadshare.cli.options import OUTPUT
+from loadshare.cli.waiting import speak
 from loadshare.errors import LoadshareError
 from loadshare.output import STANDARD, csv_of, write_whole
 
@@ -42,7 +43,7 @@ FORMS = {
 """Endings of files and what they hold; "folder" stands for a place of many."""
 FIGURES = ("svg", "png", "pdf", "html")
 """Of a picture; as a page it shows figures under the pointer."""
-TABLES = ("csv", "parquet", "xlsx", "json")
+TABLES = ("csv", "parquet", "xlsx", "json", "nc")
 FOLDER = "folder"
 
 Makers = Mapping[str, Callable[[], str | bytes]]
@@ -148,7 +149,9 @@ def write_all(asked: Iterable[Output] | None, makers: Makers, *, err: bool = Tru
     for output in asked or ():
         try:
             with writing(output.file):
-                write_whole(output.file, makers[output.form]())
+                content = makers[output.form]()
+                speak()
+                write_whole(output.file, content)
         except LoadshareError as error:
             fail([f"{output.file}: not written: {error}"], UNUSABLE)
         except ModuleNotFoundError as error:
@@ -160,7 +163,7 @@ def write_all(asked: Iterable[Output] | None, makers: Makers, *, err: bool = Tru
 
 
 def tables_of(name: str, frame: Callable[[], pd.DataFrame], **about: object) -> Makers:
-    """Return what makes files of a table: CSV, Parquet, a workbook, JSON.
+    """Return what makes files of a table: CSV, Parquet, a workbook, JSON, netCDF.
 
     Parameters
     ----------
@@ -183,6 +186,7 @@ def tables_of(name: str, frame: Callable[[], pd.DataFrame], **about: object) -> 
         "parquet": lambda: _parquet(frame()),
         "xlsx": workbook,
         "json": lambda: _json(name, frame(), about),
+        "nc": lambda: _netcdf(name, frame()),
     }
 
 
@@ -199,6 +203,23 @@ def _parquet(frame: pd.DataFrame) -> bytes:
     held = BytesIO()
     frame.infer_objects().convert_dtypes().to_parquet(held, index=False)
     return held.getvalue()
+
+
+def _netcdf(name: str, frame: pd.DataFrame) -> bytes:
+    """Return a table as labelled arrays over its rows; texts that are missing are empty."""
+    from loadshare._version import __version__
+    from loadshare.output import netcdf_of
+
+    table = frame.infer_objects()
+    words = table.select_dtypes(exclude=["number", "bool"])
+    table = table.assign(**{str(c): words[c].map(_word) for c in words})
+    arrays = table.rename_axis("row").to_xarray()
+    return netcdf_of(arrays.assign_attrs(question=name, loadshare_version=__version__))
+
+
+def _word(cell: Any) -> str:
+    value = _plain(cell)
+    return "" if value is None else str(value)
 
 
 def _json(name: str, frame: pd.DataFrame, about: Mapping[str, object]) -> str:

@@ -9,10 +9,11 @@ from typing import Annotated
 import typer
 
 from loadshare.cli.console import say
-from loadshare.cli.exits import UNUSABLE, counted, fail, problems_told
+from loadshare.cli.exits import UNUSABLE, fail, problems_told
 from loadshare.cli.files import keep_inputs, save_text, tell_written
 from loadshare.cli.options import Force, output
 from loadshare.output import STANDARD
+from loadshare.report.numbers import counted
 
 
 def import_machine(

@@ -38,6 +38,7 @@ from loadshare.cli.study.sensitivity import sensitivity
 from loadshare.cli.study.study import study
 from loadshare.cli.study.sweep import sweep
 from loadshare.cli.study.tolerance import tolerance
+from loadshare.cli.waiting import echo
 from loadshare.cli.warm import warm
 
 app = typer.Typer(
@@ -61,7 +62,7 @@ app.command("import", cls=Command)(taking(import_machine, "quiet"))
 
 def _tell_version(wanted: bool) -> None:
     if wanted:
-        typer.echo(f"loadshare {__version__}")
+        echo(f"loadshare {__version__}")
         raise typer.Exit
 
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 from loadshare.cli.changes import read_changes
 from loadshare.cli.console import progress
@@ -12,33 +15,93 @@ from loadshare.cli.find import find_cases
 from loadshare.cli.forms import Output, outputs, write_all
 from loadshare.cli.options import CasePaths, Changes
 
+if TYPE_CHECKING:
+    from loadshare.report.page import Chapter
+
 
 def report(
     cases: CasePaths,
     file: Annotated[
         list[Output] | None, outputs("html", what="Page to write; report.html by default")
     ] = None,
+    study: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--study",
+            metavar="NAME",
+            help="Study [study.NAME] to run and show; NAME=FOLDER takes the samples of a tolerance "
+            "study from a folder. May be repeated. By default all but tolerance studies.",
+        ),
+    ] = None,
+    no_studies: Annotated[
+        bool, typer.Option("--no-studies", help="Run none of the studies that a case holds.")
+    ] = False,
     change: Changes = None,
 ) -> None:
-    """Solve cases and write one page with tables, pictures and certificates.
+    """Solve cases and write one page with pictures, tables, studies and certificates.
 
     The page is a single file that needs no network. Cases that cannot be used and answers that
-    are refused are reported on it.
+    are refused are reported on it. Tolerance studies may take long: they are shown when --study
+    names them.
     """
+    if study and no_studies:
+        raise typer.BadParameter("contradicts --no-studies", param_hint="--study")
+    named = dict(_named(text) for text in study or ())
+    changes = read_changes(change or ())
+    found = find_cases(cases)
     from loadshare.report.page import chapter_of_file, report_page
     from loadshare.report.page.chapter import CERTIFIED
     from loadshare.report.page.chapter import UNUSABLE as NOT_USABLE
 
-    changes = read_changes(change or ())
-    found = find_cases(cases)
     chapters = []
     with progress("cases", len(found)) as tick:
         for done, path in enumerate(found, start=1):
             chapters.append(chapter_of_file(path, changes=changes))
             tick(done, len(found))
+    if not no_studies:
+        chapters = _with_studies(chapters, named)
     written = file or [Output("html", Path("report.html"))]
     write_all(written, {"html": lambda: report_page(chapters)}, err=False)
-    bad = [one for one in chapters if one.outcome != CERTIFIED]
+    bad = [one for one in chapters if one.outcome != CERTIFIED or one.unanswered]
     if bad:
         code = UNUSABLE if any(one.outcome == NOT_USABLE for one in bad) else REFUSED
-        fail([line for one in bad for line in (f"{one.file}: {one.outcome}", *one.problems)], code)
+        fail(
+            [line for one in bad for line in (f"{one.file}: {one.outcome}", *one.unanswered)], code
+        )
+
+
+def _named(text: str) -> tuple[str, Path | None]:
+    """Return the name of a study, and the folder of its samples if one is given."""
+    name, equals, folder = text.partition("=")
+    if not name or (equals and not folder):
+        raise typer.BadParameter(f"{text!r} is neither NAME nor NAME=FOLDER", param_hint="--study")
+    return name, Path(folder) if equals else None
+
+
+def _with_studies(chapters: list[Chapter], named: dict[str, Path | None]) -> list[Chapter]:
+    """Run the studies that are asked for, or all that do not take long.
+
+    Raises
+    ------
+    typer.BadParameter
+        If no case holds a study of some name.
+    """
+    from loadshare.report.page.studies import quick_studies, run_part
+
+    held = {name for one in chapters if one.case for name in one.case.study}
+    if unknown := [name for name in named if name not in held]:
+        told = f"{', '.join(unknown)}: no such study"
+        allowed = f"Allowed: {', '.join(sorted(held))}" if held else "The cases hold none"
+        raise typer.BadParameter(f"{told}. {allowed}.", param_hint="--study")
+    made = []
+    for one in chapters:
+        case = one.case
+        wanted = [n for n in named or quick_studies(case) if n in case.study] if case else []
+        parts = []
+        for name in wanted:
+            assert case is not None
+            rated = case.study[name].kind == "tolerance"
+            with progress(f"study {name}", None if rated else 1, rated=rated) as tick:
+                parts.append(run_part(case, name, kept=named.get(name), progress=tick))
+        made.append(replace(one, studies=parts))
+    return made

@@ -6,10 +6,9 @@ import json
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 from loadshare.cli.files import save_text, tell_written
 from loadshare.cli.options import output
+from loadshare.cli.waiting import echo
 
 
 def schema(
@@ -20,7 +19,7 @@ def schema(
 
     text = json.dumps(case_schema(), indent=2, ensure_ascii=False)
     if file is None:
-        typer.echo(text)
+        echo(text)
         return
     save_text(file, text + "\n")
     tell_written(file, err=True)

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import typer
-
 from loadshare.cli.exits import UNUSABLE, fail
+from loadshare.cli.waiting import echo, speak
 
 
 def warm() -> None:
@@ -14,7 +13,9 @@ def warm() -> None:
     """
     from loadshare.job.warm import warm as compiled
 
+    # The compiler's own messages follow.
+    speak()
     why = compiled()
     if why is not None:
         fail([f"Nothing is kept: {why}"], UNUSABLE)
-    typer.echo("The compiled kernels are on disk.")
+    echo("The compiled kernels are on disk.")

@@ -10,6 +10,11 @@ NONE = "–"
 """What stands where there is no figure."""
 
 
+def counted(number: int, noun: str) -> str:
+    """Return a number of things in words: ``1 problem``, ``2 problems``."""
+    return f"{number} {noun}" + ("" if number == 1 else "s")
+
+
 def decimals(values: Iterable[float], significant: int = 5) -> int:
     """Return how many decimals, at least one, show the largest value to so many digits."""
     largest = max((abs(v) for v in values if math.isfinite(v)), default=0.0)

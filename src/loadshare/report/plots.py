@@ -7,11 +7,16 @@ from functools import singledispatch
 from typing import Any
 
 from loadshare.report.figure import Figure
-from loadshare.report.figures import branches, sweep, tolerance
+from loadshare.report.figures import branches, comparison, critical, sensitivity, sweep, tolerance
 from loadshare.report.figures import floats as rests
 from loadshare.report.figures import law as laws
 from loadshare.report.figures import train as trains
 from loadshare.results import Result
+from loadshare.study.compare import Comparison
+from loadshare.study.critical import Critical
+from loadshare.study.fit import Fit
+from loadshare.study.march import March
+from loadshare.study.sensitivity import Sensitivity
 from loadshare.study.sweep import Sweep
 from loadshare.study.tolerance.result import Over, Tolerance
 from loadshare.train import build_train
@@ -75,9 +80,11 @@ def plot(found: object, *settings: Any, **named: Any) -> Any:
 
     Parameters
     ----------
-    found : Result, Sweep or Tolerance
+    found : Result or study
+        What `solve`, `sweep`, `critical`, `sensitivity`, `tolerance`, `march`, `compare` or `fit`
+        returned.
     *settings, **named
-        What to show: as for ``found.plot`` of a sweep or a tolerance study.
+        What to show: as for ``found.plot`` of the study.
 
     Returns
     -------
@@ -100,6 +107,27 @@ def _(found: Result) -> Plots:
 @plot.register
 def _(found: Sweep, *settings: Any, **named: Any) -> Figure:
     return sweep.sweep(found.dataset, *settings, **named)
+
+
+@plot.register
+def _(found: Critical) -> Figure:
+    return critical.critical(found)
+
+
+@plot.register
+def _(found: Sensitivity, stage: str = "system", over: Over = "stage") -> Figure:
+    return sensitivity.sensitivity(found, stage, over)
+
+
+@plot.register
+def _(found: March, over: branches.Mean = "stage") -> Figure:
+    return branches.share(found.result, over)
+
+
+@plot.register(Comparison)
+@plot.register(Fit)
+def _(found: Comparison | Fit) -> Figure:
+    return comparison.comparison(found.comparison if isinstance(found, Fit) else found)
 
 
 @plot.register

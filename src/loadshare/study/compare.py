@@ -15,12 +15,15 @@ from loadshare.case.keys import dotted
 from loadshare.case.measured import COEFFICIENTS, Measurement
 from loadshare.errors import CaseError
 from loadshare.job import Progress, solve
+from loadshare.pictures import picture
 from loadshare.results import Result
 from loadshare.study.positions import loaded
 from loadshare.view import View, Viewed
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from loadshare.report.figure import Figure
 
 MEANS = ("torque", "share", "pair_share")
 """Quantities of a mesh: without a position, their mean over all positions is meant."""
@@ -121,6 +124,11 @@ class Comparison(Viewed):
         """The table of `to_frame`, with the unit of each figure beside it."""
         table = self.to_frame()
         return table.assign(unit=[d.target.unit or "1" for d in self.deviations])
+
+    def plot(self) -> Figure:
+        """Picture of how far every computed figure is from the measured one."""
+        drawn: Figure = picture(self)
+        return drawn
 
     def _view(self) -> View:
         from loadshare.study.views import comparison_view

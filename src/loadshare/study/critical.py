@@ -17,6 +17,7 @@ from loadshare.case import Case
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.positions import wanted_positions
+from loadshare.pictures import picture
 from loadshare.study.event import Event, events_of
 from loadshare.study.follow.line import Line
 from loadshare.study.follow.search import Search
@@ -26,6 +27,8 @@ from loadshare.view import View, Viewed
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from loadshare.report.figure import Figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +98,11 @@ class Critical(Viewed):
         return pd.DataFrame(
             [[getattr(e, c) for c in columns] for e in self.events], columns=columns
         )
+
+    def plot(self) -> Figure:
+        """Picture of the events: an element in a row, the input along x."""
+        drawn: Figure = picture(self)
+        return drawn
 
     def _view(self) -> View:
         from loadshare.study.views import critical_view

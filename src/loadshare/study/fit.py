@@ -13,6 +13,7 @@ import numpy as np
 from loadshare.case import Case
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.job import solve
+from loadshare.pictures import picture
 from loadshare.results import Result
 from loadshare.scene.scene import Array
 from loadshare.settings import FIT
@@ -34,6 +35,8 @@ from loadshare.view import View, Viewed
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from loadshare.report.figure import Figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +122,11 @@ class Fit(Viewed):
             for u in self.unknowns
         ]
         return pd.DataFrame(rows)
+
+    def plot(self) -> Figure:
+        """Picture of how far every figure, computed at the fitted values, is from the measured."""
+        drawn: Figure = picture(self)
+        return drawn
 
     def _view(self) -> View:
         from loadshare.study.views import fit_view

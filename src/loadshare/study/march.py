@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path as FilePath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from loadshare.errors import CaseError, Refused
 from loadshare.job import Progress
 from loadshare.job.answer import Answer
 from loadshare.job.positions import result_of
+from loadshare.pictures import picture
 from loadshare.results import Result
 from loadshare.settings import CERTIFY, MARCH
 from loadshare.study.answers import BACKEND
@@ -34,6 +35,8 @@ from loadshare.view import View, Viewed
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
+
+    from loadshare.report.figure import Figure
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -102,6 +105,17 @@ class March(Viewed):
     def to_xarray(self) -> xr.Dataset:
         """The labelled arrays, `dataset`."""
         return self.dataset
+
+    def plot(self, over: Literal["stage", "group"] = "stage") -> Figure:
+        """Load-sharing coefficient of every branch over the steps.
+
+        Parameters
+        ----------
+        over : {"stage", "group"}
+            Mean to which the torque of a branch is compared.
+        """
+        drawn: Figure = picture(self, over)
+        return drawn
 
     def _view(self) -> View:
         from loadshare.study.views import march_view

@@ -102,7 +102,7 @@ def tolerance_view(found: Tolerance) -> View:
                 one.stage,
                 one.over,
                 f"{mean.value:.4f} ({mean.low:.4f} to {mean.high:.4f})",
-                figure(one.summary.deviation),
+                figure(one.summary.spread),
                 f"{beyond.value:.3g} ({beyond.low:.2g} to {beyond.high:.2g})" if beyond else "–",
             )
         )
@@ -153,8 +153,9 @@ def comparison_view(found: Comparison) -> View:
 
 def fit_view(found: Fit) -> View:
     """Tell the fitted inputs, how well they fit, and what the data leave open."""
+    degrees = "1 degree" if found.freedom == 1 else f"{found.freedom} degrees"
     facts = (
-        ("χ²", f"{found.chi_square:.4g}, {found.freedom} degrees of freedom"),
+        ("χ²", f"{found.chi_square:.4g}, {degrees} of freedom"),
         ("starts", f"{len(found.starts)}, {found.evaluations} sets of equilibria"),
         ("mind", " ".join(found.warnings)),
     )

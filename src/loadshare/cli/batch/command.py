@@ -27,6 +27,7 @@ from loadshare.cli.files import document_text, write_document
 from loadshare.cli.find import find_cases
 from loadshare.cli.options import CasePaths, Changes, Method, Solver, Tolerance
 from loadshare.cli.stop import Stop
+from loadshare.cli.waiting import echo
 from loadshare.errors import LoadshareError
 from loadshare.lock import alone_in
 from loadshare.output import clear, make_folder
@@ -85,7 +86,7 @@ def batch(
             with writing(summary):
                 write_document(summary, document)
             if json:
-                typer.echo(document_text(document), nl=False)
+                echo(document_text(document), nl=False)
             if stop.asked:
                 told = f"Interrupted: {len(ordered)} of {len(tasks)} cases done."
                 fail([told, "The same command goes on; what is certified is kept."], stop.code)

@@ -58,7 +58,9 @@ def answered() -> Iterator[None]:
         fail([str(error)], UNUSABLE)
 
 
-def end(lines: list[str]) -> None:
-    """Leave with the code of a refusal where a study tells that it lacks an answer."""
-    if lines:
+def end(found: object) -> None:
+    """Leave with the code of a refusal where a study lacks an answer, and say which."""
+    from loadshare.report.left_open import left_open
+
+    if lines := left_open(found):
         fail(lines, REFUSED)

@@ -5,11 +5,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated
 
 from loadshare.cli.console import say
-from loadshare.cli.exits import counted
-from loadshare.cli.forms import TABLES, Makers, Output, outputs, tables_of, write_all
+from loadshare.cli.forms import (
+    FIGURES,
+    TABLES,
+    Makers,
+    Output,
+    figure_of,
+    outputs,
+    tables_of,
+    write_all,
+)
 from loadshare.cli.options import CaseFile, Changes
 from loadshare.cli.study.common import asked
 from loadshare.cli.tables.table import show, table
+from loadshare.report.numbers import counted
 
 if TYPE_CHECKING:
     from loadshare.study.compare import Comparison, Deviation
@@ -17,7 +26,7 @@ if TYPE_CHECKING:
 
 def compare(
     case: CaseFile,
-    file: Annotated[list[Output] | None, outputs(*TABLES)] = None,
+    file: Annotated[list[Output] | None, outputs(*TABLES, *FIGURES)] = None,
     change: Changes = None,
 ) -> None:
     """Compare what was measured with what is computed."""
@@ -31,7 +40,8 @@ def compare(
 
 def made_of_comparison(found: Comparison) -> Makers:
     """Return what makes the files of a comparison."""
-    return tables_of("compare", found.to_frame, chi_square=found.chi_square)
+    tables = tables_of("compare", found.to_frame, chi_square=found.chi_square)
+    return {**tables, **figure_of(found.plot)}
 
 
 def show_comparison(found: Comparison) -> None:

@@ -7,20 +7,23 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from loadshare.cli.console import say, tell_note
-from loadshare.cli.exits import counted
-from loadshare.cli.forms import TABLES, Makers, Output, outputs, tables_of, write_all
+from loadshare.cli.forms import (
+    FIGURES,
+    TABLES,
+    Makers,
+    Output,
+    figure_of,
+    outputs,
+    tables_of,
+    write_all,
+)
 from loadshare.cli.options import OVER, CaseFile, Changes, Positions, over, ranges_of
 from loadshare.cli.refusal import ranges as numbers_told
 from loadshare.cli.study.common import asked, end
 from loadshare.cli.tables.table import show, table
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from loadshare.study.critical import Critical
-
-SHOWN = 5
-"""Intervals that are named one by one."""
 
 
 def critical(
@@ -36,7 +39,7 @@ def critical(
     ] = None,
     start: Annotated[str | None, typer.Option("--from", metavar="VALUE", hidden=True)] = None,
     stop: Annotated[str | None, typer.Option("--to", metavar="VALUE", hidden=True)] = None,
-    file: Annotated[list[Output] | None, outputs(*TABLES)] = None,
+    file: Annotated[list[Output] | None, outputs(*TABLES, *FIGURES)] = None,
     position: Positions = None,
     change: Changes = None,
 ) -> None:
@@ -48,7 +51,7 @@ def critical(
         found = found_along(loaded, along, low, high, positions=position, progress=tick)
     show_critical(found)
     write_all(file, made_of_critical(found))
-    end(unconfirmed(found))
+    end(found)
 
 
 FORM = "KEY=FROM:TO, as in rings.4.float='0 um:12 um'"
@@ -78,32 +81,8 @@ def made_of_critical(found: Critical) -> Makers:
     """Return what makes the files of critical values."""
     unproved = [{"position": u.position, "from": u.start, "to": u.stop} for u in found.unproved]
     about = {"parameter": found.parameter.name, "unit": found.parameter.unit}
-    return tables_of("critical", lambda: events_frame(found), **about, unproved=unproved)
-
-
-def unconfirmed(found: Critical) -> list[str]:
-    """Return what is to be said of what was not proved; nothing if all was."""
-    count = sum(not event.confirmed for event in found.events)
-    lines = [f"{counted(count, 'event')} of {len(found.events)} not confirmed."] if count else []
-    named = sorted({(u.start, u.stop, u.why) for u in found.unproved})
-    unit = f" {found.parameter.unit}" if found.parameter.unit else ""
-    lines += [
-        f"Not proved to hold no other event: {start:.12g} to {stop:.12g}{unit} ({why})."
-        for start, stop, why in named[:SHOWN]
-    ]
-    if len(named) > SHOWN:
-        lines.append(f"{counted(len(named) - SHOWN, 'further interval')} not proved.")
-    return lines
-
-
-def events_frame(found: Critical) -> pd.DataFrame:
-    """Return the events as a table."""
-    import pandas as pd
-
-    from loadshare.study.event import Event
-
-    columns = Event.__slots__
-    return pd.DataFrame([[getattr(e, c) for c in columns] for e in found.events], columns=columns)
+    tables = tables_of("critical", found.to_dataframe, **about, unproved=unproved)
+    return {**tables, **figure_of(found.plot)}
 
 
 def show_critical(found: Critical) -> None:

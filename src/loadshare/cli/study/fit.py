@@ -8,7 +8,16 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from loadshare.cli.console import say, say_all
-from loadshare.cli.forms import TABLES, Makers, Output, outputs, tables_of, write_all
+from loadshare.cli.forms import (
+    FIGURES,
+    TABLES,
+    Makers,
+    Output,
+    figure_of,
+    outputs,
+    tables_of,
+    write_all,
+)
 from loadshare.cli.options import CaseFile, Changes, over, ranges_of
 from loadshare.cli.study.common import asked
 from loadshare.cli.study.compare import show_comparison
@@ -36,7 +45,7 @@ def fit(
     seed: Annotated[
         int, typer.Option(metavar="N", min=0, help="Seed of the further starting points.")
     ] = 0,
-    file: Annotated[list[Output] | None, outputs("toml", *TABLES)] = None,
+    file: Annotated[list[Output] | None, outputs("toml", *TABLES, *FIGURES)] = None,
     change: Changes = None,
 ) -> None:
     """Fit inputs of a case to what was measured."""
@@ -50,7 +59,7 @@ def fit(
 
 
 def made_of_fit(found: Fit) -> Makers:
-    """Return what makes the files of a fit: the fitted case, and tables of what was fitted."""
+    """Return what makes the files of a fit: the fitted case, tables and a picture."""
 
     def frame() -> pd.DataFrame:
         import pandas as pd
@@ -63,7 +72,7 @@ def made_of_fit(found: Fit) -> Makers:
         return pd.DataFrame(rows, columns=heads)
 
     tables = tables_of("fit", frame, chi_square=found.comparison.chi_square)
-    return {**tables, "toml": found.case.to_toml}
+    return {**tables, **figure_of(found.plot), "toml": found.case.to_toml}
 
 
 def show_fit(found: Fit) -> None:

@@ -34,7 +34,7 @@ def march(
         float | None, typer.Option(metavar="X", min=0.0, help="How far to march.")
     ] = None,
     steps: Annotated[int | None, typer.Option(metavar="N", min=1, help="Number of steps.")] = None,
-    file: Annotated[list[Output] | None, outputs(*TABLES, "nc", *FIGURES)] = None,
+    file: Annotated[list[Output] | None, outputs(*TABLES, *FIGURES)] = None,
     change: Changes = None,
 ) -> None:
     """March through revolutions with spline friction that remembers its slip."""
@@ -50,7 +50,7 @@ def made_of_march(found: March) -> Makers:
     """Return what makes the files of a march."""
     return {
         **tables_of("march", found.result.to_frame),
-        **figure_of(lambda: found.result.plot.share()),
+        **figure_of(found.plot),
         "nc": lambda: netcdf_of(found.dataset),
     }
 

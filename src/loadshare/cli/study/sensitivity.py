@@ -6,7 +6,16 @@ import math
 from typing import TYPE_CHECKING, Annotated
 
 from loadshare.cli.console import say, say_all
-from loadshare.cli.forms import TABLES, Makers, Output, outputs, tables_of, write_all
+from loadshare.cli.forms import (
+    FIGURES,
+    TABLES,
+    Makers,
+    Output,
+    figure_of,
+    outputs,
+    tables_of,
+    write_all,
+)
 from loadshare.cli.options import CaseFile, Changes, Positions, keys
 from loadshare.cli.study.common import asked
 from loadshare.cli.tables.table import show, table
@@ -31,7 +40,7 @@ def sensitivity(
     key: Annotated[
         list[str] | None, keys("Inputs; a star stands for any name. All by default.")
     ] = None,
-    file: Annotated[list[Output] | None, outputs(*TABLES, "nc")] = None,
+    file: Annotated[list[Output] | None, outputs(*TABLES, *FIGURES)] = None,
     position: Positions = None,
     change: Changes = None,
 ) -> None:
@@ -47,7 +56,7 @@ def sensitivity(
 def made_of_sensitivity(found: Sensitivity) -> Makers:
     """Return what makes the files of sensitivities; tables hold those of torques."""
     made = tables_of("sensitivity", lambda: found.dataset["torque"].to_dataframe().reset_index())
-    return {**made, "nc": lambda: netcdf_of(found.dataset)}
+    return {**made, **figure_of(found.plot), "nc": lambda: netcdf_of(found.dataset)}
 
 
 def show_sensitivity(found: Sensitivity) -> None:

@@ -15,19 +15,16 @@ from loadshare.cli.forms import FIGURES, TABLES, Makers, Output, outputs, write_
 from loadshare.cli.options import OVER, CaseFile, Changes, over, ranges_of, split_setting
 from loadshare.cli.study.common import answered, end
 from loadshare.cli.study.compare import made_of_comparison, show_comparison
-from loadshare.cli.study.critical import made_of_critical, show_critical, unconfirmed
+from loadshare.cli.study.critical import made_of_critical, show_critical
 from loadshare.cli.study.fit import made_of_fit, show_fit
 from loadshare.cli.study.march import made_of_march, show_march
 from loadshare.cli.study.sensitivity import made_of_sensitivity, show_sensitivity
-from loadshare.cli.study.sweep import made_of_sweep, open_points, show_sweep
-from loadshare.cli.study.tolerance import made_of_tolerance, refused_samples, show_tolerance
+from loadshare.cli.study.sweep import made_of_sweep, show_sweep
+from loadshare.cli.study.tolerance import made_of_tolerance, show_tolerance
+from loadshare.cli.waiting import echo
 
 if TYPE_CHECKING:
     from loadshare.case import Case
-
-
-def _nothing(_: Any) -> list[str]:
-    return []
 
 
 @dataclass(frozen=True)
@@ -40,25 +37,22 @@ class Kind:
         Prints it.
     makers : callable
         Returns what makes files of it.
-    left_open : callable
-        Returns lines on the questions that the study could not answer.
     """
 
     show: Callable[[Any], None]
     makers: Callable[[Any], Makers]
-    left_open: Callable[[Any], list[str]] = _nothing
 
 
 KINDS = {
     "compare": Kind(show_comparison, made_of_comparison),
-    "critical": Kind(show_critical, made_of_critical, unconfirmed),
+    "critical": Kind(show_critical, made_of_critical),
     "fit": Kind(show_fit, made_of_fit),
     "march": Kind(show_march, made_of_march),
     "sensitivity": Kind(show_sensitivity, made_of_sensitivity),
-    "sweep": Kind(show_sweep, made_of_sweep, open_points),
-    "tolerance": Kind(show_tolerance, made_of_tolerance, refused_samples),
+    "sweep": Kind(show_sweep, made_of_sweep),
+    "tolerance": Kind(show_tolerance, made_of_tolerance),
 }
-FORMS = (*TABLES, "nc", *FIGURES, "toml")
+FORMS = (*TABLES, *FIGURES, "toml")
 
 
 def study(
@@ -91,9 +85,9 @@ def study(
         loaded = open_case(case, change)
         if name is None:
             for known, block in loaded.study.items():
-                typer.echo(f"{known}: {block.kind}")
+                echo(f"{known}: {block.kind}")
             if not loaded.study:
-                typer.echo("The case holds no study: add a table [study.NAME].")
+                echo("The case holds no study: add a table [study.NAME].")
             return
         kind = loaded.study[name].kind if name in loaded.study else ""
         if kind and varied:
@@ -111,7 +105,7 @@ def study(
             )
     asked.show(found)
     write_all(file, makers)
-    end(asked.left_open(found))
+    end(found)
 
 
 def _varied(case: Case, name: str, kind: str, given: list[str]) -> Case:

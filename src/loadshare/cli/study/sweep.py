@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated
 
-from loadshare.cli.exits import counted
 from loadshare.cli.forms import FIGURES, Makers, Output, figure_of, outputs, tables_of, write_all
 from loadshare.cli.options import CaseFile, Changes, Positions, over, split_setting
 from loadshare.cli.study.common import asked, end
@@ -44,7 +43,7 @@ def sweep(
         found = swept(loaded, parameters, positions=position, progress=tick)
     show_sweep(found)
     write_all(file, made_of_sweep(found))
-    end(open_points(found))
+    end(found)
 
 
 def made_of_sweep(found: Sweep) -> Makers:
@@ -54,15 +53,6 @@ def made_of_sweep(found: Sweep) -> Makers:
         **figure_of(found.plot),
         "nc": lambda: netcdf_of(found.dataset),
     }
-
-
-def open_points(found: Sweep) -> list[str]:
-    """Return why points have no certified answer; nothing if all have one."""
-    failed = [p for p in found.points if p.status != "certified"]
-    if not failed:
-        return []
-    told = dict.fromkeys(f"{p.status}: {p.message.splitlines()[0]}" for p in failed)
-    return [*told, f"{counted(len(failed), 'point')} of {len(found.points)} not certified."]
 
 
 def show_sweep(found: Sweep) -> None:

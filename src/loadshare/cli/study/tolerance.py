@@ -12,7 +12,7 @@ import typer
 from loadshare._version import __version__
 from loadshare.cli.completion import study_names
 from loadshare.cli.console import say, say_all, stand
-from loadshare.cli.exits import counted, fail
+from loadshare.cli.exits import fail
 from loadshare.cli.files import document_text, tell_written
 from loadshare.cli.forms import (
     FIGURES,
@@ -29,7 +29,7 @@ from loadshare.cli.stop import Stop
 from loadshare.cli.study.common import asked, end
 from loadshare.cli.tables.table import show, table
 from loadshare.output import netcdf_of
-from loadshare.report.numbers import NONE
+from loadshare.report.numbers import NONE, counted
 
 if TYPE_CHECKING:
     from loadshare.study.tolerance.result import Tolerance
@@ -38,8 +38,6 @@ if TYPE_CHECKING:
 FORMS = (FOLDER, "csv", "nc", "parquet", "xlsx", "json", *FIGURES)
 SHOWN = 20
 """Inputs, and messages, that are shown."""
-ROUND_OFF = 1e-12
-"""Deviation over the mean that says nothing."""
 
 
 def tolerance(
@@ -119,7 +117,7 @@ def tolerance(
     if out is not None:
         tell_written(out, err=True)
     write_all([o for o in file or () if o.form != FOLDER], made_of_tolerance(found))
-    end(refused_samples(found))
+    end(found)
 
 
 def _kept(out: Path | None, done: int, total: int) -> str:
@@ -170,13 +168,6 @@ def statistics_document(found: Tolerance) -> dict[str, Any]:
     }
 
 
-def refused_samples(found: Tolerance) -> list[str]:
-    """Return how many samples have no certified answer; nothing if all have one."""
-    if not found.refused:
-        return []
-    return [f"{counted(found.refused, 'sample')} of {found.samples} not certified."]
-
-
 def show_tolerance(found: Tolerance) -> None:
     """Print how Ω scatters, from which inputs it comes, and the worst case."""
     settings = found.settings
@@ -217,7 +208,7 @@ def _show_omega(found: Tolerance) -> None:
         s = one.summary
         label = f"{one.stage}, group" if one.over == "group" else one.stage
         above = [_interval(one.exceedance)] if one.exceedance is not None else []
-        mean, spread, highest = f"{s.mean.value:.5f}", f"{_spread(s):.2g}", f"{s.highest:.5f}"
+        mean, spread, highest = f"{s.mean.value:.5f}", f"{s.spread:.2g}", f"{s.highest:.5f}"
         figures.append((label, mean, spread, highest, *above))
         quantiles.append((label, *(f"{q.value:.5f}" for q in s.quantiles.values())))
     heads = ("Ω", "mean", "deviation", "largest", *limit)
@@ -226,11 +217,6 @@ def _show_omega(found: Tolerance) -> None:
     show("Its quantiles", table(heads, quantiles, words=("Ω",)))
     if found.limit is not None or any(one.shares for one in found.omega):
         say("Intervals in brackets: 95 %.")
-
-
-def _spread(found: Summary) -> float:
-    """Deviation; none where it is round-off of the mean."""
-    return found.deviation if found.deviation > ROUND_OFF * abs(found.mean.value) else 0.0
 
 
 def _interval(found: Estimate, form: str = ".4g") -> str:
@@ -254,7 +240,7 @@ def _show_others(found: Tolerance) -> None:
     heads = ("mean", "deviation", "smallest", "largest")
 
     def cells(s: Summary, factor: float = 1.0) -> list[str]:
-        values = (s.mean.value, _spread(s), s.lowest, s.highest)
+        values = (s.mean.value, s.spread, s.lowest, s.highest)
         return [f"{factor * value:.5g}" for value in values]
 
     rows = [(mesh, *cells(summary)) for mesh, summary in found.torque.items()]

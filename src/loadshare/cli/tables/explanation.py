@@ -7,11 +7,10 @@ from collections.abc import Mapping
 from rich.table import Table
 
 from loadshare.cli.console import say
-from loadshare.cli.exits import counted
 from loadshare.cli.tables.table import show, table
 from loadshare.contact.plan import Role
 from loadshare.job.answer import Answer
-from loadshare.report.numbers import fixed, small
+from loadshare.report.numbers import counted, fixed, small
 from loadshare.report.words import range_told
 from loadshare.solver import Record
 

@@ -11,11 +11,10 @@ from rich.text import Text
 from loadshare.case import Case
 from loadshare.certify import FloatState
 from loadshare.cli.console import say, say_all
-from loadshare.cli.exits import counted
 from loadshare.cli.refusal import ranges
 from loadshare.cli.tables.table import fits, show, table, texts
 from loadshare.report import records
-from loadshare.report.numbers import NONE, decimals, fixed, significant, small
+from loadshare.report.numbers import NONE, counted, decimals, fixed, significant, small
 from loadshare.report.records import Cell
 from loadshare.report.words import advice, undetermined_told
 from loadshare.results import Position, Result

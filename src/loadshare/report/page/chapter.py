@@ -18,10 +18,12 @@ from loadshare.report.figures.train import train as draw
 from loadshare.report.numbers import NONE, omega, small
 from loadshare.report.page import answers
 from loadshare.report.page.inputs import input_tables
+from loadshare.report.page.studies import StudyPart, study_part
 from loadshare.report.page.verdict import trust, verdict_tables
 from loadshare.report.records import Cell, Table, table
 from loadshare.report.teeth import teeth_tables
 from loadshare.results import Result
+from loadshare.view import Viewed
 
 CERTIFIED, PARTLY, REFUSED, UNUSABLE = "certified", "partly refused", "refused", "cannot be used"
 
@@ -51,6 +53,8 @@ class Chapter:
     trust : mapping of str to str
         Why the answer can be trusted, and what it rests on.
     tables, inputs, derived : sequence of Table
+    studies : sequence of StudyPart
+        Of the case, those that were run or handed in.
     """
 
     file: str
@@ -67,6 +71,20 @@ class Chapter:
     tables: Sequence[Table] = ()
     inputs: Sequence[Table] = ()
     derived: Sequence[Table] = ()
+    studies: Sequence[StudyPart] = ()
+
+    @property
+    def left_out(self) -> Mapping[str, str]:
+        """Studies that the case holds and the page does not show, and the kind of each."""
+        shown = {one.name for one in self.studies}
+        held = self.case.study.items() if self.case else ()
+        return {name: study.kind for name, study in held if name not in shown}
+
+    @property
+    def unanswered(self) -> list[str]:
+        """What is wrong with the case, and what its studies could not answer, in lines."""
+        open_ = [f"study {s.name}: {line}" for s in self.studies for line in s.problems]
+        return [*self.problems, *open_]
 
     @property
     def load(self) -> str:
@@ -79,7 +97,8 @@ class Chapter:
         if not self.file:
             return []
         name = shlex.quote(self.file)
-        return [f"loadshare run {name}", f"loadshare report {name} -o report.html"]
+        studies = [f"loadshare study {name} {shlex.quote(s.name)}" for s in self.studies]
+        return [f"loadshare run {name}", f"loadshare report {name} -o report.html", *studies]
 
 
 def chapter_of_file(
@@ -110,6 +129,7 @@ def chapter(
     file: str = "",
     progress: Progress | None = None,
     result: Result | None = None,
+    studies: Mapping[str, Viewed] | None = None,
 ) -> Chapter:
     """Solve a case and put together its chapter.
 
@@ -122,6 +142,9 @@ def chapter(
         Called after every position.
     result : Result, optional
         Of the case, where it is solved already.
+    studies : mapping of str to study, optional
+        Studies of the case that were run already, such as a `Sweep`, by the names under which the
+        page shows them.
 
     Raises
     ------
@@ -151,6 +174,7 @@ def chapter(
         tables=tuple(_tables(result)) if result else (),
         inputs=tuple(input_tables(case)),
         derived=tuple(teeth_tables(case)),
+        studies=tuple(study_part(name, found, case) for name, found in (studies or {}).items()),
     )
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import platform
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -15,7 +16,9 @@ from loadshare.report.page.answers import effort_told
 from loadshare.report.page.chapter import Chapter, chapter, chapter_of_file, overview
 from loadshare.report.page.comparison import comparison
 from loadshare.report.page.offline import render
+from loadshare.report.page.studies import quick_studies, run_part, study_part
 from loadshare.report.records import Table
+from loadshare.view import Viewed
 
 PACKAGES = ("numpy", "scipy", "clarabel", "altair", "vl-convert-python")
 """Packages on which figures and pictures depend."""
@@ -53,8 +56,15 @@ def _differences(chapters: list[Chapter]) -> list[Table]:
     return comparison([f"case {number}" for number in solved], list(solved.values()))
 
 
-def write_report(cases: Iterable[Case | str | Path], path: str | Path) -> list[Chapter]:
+def write_report(
+    cases: Iterable[Case | str | Path],
+    path: str | Path,
+    studies: Mapping[str, Viewed] | None = None,
+) -> list[Chapter]:
     """Solve cases and write them, with figures and certificates, into one page that works offline.
+
+    The studies that a case holds are run and shown, except tolerance studies, which may take long:
+    run those with `tolerance` and hand them in.
 
     Parameters
     ----------
@@ -62,6 +72,9 @@ def write_report(cases: Iterable[Case | str | Path], path: str | Path) -> list[C
         Cases, or paths of case files.
     path : path-like
         The page to write.
+    studies : mapping of str to study, optional
+        Studies of the one case that were run already (a `Sweep`, a `Tolerance`, …), by the names
+        under which the page shows them. Those that the case holds are then not run.
 
     Returns
     -------
@@ -73,12 +86,25 @@ def write_report(cases: Iterable[Case | str | Path], path: str | Path) -> list[C
     ------
     CaseError
         If a `Case` cannot be solved at all.
+    ValueError
+        If studies are handed in for more than one case.
     OSError
         If the page cannot be written.
     """
-    chapters = [
-        chapter(case) if isinstance(case, Case) else chapter_of_file(case) for case in cases
-    ]
+    given = list(cases)
+    if studies and len(given) > 1:
+        raise ValueError(f"studies are shown with one case, not with {len(given)}")
+    chapters = []
+    for case in given:
+        made = chapter(case) if isinstance(case, Case) else chapter_of_file(case)
+        if made.case is not None:
+            parts = (
+                [study_part(name, found, made.case) for name, found in studies.items()]
+                if studies
+                else [run_part(made.case, name) for name in quick_studies(made.case)]
+            )
+            made = replace(made, studies=parts)
+        chapters.append(made)
     save_report(chapters, path)
     return chapters
 

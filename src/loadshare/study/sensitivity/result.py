@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Literal
 
+from loadshare.pictures import picture
 from loadshare.scene.scene import Array
 from loadshare.study.parameter import Value
 from loadshare.view import View, Viewed
@@ -13,6 +14,8 @@ from loadshare.view import View, Viewed
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
+
+    from loadshare.report.figure import Figure
 
 SIDES = ("falling", "rising")
 
@@ -152,6 +155,18 @@ class Sensitivity(Viewed):
     def to_xarray(self) -> xr.Dataset:
         """The labelled arrays, `dataset`."""
         return self.dataset
+
+    def plot(self, stage: str = "system", over: Literal["stage", "group"] = "stage") -> Figure:
+        """Picture of the inputs that move Ω most, over their whole values.
+
+        Parameters
+        ----------
+        stage : str
+        over : {"stage", "group"}
+            Over whose mean torque Ω is.
+        """
+        drawn: Figure = picture(self, stage, over)
+        return drawn
 
     def _view(self) -> View:
         from loadshare.study.views import sensitivity_view

@@ -13,6 +13,9 @@ from scipy import special
 from loadshare.scene.scene import Array
 from loadshare.settings import TOLERANCE
 
+ROUND_OFF = 1e-12
+"""Deviation over the mean that is round-off."""
+
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
@@ -53,6 +56,11 @@ class Summary:
     quantiles: dict[float, Estimate]
     edges: Array
     counts: NDArray[np.int64]
+
+    @property
+    def spread(self) -> float:
+        """Standard deviation; 0 where it is round-off of the mean."""
+        return self.deviation if self.deviation > ROUND_OFF * abs(self.mean.value) else 0.0
 
 
 def summary(values: Array, levels: Sequence[float], replicated: bool) -> Summary | None:

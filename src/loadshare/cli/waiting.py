@@ -1,0 +1,74 @@
+"""A line on the terminal while libraries load, gone as soon as there is something else to say.
+
+The first command of a fresh installation reads some hundred megabytes of libraries from the disk,
+which takes seconds.
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import typer
+
+from loadshare.cli.quiet import is_hushed
+
+LINE = "Loading libraries …"
+DELAY = 0.4
+"""Time after which it is shown [s]; what is quicker than that shows nothing."""
+_ERASE = "\r\033[K"
+
+
+class _Line:
+    """The line, shown by a timer and erased by whoever speaks next."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._over = self._shown = False
+        self._timer = threading.Timer(DELAY, self._show)
+        self._timer.daemon = True
+        self._timer.start()
+
+    def _show(self) -> None:
+        with self._lock:
+            if not self._over:
+                self._shown = True
+                sys.stderr.write(LINE)
+                sys.stderr.flush()
+
+    def erase(self) -> None:
+        """Take the line away, and show it no more."""
+        self._timer.cancel()
+        with self._lock:
+            if self._shown and not self._over:
+                sys.stderr.write(_ERASE)
+                sys.stderr.flush()
+            self._over = True
+
+
+_line: list[_Line] = []
+
+
+@contextmanager
+def waiting() -> Iterator[None]:
+    """Show on a terminal that libraries are being loaded, until something is said or done."""
+    if sys.stderr.isatty() and not is_hushed():
+        _line[:] = [_Line()]
+    try:
+        yield
+    finally:
+        speak()
+
+
+def speak() -> None:
+    """Make room on the terminal for what is said now."""
+    while _line:
+        _line.pop().erase()
+
+
+def echo(text: str, *, err: bool = False, nl: bool = True) -> None:
+    """Print a line to stdout or stderr."""
+    speak()
+    typer.echo(text, err=err, nl=nl)

@@ -1,0 +1,95 @@
+"""Picture of sensitivities: which inputs move Ω most."""
+
+from __future__ import annotations
+
+import math
+
+import altair as alt
+
+from loadshare.report.figure import Figure
+from loadshare.report.figures import marks
+from loadshare.report.figures.marks import Row, chart, hover
+from loadshare.report.palette import COLOURS
+from loadshare.study.sensitivity import Sensitivity
+from loadshare.study.tolerance.result import Over
+
+WIDTH = 320
+ROW = 22
+"""Height of an input's row [px]."""
+MOST = 20
+"""Inputs that are shown; the others are told as a number."""
+LABEL = 300
+"""Longest name of an input [px]."""
+ALIKE = 1e-6
+"""Relative difference of both sides that no reader needs to see."""
+BOTH = "either way"
+CALLED = {"falling": "input falls", "rising": "input rises"}
+
+
+def sensitivity(found: Sensitivity, stage: str = "system", over: Over = "stage") -> Figure:
+    """Bars of how Ω of a stage changes with every input, largest first.
+
+    A bar is the derivative times the whole value of the input, so that inputs of different units
+    can be compared; an input that is 0 has none.
+
+    Parameters
+    ----------
+    found : Sensitivity
+    stage : str
+    over : {"stage", "group"}
+        Over whose mean torque Ω is.
+    """
+    rates = found.omega if over == "stage" else found.pair_omega
+    bars: dict[str, list[Row]] = {}
+    for item in found.inputs:
+        value = item.value
+        by_side = {
+            side: rates[item.key, side].get(stage, math.nan) * value.factor for side in found.sides
+        }
+        known = {side: rate for side, rate in by_side.items() if math.isfinite(rate)}
+        low, high = min(known.values(), default=0.0), max(known.values(), default=0.0)
+        if len(known) == len(found.sides) and high - low <= ALIKE * max(abs(low), abs(high)):
+            known = {BOTH: high}
+        about = {"input": item.key, "value": f"{value.number:.6g} {value.unit}".strip()}
+        bars[item.key] = [
+            about
+            | {"side": CALLED.get(side, side), "rate": rate, "unit": f"per {value.unit or 1}"}
+            | {"change": rate * abs(value.number)}
+            for side, rate in known.items()
+        ]
+    order = sorted(bars, key=lambda key: -max((abs(r["change"]) for r in bars[key]), default=0.0))
+    shown = [key for key in order if any(row["change"] for row in bars[key])][:MOST]
+    rows = [row for key in shown for row in bars[key]]
+    sides = [side for side in (BOTH, *CALLED.values()) if any(r["side"] == side for r in rows)]
+    axis = alt.Axis(domain=False, ticks=False, labelLimit=LABEL)
+    where = {"yOffset": alt.YOffset("side:N", sort=sides)} if len(sides) > 1 else {}
+    drawing = (
+        chart(rows)
+        .mark_bar()
+        .encode(
+            x=alt.X("change:Q", title="change of Ω over the whole value of the input"),
+            y=alt.Y("input:N", sort=shown, title=None, axis=axis),
+            color=alt.Color(
+                "side:N",
+                scale=alt.Scale(domain=sides, range=list(COLOURS[: len(sides)])),
+                legend=alt.Legend(title=None, orient="bottom") if len(sides) > 1 else None,
+            ),
+            tooltip=hover(
+                "input:N",
+                "value:N",
+                ("side:N", "side"),
+                ("rate:Q", "dΩ", "+.4g"),
+                ("unit:N", "which is"),
+                ("change:Q", "over its whole value", "+.4g"),
+            ),
+            **where,
+        )
+        .properties(width=WIDTH, height=ROW * max(len(shown), 1))
+    )
+    left = len(found.inputs) - len(shown)
+    name = "the system" if stage == "system" else f"stage {stage}"
+    told = [
+        f"first order, by the mean of the {over}",
+        f"{left} inputs of less effect, or 0, are not shown" if left else "",
+    ]
+    return marks.figure("sensitivity", drawing, f"What moves Ω of {name}", told)

@@ -1,0 +1,197 @@
+"""Studies of a case on its page: facts, pictures and tables of each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import singledispatch
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from loadshare.case import Case
+from loadshare.errors import LoadshareError
+from loadshare.report.figure import Figure
+from loadshare.report.left_open import left_open
+from loadshare.report.records import Cell, Column, Table
+from loadshare.study.critical import Critical
+from loadshare.study.march import March
+from loadshare.study.named import run_study
+from loadshare.study.sensitivity import Sensitivity
+from loadshare.study.sweep import sweep
+from loadshare.study.tolerance.result import Tolerance
+from loadshare.study.tolerance.study import tolerance
+from loadshare.view import Viewed
+
+if TYPE_CHECKING:
+    from loadshare.job import Progress
+
+LONG = "tolerance"
+"""Kind of study that is run for a page only when it is asked for by name."""
+POINTS = 61
+"""Of the sweep that is drawn behind critical values."""
+FOLDED = 24
+"""Rows from which a table is shown only when asked for."""
+
+
+@dataclass(frozen=True)
+class StudyPart:
+    """What a page tells of one study.
+
+    Attributes
+    ----------
+    name : str
+        Of the table ``[study.NAME]``, or as it was handed in.
+    title : str
+    facts : mapping of str to str
+    figures : sequence of Figure
+    tables : sequence of Table
+    problems : sequence of str
+        What it could not answer.
+    """
+
+    name: str
+    title: str
+    facts: Mapping[str, str] = field(default_factory=dict)
+    figures: Sequence[Figure] = ()
+    tables: Sequence[Table] = ()
+    problems: Sequence[str] = ()
+
+
+def study_part(name: str, found: Viewed, case: Case) -> StudyPart:
+    """Return what a page tells of a study that was run.
+
+    Parameters
+    ----------
+    name : str
+    found : Sweep, Critical, Sensitivity, March, Comparison, Fit or Tolerance
+    case : Case
+        Of which it is.
+    """
+    view = found._view()
+    rows = [[Cell(text) for text in row] for row in view.rows]
+    right = [all(map(_is_figure, column)) for column in zip(*view.rows, strict=True)]
+    columns = [Column(n, r) for n, r in zip(view.columns, right, strict=False)]
+    tables = [Table(view.title, columns, rows, folded=len(rows) > FOLDED)] if rows else []
+    return StudyPart(
+        name=name,
+        title=f"{name}: {type(found).__name__.lower()}",
+        facts={what: told for what, told in view.facts if told},
+        figures=tuple(_figures(found, case)),
+        tables=(*tables, *_more_tables(found)),
+        problems=tuple(left_open(found)),
+    )
+
+
+def run_part(
+    case: Case, name: str, *, kept: Path | None = None, progress: Progress | None = None
+) -> StudyPart:
+    """Run a study that a case holds; what cannot be answered becomes part of the page.
+
+    Parameters
+    ----------
+    case : Case
+    name : str
+        Of the table ``[study.NAME]``.
+    kept : Path, optional
+        Folder with the samples of a tolerance study, which are not solved again.
+    progress : Progress, optional
+        Called as parts of the study are done.
+    """
+    try:
+        if kept is not None:
+            found: Viewed = tolerance(case, study=name, out=kept, progress=progress)
+        else:
+            found = run_study(case, name, progress=progress)
+        return study_part(name, found, case)
+    except LoadshareError as error:
+        kind = case.study[name].kind if name in case.study else "study"
+        return StudyPart(name, f"{name}: {kind}", problems=str(error).splitlines())
+
+
+def quick_studies(case: Case) -> list[str]:
+    """Return the names of a case's studies that a page shows without being asked for them."""
+    return [name for name, study in case.study.items() if study.kind != LONG]
+
+
+def _is_figure(text: str) -> bool:
+    return text.lstrip("+-−").replace(".", "", 1).isdigit()
+
+
+@singledispatch
+def _figures(found: Any, _: Case) -> Iterator[Figure]:
+    """Yield the pictures of a study."""
+    yield found.plot()
+
+
+@_figures.register
+def _(found: Critical, case: Case) -> Iterator[Figure]:
+    """Where elements change, and Ω over the same inputs with these values marked."""
+    yield found.plot()
+    if not found.events:
+        return
+    unit = found.parameter.unit
+    ends = (f"{value!r} {unit}".rstrip() for value in (found.start, found.stop))
+    grid = {tuple(found.parameter.keys): ":".join((*ends, str(POINTS)))}
+    swept = sweep(case, grid, positions=[found.events[0].position])
+    yield swept.plot(events=found.marks())
+
+
+@_figures.register
+def _(found: Sensitivity, _: Case) -> Iterator[Figure]:
+    yield found.plot()
+    if found.omega != found.pair_omega:
+        yield found.plot(over="group")
+
+
+@_figures.register
+def _(found: March, _: Case) -> Iterator[Figure]:
+    if any(value is not None for p in found.result.positions for value in p.share.values()):
+        yield found.plot()
+    if found.result.positions[0].floats:
+        yield found.result.plot.floats()
+
+
+@_figures.register
+def _(found: Tolerance, _: Case) -> Iterator[Figure]:
+    for over in found.overs:
+        if any(one.over == over for one in found.omega):
+            yield found.plot(over="group" if over == "group" else "stage")
+
+
+@singledispatch
+def _more_tables(_: Any) -> Iterator[Table]:
+    """Yield the tables of a study besides that of its view."""
+    yield from ()
+
+
+@_more_tables.register
+def _(found: Tolerance) -> Iterator[Table]:
+    """Quantiles of Ω, and the worst case that was found."""
+    levels = list(found.omega[0].summary.quantiles) if found.omega else []
+    rows = [
+        [Cell(one.stage), Cell(one.over), *(_quantile(one.summary.quantiles[k]) for k in levels)]
+        for one in found.omega
+    ]
+    if rows:
+        heads = [Column("stage"), Column("over"), *(Column(f"{100 * k:g} %", True) for k in levels)]
+        yield Table("Quantiles of Ω", heads, rows)
+    for one in found.worst:
+        inputs = [
+            [
+                Cell(d.name),
+                Cell(f"{one.inputs[d.name]:.6g} {d.distribution.unit}".strip(), one.inputs[d.name]),
+                Cell(one.at[d.name]),
+            ]
+            for d in found.inputs.every
+        ]
+        yield Table(
+            f"Worst case found: Ω = {one.omega:.5f} over the mean of the {one.over}",
+            [Column("input"), Column("value", True), Column("of its tolerance")],
+            inputs,
+            [f"Certified; the best of {one.solved:,} trials. There may be a worse one."],
+            folded=len(inputs) > FOLDED,
+        )
+
+
+def _quantile(found: Any) -> Cell:
+    return Cell(f"{found.value:.5f}", found.value)

@@ -1,0 +1,75 @@
+"""A terminal shows that libraries are being loaded, and nothing of it is left."""
+
+from __future__ import annotations
+
+import os
+import time
+from contextlib import contextmanager, redirect_stderr
+
+import pytest
+
+from loadshare.cli import waiting
+from loadshare.cli.quiet import hush
+
+pty = pytest.importorskip("pty")
+
+
+@contextmanager
+def terminal():
+    """Put a terminal in place of stderr; yields what reads what it was sent.
+
+    In the test's own body: pytest puts its streams back between the fixtures and the test.
+    """
+    ours, theirs = pty.openpty()
+    os.set_blocking(ours, False)
+
+    def sent():
+        try:
+            return os.read(ours, 10_000).decode()
+        except BlockingIOError:
+            return ""
+
+    with os.fdopen(theirs, "w", encoding="utf-8") as stream, redirect_stderr(stream):
+        yield sent
+    os.close(ours)
+
+
+def _shown(sent):
+    for _ in range(500):
+        if text := sent():
+            return text
+        time.sleep(0.01)
+    return ""
+
+
+def test_what_takes_long_is_told_until_something_is_said(monkeypatch, capsys):
+    monkeypatch.setattr(waiting, "DELAY", 0.01)
+    with terminal() as sent:
+        with waiting.waiting():
+            assert _shown(sent) == waiting.LINE
+            waiting.echo("an answer")
+            assert sent() == "\r\033[K"
+        assert sent() == ""
+    assert capsys.readouterr().out == "an answer\n"
+
+
+def test_what_is_quick_or_quiet_tells_nothing(monkeypatch):
+    monkeypatch.setattr(waiting, "DELAY", 0.01)
+    with terminal() as sent:
+        hush(True)
+        try:
+            with waiting.waiting():
+                time.sleep(0.1)
+        finally:
+            hush(False)
+        monkeypatch.setattr(waiting, "DELAY", 60.0)
+        with waiting.waiting():
+            pass
+        assert sent() == ""
+
+
+def test_no_terminal_is_told_nothing(monkeypatch, capsys):
+    monkeypatch.setattr(waiting, "DELAY", 0.0)
+    with waiting.waiting():
+        time.sleep(0.05)
+    assert capsys.readouterr().err == ""
