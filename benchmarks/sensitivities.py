@@ -353,11 +353,11 @@ def text(rows: Sequence[dict[str, Any]]) -> str:
 
 ABOUT = """# Sensitivities against differences
 
-Derivatives of shipped cases, problems of the stability map and drawn trains, also at their critical
-values, by six inputs each, are compared to each side with differences of certified solves, over
-steps that shrink by four, extrapolated. Where doubles are too noisy to decide, the equilibria are
-those of the reference in 50 digits. A derivative *agrees* if it is within its own stated error of
-the difference.
+Are derivatives right within their stated errors? Those of shipped cases, problems of the stability
+map and random trains, also at their critical values, with respect to six inputs each, are compared
+on each side with differences of certified solves, over steps that shrink by four, extrapolated.
+Where double precision is too noisy to decide, the equilibria are those of the reference in 50
+digits. A derivative *agrees* if it is within its own stated error of the difference.
 """
 
 

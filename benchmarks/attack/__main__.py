@@ -44,14 +44,15 @@ def text(found: list[Attack]) -> str:
 
 ABOUT = """# Attack on the certificate
 
-Answers are tampered with so that they look like equilibria, and judged by `certify`. None may pass
-of which a torque is off by more than 1e-9 of the largest torque (that of a flank, or one from
-outside). True errors are told by the reference in 50 digits. The trains are shipped ones, splits
-that are up to a million times as stiff as the mesh before them, trains of which all gears are
-shifted together by 10 mm, and random ones (`benchmarks/random_trains`). Sizes are spread evenly
-over the decades: numbers by 1e-12 to 1e-6 of themselves, self-stress and moved forces by 1e-13 to
-1e-2 of the load. Self-stress is the null space of the balance of forces and moments, assembled
-from the train by code that shares nothing with solver, scene or certificate.
+Can a wrong answer pass the certificate? Here answers are changed so that they still look like
+equilibria, and `certify` judges them. None may pass if one of its torques is off by more than 1e-9
+of the largest torque (of a flank, or an external one). The reference in 50 digits gives the true
+errors. The trains are shipped ones, splits up to a million times as stiff as the mesh before them,
+trains with all gears shifted together by 10 mm, and random ones (`benchmarks/random_trains`). The
+sizes of the changes are spread evenly over the decades: numbers by 1e-12 to 1e-6 of themselves,
+self-stress and moved forces by 1e-13 to 1e-2 of the load. Self-stress is the null space of the
+balance of forces and moments, assembled from the train by code that shares nothing with solver,
+scene or certificate.
 
 """
 

@@ -18,10 +18,11 @@ from benchmarks.critical_paths.table import text
 
 ABOUT = """# Critical values against scans
 
-Random trains (stars and split-torque trains with rings, splines, backlash, Hertz contact, tabulated
-laws, errors, elastic shafts and bearings) are followed along one to three inputs that take the same
-value. Their events are compared with the states of all elements in dense scans by the batch path;
-a path with another end must give the same events.
+Does `critical` find every event, and only real ones? Random trains (stars and split-torque trains
+with rings, splines, backlash, Hertz contact, tabulated laws, errors, elastic shafts and bearings)
+are followed along one to three inputs that take the same value. The events are compared with the
+states of all elements in dense scans, solved as a batch; a range with another end must give the
+same events.
 """
 
 

@@ -13,19 +13,19 @@ from benchmarks.random_trains.table import text
 
 ABOUT = """# Random trains
 
-Trains are drawn that nobody here had in mind, and every position of each is solved and compared
-with a reference in 50 digits that shares no code with solver, scene or certificate: stars, splits
-and four-branch trains, double and stepped stars, idlers; both flanks, splines, drum and round
-rings, linear and Hertz laws, zero clearances, collinear lines of action, stiffness ratios up to
-1e6, loads from 1e-6 to 10 times the rated one. Every torque, force and displacement that has a
-bound must be as near to the reference as the bound says. *Too far* is refused as the displacements
-are too large for the geometry in which they were found.
+How often is an answer wrong, or refused without need? Random trains, which no one chose, are solved
+at every position and compared with a reference in 50 digits that shares no code with solver, scene
+or certificate: stars, splits and four-branch trains, double and stepped stars, idlers; both flanks,
+splines, drum and round rings, linear and Hertz laws, zero clearances, collinear lines of action,
+stiffness ratios up to 1e6, loads from 1e-6 to 10 times the rated one. Every torque, force and
+displacement with a bound must be as near to the reference as the bound says. *Too far* means
+refused because displacements are too large for the geometry in which they were found.
 """
 SETS_ABOUT = """# Random planetary sets
 
-Planetary sets are drawn, simple, stepped and with planets that mesh with one another, every member
-held, driven and driving, floating, on splines, in rings or on elastic mounts, and every position of
-each is solved and compared with a reference in 50 digits, as [random trains](random-trains.md) are.
+Random planetary sets: simple, stepped, and with planets that mesh with one another; every member
+held, driven and driving, floating, on splines, in rings or on elastic mounts. Every position of
+each is solved and compared with a reference in 50 digits, like [random trains](random-trains.md).
 """
 LOOPS_ABOUT = """# Random loops
 
@@ -36,7 +36,7 @@ in a loop. Every position is solved and compared with a reference in 50 digits.
 MAP = """# Stability map in 50 digits
 
 The problems of the [stability map](stability.md), {count} of {problems}, each compared with a
-reference in 50 digits. That takes minutes for some of 64 branches.
+reference in 50 digits. Some problems with 64 branches take minutes.
 """
 
 

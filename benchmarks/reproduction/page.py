@@ -31,7 +31,7 @@ def page(chapters: Sequence[Chapter], used: Mapping[str, str]) -> str:
         "<!-- Written by `make reproduce`; do not edit. -->",
         *_INTRODUCTION,
         table(
-            ("figure", "what came out", "standing"),
+            ("figure", "result", "status"),
             [(_link(c.title), c.verdict, c.standing) for c in chapters],
         ),
     ]
@@ -53,19 +53,19 @@ def page(chapters: Sequence[Chapter], used: Mapping[str, str]) -> str:
 
 
 _INTRODUCTION = (
-    "The paper on the face-gear four-branch split-torque transmission prints results in Figs. 7 to "
-    "14 and 18 and Table 2, but few of its inputs. This page sets every printed figure beside the "
-    "computed one, and says why they part where they do.",
-    "**Standing.** *Fitted*: an input that the paper does not print was chosen so that this "
-    "figure agrees; it is no test of the model. *Predicted*: nothing was chosen for it. Fitted are "
-    "the directions of the eccentricities, to Fig. 10, and, once and for all in the case files, "
-    "the geometry, to Figs. 13 and 14. The tooth data of Fig. 7 are chosen; they bear on the "
-    "pictures over the mesh cycle only.",
+    "The paper on the face-gear four-branch split-torque transmission prints results in Figs. 7 "
+    "to 14 and 18 and Table 2, but few of its inputs. This page compares every printed figure "
+    "with the computed one and explains the differences.",
+    "**Status.** *Fitted*: an input that the paper does not print was chosen so that this "
+    "figure agrees, so it does not test the model. *Predicted*: nothing was chosen for it. Two "
+    "things are fitted: the directions of the eccentricities, to Fig. 10, and the geometry in "
+    "all case files, to Figs. 13 and 14. The tooth data of Fig. 7 are chosen; they only affect "
+    "the pictures over the mesh cycle.",
     "**Assumed throughout**, as the paper does not print it: radii, centres, pressure angles, "
-    "shaft stiffness, the direction of the installation errors, and what each case file lists as "
-    "`assumed` (see [validation](validation.md#the-seed-paper)). Mesh stiffness is the middle of "
-    "the printed ranges. Ω of stage II counts within each pinion's pair, as in the paper. A "
-    "difference in % is that of the figure itself.",
+    "shaft stiffness, the direction of the installation errors, and what each case file lists "
+    "as `assumed` (see [validation](validation.md#the-seed-paper)). Mesh stiffness is the "
+    "middle of the printed ranges. Ω of stage II is taken within each pinion's pair, as in the "
+    "paper. A difference in % is relative to the printed figure.",
 )
 
 

@@ -163,7 +163,7 @@ def float_chapter(
     ]
     return Chapter(
         "Fig. 11: full float",
-        "trend and order agree; the printed floats leave out that a float relieves its own force",
+        "trend and order agree; the printed floats ignore that a float relieves its own force",
         "predicted",
         tuple(blocks),
         pictures,

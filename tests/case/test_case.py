@@ -134,10 +134,10 @@ def test_replace_leaves_the_case_as_it_is(drive):
 @pytest.mark.parametrize(
     ("key", "message"),
     [
-        ("gears.aa.support", "leads nowhere. Did you mean gears.a?"),
-        ("gear.a.support", "leads nowhere. Did you mean gears?"),
-        ("march.steps.x", "leads nowhere. There is no march.steps."),
-        ('meshes."c-d".stiffness[7]', 'leads nowhere. There is no meshes."c-d".stiffness[7].'),
+        ("gears.aa.support", "does not exist. Did you mean gears.a?"),
+        ("gear.a.support", "does not exist. Did you mean gears?"),
+        ("march.steps.x", "does not exist. There is no march.steps."),
+        ('meshes."c-d".stiffness[7]', 'does not exist. There is no meshes."c-d".stiffness[7].'),
         ("a..b", "is not a key path."),
     ],
 )

@@ -14,7 +14,7 @@ from loadshare.tooth.law.meshes import resolve
 
 BASE = CASES / "fgfbstts" / "base.toml"
 PAIR = CASES / "fgfbstts" / "pairs" / "p12.toml"
-TELLS = "leads out of the folder of the case"
+TELLS = "is outside the folder of the case"
 
 
 @pytest.fixture

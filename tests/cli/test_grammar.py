@@ -147,8 +147,8 @@ def test_the_ending_or_a_word_tells_the_form(text, form, file):
 @pytest.mark.parametrize(
     ("words", "told"),
     [
-        (("run", RING, "-o", "x.txt"), ".txt does not tell what to write. This command writes"),
-        (("run", RING, "-o", "x"), "it has no ending that tells what to write"),
+        (("run", RING, "-o", "x.txt"), ".txt does not say what to write. This command writes"),
+        (("run", RING, "-o", "x"), "it has no ending that says what to write"),
         (("sweep", RING, "--over", "a=1", "-o", "x.toml"), "no case comes of this command"),
         (("compare", RING, "-o", "x.toml"), "no case comes of this command"),
         (("run", RING, "-o", "-", "-o", "csv:-"), "only one file can go to standard output"),

@@ -216,7 +216,7 @@ def test_all_problems_of_a_case_are_listed_one_per_line(command, broken):
         (("--tolerance", "0"), "up to 0.001"),
         (("--tolerance", "1e300"), "up to 0.001"),
         (("--set", "operating.torque"), "KEY=VALUE"),
-        (("--set", "gears.11.base_radius=1 mm"), "leads nowhere"),
+        (("--set", "gears.11.base_radius=1 mm"), "does not exist"),
         (("--colour",), "No such option"),
     ],
 )

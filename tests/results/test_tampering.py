@@ -169,7 +169,7 @@ def told(document: Any) -> str:
     [
         (("positions", 0, "torque", "4-6"), 5000.0, r'positions[0].torque."4-6" = 5000.0: does'),
         (("positions",), [], "position 2 is missing"),
-        (("positions", 1, "position"), 1, "positions[1].position = 1: stands there twice"),
+        (("positions", 1, "position"), 1, "positions[1].position = 1: appears twice"),
         (("positions", 1, "position"), 7, "is no position of the case. Allowed: 1 to 5"),
         (("stamp", "case_hash"), "0" * 64, "stamp.case_hash"),
         (("stamp", "tolerance"), 1.0, "tolerance 1.0 cannot be certified by"),

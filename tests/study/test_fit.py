@@ -146,7 +146,7 @@ def test_a_fit_beyond_its_bounds_stands_at_one_and_says_so():
     found = ls.fit(case, {key: ("0 um", "100 um")})
     assert found.unknowns[0].at_bound
     assert found.unknowns[0].value == 100.0
-    assert f"{key} stands at its bound." in found.warnings
+    assert f"{key} is at its bound." in found.warnings
 
 
 def test_several_starts_find_what_one_misses():

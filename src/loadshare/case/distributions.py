@@ -25,7 +25,7 @@ NUMBERS: dict[str, tuple[str, ...]] = {
 
 
 class Spread(Element):
-    """How an input scatters; a star in its key gives each key a draw of its own."""
+    """How an input varies; a star in its key gives each key its own random value."""
 
     distribution: Literal["normal", "truncated normal", "uniform", "rayleigh", "uniform phase"]
     """Kind: a Rayleigh amount goes with a uniform phase, which is an angle over a whole turn."""
@@ -62,7 +62,7 @@ class Group(Element):
     """Inputs that are correlated, by a Gaussian copula."""
 
     inputs: Annotated[tuple[str, ...], Field(min_length=1)]
-    """Keys of the inputs, as they stand under `inputs`; a star stands for any name."""
+    """Keys of the inputs, as given under `inputs`; a star stands for any name."""
 
     correlation: Annotated[
         Annotated[Coefficient, Tag(VALUE)]

@@ -221,7 +221,7 @@ class Gear(Element):
 
     rim: Radius | None = None
     """Thickness of the rim below the teeth [length]: on a thin web for `law = "iso"`; for
-    `law = "ltca"` of the body that yields, 1.5 tooth heights where nothing tells it."""
+    `law = "ltca"` of the body that yields, by default 1.5 tooth heights."""
 
     ovalisation: (
         Annotated[
@@ -299,7 +299,7 @@ class Gear(Element):
         if radii and self.type != "face":
             yield Rule("is for face gears only", (radii[0],), hint="Give base_radius.")
         elif radii and self.base_radius is not None:
-            yield Rule("stands beside base_radius: give one or the other", (radii[0],))
+            yield Rule("cannot be combined with base_radius: give one or the other", (radii[0],))
         elif len(radii) == 1:
             missing = "outer_radius" if radii == ["inner_radius"] else "inner_radius"
             yield Rule("is missing", (missing,), hint=f"It goes with {radii[0]}.")

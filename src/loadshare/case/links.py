@@ -88,7 +88,7 @@ class Shaft(Element):
         if self.stiffness is not None:
             for key in ("diameter", "length", "bore", "shear_modulus"):
                 if key in self.model_fields_set:
-                    yield Rule("stands beside stiffness: give one or the other", (key,))
+                    yield Rule("cannot be combined with stiffness: give one or the other", (key,))
             return
         if not sizes:
             hint = "Or give diameter and length."
@@ -138,7 +138,7 @@ class Spline(Element):
     """Displacement up to which the spline sticks, S1 [length]; F_m / K_w when left out."""
 
     friction_force: Load | None = None
-    """Friction bound given outright, F_m [force]."""
+    """Friction bound given directly, F_m [force]."""
 
     friction: Annotated[float, Strict(), Field(ge=0, le=ALLOWED.friction)] | None = None
     """Coefficient of friction [-]; goes with `normal_force` or `radius`."""
@@ -342,7 +342,7 @@ class Bearing(Element):
         if not given:
             yield Rule("is missing", ("stiffness",), f"one of {', '.join(BEARING_LAWS)}")
         elif len(given) > 1:
-            yield Rule(f"stands beside {given[0]}: give one or the other", (given[1],))
+            yield Rule(f"cannot be combined with {given[0]}: give one or the other", (given[1],))
 
     @property
     def wall(self) -> tuple[float, float]:

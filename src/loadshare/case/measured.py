@@ -12,7 +12,7 @@ COEFFICIENTS = ("share", "pair_share", "omega", "pair_omega")
 
 
 class Measurement(Element):
-    """Figures that were measured, to be compared with what is computed."""
+    """Measured figures, to be compared with computed ones."""
 
     position: Count | None = None
     """Position that they belong to [-]; left out: the mean of all, for omega the largest."""

@@ -59,17 +59,17 @@ class Law(Element):
     """Hertz contact [angle/torque^(2/3)], one value or one per position."""
 
     basis: str = Field(default="", exclude=True)
-    """What the law is from."""
+    """Where the law comes from."""
 
     holds_from: Annotated[Quantity, TORQUE.bounded(at_least=0)] | None = Field(
         default=None, exclude=True
     )
-    """Torque at the driver below which its basis does not hold; results tell [torque]."""
+    """Torque at the driver below which its basis does not hold; results then warn [torque]."""
 
     holds_to: Annotated[Quantity, TORQUE.bounded(above=0)] | None = Field(
         default=None, exclude=True
     )
-    """Torque at the driver above which its basis does not hold; results tell [torque]."""
+    """Torque at the driver above which its basis does not hold; results then warn [torque]."""
 
     def rules(self) -> Iterator[Rule]:
         """Yield the positions at which the mesh would be rigid."""
@@ -170,7 +170,7 @@ class Mesh(Element):
     """Unloaded gap at the driver that opens the mesh [angle], one value or one per position."""
 
     phase: Annotated[float, Strict(), Field(ge=0, lt=1, allow_inf_nan=False)] | None = None
-    """Part of its cycle at which it stands at the first position [-]; by `operating.phases` when
+    """Part of its cycle that has passed at the first position [-]; by `operating.phases` when
     left out."""
 
     backlash: (
@@ -178,7 +178,7 @@ class Mesh(Element):
     ) = None
     """Circumferential working backlash [length]; without any backlash the coast flank is free.
 
-    teeth: what the teeth of both gears, with their `thickness_allowance`, leave where they stand.
+    teeth: what the teeth of both gears leave at their centres, with their `thickness_allowance`.
     """
 
     normal_backlash: Distance | None = None
@@ -193,15 +193,19 @@ class Mesh(Element):
             hint = f"Drop {' or '.join(laws)}; an inherited one with `remove`."
             yield Rule(f"has {len(laws)} deformation laws: {', '.join(laws)}", hint=hint)
         if self.gap is not None and self.power_law is not None and any(values(self.power_law.a)):
-            yield Rule("stands beside law.a: give one or the other", ("gap",))
+            yield Rule("cannot be combined with law.a: give one or the other", ("gap",))
         if self.gap is not None and (self.law_file or self.geometry):
             source = "geometry" if self.geometry else "law_file"
-            hint = "Leave it out; errors of the gears open the mesh besides."
-            yield Rule(f"stands beside {source}, which gives the gap", ("gap",), hint=hint)
+            hint = "Leave it out; errors of the gears also open the mesh."
+            yield Rule(
+                f"cannot be combined with {source}, which gives the gap", ("gap",), hint=hint
+            )
         if self.rated_torque is not None and not self.law_is_of_contact:
             yield Rule('goes with law = "ltca"', ("rated_torque",))
         if self.backlash is not None and self.normal_backlash is not None:
-            yield Rule("stands beside backlash: give one or the other", ("normal_backlash",))
+            yield Rule(
+                "cannot be combined with backlash: give one or the other", ("normal_backlash",)
+            )
         if self.helix_angle is not None and abs(self.helix_angle.si) >= math.pi / 2:
             yield Rule("is 90 deg or more", ("helix_angle",), ANGLE.allowed)
 

@@ -144,7 +144,7 @@ class Case(Content):
         Raises
         ------
         CaseError
-            If a path leads nowhere, or with all problems of the changed case.
+            If a path does not exist, or with all problems of the changed case.
         """
         data, origin = revise(self._data, self._origin, changes)
         changed = type(self).__new__(type(self))

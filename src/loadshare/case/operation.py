@@ -55,23 +55,23 @@ class Operating(Element):
     cycle: Literal["pitch", "common"] = "pitch"
     """What the positions go through: one pitch, all meshes together, or their common period.
 
-    Over the common period each mesh stands at its own place of its cycle, by tooth numbers and
-    speeds; the fastest has `positions` positions in each of its cycles. A march goes its own way.
+    Over the common period each mesh is at its own point of its cycle, by tooth numbers and speeds;
+    the fastest has `positions` positions in each of its cycles. A march has positions of its own.
     """
 
     phases: Literal["together", "layout"] = "together"
-    """Where meshes stand in their cycles at the first position.
+    """Point of its cycle at which each mesh is at the first position.
 
-    All at their first one; or each where its teeth are, by their numbers and by where gears stand:
-    the first position of a law is then that of contact at the pitch point.
+    All at their first one; or each where its teeth are, by tooth numbers and centres: the first
+    position of a law is then that of contact at the pitch point.
     """
 
     rotation: Literal["teeth", "neglected"] = "teeth"
     """How far gears turn over a mesh cycle: by their `teeth`, or not at all.
 
-    One cycle is one tooth of the input gear; where nothing tells its teeth, one tooth of the first
-    gear on the way from it whose teeth are told. Neglected, eccentricities keep the direction that
-    they have at the first position. A march turns the gears in any case.
+    One cycle is one tooth of the input gear or, if its tooth number is unknown, of the first gear
+    on the way from it whose number is known. If neglected, eccentricities keep their direction of
+    the first position. A march turns the gears in any case.
     """
 
     external: dict[str, Torque] = Field(default_factory=dict)
@@ -95,7 +95,7 @@ class Operating(Element):
         """Yield what does not hold of torque, power and speed."""
         allowed = "torque, or power and speed"
         if self.torque is not None and self.power is not None:
-            yield Rule("stands beside torque: give one or the other", ("power",), allowed)
+            yield Rule("cannot be combined with torque: give one or the other", ("power",), allowed)
         elif self.power is not None and self.speed is None:
             yield Rule("is missing", ("speed",), ANGULAR_SPEED.allowed, "It goes with power.")
         elif self.torque is None and self.power is None:

@@ -53,7 +53,7 @@ class Origin:
         folder = FilePath(self.file).parent
         if self.outside or file == CHANGES or named.resolve().is_relative_to(folder.resolve()):
             return None
-        message = "leads out of the folder of the case"
+        message = "is outside the folder of the case"
         allowed = f"a file beside {self.file}, or in a folder below"
         hint = (
             "To read it all the same: --allow-outside; in Python, load_case(…, allow_outside=True)."

@@ -80,7 +80,7 @@ def load_draft(path: str | FilePath, changes: Mapping[str, Any] | None = None) -
     Raises
     ------
     CaseError
-        If the file, or one that it extends, cannot be read at all, or a change leads nowhere.
+        If the file, or one that it extends, cannot be read at all, or a change does not exist.
     """
     path = FilePath(path)
     origin = _origin(path)

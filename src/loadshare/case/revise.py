@@ -37,7 +37,7 @@ def revise(
     Raises
     ------
     CaseError
-        If a path leads nowhere.
+        If a path does not exist.
     """
     changed = dict(data)
     owned: set[int] = set()
@@ -55,7 +55,7 @@ def revise(
             moved.add(path)
         else:
             problems.append(
-                Problem(CHANGES, key, as_given(as_data(value)), "leads nowhere", "", lost)
+                Problem(CHANGES, key, as_given(as_data(value)), "does not exist", "", lost)
             )
     if problems:
         raise CaseError(problems)
@@ -96,7 +96,7 @@ def change(data: dict[str, Any], path: Path, value: Any) -> str | None:
     Returns
     -------
     str or None
-        None, or a hint where the path leads nowhere.
+        None, or a hint where the path does not exist.
     """
     if value is not None and len(path) > 1 and path[0] in Content.model_fields:
         section = data.setdefault(str(path[0]), {})
@@ -134,7 +134,7 @@ def differing(before: Any, after: Any, above: Path = ()) -> Iterator[tuple[Path,
 
 
 def nearest(data: Mapping[str, Any], path: Path) -> str:
-    """Return a hint at what a path that leads nowhere could have meant.
+    """Return a hint at what a path that does not exist could have meant.
 
     Parameters
     ----------

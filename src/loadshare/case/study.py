@@ -32,7 +32,7 @@ class Study(Element):
     """A question about the case, answered by `loadshare study CASE NAME`."""
 
     kind: Literal["sweep", "critical", "sensitivity", "march", "compare", "fit", "tolerance"]
-    """What is asked."""
+    """Kind of study."""
 
     over: dict[str, str | Annotated[tuple[Given, ...], Field(min_length=1)]] | None = None
     """Sweep: values by key, as "0 um:12 um:61" (first, last, how many) or as a list."""
@@ -65,7 +65,7 @@ class Study(Element):
     """Fit: seed of the further starting points; tolerance: of all samples [-]."""
 
     inputs: Annotated[dict[str, Spread], Field(min_length=1)] | None = None
-    """Tolerance: how inputs scatter, by key; a star gives each key a draw of its own."""
+    """Tolerance: how inputs vary, by key; a star gives each key its own random value."""
 
     groups: tuple[Group, ...] | None = None
     """Tolerance: inputs that are correlated."""

@@ -168,7 +168,7 @@ def _told(error: ErrorDetails, model: type[Element]) -> Rule:
 
 
 def _fields(model: type[Element], path: Path) -> dict[str | int, FieldInfo]:
-    """Fields, by their keys, of the table that a path leads to; none where it leads nowhere."""
+    """Fields, by their keys, of the table that a path leads to; none where it does not exist."""
     found = _by_key(model)
     for step in path:
         inner = next(elements_in(found[step].annotation), None) if step in found else None

@@ -27,7 +27,7 @@ def check(
     cases: CasePaths,
     teeth: Annotated[
         bool,
-        typer.Option("--teeth", help="Tell what follows from teeth and dimensions of gears."),
+        typer.Option("--teeth", help="Print what follows from teeth and dimensions of gears."),
     ] = False,
     change: Changes = None,
     json: Json = False,

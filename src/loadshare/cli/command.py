@@ -21,11 +21,11 @@ from loadshare.cli.waiting import waiting
 from loadshare.output import STANDARD, clear
 
 PREFIX = "Value error, "
-"""What pydantic, which reads options for typer, puts before a message."""
+"""Prefix of messages from pydantic, which reads options for typer."""
 
 
 class Command(TyperCommand):
-    """A command that tells what is wrong with an option in plain words."""
+    """A command that reports what is wrong with an option in plain words."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Read the words of the command line.
@@ -67,7 +67,7 @@ class Command(TyperCommand):
         return left
 
     def invoke(self, ctx: Any) -> Any:
-        """Do what was asked; one who stops it is told what is kept, and how to go on.
+        """Do what was asked; if it is stopped, say what is kept and how to continue.
 
         Raises
         ------

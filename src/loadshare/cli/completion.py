@@ -1,4 +1,4 @@
-"""What the shell proposes at the TAB key: names that stand in the case that is being typed."""
+"""What the shell proposes at the TAB key: names from the case on the line."""
 
 from __future__ import annotations
 

@@ -84,7 +84,7 @@ def say_all(lines: Iterable[str], *, whole: bool = False) -> None:
 
 
 def tell_note(note: str) -> None:
-    """Tell on stderr what is good to know, and changes nothing."""
+    """Print a note on stderr."""
     if not is_hushed():
         echo(f"Note: {note}", err=True)
 

@@ -24,18 +24,19 @@ Json = Annotated[
 OPTIONS: dict[str, Any] = {
     "json": Json,
     "allow_outside": Annotated[
-        bool, typer.Option("--allow-outside", help="Let cases name files outside of their folder.")
+        bool,
+        typer.Option("--allow-outside", help="Allow cases to name files outside their folder."),
     ],
     "quiet": Annotated[
         bool,
-        typer.Option("-q", "--quiet", help="Say only what went wrong; write what is asked for."),
+        typer.Option("-q", "--quiet", help="Print errors only; files are still written."),
     ],
 }
 """By the names of their parameters. `Command` heeds "json" and "quiet"."""
 
 
 def taking(command: Command, *names: str) -> Command:
-    """Return a command with some of the options that stand here.
+    """Return a command with some of the options of this module.
 
     Parameters
     ----------

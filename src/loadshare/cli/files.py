@@ -35,7 +35,7 @@ def save_text(path: Path, text: str) -> None:
 
 
 def tell_written(file: Path, more: str = "", *, err: bool = False) -> None:
-    """Tell which file was written, and more; nothing where that was stdout."""
+    """Report which file was written, and more; nothing if it was stdout."""
     if file == STANDARD:
         return
     _written.set((*_written.get(), file))
@@ -72,7 +72,7 @@ def ask_for(outputs: Iterable[tuple[str, Path]]) -> None:
 
 
 def is_stdout_taken() -> bool:
-    """Tell whether a file goes to stdout."""
+    """Return whether a file goes to stdout."""
     return any(file == STANDARD for _, file in _asked.get())
 
 

@@ -1,4 +1,4 @@
-"""What an answer can be written as: ``-o FILE`` of every command, its form told by the ending."""
+"""Formats of an answer: ``-o FILE`` of every command, the format chosen by the ending."""
 
 from __future__ import annotations
 
@@ -96,9 +96,9 @@ def read_output(text: str, forms: Sequence[str]) -> Output:
     if form in FORMS:
         wrong = f"no {FORMS[form]} comes of this command"
     elif file.suffix:
-        wrong = f"the ending {file.suffix} does not tell what to write"
+        wrong = f"the ending {file.suffix} does not say what to write"
     else:
-        wrong = "it has no ending that tells what to write"
+        wrong = "it has no ending that says what to write"
     raise typer.BadParameter(f"{text}: {wrong}. This command writes {can}{more}.")
 
 
@@ -139,7 +139,7 @@ def outputs(*forms: str, what: str = "Write what was found") -> Any:
 
 
 def write_all(asked: Iterable[Output] | None, makers: Makers, *, err: bool = True) -> None:
-    """Write what was asked for, each file whole or not at all, and tell it on stderr or stdout.
+    """Write what was asked for, each file whole or not at all, and report it on stderr or stdout.
 
     Raises
     ------

@@ -30,7 +30,7 @@ def import_machine(
     ] = None,
     force: Force = False,
 ) -> None:
-    """Turn a gear unit into a case, and tell what was assumed and left out."""
+    """Turn a gear unit into a case, and report what was assumed and left out."""
     from loadshare.errors import CaseError
     from loadshare.exchange.rexs import import_rexs
     from loadshare.exchange.spreadsheet import import_tables, is_spreadsheet

@@ -42,7 +42,7 @@ def ltca(
     ] = None,
     compliance: Annotated[
         Literal["finite elements", "slices"] | None,
-        typer.Option(metavar="MODEL", help="finite elements, or slices: much faster, less exact."),
+        typer.Option(metavar="MODEL", help="finite elements, or slices (much faster, less exact)."),
     ] = None,
     file: Annotated[
         list[Output] | None,
@@ -179,7 +179,7 @@ def _print_summary(pair: PairFile, found: Ltca) -> None:
 
 
 def _written(folder: Path, pair: PairFile, found: Ltca, law: MeshLaw) -> Iterator[Path]:
-    """Write everything, and tell each file."""
+    """Write everything, and report each file."""
     from loadshare.tooth.analysis.tables import line_rows, position_rows
     from loadshare.tooth.law.file import law_text
 

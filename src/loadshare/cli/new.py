@@ -30,7 +30,7 @@ def new(
         str | None,
         typer.Option(
             metavar="CASE",
-            help="Instead, a case that comes with the package, such as star/floating_sun_4.",
+            help="Copy a case that comes with the package instead, such as star/floating_sun_4.",
         ),
     ] = None,
     force: Force = False,

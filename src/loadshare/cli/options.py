@@ -69,7 +69,7 @@ Gear = Annotated[
         metavar="NAME", help="Gear whose revolutions are counted.", autocompletion=gear_names
     ),
 ]
-Force = Annotated[bool, typer.Option("--force", help="Write over the file if it is there already.")]
+Force = Annotated[bool, typer.Option("--force", help="Overwrite an existing file.")]
 OVER = "--over"
 
 
@@ -86,7 +86,7 @@ def keys(help_: str) -> Any:
 
 
 OUTPUT = "FILE"
-"""How an option for a file to write is told from others."""
+"""Metavariable of options for a file to write, by which they are recognised."""
 
 
 def output(*names: str, what: str, callback: Callable[..., Any] | None = None) -> Any:

@@ -1,4 +1,4 @@
-"""Whether a command says only what went wrong, as ``--quiet`` and ``--json`` ask."""
+"""Whether a command prints errors only, as ``--quiet`` and ``--json`` ask."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ _hushed: ContextVar[bool] = ContextVar("hushed", default=False)
 
 
 def hush(wanted: bool) -> None:
-    """Say nothing from here on but what went wrong, or go on saying all."""
+    """From here on print errors only, or everything."""
     _hushed.set(wanted)
 
 
 def is_hushed() -> bool:
-    """Tell whether only what went wrong is said."""
+    """Return whether only errors are printed."""
     return _hushed.get()

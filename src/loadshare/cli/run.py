@@ -32,13 +32,13 @@ Picture = Annotated[
 ]
 Loads = Annotated[
     bool,
-    typer.Option("--loads", help="Tell what gears, bearings or pins, and shafts carry."),
+    typer.Option("--loads", help="Print the loads on gears, bearings or pins, and shafts."),
 ]
 Cycle = Annotated[
     bool,
     typer.Option(
         "--cycle",
-        help="Tell transmission error, stiffness, load share and place in the cycle of every "
+        help="Print transmission error, stiffness, load share and point of the cycle of every "
         "mesh at every position.",
     ),
 ]
@@ -58,22 +58,23 @@ def run(
     tolerance: Tolerance = 1e-9,
     position: Positions = None,
     no_reduce: Annotated[
-        bool, typer.Option("--no-reduce", help="Solve the whole scene, leaving nothing out.")
+        bool,
+        typer.Option("--no-reduce", help="Solve with all contacts in play, leaving nothing out."),
     ] = False,
     loads: Loads = False,
     cycle: Cycle = False,
     explain: Annotated[
         bool,
         typer.Option(
-            "--explain", help="Tell how each --position, or the first, was solved and certified."
+            "--explain", help="Show how each --position, or the first, was solved and certified."
         ),
     ] = False,
     search: Annotated[
         bool,
         typer.Option(
             "--search",
-            help="Search each --position, or the first, for other answers: random starts, and a "
-            "path from generous clearance.",
+            help="Search each --position, or the first, for other answers: random starts and a "
+            "path from large clearances.",
         ),
     ] = False,
     change: Changes = None,

@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM: a command that is told to stop says what was kept, and how to go on."""
+"""Ctrl-C and SIGTERM: a command that is stopped says what was kept and how to continue."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from loadshare.cli.exits import INTERRUPTED, TERMINATED
 
 
 class Stop:
-    """What a command was told by signals.
+    """Signals that a command received.
 
     It is interrupted once at most: what it then still says and writes is short, and whoever
     presses Ctrl-C again and again shall read it too.

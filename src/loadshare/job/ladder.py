@@ -204,7 +204,7 @@ def _with_large(refusal: Refused, part: _Part | None) -> Refused:
     if part is None or not part.displaced.warned:
         return refusal
     told = "; ".join(
-        f"{TOLD[name]} {m.value:.3g} at {m.where} (told of above {m.warning:.3g})"
+        f"{TOLD[name]} {m.value:.3g} at {m.where} (warning above {m.warning:.3g})"
         for name, m in part.displaced.warned.items()
     )
     return Refused(

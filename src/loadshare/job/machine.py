@@ -207,7 +207,7 @@ class Machine:
         while True:
             found = found.without(left)
             for number, singly in enumerate((False, True)):
-                # A beginning or compiled code that leads nowhere: once more from rest, with NumPy,
+                # A beginning or compiled code that fails: once more from rest, with NumPy,
                 # at last by one element after another.
                 fresh = ~found.solved & ~searched & (tries == number)
                 if fresh.any():

@@ -1,4 +1,4 @@
-"""Search for other answers: many starts, and a path from generous clearance.
+"""Search for other answers: many starts, and a path from large clearances.
 
 A proof covers the neighbours of an answer (`certify.uniqueness`); this looks further, where ring
 arcs make a problem that is not convex. It is a search, not a proof: what it does not find may still

@@ -136,7 +136,7 @@ class Figure:
         return spec
 
     def save(self, path: str | Path, scale: float = 2.0) -> Path:
-        """Write the picture; the ending tells the format.
+        """Write the picture; the ending selects the format.
 
         Parameters
         ----------
@@ -169,7 +169,7 @@ class Figure:
         return path
 
     def content(self, form: str, scale: float = 2.0) -> str | bytes:
-        """Return what stands in a file of the picture.
+        """Return the content of a file of the picture.
 
         Parameters
         ----------

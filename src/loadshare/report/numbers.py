@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from itertools import groupby
 
 NONE = "–"
-"""What stands where there is no figure."""
+"""Shown where there is no figure."""
 
 
 def counted(number: int, noun: str) -> str:

@@ -60,7 +60,7 @@ class Look:
 
 
 class Palette:
-    """Looks by the order in which the gears stand in a result or a train.
+    """Looks by the order of the gears in a result or a train.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ class Palette:
         return self.gear(gear) if gear else look(len(self._number) + len(name))
 
     def branch(self, mesh: str) -> str | None:
-        """Gear that tells a mesh from its neighbours; None for a mesh without known gears.
+        """Gear that distinguishes a mesh from its neighbours; None for a mesh without known gears.
 
         Where the torque gathers (idlers on an output gear) it is the driver, where the torque
         divides, or runs on, the driven gear.

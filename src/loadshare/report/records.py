@@ -1,4 +1,4 @@
-"""What a result tells, row by row: the page and the screen choose their columns from it."""
+"""What a result shows, row by row; page and screen choose their columns from it."""
 
 from __future__ import annotations
 
@@ -281,7 +281,7 @@ def error_told(result: Result) -> str:
 
 
 def meshes(result: Result) -> Iterator[Record]:
-    """Every mesh at every position: where in its cycle it stands, what it carries and yields."""
+    """Every mesh at every position: its point of the cycle, its load and its deflection."""
     places = torque_places(result)
     for mesh in result.positions[0].torque:
         for p in result.positions:
@@ -293,7 +293,7 @@ def meshes(result: Result) -> Iterator[Record]:
             yield {
                 "mesh": Cell(mesh),
                 "position": Cell(str(p.position), p.position),
-                "stands at": Cell(str(p.mesh_position[mesh]), p.mesh_position[mesh]),
+                "cycle point": Cell(str(p.mesh_position[mesh]), p.mesh_position[mesh]),
                 "torque": Cell(fixed(p.torque[mesh], places), p.torque[mesh]),
                 "coast flank": Cell(fixed(p.coast_torque[mesh], places), p.coast_torque[mesh]),
                 "Ω stage": largest([p.share.get(mesh)]),

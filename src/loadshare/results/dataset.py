@@ -25,7 +25,7 @@ JUDGED_ARRAYS = ("residual", "torque_bound")
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """A figure in labelled arrays: its dimensions, its unit, what it is, where it stands.
+    """A figure in labelled arrays: its dimensions, its unit, what it is, where it is kept.
 
     Attributes
     ----------
@@ -177,7 +177,7 @@ def frame(result: Result) -> pd.DataFrame:
 
 
 def with_units(table: pd.DataFrame, arrays: xr.Dataset) -> pd.DataFrame:
-    """Return a table of arrays that tells the unit of each of its columns in ``attrs``."""
+    """Return a table of arrays with the unit of each column in ``attrs``."""
     told = {name: arrays[name].attrs.get("units") for name in table if name in arrays.data_vars}
     known = {name: unit for name, unit in told.items() if unit is not None}
     table.attrs["units"] = {**known, "worst_residual": "1"} if "worst_residual" in table else known
@@ -185,7 +185,7 @@ def with_units(table: pd.DataFrame, arrays: xr.Dataset) -> pd.DataFrame:
 
 
 def frames(result: Result) -> dict[str, pd.DataFrame]:
-    """Tabulate everything by what it is told of: train, meshes, gears, shafts, floats.
+    """Tabulate everything by what it belongs to: train, meshes, gears, shafts, floats.
 
     A row for every position and element; heads tell the unit.
     """
@@ -208,4 +208,4 @@ def frames(result: Result) -> dict[str, pd.DataFrame]:
 
 
 TABLES = {"side": "train", "mesh": "meshes", "gear": "gears", "shaft": "shafts", "float": "floats"}
-"""Names of tables of what is told of an element, by dimension."""
+"""Names of the tables of each kind of element, by dimension."""

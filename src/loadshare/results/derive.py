@@ -1,4 +1,4 @@
-"""Everything a result tells, from the claims and the train: the only way in which one is made."""
+"""Everything in a result, from the claims and the train: the only way to make one."""
 
 from __future__ import annotations
 

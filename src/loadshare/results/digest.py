@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 DIGEST = "digest"
-"""Key of a document under which it stands."""
+"""Its key in a document."""
 _SEAL = b"\nloadshare sha256 "
 
 

@@ -86,7 +86,7 @@ def as_data(given: Any) -> Any:
 
 
 def _told(p: Position) -> dict[str, Any]:
-    """What a position tells; parts of its certificate stand beside one another."""
+    """What is written of a position; the parts of its certificate side by side."""
     told = {name: as_data(getattr(p, name)) for name in _TOLD}
     told["validity"] = {"verdict": p.validity.verdict} | as_data(p.validity)
     told["uniqueness"] = as_data(p.uniqueness) | {"told": p.uniqueness.told}

@@ -114,7 +114,7 @@ def read_document(text: str, file: str) -> tuple[Result, dict[str, Any]]:
 
 
 Wrong = tuple[Path, str, str, str]
-"""Key path, what stands there, what is wrong with it, and what was expected."""
+"""Key path, the value found there, what is wrong with it, and what was expected."""
 
 
 def _raise(wrong: Iterable[Wrong], file: str, hint: str = AGAIN) -> None:
@@ -138,7 +138,7 @@ def _altered(document: dict[str, Any]) -> Iterator[Wrong]:
 
 
 def _parsed(text: str, file: str) -> dict[str, Any]:
-    """Parse JSON in which every number is finite and no key stands twice; look at its head."""
+    """Parse JSON in which every number is finite and no key appears twice; look at its head."""
 
     def number(written: str) -> float:
         value = float(written)
@@ -151,7 +151,7 @@ def _parsed(text: str, file: str) -> dict[str, Any]:
         if len(found) < len(pairs):
             keys = [key for key, _ in pairs]
             twice = next(key for key in keys if keys.count(key) > 1)
-            raise ValueError(f"the key {twice} stands twice in one table")
+            raise ValueError(f"the key {twice} appears twice in one table")
         return found
 
     try:
@@ -165,7 +165,7 @@ def _parsed(text: str, file: str) -> dict[str, Any]:
     if not isinstance(document, dict) or "positions" not in document:
         _fail(file, "holds no result of loadshare")
     if "refused" in document:
-        message, hint = "holds a refusal and no result", "Why stands under refused.message."
+        message, hint = "holds a refusal and no result", "The reason is under refused.message."
         raise ResultError([Problem(file, "", "", message, "", hint)], refusal=True)
     found = document.get("format", 1)
     if found not in (FORMAT, *OLDER) or isinstance(found, bool):
@@ -229,13 +229,13 @@ def _wrong_positions(given: _File, train: Train) -> Iterator[Wrong]:
         yield ("stamp", "positions"), "[]", "is empty", "the positions that were asked for"
     for at, index in enumerate(asked):
         if index in asked[:at]:
-            yield ("stamp", "positions", at), f"{index}", "stands there twice", ""
+            yield ("stamp", "positions", at), f"{index}", "appears twice", ""
     for at, index in enumerate(there):
         path: Path = ("positions", at, "position")
         if not 1 <= index <= train.count:
             yield path, f"{index}", "is no position of the case", f"1 to {train.count}"
         elif index in there[:at]:
-            yield path, f"{index}", "stands there twice", ""
+            yield path, f"{index}", "appears twice", ""
     for told, some in (
         ("is missing", [k for k in asked if k not in there]),
         ("was not asked for", [k for k in dict.fromkeys(there) if k not in asked]),

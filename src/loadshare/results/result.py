@@ -180,7 +180,7 @@ class Position:
 
     @cached_property
     def mesh_position(self) -> Mapping[str, int]:
-        """Position in its own cycle at which every mesh stands, from 1."""
+        """Position of every mesh in its own cycle, from 1."""
         index = self.equilibrium.index
         return {mesh: k + 1 for mesh, k in self.train.mesh_positions(index).items()}
 

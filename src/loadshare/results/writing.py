@@ -36,6 +36,6 @@ def write_netcdf(result: Result, path: str | Path) -> None:
 
 
 def netcdf_content(result: Result) -> bytes:
-    """Return what stands in a netCDF file of a result."""
+    """Return the content of a netCDF file of a result."""
     arrays = result.dataset.assign_attrs({DOCUMENT: text_of(result)})
     return sealed(netcdf_of(arrays))

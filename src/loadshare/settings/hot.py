@@ -145,7 +145,7 @@ class Exchange(NamedTuple):
 
 
 class Search(NamedTuple):
-    """The proximal search where exchange leads nowhere."""
+    """The proximal search where exchange gets nowhere."""
 
     stiffer: tuple[float, ...] = (1e-2, 1e-3, 1e-4, 1e-5, *[1e-6] * 3, *[1e-7] * 3, *[1e-8] * 6)
     """Stiffness that every pass adds, in units of the elements: what one moves is load/ε at

@@ -73,7 +73,7 @@ class Follow(NamedTuple):
     last: float = 1e-15
     """Newton step after which there is no better one, relative."""
     lost: float = 1e9
-    """Newton step, in deflections or loads, that leads nowhere."""
+    """Newton step, in deflections or loads, that gets nowhere."""
     balanced: float = 1e-9
     """What the equations may be missed by, over the load."""
     root: float = 4e-16

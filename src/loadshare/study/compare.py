@@ -59,7 +59,7 @@ class Target:
 
     @property
     def key(self) -> str:
-        """Where the figure stands in the case."""
+        """Key of the figure in the case."""
         return dotted(("measured", self.measurement, self.quantity, self.where))
 
 

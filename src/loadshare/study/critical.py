@@ -72,7 +72,7 @@ class Critical(Viewed):
     unproved: tuple[Unproved, ...] = ()
 
     def marks(self, position: int | None = None) -> tuple[tuple[float, str], ...]:
-        """Values and words for a picture; what happens at one value stands in one line.
+        """Values and words for a picture; events at one value share a line.
 
         Parameters
         ----------

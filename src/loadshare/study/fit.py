@@ -112,7 +112,7 @@ class Fit(Viewed):
         return {u.parameter.name: Value(u.value, u.parameter.unit).text for u in self.unknowns}
 
     def to_dataframe(self) -> pd.DataFrame:
-        """The fitted inputs as a table, one row each, in the unit that stands beside them."""
+        """The fitted inputs as a table, one row each, in the unit given beside them."""
         import pandas as pd
 
         rows = [
@@ -347,7 +347,7 @@ class _Problem:
         at_bound = ((u <= 0.0) | (u >= 1.0)).tolist()
         figures = zip(*(column.tolist() for column in columns), at_bound, strict=True)
         unknowns = [Unknown(p, *of) for p, of in zip(self.parameters, figures, strict=True)]
-        warnings += [f"{u.parameter.name} stands at its bound." for u in unknowns if u.at_bound]
+        warnings += [f"{u.parameter.name} is at its bound." for u in unknowns if u.at_bound]
         deviations = tuple(Deviation(t, computed(t, result)) for t in self.targets)
         return Fit(
             case=case,

@@ -42,7 +42,7 @@ class Value:
 
     @property
     def text(self) -> str | float:
-        """What stands in a case file for it."""
+        """How a case file writes it."""
         return f"{self.number!r} {self.unit}" if self.unit else self.number
 
     @property
@@ -76,7 +76,7 @@ class Value:
             return self
         factor = si_factor(self.unit, unit) if self.unit and unit else None
         if factor is None:
-            raise ValueError(f"{self.text} cannot be told in {unit or 'a plain number'}")
+            raise ValueError(f"{self.text} cannot be expressed in {unit or 'a plain number'}")
         return Value(self.number * factor, unit)
 
 
@@ -117,7 +117,7 @@ def _si_unit(unit: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """One number that stands at one or more keys of a case.
+    """One number at one or more keys of a case.
 
     Attributes
     ----------
@@ -175,7 +175,7 @@ def read_parameter(case: Case, key: str | Sequence[str], unit: str) -> Parameter
 
 
 def named(key: str | Sequence[str]) -> str:
-    """Return the name of a parameter that stands at one key or at several."""
+    """Return the name of a parameter with one key or several."""
     return key if isinstance(key, str) else "=".join(key)
 
 
@@ -307,7 +307,7 @@ def _plain(item: object) -> object:
 
 
 def split_outside(text: str, sign: str) -> list[str]:
-    """Split a text at a sign that stands outside quotes; the parts stripped."""
+    """Split a text at a sign outside quotes; the parts are stripped."""
     parts, quote = [""], ""
     for letter in text:
         if letter in "\"'" and quote in ("", letter):

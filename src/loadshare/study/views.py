@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def sweep_view(found: Sweep) -> View:
-    """Tell the grid, what became of its points, and the largest Ω at each."""
+    """Show the grid, what became of its points, and the largest Ω at each."""
     grids = zip(found.parameters, found.grids, strict=True)
     facts = [
         (p.name, f"{values[0]:g} to {values[-1]:g} {p.unit}".rstrip() + f", {len(values)} values")
@@ -42,7 +42,7 @@ def sweep_view(found: Sweep) -> View:
 
 
 def critical_view(found: Critical) -> View:
-    """Tell the interval, what is not proved, and the events."""
+    """Show the interval, what is not proved, and the events."""
     unit = found.parameter.unit
     facts = (
         (found.parameter.name, f"{found.start:g} to {found.stop:g} {unit}".rstrip()),
@@ -57,7 +57,7 @@ def critical_view(found: Critical) -> View:
 
 
 def sensitivity_view(found: Sensitivity) -> View:
-    """Tell the largest derivatives of Ω of the system, and what a reader must know of them."""
+    """Show the largest derivatives of Ω of the system, and what a reader must know of them."""
 
     def told(key: str, side: str, factor: float) -> str:
         rate = found.omega[key, side].get("system")
@@ -86,7 +86,7 @@ def sensitivity_view(found: Sensitivity) -> View:
 
 
 def tolerance_view(found: Tolerance) -> View:
-    """Tell how many samples answered, how Ω scatters, and the worst case that was found."""
+    """Show how many samples have an answer, the distribution of Ω, and the worst case found."""
     certified = f"{found.samples - found.refused} of {found.samples}"
     facts = (
         ("certified", f"{certified} samples, largest residual {found.residual:.1e}"),
@@ -112,7 +112,7 @@ def tolerance_view(found: Tolerance) -> View:
 
 
 def march_view(found: March) -> View:
-    """Tell how far was marched, how load was shared, and what the splines dissipated."""
+    """Show how far the march went, how load was shared, and what the splines dissipated."""
     result, steps = found.result, len(found.revolutions)
     last = found.revolutions[-1] if steps else 0.0
     facts = (
@@ -135,7 +135,7 @@ def march_view(found: March) -> View:
 
 
 def comparison_view(found: Comparison) -> View:
-    """Tell measured against computed figures."""
+    """Show measured against computed figures."""
     chi = f"{found.chi_square:.4g} of {len(found.deviations)} figures"
     rows = tuple(
         (
@@ -152,7 +152,7 @@ def comparison_view(found: Comparison) -> View:
 
 
 def fit_view(found: Fit) -> View:
-    """Tell the fitted inputs, how well they fit, and what the data leave open."""
+    """Show the fitted inputs, how well they fit, and what the data leave open."""
     degrees = "1 degree" if found.freedom == 1 else f"{found.freedom} degrees"
     facts = (
         ("χ²", f"{found.chi_square:.4g}, {degrees} of freedom"),

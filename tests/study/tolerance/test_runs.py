@@ -450,7 +450,7 @@ def test_a_study_that_is_stopped_says_what_is_kept(scatter, tmp_path, sent, code
     assert found is not None, told
     kept = len(list(out.glob("part-*.parquet")))
     assert int(found[1].replace(",", "")) <= 4096 * kept < 400_000
-    assert "The same command goes on from there." in told
+    assert "The same command continues from there." in told
 
 
 def test_a_second_study_in_a_folder_does_nothing(tmp_path):

@@ -161,7 +161,7 @@ def test_a_law_of_other_positions_is_told(case, spur, tmp_path):
 def test_one_law_only(case):
     with pytest.raises(CaseError, match="2 deformation laws: law_file, geometry"):
         case.replace({'meshes."a-b".law_file': "law.toml"})
-    with pytest.raises(CaseError, match="stands beside geometry"):
+    with pytest.raises(CaseError, match="cannot be combined with geometry"):
         case.replace({'meshes."a-b".gap': "1 mrad"})
 
 

@@ -32,7 +32,7 @@ def check_carriers(draft: Draft) -> Iterator[Problem]:
         elif name in centres and gear.carrier in centres:
             apart = minus(centres[name], centres[gear.carrier])
             if centre_distance(carrier, apart) <= SQUARE * gear.acting_radius:
-                yield draft.problem(path, "the planet stands on the carrier's axis")
+                yield draft.problem(path, "the planet is on the carrier's axis")
 
 
 def check_planet_shafts(draft: Draft) -> Iterator[Problem]:

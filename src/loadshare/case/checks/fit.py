@@ -189,13 +189,13 @@ def check_formula_laws(draft: Draft) -> Iterator[Problem]:
 
 
 def check_backlash_of_teeth(draft: Draft) -> Iterator[Problem]:
-    """Yield backlashes that are to follow from teeth which are not told."""
+    """Yield backlashes that are to follow from teeth which are not given."""
     for name, mesh, driver, driven in _pairs(draft):
         if mesh.backlash != "teeth":
             continue
         bare = [end for end, g in zip(mesh.ends, (driver, driven), strict=True) if g.tooth is None]
         if bare:
-            what = f"the teeth of {' and '.join(bare)} are not told"
+            what = f"the teeth of {' and '.join(bare)} are not given"
             hint = "It goes with teeth and module of both gears, which are cylindrical."
             yield draft.problem(("meshes", name, "backlash"), what, LENGTH.allowed, hint)
 
@@ -206,7 +206,7 @@ def check_tolerance_classes(draft: Draft) -> Iterator[Problem]:
         if gear.tolerance_class is not None:
             for what in outside(gear):
                 path = ("gears", name, "tolerance_class")
-                yield draft.problem(path, f"cannot be told of {what}", hint="Leave it out.")
+                yield draft.problem(path, f"does not apply to {what}", hint="Leave it out.")
 
 
 def _pairs(draft: Draft) -> Iterator[tuple[str, Mesh, Gear, Gear]]:

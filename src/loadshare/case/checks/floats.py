@@ -86,5 +86,5 @@ def check_idle_inputs(draft: Draft) -> Iterator[Problem]:
     for name, ring in draft.rings.items():
         if ring.radius is not None and "measured" in ring.model_fields_set:
             path = ("rings", name, "measured")
-            message = "is for rings that roll on neighbours: a circle stands in the housing"
+            message = "is for rings that roll on neighbours: a circle is fixed in the housing"
             yield draft.problem(path, message, hint="Leave it out.")

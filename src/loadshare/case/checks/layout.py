@@ -181,7 +181,7 @@ def _in_the_way(draft: Draft, middle: str, clash: _Clash, centres: Mapping[str, 
     path = ("gears", clash.two, "centre")
     aside = "give them places along the axis if they stand side by side there"
     if not clash.apart:
-        what = f"is where gear {clash.one} stands, and both mesh with {middle}"
+        what = f"is where gear {clash.one} is, and both mesh with {middle}"
         hint = f"Join them by a shaft if they are one body, or {aside}."
         return draft.problem(path, what, hint=hint)
     what = f"is in the way of gear {clash.one}: their tip circles overlap by {mm(clash.over)}"

@@ -47,7 +47,7 @@ def check_teeth_fit(draft: Draft) -> Iterator[Problem]:
 
 
 def check_turning(draft: Draft) -> Iterator[Problem]:
-    """Yield eccentricities of a mesh cycle over which nothing tells how far gears turn."""
+    """Yield eccentricities of a mesh cycle over which nothing determines how far gears turn."""
     operating = draft.operating
     if operating is None or not draft.sound("gears"):
         return
@@ -56,7 +56,7 @@ def check_turning(draft: Draft) -> Iterator[Problem]:
     for name, errors in draft.errors.items():
         if errors.eccentricity is not None and errors.eccentricity.amount.si:
             message = (
-                f"turns with its gear, but nothing tells how far gears turn over the "
+                f"turns with its gear, but nothing determines how far gears turn over the "
                 f"{operating.positions} positions of the mesh cycle: gears.{operating.input}.teeth "
                 "is missing"
             )
@@ -82,8 +82,8 @@ def check_march_teeth(draft: Draft) -> Iterator[Problem]:
     for name, mesh in draft.meshes.items():
         if mesh.driver in draft.gears and mesh.driver not in counts and _varies(mesh):
             message = (
-                "its law changes from position to position, but nothing tells which position the "
-                f"march has reached: gears.{mesh.driver}.teeth is missing"
+                "its law changes from position to position, but nothing determines which position "
+                f"the march has reached: gears.{mesh.driver}.teeth is missing"
             )
             hint = f"The teeth of {mesh.driven} or of another gear that they mesh with would do."
             yield draft.problem(("meshes", name), message, hint=hint)

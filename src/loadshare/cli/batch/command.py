@@ -51,7 +51,7 @@ def batch(
     method: Method = "newton",
     tolerance: Tolerance = 1e-9,
     force: Annotated[
-        bool, typer.Option("--force", help="Solve again what is there already.")
+        bool, typer.Option("--force", help="Solve again what is solved already.")
     ] = False,
     change: Changes = None,
     json: Json = False,

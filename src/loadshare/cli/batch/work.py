@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from loadshare.results import Result
 
 GOOD = ("certified", "kept")
-"""Outcomes after which a certified result stands on disk."""
+"""Outcomes after which a certified result is on disk."""
 
 UNWRITTEN = "unwritten"
 """Outcome of a case whose file cannot be written, as on a full disk."""

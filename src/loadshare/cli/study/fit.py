@@ -43,7 +43,7 @@ def fit(
         int, typer.Option(metavar="N", min=1, help="Starting points; the best answer is taken.")
     ] = 1,
     seed: Annotated[
-        int, typer.Option(metavar="N", min=0, help="Seed of the further starting points.")
+        int, typer.Option(metavar="N", min=0, help="Random seed of the other starting points.")
     ] = 0,
     file: Annotated[list[Output] | None, outputs("toml", *TABLES, *FIGURES)] = None,
     change: Changes = None,

@@ -31,7 +31,7 @@ def march(
     case: CaseFile,
     gear: Gear = None,
     revolutions: Annotated[
-        float | None, typer.Option(metavar="X", min=0.0, help="How far to march.")
+        float | None, typer.Option(metavar="X", min=0.0, help="Revolutions to march.")
     ] = None,
     steps: Annotated[int | None, typer.Option(metavar="N", min=1, help="Number of steps.")] = None,
     file: Annotated[list[Output] | None, outputs(*TABLES, *FIGURES)] = None,

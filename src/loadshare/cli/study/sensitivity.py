@@ -44,7 +44,7 @@ def sensitivity(
     position: Positions = None,
     change: Changes = None,
 ) -> None:
-    """Tell how torques, Ω and floats change with inputs of a case."""
+    """Compute how torques, Ω and floats change with each input."""
     from loadshare.study.sensitivity import sensitivity as differentiated
 
     with asked(case, change, "inputs") as (loaded, tick):
@@ -84,9 +84,9 @@ def show_sensitivity(found: Sensitivity) -> None:
     if len(found.inputs) > SHOWN:
         say(f"{len(found.inputs) - SHOWN} inputs that matter less are not shown.")
     if one_sided:
-        say("Where a value stands under falling, the derivative differs to that side.")
+        say("A value under falling: the derivative differs to that side.")
     say_all(
-        f"Position {kink.position} stands on the verge of another active set: "
+        f"Position {kink.position} is on the verge of another active set: "
         f"{', '.join(kink.elements)}. Its derivatives hold to one side each."
         for kink in found.kinks
     )

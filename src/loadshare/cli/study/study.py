@@ -61,7 +61,7 @@ def study(
         str | None,
         typer.Argument(
             metavar="NAME",
-            help="Which one; left out, all are listed.",
+            help="Which study; by default all are listed.",
             autocompletion=study_names,
         ),
     ] = None,
@@ -69,13 +69,11 @@ def study(
         list[str] | None,
         over(
             "VALUES",
-            "What the study varies, in place of what stands in it: as for sweep, critical, fit or "
+            "What the study varies instead of its own inputs: as for sweep, critical, fit or "
             "tolerance; may be repeated.",
         ),
     ] = None,
-    file: Annotated[
-        list[Output] | None, outputs(*FORMS, what="Write what its kind can have")
-    ] = None,
+    file: Annotated[list[Output] | None, outputs(*FORMS, what="Write the answer")] = None,
     change: Changes = None,
 ) -> None:
     """Run a study that the case holds, [study.NAME]."""

@@ -46,7 +46,7 @@ def tolerance(
         str | None,
         typer.Argument(
             metavar="NAME",
-            help="Which study; left out, the case has one of this kind.",
+            help="Which study, if the case has more than one of this kind.",
             autocompletion=study_names,
         ),
     ] = None,
@@ -60,7 +60,7 @@ def tolerance(
         list[str] | None,
         over(
             "LOW:HIGH",
-            "Input that scatters evenly between two values, as in rings.*.float='0 um:12 um', in "
+            "Input that varies evenly between two values, as in rings.*.float='0 um:12 um', in "
             "place of those of [study.NAME]; may be repeated.",
         ),
     ] = None,
@@ -68,7 +68,7 @@ def tolerance(
         list[Output] | None,
         outputs(
             *FORMS,
-            what="Folder for the samples (Parquet), from which a study that was stopped goes on; "
+            what="Folder for the samples (Parquet), from which an interrupted study continues; "
             "or a file: tables hold the samples, .json and .nc the statistics",
         ),
     ] = None,
@@ -78,12 +78,12 @@ def tolerance(
     ] = None,
     workers: Annotated[int, typer.Option(metavar="K", min=1, help="Processes.")] = 2,
     worst: Annotated[
-        bool, typer.Option("--worst/--no-worst", help="Look for the worst case as well.")
+        bool, typer.Option("--worst/--no-worst", help="Search for the worst case as well.")
     ] = True,
     position: Positions = None,
     change: Changes = None,
 ) -> None:
-    """Let inputs scatter as [study.NAME] says, and tell how load sharing does."""
+    """Vary inputs within their tolerances ([study.NAME]) and show how Ω is distributed."""
     from loadshare.study.tolerance.study import tolerance as studied
 
     folders = [output.file for output in file or () if output.form == FOLDER]
@@ -128,7 +128,7 @@ def _kept(out: Path | None, done: int, total: int) -> str:
         kept = f"all {total:,} samples are kept in {out}."
         return f"{kept} The same command looks for the worst case again."
     told = f"{done:,} of {total:,} samples are" if total else "what was there is"
-    return f"{told} kept in {out}. The same command goes on from there."
+    return f"{told} kept in {out}. The same command continues from there."
 
 
 def made_of_tolerance(found: Tolerance) -> Makers:

@@ -80,7 +80,7 @@ def print_cycle(result: Result) -> None:
     show(title, texts(rows, rows[0], words=()))
     if len(rows) > 1:
         say(records.error_told(result))
-    fields = ("mesh", "position", "stands at", "Ω stage", "error", "stiffness", "at the driver")
+    fields = ("mesh", "position", "cycle point", "Ω stage", "error", "stiffness", "at the driver")
     title = "Meshes: transmission error [µm], stiffness [N/µm] and at the driver [N·m/rad]"
     show(title, texts(records.meshes(result), fields, words=("mesh",)))
 

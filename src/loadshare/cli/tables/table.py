@@ -56,7 +56,7 @@ def show(title: str, made: Table) -> None:
 
 
 def fits(made: Table) -> bool:
-    """Whether a table stands on the console without a column being squeezed."""
+    """Whether a table fits the console without squeezing a column."""
     screen = console()
     endless = screen.options.update(max_width=10_000)
     return screen.measure(made, options=endless).maximum <= screen.width

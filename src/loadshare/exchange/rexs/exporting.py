@@ -77,7 +77,7 @@ def _found(result: Result, gearing: Gearing) -> Values:
 
 
 def _of_meshes(result: Result, gearing: Gearing) -> Values:
-    """What stages are told."""
+    """Return what is written for stages."""
     made: Values = {}
     positions, meshes = result.positions, result.positions[0].train.meshes
     for stage, one, other in gearing.stages:
@@ -116,7 +116,7 @@ def _largest(vectors: Array) -> Array:
 
 
 def _of_bodies(result: Result, gearing: Gearing) -> Values:
-    """What gears and carriers are told: x, y, z."""
+    """What is written for gears and carriers: x, y, z."""
     made: Values = {}
     for body, name in _bodies(result, gearing):
         moved = np.array([p.claim.displacement[name] for p in result.positions])

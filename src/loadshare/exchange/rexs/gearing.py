@@ -157,7 +157,7 @@ class Gearing:
         return (start[0] + here[0], start[1] + here[1], start[2] + here[2])
 
     def is_referred(self, body: Component) -> bool:
-        """Whether a component's place is told from another one than the unit."""
+        """Whether a component's position is given relative to another component than the unit."""
         return self._reference(body) is not None
 
     def _reference(self, body: Component) -> Component | None:
@@ -167,7 +167,7 @@ class Gearing:
         return None if other is None or other is body or other.type == "gear_unit" else other
 
     def axis(self, body: Component) -> Vector:
-        """Direction of a body's axis, of length 1; its shaft's, or x, where it tells none."""
+        """Direction of a body's axis, of length 1; its shaft's, or x, if it gives none."""
         for one in (body, self.shaft_of.get(body.id)):
             axis = one.vector("u_axis_vector") if one is not None else None
             if axis is not None and any(axis):

@@ -114,7 +114,7 @@ def _bearings_on(model: Model, shafts: list[Component]) -> list[tuple[Component,
 
 
 def _arms(at: float, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(1, u) of places along a shaft and of one more, in units in which they are well told."""
+    """(1, u) of places along a shaft and of one more, in units of suitable size."""
     size = float(np.ptp(places))
     if size < 1e-9:
         return np.ones((len(places), 1)), np.ones(1)
@@ -127,7 +127,9 @@ def _arms(at: float, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _stiffness(bearing: Component, name: str, assumed: list[str]) -> float:
     found = bearing.number("radial_stiffness")
     if found is None or found <= 0.0:
-        assumed.append(f"{name}: a bearing of its shaft tells no radial stiffness and is rigid")
+        assumed.append(
+            f"{name}: a bearing of its shaft gives no radial stiffness and is taken as rigid"
+        )
         return STIFF
     return min(found, STIFF)
 

@@ -121,12 +121,12 @@ class _Importer:
             "addendum_modification_coefficient",
         )
         if shift is None:
-            self.assumed.append(f"{name}: no profile shift is told, 0 is taken")
+            self.assumed.append(f"{name}: no profile shift is given, 0 is assumed")
         elif shift:
             made["profile_shift"] = shift
         angle = _first([*flanks, gear], "normal_pressure_angle")
         if angle is None:
-            self.assumed.append(f"{name}: no pressure angle is told, 20 deg is taken")
+            self.assumed.append(f"{name}: no pressure angle is given, 20 deg is assumed")
         else:
             made["pressure_angle"] = _deg(angle)
         if helix := gear.number("helix_angle_reference_diameter"):
@@ -216,7 +216,7 @@ class _Importer:
         others = [pair for pair in loads if pair[0] is not shaft]
         others.sort(key=lambda pair: bool(pair[1].number("torque_around_u_axis")))
         if not others:
-            self._lacks("", "has no second shaft with an external_load: the output is not told")
+            self._lacks("", "has no second shaft with an external_load: the output is not known")
             return None
         self.left_out += [f"load {e.name or e.id}" for _, e in others[1:]]
         torque = load.number("torque_around_u_axis") or 0.0

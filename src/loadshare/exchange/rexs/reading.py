@@ -44,7 +44,7 @@ UNITS = {
 }
 """SI value of the units of the attributes that are read."""
 CODES = {"float64": "d", "float32": "f"}
-"""Arrays as bytes, by the code that the file tells."""
+"""Arrays as bytes, by the code in the file."""
 
 OTHERS = {
     ".toml": "is a case already; `loadshare run` solves it",

@@ -112,7 +112,7 @@ class _Reader:
             key, value, *more = [*(cell.strip() for cell in row), "", ""]
             for column, cell in enumerate(more, start=2):
                 if cell:
-                    self._tell(sheet.at(number, column), "stands beside key and value")
+                    self._tell(sheet.at(number, column), "is outside the columns key and value")
             if key:
                 path = self._path(sheet, number, 0, key, above)
                 if path is not None and value:
@@ -129,7 +129,7 @@ class _Reader:
         section = self.data.setdefault(sheet.name, {})
         for column, text in enumerate(head):
             if text and text in head[:column]:
-                self._tell(sheet.at(0, column), f"{text} stands there twice")
+                self._tell(sheet.at(0, column), f"{text} appears twice")
         columns = [
             self._path(sheet, 0, column, text, (sheet.name, "x")) if text and column else None
             for column, text in enumerate(head)
@@ -143,7 +143,7 @@ class _Reader:
             if not name or name in section:
                 self._tell(
                     sheet.at(number, 0),
-                    f"the name {as_given(name)} stands there twice" if name else "has no name",
+                    f"the name {as_given(name)} appears twice" if name else "has no name",
                 )
                 continue
             section[name] = {}
@@ -173,10 +173,10 @@ class _Reader:
         for number, step in enumerate(path[:-1], start=1):
             here = here.setdefault(str(step), {})
             if not isinstance(here, dict):
-                self._tell(place, f"{dotted(path)} stands beside {dotted(path[:number])}")
+                self._tell(place, f"{dotted(path)} cannot be combined with {dotted(path[:number])}")
                 return
         if str(path[-1]) in here:
-            self._tell(place, f"{dotted(path)} stands there twice")
+            self._tell(place, f"{dotted(path)} appears twice")
             return
         here[str(path[-1])] = value
         if path[-1] not in FILES:

@@ -22,7 +22,7 @@ from loadshare.results import Result
 from loadshare.train import Train
 
 SIDE = 284
-"""Side of a panel [px]: 75 mm at 96 px an inch, for which the enlargement is told."""
+"""Side of a panel [px]: 75 mm at 96 px an inch, for which the magnification is given."""
 SAME = 0.008
 """Points closer than this part of the panel's side are one point with several numbers."""
 NUMBERED = 8

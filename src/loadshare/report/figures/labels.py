@@ -164,7 +164,7 @@ class Labels:
 
 
 def _cornered(part: float) -> float:
-    """Part of half a box by which it stands aside, from the cosine of the direction."""
+    """Part of half a box by which it is set aside, from the cosine of the direction."""
     return min(max(1.5 * part, -1.0), 1.0)
 
 

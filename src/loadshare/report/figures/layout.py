@@ -1,4 +1,4 @@
-"""Where everything stands, ready to be drawn; also of a case that is not right yet."""
+"""Where everything is, ready to be drawn, even for a case that is not valid yet."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class Pair:
 
     @property
     def fits(self) -> bool:
-        """Whether the gears stand where their radii need them, by the rule that checks a case."""
+        """Whether the gears are where their radii require, by the rule that checks a case."""
         return abs(self.distance - self.needed) * math.cos(self.angle) <= TOLERANCE * self.distance
 
 

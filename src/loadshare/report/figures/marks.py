@@ -197,7 +197,7 @@ def figure(name: str, drawing: Drawing, title: str, told: Told = "") -> Figure:
 
 
 def hover(*fields: str | tuple[str, ...]) -> list[alt.Tooltip]:
-    """Return what hovering tells: fields by their own names, or (field, title, format)."""
+    """Return what the tooltip shows: fields by their own names, or (field, title, format)."""
     told = [(f, f.partition(":")[0]) if isinstance(f, str) else f for f in fields]
     return [
         alt.Tooltip(field, title=title, format=form[0] if form else alt.Undefined)
@@ -296,7 +296,7 @@ BREADTH = 15.0
 def rules(
     rows: Sequence[Row], x: Any, pixels: float, *, tooltip: Any = None, words: bool = True
 ) -> list[Drawing]:
-    """Upright rules with words along them, on the side that has room; else hovering tells them.
+    """Upright rules with words along them, on the side with space; else only in the tooltip.
 
     Parameters
     ----------

@@ -190,7 +190,7 @@ def _drum(
 
 
 MILLIMETRES = 75.0
-"""Width of a panel for which the enlargement is told [mm]."""
+"""Width of a panel for which the magnification is given [mm]."""
 WITHIN = 4.0
 """A boundary up to so many times as far as the float moved is in the picture."""
 LEAST = 1e-9

@@ -17,7 +17,7 @@ WIDTH = 320
 ROW = 22
 """Height of an input's row [px]."""
 MOST = 20
-"""Inputs that are shown; the others are told as a number."""
+"""Inputs that are shown; of the others, the number is given."""
 LABEL = 300
 """Longest name of an input [px]."""
 ALIKE = 1e-6

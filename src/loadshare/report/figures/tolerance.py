@@ -25,7 +25,7 @@ WIDTH, HEIGHT = 420, 190
 ROW = 22
 """Height of an input's row [px]."""
 MOST = 20
-"""Inputs that are shown; the others are told as a number."""
+"""Inputs that are shown; of the others, the number is given."""
 BAR, TOTAL = COLOURS[0], COLOURS[1]
 SHARE, BELOW = "share of samples", "samples at or below"
 PERCENT = alt.Axis(format="~%", tickCount=4)
@@ -124,7 +124,7 @@ class _Distribution:
     def panel(
         self, bars: Drawing, title: str | None, y: Any, height: int, *, words: bool, **more: Any
     ) -> Drawing:
-        """Return a panel over Ω with all bins and all marks, whose words stand in one panel."""
+        """Return a panel over Ω with all bins and all marks, whose words are in one panel."""
         every = [float(self.edges[0]), float(self.edges[-1]), *(row["x"] for row in self.marks)]
         room = 0.03 * (max(every) - min(every)) or LEAST
         low, high = min(every) - room, max(every) + room

@@ -81,7 +81,7 @@ def yield_table(result: Result) -> Table:
 
 
 def float_table(result: Result) -> Table:
-    """Where every float rests; positions at which nothing differs stand in one row."""
+    """Where every float rests; positions at which nothing differs share a row."""
     places = records.reaction_places(result.positions)
     rows: list[records.Record] = []
     for gear in result.positions[0].floats:

@@ -30,7 +30,7 @@ CERTIFIED, PARTLY, REFUSED, UNUSABLE = "certified", "partly refused", "refused",
 
 @dataclass(frozen=True)
 class Chapter:
-    """Everything that a page tells of one case.
+    """Everything that a page shows of one case.
 
     Attributes
     ----------

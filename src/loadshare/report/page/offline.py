@@ -62,7 +62,7 @@ def templates() -> Environment:
 
 
 def render(template: str, **values: Any) -> str:
-    """Fill in a template; its policy lets no script run but those that stand in it."""
+    """Fill in a template; its policy lets only its own scripts run."""
     page = templates().get_template(template).render(scripts=scripts(), **values)
     hashes = (sha256(script.encode()).digest() for script in SCRIPT.findall(page))
     allowed = " ".join(f"'sha256-{b64encode(found).decode()}'" for found in hashes)

@@ -79,7 +79,7 @@ def write_report(
     Returns
     -------
     list of Chapter
-        What the page tells of each case, such as its outcome. A case file that cannot be used and a
+        What the page shows of each case, such as its outcome. A case file that cannot be used and a
         refused position are part of the page.
 
     Raises

@@ -35,7 +35,7 @@ FOLDED = 24
 
 @dataclass(frozen=True)
 class StudyPart:
-    """What a page tells of one study.
+    """What a page shows of one study.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class StudyPart:
 
 
 def study_part(name: str, found: Viewed, case: Case) -> StudyPart:
-    """Return what a page tells of a study that was run.
+    """Return what a page shows of a study that was run.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The active set of an equilibrium: which contacts are closed, where radial elements stand."""
+"""The active set of an equilibrium: closed contacts, and the piece of each radial element."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def _parts(law: at.Graph) -> Iterator[Part]:
 def read_pieces(
     structure: Structure, numbers: Numbers, states: tuple[int, ...], x: Array
 ) -> tuple[int, ...]:
-    """Read on which piece of its table each closed tabulated contact stands, at one value."""
+    """Read on which piece of its table each closed tabulated contact is, at one value."""
     found, tabulated = [], numbers.tabulated[0]
     for k in np.flatnonzero(tabulated >= 0).tolist():
         if states[k - structure.springs] == at.CLOSED:

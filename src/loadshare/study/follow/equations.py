@@ -384,7 +384,7 @@ class Equations:
         return bool(self._free)
 
     def leaves_free(self, jacobian: Array) -> bool:
-        """Whether the set leaves moves free, told at the first points at which it is solved."""
+        """Whether the set leaves moves free, found at the first points at which it is solved."""
         if self._free is None:
             factor = scaling(jacobian)
             scaled = jacobian * factor[:, :, None] * factor[:, None, :]

@@ -249,7 +249,7 @@ def _turning_force(
 
 
 def _limit(s: Stretches, k: int) -> Range:
-    """Radius at which a step stands; for an arc, minus its clearance's effect on the margin."""
+    """Radius of a step; for an arc, minus its clearance's effect on the margin."""
     e = s.equations
     if k in e.arcs:
         # The row is −margin = a − c − |d|.

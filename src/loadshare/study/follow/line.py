@@ -125,7 +125,7 @@ class Line:
 
     @property
     def structure(self) -> Structure:
-        """Its elements, in whose units everything is told."""
+        """Its elements, in whose units everything is given."""
         return self.machine.structure
 
     def _own(self, value: float) -> tuple[Train, Structure]:

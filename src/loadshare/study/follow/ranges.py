@@ -51,7 +51,7 @@ class Range:
 
     @property
     def most(self) -> Array:
-        """Largest size, as far as the distance from the middle tells."""
+        """Largest size, as far as the distance from the middle shows."""
         return np.asarray(np.abs(self.middle) + self.off)
 
     def __getitem__(self, key: object) -> Range:

@@ -29,7 +29,7 @@ from loadshare.study.follow.ranges import Flags
 from loadshare.study.follow.stretches import Stretches
 from loadshare.study.follow.zero import first_zero
 
-UNREAD = "the active set of its equilibrium could not be told"
+UNREAD = "the active set of its equilibrium could not be identified"
 """Why a certified answer is no point."""
 
 
@@ -244,7 +244,7 @@ class Search:
         return prove(Stretches(equations, np.array([[a, b] for _, _, a, b in ends]), numbers))
 
     def proved_alike(self, stretches: list[Stretch]) -> list[Stretch]:
-        """Prove stretches whose ends stand on one set, and return the others."""
+        """Prove stretches whose ends have the same set, and return the others."""
         groups: dict[WorkingSet, list[tuple[Point, Point]]] = {}
         left: list[Stretch] = []
         for first, last in stretches:
@@ -276,7 +276,7 @@ class Search:
             self._sharp |= dict(zip(new, enclosed.tolist(), strict=True))
 
     def _crossed(self, stretch: Stretch) -> bool:
-        """Find and prove the change between two ends; on failure note where it may stand."""
+        """Find and prove the change between two ends; on failure note where it may be."""
         first, last = stretch
         if isinstance(first, Missing) or isinstance(last, Missing) or first.active == last.active:
             return False

@@ -62,7 +62,7 @@ def differenced(
         noise = SENSITIVITY.solved * np.maximum(_sizes(start), _sizes(there)) / amount
         slopes.append(((there - start) * sign / amount, noise))
     if len(slopes) < 3:
-        raise NoDifference(why or "its equilibrium cannot be told from steps that near")
+        raise NoDifference(why or "its equilibrium cannot be distinguished at steps that small")
     return _limit(slopes)
 
 

@@ -188,7 +188,7 @@ def _forward(
     value: Value,
     rounding: Array,
 ) -> Slope | Exception:
-    """Third order on one side; its distance from the second order tells the error."""
+    """Third order on one side; its distance from the second order is the error."""
     if isinstance(side, Exception):
         return side
     points, h = side

@@ -275,7 +275,7 @@ class Neighbourhood:
 
     @staticmethod
     def _verge(point: Point) -> Gauges | None:
-        """Gauges that stand on the verge, undetermined ones with them; None if one is violated."""
+        """Gauges that are on the verge, undetermined ones with them; None if one is violated."""
         gauges = {key: g for key, g in point.gauges().items() if g.switch not in point.idle}
         if any(g.value < -10.0 * SENSITIVITY.verge for g in gauges.values()):
             return None
@@ -317,7 +317,7 @@ class Neighbourhood:
         verge: Gauges,
         later: bool = False,
     ) -> tuple[tuple[int, int], ...] | None:
-        """What stands on the verge, in either state; None if anything moves across it.
+        """What is on the verge, in either state; None if anything moves across it.
 
         It moves neither way but by round-off, or stands across by round-off and only comes back at
         a distance from the value. With `later`, what moves across at a distance does not count.
@@ -352,7 +352,7 @@ class Neighbourhood:
         return tuple(still) if _has_room(tied) else None
 
     def _near(self, sign: float, varied: Varied) -> Iterator[Point]:
-        """Yield the sets that certified solves a little way to that side stand on."""
+        """Yield the sets of certified solves a little way to that side."""
         for amount in self._amounts(sign, varied):
             try:
                 branch, z = varied.setting(amount).branch_of(varied.answer(amount))

@@ -184,7 +184,7 @@ def _python(version: str) -> str:
 
 
 def _version() -> Callable[[], str]:
-    """Return what tells the version there; sent as code, since the package may be missing."""
+    """Return what finds the version there; sent as code, since the package may be missing."""
 
     def version() -> str:
         from importlib import import_module

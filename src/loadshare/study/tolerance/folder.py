@@ -26,7 +26,7 @@ log = logging.getLogger("loadshare")
 STUDY = "study.json"
 WORST = "worst.json"
 PART_DIGEST = b"loadshare.sha256"
-"""Key of a part's metadata under which the digest of its content stands."""
+"""Key of a part's metadata for the digest of its content."""
 
 
 class Folder:
@@ -80,7 +80,7 @@ class Folder:
             _write_sealed(path / STUDY, content)
 
     def file(self, part: Part) -> Path:
-        """Return where a part stands."""
+        """Return the path of a part."""
         folder = self.path if part.design == SAMPLES else self.path / part.design
         return folder / f"part-{part.number:06d}.parquet"
 
@@ -90,7 +90,7 @@ class Folder:
             return "Nothing is kept: the study has no folder (out, or --output)."
         done = sum(self.file(part).is_file() for part in self.all)
         told = f"{done} of {len(self.all)} parts are kept in {self.path}"
-        return f"{told}: the same command goes on from there."
+        return f"{told}: the same command continues from there."
 
     def missing(self) -> list[Part]:
         """Return the parts that are not there, or not whole; the log names the latter."""

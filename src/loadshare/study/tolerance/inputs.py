@@ -229,7 +229,7 @@ class _Reader:
                     tolerances, hint = None, f"{key} does not follow from a tolerance class."
             if tolerances is None:
                 allowed = "a value with its unit; or the eccentricity of a gear with a class"
-                self._wrong((*path, "high"), "cannot be told", allowed, hint)
+                self._wrong((*path, "high"), "cannot be derived", allowed, hint)
                 return None
             ends.add(tolerances.runout / 2.0)
         if len(ends) > 1:

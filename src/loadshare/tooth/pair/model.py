@@ -249,7 +249,7 @@ class Analysis(Element):
             hint = 'Leave it out, or take compliance = "finite elements".'
             yield Rule("is of finite elements, not of slices", (key,), hint=hint)
         if self.teeth is not None and self.teeth % 2 == 0:
-            yield Rule("is even: the loaded tooth stands in the middle", ("teeth",), "1, 3, 5, …")
+            yield Rule("is even: the loaded tooth is in the middle", ("teeth",), "1, 3, 5, …")
 
 
 class PairContent(Element):
