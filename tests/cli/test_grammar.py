@@ -60,9 +60,8 @@ STARTS = {
     "toml": b"",
 }
 MEASURED = (
-    *("--set", "measured.tried.position=1"),
-    *("--set", 'measured.tried.pair_share={ "6-10" = 0.99 }'),
-    *("--set", "measured.tried.uncertainty=0.01"),
+    "--set",
+    'measured.tried={ position = 1, pair_share = { "6-10" = 0.99 }, uncertainty = 0.01 }',
 )
 ASKED = {
     "run": (("--position", 1), (*FILES, "toml")),

@@ -223,7 +223,7 @@ def test_studies_are_listed(command, measured):
         (("sweep", RING, "--over", "rings.4.float"), "is not of the form"),
         (("sweep", RING, "--over", "rings.4.flot=0 um:1 um:2"), "Did you mean float"),
         (("sweep", RING, "--over", "a=0:1:2", "-o", "x.txt"), "does not tell what to write"),
-        (("critical", RING, "--over", "rings.4.float=0 um:1 N"), "cannot be told"),
+        (("critical", RING, "--over", "rings.4.float=0 um:1 N"), "cannot be expressed"),
         (("critical", RING, "--over", "rings.4.float=0:1 um"), "0 has no unit"),
         (
             ("critical", RING, "--over", "rings.4.float=0 kg:1 kg"),
