@@ -10,12 +10,10 @@ from collections import namedtuple
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.train.equilibria import CLAIMED, Equilibria
 from loadshare.train.situations import VARYING, Situations
-
-Array = NDArray[np.float64]
 
 Here = namedtuple("Here", VARYING)  # type: ignore[misc]
 """What a position brings, one row or one per answer: the arrays of `Situations`."""

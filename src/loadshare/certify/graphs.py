@@ -9,12 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Flags
 from loadshare.settings import LAWS
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 class Graph(NamedTuple):

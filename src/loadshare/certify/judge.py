@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.certify.bound import Bounds, Columns, bounds, completed
 from loadshare.certify.bound.batch import is_covered, judged
 from loadshare.certify.bound.one import columns_of
@@ -19,8 +20,6 @@ from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
-
-Array = NDArray[np.float64]
 
 
 class Judge:

@@ -7,11 +7,9 @@ so that a slip in one of them shows in the other.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.settings import CERTIFY
-
-Array = NDArray[np.float64]
 
 
 def strain_energy(b: Array, c: Array, approach: Array, root: Array) -> Array:

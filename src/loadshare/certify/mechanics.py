@@ -7,17 +7,14 @@ from collections.abc import Iterator
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Numbers
 from loadshare.certify.rigid import rigid_shafts
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Names
 from loadshare.train.gear import cross
 from loadshare.train.ring import transverse
 from loadshare.train.train import Train
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.intp]
 
 
 class Mechanics:

@@ -8,15 +8,13 @@ for single answers.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
-
-Array = NDArray[np.float64]
 
 
 def _arc_forces(train: Train, answers: Equilibria) -> Array:

@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.certify.state import ClaimedState
 from loadshare.contact.radial import RadialLaw, round_ring_law
 from loadshare.train.memory import SlipFriction, SlipStop
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,7 +87,7 @@ def _spline_laws(state: ClaimedState) -> list[RadialLaw]:
 def fault_of(state: ClaimedState) -> str:
     """Why the first claim cannot be judged, else empty.
 
-    A figure is not a number, a spline has no law, or a gear stands beyond the neighbour on whose
+    A figure is not a number, a spline has no law, or a gear is beyond the neighbour on whose
     ring its own rolls: there the arc's inequality holds, and no gear can be.
     """
     if not state.faulty[0]:

@@ -1,7 +1,7 @@
 """The residuals of claimed equilibria (formulation, section 8), element by element.
 
-Each is told in blocks: figures, one row an element and one column a claim, and the names of their
-elements. The worst of them counts; where it stands is looked up for single claims only.
+Each is a list of blocks: figures, one row an element and one column a claim, and the names of their
+elements. The worst of them counts; its element is looked up for single claims only.
 """
 
 from __future__ import annotations
@@ -12,13 +12,12 @@ from functools import reduce
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.certify.graphs import complementary, energy, interval, strength
 from loadshare.certify.state import ClaimedState, size
 from loadshare.settings import CERTIFY
 
-Array = NDArray[np.float64]
 Blocks = list[tuple[Array, tuple[str, ...]]]
 Scalars = TypeVar("Scalars", float, Array)
 
@@ -142,7 +141,7 @@ def _squeezes(state: ClaimedState, band: Array) -> Array:
 
     A centre in touch with both, up to a length, lies anywhere within y across them, where
     ε y + y²/2a is that length and ε the angle of the wedge; the directions of the two forces are
-    known no better than y/a. The length is what the two arcs overlap or stand open; where the
+    known no better than y/a. The length is what the two arcs overlap or are open; where the
     narrowest place of the wedge, ε²a/8 past its mouth, overlaps by less than the band [m], it is
     the band: through there a float would roll away that a large squeeze seems to hold. Neighbours
     that give way follow the float instead.

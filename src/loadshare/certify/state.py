@@ -9,8 +9,8 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Flags
 from loadshare.certify.graphs import Graph, spline_graphs, wall
 from loadshare.certify.laws import area, interpolated, strain_energy
 from loadshare.certify.mechanics import Mechanics
@@ -18,16 +18,13 @@ from loadshare.settings import CERTIFY
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
-
 
 class ClaimedState:
-    """S claims at the positions where they stand.
+    """S claims at their positions.
 
     The samples are the last axis of every array, next to one another in memory: sums and largest
     values over a few elements then run along the samples, which is several times faster. Elements
-    stand in the order of `Mechanics`.
+    are in the order of `Mechanics`.
 
     Parameters
     ----------
@@ -54,7 +51,7 @@ class ClaimedState:
     resolution : ndarray, shape (S,)
         Round-off of a length [m].
     beyond : ndarray of bool, shape (drums, 2, S)
-        Whether a gear stands beyond the neighbour on whose ring its own rolls: there the arc's
+        Whether a gear is beyond the neighbour on whose ring its own rolls: there the arc's
         inequality holds, and no gear can be.
     """
 
@@ -327,7 +324,7 @@ class ClaimedState:
     def faulty(self) -> Flags:
         """Whether a claim cannot be judged, shape (S,).
 
-        A figure is not a number, a spline has no law, or a gear stands beyond its neighbour.
+        A figure is not a number, a spline has no law, or a gear is beyond its neighbour.
         """
         bad = self.lawless.any(axis=0) | self.beyond.any(axis=(0, 1))
         for claimed in self.claim.arrays:

@@ -27,8 +27,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.certify.bound.one import columns_of
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.pulls import Pull, pulls_of
@@ -39,8 +39,6 @@ from loadshare.train.equilibria import Equilibria
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import situation_of
 from loadshare.train.train import Spline, Train
-
-Array = NDArray[np.float64]
 
 TOLD = {
     "convex": "only answer: the problem is convex",
@@ -202,7 +200,7 @@ class _System:
             self.stiffness += rows.T @ (stiffness[:, None] * rows)
 
     def _follows(self, pull: Pull) -> bool:
-        """Whether the force of a radial element follows the torque where it stands."""
+        """Whether the force of a radial element follows the torque where the element is."""
         spline = self.state.of.train.splines.get(pull.gear)
         if pull.is_ring or spline is None or pull.name != spline.name or not _follows(spline):
             return False
@@ -275,7 +273,7 @@ def _along_and_across(along: Array) -> tuple[Array, Array]:
 
 
 def _piece(pull: Pull, near: float, load: float) -> tuple[Piece, bool]:
-    """The piece of a graph on which it stands, and whether it leans on a rigid stop."""
+    """The piece of a graph on which it is, and whether it leans on a rigid stop."""
     law, radius, force = pull.law, pull.radius, pull.force
     at_stop = math.isfinite(law.reach) and radius >= law.reach - near
     at_stop = at_stop and force > law.pieces[-1].end_force + load

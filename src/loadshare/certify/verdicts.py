@@ -8,9 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.certify.bound import Bounds
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -59,12 +59,23 @@ class Arc:
         moved = self.shift + relative
         if self.beyond(relative):
             return float(self.nominal @ moved) / self.distance + self.clearance
-        d = self.nominal + moved
-        here = math.sqrt(float(d @ d))
-        grown = 2.0 * float(self.nominal @ moved) + float(moved @ moved)
-        return grown / (here + self.distance) + self.clearance
+        return float(rolled(self.nominal, moved)[2]) + self.clearance
 
     def face(self, relative: Vector) -> tuple[Vector, float]:
         """Tangent half-plane at Δ: unit normal n (3,) and bound g [m] of n·Δ ≥ −g."""
         n = self.normal(relative)
         return n, self.margin(relative) - float(n @ relative)
+
+
+def rolled(nominal: Vector, moved: Vector) -> tuple[Vector, Vector, Vector]:
+    """Ways between centres, their lengths, and by how much these grew [m], free of cancellation.
+
+    Parameters
+    ----------
+    nominal, moved : ndarray, shape (…, 3)
+        Way at rest, and what is added to it [m].
+    """
+    d = nominal + moved
+    length, before = np.sqrt((d * d).sum(axis=-1)), np.sqrt((nominal * nominal).sum(axis=-1))
+    grown = 2.0 * (moved * nominal).sum(axis=-1) + (moved * moved).sum(axis=-1)
+    return d, length, grown / (length + before)

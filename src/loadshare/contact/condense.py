@@ -11,9 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.settings import CONTACT
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,7 +52,7 @@ def condense(stiffness: Array, load: Array, touched: NDArray[np.bool_]) -> Conde
     load : ndarray, shape (n,)
         f [N].
     touched : ndarray of bool, shape (n,)
-        Coordinates that stand in a row or a radial element.
+        Coordinates that appear in a row or a radial element.
 
     Returns
     -------

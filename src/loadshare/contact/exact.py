@@ -1,6 +1,6 @@
 """The exact solve on an identified active set, and the exchange of what was wrongly identified.
 
-An interior-point answer says roughly where every contact and every radial graph stands. Here that
+An interior-point answer says roughly where every contact and every radial graph is. Here that
 set is fixed, the remaining (smooth) equations are solved to round-off by Newton's method, the signs
 are checked, and rows or places whose sign is wrong are exchanged. Kinks therefore never depend on a
 small interior-point number.
@@ -24,7 +24,7 @@ _NONE, _BOTH = np.zeros((0, 2)), np.eye(2)
 
 @dataclass(frozen=True, slots=True)
 class GraphState:
-    """Where a radial element stands on its graph: on a piece, or on the step in front of one."""
+    """Where a radial element is on its graph: on a piece, or on the step in front of one."""
 
     piece: int
     corner: bool = False
@@ -60,7 +60,7 @@ def identify(programme: Programme, point: Point) -> ActiveSet:
     """Read the active set from an approximate answer.
 
     A row is closed if its force, turned into a length by the row's compliance, exceeds its gap. A
-    radial element stands where its graph is nearest.
+    radial element is put where its graph is nearest.
     """
     forces = np.maximum(point.forces, 0.0)
     compressed = programme.linear * forces + programme.hertz * np.cbrt(forces) ** 2
@@ -134,7 +134,7 @@ def _solve_fixed(
 ) -> tuple[Point, bool] | None:
     """Newton's method on the smooth equations of an active set; a point, and whether it settled.
 
-    On a wrong active set the equations may have no solution; where the steps lead still tells what
+    On a wrong active set the equations may have no solution; where the steps lead still shows what
     to exchange.
     """
     x, forces, cone_forces = start.x, start.forces, start.cone_forces
@@ -301,7 +301,7 @@ def _exchange(programme: Programme, active: ActiveSet, point: Point, one_only: b
 def _misplaced(
     cone: Cone, graph_state: GraphState, point: Point, j: int, force_band: float, length_band: float
 ) -> tuple[float, GraphState]:
-    """By how many bands a radial element is off its place, and where it should stand instead."""
+    """By how many bands a radial element is off its place, and where it should be instead."""
     law, k = cone.law, graph_state.piece
     offset = cone.offset(point.x)
     if graph_state.corner:

@@ -46,7 +46,7 @@ def solve_symmetric(matrix: Array, right: Array, size: int) -> Solved | None:
         reciprocal, _ = lapack.dgecon(factor, np.abs(scaled).sum(axis=0).max())
         if reciprocal > CONTACT.rank:
             values = np.zeros_like(right)
-            for _ in range(3):  # the first pass solves, the others refine
+            for _ in range(CONTACT.refined):
                 residual = right - matrix @ values
                 values = values + scale * lapack.dgetrs(factor, pivots, scale * residual)[0]
             return Solved(values, np.zeros((size, 0)))
@@ -56,7 +56,7 @@ def solve_symmetric(matrix: Array, right: Array, size: int) -> Solved | None:
 def _equilibrate(matrix: Array) -> Array:
     """Symmetric scaling that brings every row's largest entry near 1."""
     scale = np.ones(len(matrix))
-    for _ in range(4):
+    for _ in range(CONTACT.equilibrated):
         largest = np.abs(matrix * scale[:, None] * scale).max(axis=1)
         scale = scale / np.sqrt(np.where(largest > 0.0, largest, 1.0))
     return scale
@@ -69,11 +69,11 @@ def _least_norm(
     kept = np.abs(eigenvalues) > CONTACT.rank * np.abs(eigenvalues).max()
     basis = vectors[:, kept]
     values = np.zeros_like(right)
-    for _ in range(3):
+    for _ in range(CONTACT.refined):
         residual = scale * (right - matrix @ values)
         values = values + scale * (basis @ ((basis.T @ residual) / eigenvalues[kept]))
     left = np.abs(scale * (right - matrix @ values)).max()
-    if left > CONTACT.consistent * max(np.abs(scale * right).max(), 1e-300):
+    if left > CONTACT.consistent * max(np.abs(scale * right).max(), np.finfo(float).tiny):
         return None
     null = scale[:, None] * vectors[:, ~kept]
     if null.shape[1] == 0:

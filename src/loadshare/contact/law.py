@@ -13,6 +13,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Protocol
 
+import numpy as np
+
+from loadshare.array_types import Array
 from loadshare.settings import CONTACT
 
 
@@ -133,6 +136,24 @@ class PowerLaw:
         return PowerLaw(
             self.b * force_unit / length_unit, self.c * math.cbrt(force_unit) ** 2 / length_unit
         )
+
+
+def roots(b: Array, c: Array, compression: Array) -> Array:
+    """F^(1/3) of many contacts with c > 0 that are compressed, from above as in `PowerLaw.force`.
+
+    Parameters
+    ----------
+    b, c, compression : ndarray
+        [m/N], [m/N^(2/3)], [m].
+    """
+    y = np.sqrt(compression / c)
+    y = np.where(b > 0.0, np.minimum(y, np.cbrt(compression / np.where(b > 0.0, b, 1.0))), y)
+    for _ in range(CONTACT.roots):
+        step = ((b * y + c) * y**2 - compression) / ((3.0 * b * y + 2.0 * c) * y)
+        y = y - step
+        if (np.abs(step) <= CONTACT.many_roots * y).all():
+            break
+    return np.asarray(y)
 
 
 RIGID = PowerLaw(0.0, 0.0)

@@ -149,7 +149,7 @@ def _start(problem: ContactProblem) -> _State:
 def _compliances(
     problem: ContactProblem, forces: dict[str, float], method: str
 ) -> dict[str, tuple[float, float]]:
-    """Linear stand-ins of the laws: secants through the origin (Picard) or tangents (Newton)."""
+    """Linear replacements of the laws: secants through the origin (Picard) or tangents (Newton)."""
     if method == "picard":
         return {n: (law.secant(forces[n]), 0.0) for n, law in _laws(problem).items()}
     return tangents(problem, forces)
@@ -174,7 +174,7 @@ def _forces(names: tuple[str, ...], point: Point, units: Units) -> dict[str, flo
 def _law_misfit(
     problem: ContactProblem, at: Linearisation, forces: dict[str, float], method: str
 ) -> float:
-    """Largest difference between a law and what stood for it, at the forces found [deflections]."""
+    """Largest difference between a law and what replaced it, at the forces found [deflections]."""
     worst = 0.0
     for row in problem.rows:
         force = abs(forces.get(row.name, 0.0))
@@ -205,7 +205,7 @@ def _wall_misfit(
 def _face_misfit(
     problem: ContactProblem, plan: Plan, at: Linearisation, x: Array, forces: dict[str, float]
 ) -> float:
-    """Largest difference between arcs and the faces that stood for them [deflections, loads]."""
+    """Largest difference between arcs and the faces that replaced them [deflections, loads]."""
     worst = 0.0
     for arc in problem.arcs:
         if plan.rows[arc.name] is Role.OPEN:

@@ -67,18 +67,18 @@ class Plan:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Linearisation:
-    """Where the outer loop stands.
+    """Where the outer loop is.
 
     Attributes
     ----------
     x : ndarray, shape (n,)
         Coordinates [m] at which arcs are replaced by faces.
     compliance : mapping of row name to (float, float)
-        Linear compliance [m/N] and offset [m] that stand for a nonlinear law.
+        Linear compliance [m/N] and offset [m] that replace a nonlinear law.
     radial_laws : mapping of radial name to RadialLaw
         Laws at the current torques.
     wide : bool
-        Let the faces of arcs stand off by their sagitta, as long as x is no iterate yet.
+        Set the faces of arcs back by their sagitta, as long as x is no iterate yet.
     """
 
     x: Array

@@ -76,7 +76,7 @@ class ArcRow:
     def row(self, x: Array, wide: bool = False) -> Row:
         """Tangent face at the coordinates x: −n·Δ ≤ g.
 
-        A wide face stands off by the sagitta, so that all of the float lies inside. Faces at rest
+        A wide face is set back by the sagitta, so that all of the float lies inside. Faces at rest
         of two opposite arcs can wedge a float in that the arcs themselves let pass.
         """
         normal, bound = self.arc.face(self.relative @ x)
@@ -129,7 +129,7 @@ class Radial:
 
     @property
     def at_rest(self) -> RadialLaw | None:
-        """Law without torque; None where it has no meaning, which solving tells of."""
+        """Law without torque; None where it has no meaning, which solving reports."""
         try:
             return self.law(0.0)
         except ValueError:

@@ -53,7 +53,7 @@ class Part(NamedTuple):
     Attributes
     ----------
     state : object
-        What an element is called that stands on it.
+        State of an element that is on it.
     begin, end : float
         Radii [m].
     low, high : float

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from loadshare.contact.plan import Plan
+from loadshare.settings import CONTACT
 
 METHODS = ("newton", "picard", "power")
 
@@ -36,8 +37,8 @@ class Options:
     method: str = "newton"
     reduce: bool = True
     polish: bool = True
-    stop: float = 1e-12
-    max_iterations: int = 120
+    stop: float = CONTACT.stop
+    max_iterations: int = CONTACT.iterations
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:

@@ -14,7 +14,6 @@ from loadshare.solver.hot.exchange import Engine
 ENGINES = ("auto", "compiled", "vectorised")
 COMPILED = (
     "loadshare.solver.hot.compiled",
-    "loadshare.solver.hot.products",
     "loadshare.solver.hot.touching",
     "loadshare.certify.bound.kernel",
 )

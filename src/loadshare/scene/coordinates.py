@@ -42,9 +42,9 @@ class Coordinates:
         Rotations, displacements, slips; every coordinate is a length [m].
     rotation : mapping of gear to Rotation
     displacement : mapping of gear to slice
-        Where the two displacement components of a moving gear stand.
+        Where the two displacement components of a moving gear are.
     slip : mapping of gear to slice
-        Where those of a slip stand, of every spline that remembers it.
+        Where those of a slip are, of every spline that remembers it.
     frame : mapping of gear to ndarray, shape (2, 3)
         In which the components are taken.
     removed : tuple of (str, str)

@@ -52,7 +52,7 @@ class Scene(ContactProblem):
         Directions of shafts and supports.
     rotation : mapping of gear to Rotation
     displacement : mapping of gear to slice
-        Where the two displacement components of a moving gear stand.
+        Where the two displacement components of a moving gear are.
     removed : tuple of (str, str)
         What never became a coordinate or row, and why.
     """

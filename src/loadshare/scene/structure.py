@@ -143,7 +143,7 @@ class Structure:
     columns : Columns
         In this order.
     vectors : ndarray, shape (m, n)
-        A; rows of unit norm for springs, as they are for contacts. Arcs stand at rest.
+        A; rows of unit norm for springs, as they are for contacts. Arcs are taken at rest.
     names : tuple of str, length m
     kinds : tuple of str, length m
         "shaft", "support", "bending", "drive flank", "coast flank", "stop", "arc" or "radial".

@@ -135,7 +135,7 @@ class Bound(NamedTuple):
     wider_lines: tuple[float, float] = (2.0, 10.0)
     """Times the error without it, over which the turn of lines is bounded."""
     sets_told_apart: int = 1000
-    """Sets of elements that are told apart in a batch."""
+    """Sets of elements that are distinguished in a batch."""
     sets_together: int = 64
     """Sets whose figures are found at a time, so that memory is bounded."""
     sets: int = 2000
@@ -178,7 +178,7 @@ class Bound(NamedTuple):
     """Part in self-stresses below which a contact cannot change a force."""
     still: tuple[tuple[float, float], ...] = ((1e-10, 1e-4), (1e-10, 0.0), (2e-9, 1e-4))
     """Force by which a spline may give way in what room it has, in loads of the claim, and change
-    of a slip, over the slip, and still stand still, as they are tried in turn. What they leave of
+    of a slip, over the slip, and still not move, as they are tried in turn. What they leave of
     the law is bounded."""
     digits: int = 20
     """Elements whose ways of acting make one number below 2⁶³."""

@@ -20,6 +20,22 @@ class Contact(NamedTuple):
 
     tolerance: float = 1e-9
     """Largest residual, in forces and lengths of the problem."""
+    stop: float = 1e-12
+    """Misfit of laws, faces and friction bounds at which the outer loop ends."""
+    iterations: int = 120
+    """Passes of the outer loop before the other method is tried."""
+    interior: float = 1e-11
+    """Gap and residuals that interior-point methods are asked for; the exact solve follows."""
+    interior_steps: int = 200
+    """Their steps."""
+    splitting: float = 1e-9
+    """Residuals that operator splitting is asked for, before it is polished."""
+    splitting_steps: int = 100_000
+    """Its steps."""
+    refined: int = 3
+    """Passes of a linear solve: the first solves, the others refine."""
+    equilibrated: int = 4
+    """Passes that bring the largest entry of every row near 1."""
     directed: float = 1e-12
     """Offset, in lengths of the problem, that has no direction."""
     loose: float = 1e-9
@@ -66,6 +82,8 @@ class Contact(NamedTuple):
     """Newton's steps for a force of b F + c F^(2/3); about six are taken."""
     root: float = 1e-16
     """Last of these steps, relative."""
+    many_roots: float = 1e-15
+    """The same of many contacts at once, of which none goes to and fro for its last digit."""
     straight: float = 1e-14
     """Relative deviation of a table's points from a line that digits explain."""
     least_step: float = 1e-3

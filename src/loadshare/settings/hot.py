@@ -72,8 +72,6 @@ class HotPath(NamedTuple):
     """Part of the largest displacement that lengths are compared with at least."""
     rounded: float = 1e-9
     """Relative excess of a friction bound over the first rise that counts as a jump."""
-    root: float = 1e-15
-    """Last of Newton's steps for a cube root, relative."""
     least_share: float = 1e-6
     """Share of the load at which a law begins at least, from another sample's forces."""
 

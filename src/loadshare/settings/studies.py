@@ -32,8 +32,6 @@ class Follow(NamedTuple):
     """Newton's steps before a branch counts as lost."""
     solved: float = 1e-11
     """Last step of an answer, relative to the largest unknown."""
-    roots: int = 30
-    """Newton's steps for a cube root of a force; about six are taken."""
     rank: float = 1e-12
     """Singular values below this, relative to the largest, of the scaled Jacobian, count as
     zero."""
@@ -76,8 +74,6 @@ class Follow(NamedTuple):
     """Newton step, in deflections or loads, that gets nowhere."""
     balanced: float = 1e-9
     """What the equations may be missed by, over the load."""
-    root: float = 4e-16
-    """Last of Newton's steps for a cube root, relative."""
     constant: float = 1e-12
     """Relative change of a stiffness along a stretch that is none."""
     round_off: float = 64.0 * EPS

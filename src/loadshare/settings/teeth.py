@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from loadshare.settings.precision import EPS
@@ -64,6 +65,25 @@ class Teeth(NamedTuple):
     agree."""
     same_edge: float = 50e-6
     """Distance [m] within which ends of two gears are one edge, named after the driver."""
+    fits: float = 1e-9
+    """Part of a dimension, or of an angle [rad], by which it may differ from its partner's by
+    rounding; likewise of how far tips reach."""
+    closing: float = 1e-6
+    """Sum [m] of the single pitch deviations around a gear that is rounding."""
+    radius: float = 1e-3
+    """Part of a base radius by which a case may differ from the pair that it names."""
+    angle: float = math.radians(0.05)
+    """The same of an angle [rad]."""
+    zero: float = 1e-14
+    """Where a limit of a face gear lies, relative and in radians or metres."""
+    beside: float = 1e-6
+    """Distance [rad] from 0 and 90 degrees between which such a limit is sought."""
+    meets: int = 30
+    """Newton's steps to where a line or a normal meets a surface: five are usual."""
+    circle: float = 1e-5
+    """Axis ratio, less one, within which a contact ellipse counts as a circle."""
+    least_deflection: float = 1e-6
+    """Deflection [m] of flanks that do not yield at all."""
     at_end: float = 1e-12
     """Distance [m] within which a station is the end of its line."""
 

@@ -49,7 +49,7 @@ class Places(NamedTuple):
     """Load along a move, over the load, from which on it counts: less, and flanks whose normals are
     opposite up to the digits of a case file would seem to give way."""
     cone: float = 1e-10
-    """Tolerance of the cone programme that tells which limits are reached."""
+    """Tolerance of the cone programme that shows which limits are reached."""
 
 
 PLACES = Places()

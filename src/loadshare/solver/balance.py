@@ -1,4 +1,4 @@
-"""Whether any forces at all can balance a load, told at once.
+"""Whether any forces at all can balance a load, found at once.
 
 Exchange and search find out as well, but take their time: nothing they try is an answer.
 """
@@ -13,7 +13,7 @@ from loadshare.settings import PLACES
 
 
 def is_unbalanced(structure: Structure, load: Array) -> bool:
-    r"""Tell whether the load drives a move that nothing resists.
+    r"""Whether the load drives a move that nothing resists.
 
     The forces nearest to balance, :math:`\min_\mu \lVert f - A^T\mu\rVert` with contacts that push
     only, leave a residual r. Where it is not zero it is such a move (Farkas):

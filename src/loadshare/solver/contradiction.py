@@ -68,7 +68,7 @@ def contradiction(scene: Scene, overlap: float = PLACES.overlap) -> tuple[str, .
 
 
 def _straight(scene: Scene, rounds: list[tuple[GearRadial, float]]) -> Iterator[Row]:
-    """Rigid contacts, and rigid arcs as faces that stand off as far as the floats may bend them."""
+    """Rigid contacts, and rigid arcs as faces set back as far as the floats may bend them."""
     rest = np.zeros(scene.size)
     yield from (r for r in scene.rows if _is_rigid(r))
     for arc in scene.arcs:

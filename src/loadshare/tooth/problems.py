@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from typing import TypeAlias
 
 from loadshare.errors import CaseError, Problem
+from loadshare.settings import TEETH
 
 LENGTHS = {
     *("module", "face_width", "helix_gap", "rim", "inner", "outer", "centre_distance"),
@@ -52,7 +53,7 @@ def problem(key: str, given: float | str, message: str, allowed: str, hint: str 
 
 def same(name: str, own: float, other: float, whose: str) -> Check:
     """That a dimension is its partner's."""
-    fits = math.isclose(own, other, rel_tol=1e-9)
+    fits = math.isclose(own, other, rel_tol=TEETH.fits)
     return name, own, fits, f"that of the {whose}, {written(name, other)}"
 
 

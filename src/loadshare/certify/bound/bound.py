@@ -27,15 +27,13 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Flags
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.laws import Acts, Elements, elements
 from loadshare.certify.bound.response import Part, Response, yielding
 from loadshare.certify.bound.signs import doubts
 from loadshare.settings import BOUND
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -311,6 +309,6 @@ class _Enclosure(Part):
         errors[:, self.columns] = force
         moved = coordinate @ np.abs(columns.matrix.high).T
         doubtful, above = doubts(self.claim, found, self.rows, errors, moved)
-        # Errors without a bound tell nothing of the elements.
+        # Errors without a bound say nothing about the elements.
         bounded = np.asarray(np.isfinite(coordinate).all(axis=1))[:, None]
         return doubtful & bounded, above & bounded

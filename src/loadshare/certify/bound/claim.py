@@ -8,18 +8,17 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.twofold import Twofold, exact, minus, plus, product, quotient
 from loadshare.certify.graphs import spline_graphs, wall
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.situations import Situations
 
-Array = NDArray[np.float64]
-
 
 @dataclass(frozen=True, eq=False)
 class Claim:
-    """S claims at the situations in which they stand.
+    """S claims at their situations.
 
     Attributes
     ----------
@@ -79,7 +78,7 @@ class Claim:
 
     @cached_property
     def forces(self) -> Array:
-        """F as claimed, shape (S, m) [N]; of arcs their size stands in the first of two columns."""
+        """F as claimed, shape (S, m) [N]; of arcs their size is in the first of two columns."""
         columns, train, answers = self.columns, self.columns.train, self.answers
         found = np.zeros((self.count, len(columns.names)))
         found[:, columns.flanks] = answers.flank_force
@@ -146,7 +145,7 @@ class Claim:
     def lengths(self) -> tuple[Twofold, Array]:
         """A X − g in twice the precision, shape (S, m) [m], and the sum of the sizes of its terms.
 
-        Of arcs, the displacement from where their centres stand.
+        Of arcs, the displacement from the place of their centres.
         """
         matrix, x = self.columns.matrix, self.coordinates
         if not self.fine:
@@ -243,7 +242,7 @@ class Claim:
 
         First stiffness, stick radius S1 (infinite without slip), level F_m, reach S2, last
         stiffness (infinite for a rigid stop); not a number where a law has no meaning. A wall that
-        is a power stands as its tangent at the claim.
+        is a power is given by its tangent at the claim.
         """
         train, here = self.columns.train, self.situations
         found = np.zeros((self.count, len(self.radial_gears), 5))

@@ -21,15 +21,13 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.certify.bound.statics import Statics
 from loadshare.certify.bound.twofold import Twofold, quotient, two_product
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.rigid import rigid_shafts
 from loadshare.settings import BOUND
 from loadshare.train.train import Train
-
-Array = NDArray[np.float64]
-
 
 UNIT = 0.5 * np.finfo(float).eps
 """Rounding of one operation, relative to its result."""
@@ -222,7 +220,7 @@ class Columns:
 
     @cached_property
     def arms(self) -> Array:
-        """Base radius at which the torque of every flank is told [m]."""
+        """Base radius at which the torque of every flank is given [m]."""
         return np.array([m.told_radius for m, _ in self.all_flanks])
 
     def over_meshes(self, torques: Array) -> Array:

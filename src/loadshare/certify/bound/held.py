@@ -1,6 +1,6 @@
 """Slips that friction and the end of the clearance hold at once.
 
-Where the slip of a spline with memory stands at the end of its clearance and does not change, how
+Where the slip of a spline with memory is at the end of its clearance and does not change, how
 friction and stop share its force is open. Together they hold it as friction alone would whose bound
 is larger: the force stays within both as long as it changes by less than friction has left beside
 the stop. Where friction follows a torque, the room does too: how far it may open is allowed for up
@@ -15,10 +15,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.settings import BOUND
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,7 +79,7 @@ def with_held_slips(claim: Claim, scale: Array, still: tuple[float, float]) -> H
         gives = arm * stiffness * (claim.graphs[:, stop, 3] + reach)
         room, torque = _widest(claim, k, stop, rate, np.maximum(least, gives))
         if float((stiffness * (room + reach)).max()) <= slight * float(scale.min()):
-            # It stands still, up to what room it has.
+            # It does not move, up to what room it has.
             limits[:, friction, 0], limits[:, stop, 1] = np.inf, np.inf
             slack[at : at + 2] = float(room.max()) + reach
             turned[:, k] = torque

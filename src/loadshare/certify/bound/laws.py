@@ -16,13 +16,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Flags
 from loadshare.certify.bound.claim import EPS, TINY, Claim
 from loadshare.certify.bound.twofold import exact, minus, plus, power_two_thirds, two_product
 from loadshare.settings import BOUND
 
-Array = NDArray[np.float64]
 Acts = NDArray[np.int8]
-Flags = NDArray[np.bool_]
 
 
 class Act:

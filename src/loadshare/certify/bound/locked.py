@@ -1,6 +1,6 @@
 """Gears that rigid limits leave no way to move: what their limits share does not matter.
 
-A gear in a rigid ring without play stands where it stands, whatever its stops, its spline and its
+A gear in a rigid ring without play stays where it is, whatever its stops, its spline and its
 ring share of the force on it. Its place, known to within what the limits leave, is put in as data
 and its limits are left out; what is then bounded is all the rest. Source: formulation, section 16.
 """
@@ -15,6 +15,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.columns import Columns
 from loadshare.settings import BOUND
@@ -23,11 +24,9 @@ from loadshare.train.ring import DrumRing, Ring, RoundRing
 from loadshare.train.situations import Situations
 from loadshare.train.train import Train
 
-Array = NDArray[np.float64]
-
 
 def locked(claim: Claim) -> dict[str, float]:
-    """Gears that cannot move, and how far each may stand from where it is claimed [m].
+    """Gears that cannot move, and how far each may be from where it is claimed [m].
 
     Parameters
     ----------
@@ -52,7 +51,7 @@ def locked(claim: Claim) -> dict[str, float]:
 
 
 def _round(claim: Claim, ring: RoundRing) -> float:
-    """How far a gear in a rigid round ring may stand from its claimed place."""
+    """How far a gear in a rigid round ring may be from its claimed place."""
     columns = claim.columns
     q = columns.train.rounds.index(ring)
     at = columns.radials.start + 2 * q
@@ -62,7 +61,7 @@ def _round(claim: Claim, ring: RoundRing) -> float:
 
 
 def _drum(claim: Claim, ring: DrumRing) -> float:
-    """How far a gear in a rigid drum may stand from its claimed place."""
+    """How far a gear in a rigid drum may be from its claimed place."""
     train, columns = claim.columns.train, claim.columns
     if any(train.gears[n].moves for n in ring.neighbours):
         return math.inf
@@ -109,7 +108,7 @@ def without(claim: Claim, gears: Mapping[str, float | Array]) -> tuple[Claim, ND
     claim : Claim
         A single one.
     gears : mapping of gear to float or ndarray, shape (2,)
-        How far each may stand from there [m], in any direction or along its axes.
+        How far each may be from there [m], in any direction or along its axes.
 
     Returns
     -------

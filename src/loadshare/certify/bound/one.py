@@ -79,7 +79,7 @@ class Bound:
         for gear in gears.values():
             names = [f"{gear.name} {axis}" for axis in "xy"]
             if gear.is_tilted and names[0] in place:
-                # Displacements are told along another frame than that of the coordinates.
+                # Displacements are given along another frame than that of the coordinates.
                 along = np.abs(gear.plane @ gear.frame.T) @ [place[name] for name in names]
                 place |= dict(zip(names, along.tolist(), strict=True))
         relative = float(found.relative[row])
@@ -111,7 +111,7 @@ def bound_of(train: Train, answer: Equilibrium, rigorous: bool = False) -> Bound
 def bound_of_one(
     train: Train, situation: Situations, claimed: Equilibria, rigorous: bool = False
 ) -> Bound:
-    """Bound the error of one claim that stands alone in its arrays."""
+    """Bound the error of one claim that is alone in its arrays."""
     if not all(np.isfinite(array).all() for array in claimed.arrays):
         return Bound.none(train)
     return Bound.of(bounds(columns_of(train), situation, claimed, rigorous), 0)

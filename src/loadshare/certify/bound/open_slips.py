@@ -1,8 +1,8 @@
 r"""Splines whose friction is used up: how far they have slipped is open, what they carry is not.
 
 Where the force on a gear equals the friction bound :math:`F_m` of its spline, whatever the load,
-the gear is in balance anywhere from S1 to S2 along that force. In the case as it stands rounding
-decides to which end it goes, and no set of elements that act can be told. As long as its place
+the gear is in balance anywhere from S1 to S2 along that force. In the case as given rounding
+decides to which end it goes, and no set of acting elements can be identified. As long as its place
 changes no force, none has to be: the gear is put where it is claimed, its place q open within a
 rectangle Q along the claimed force :math:`F u`,
 
@@ -42,12 +42,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.settings import BOUND
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,7 +112,7 @@ def reaction_error(claim: Claim, slip: OpenSlip, flanks: Array) -> Array:
 
 
 def is_inside(claim: Claim, slip: OpenSlip, flanks: Array) -> bool:
-    """Tell whether an exact equilibrium has its place in the rectangle.
+    """Whether an exact equilibrium has its place in the rectangle.
 
     Parameters
     ----------

@@ -24,15 +24,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Flags
 from loadshare.certify.bound.bound import Box, aside, put_aside, rounding_of
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.laws import Act, Acts, Elements, elements
 from loadshare.certify.bound.signs import doubts
 from loadshare.certify.bound.statics import Statics, held_moves
 from loadshare.settings import BOUND
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 def quick_boxes(claim: Claim, act: Acts, scale: Array, rounded: bool = False) -> Box:
@@ -45,7 +43,7 @@ def quick_boxes(claim: Claim, act: Acts, scale: Array, rounded: bool = False) ->
     scale : ndarray, shape (S,)
         Load of the claims [N].
     rounded : bool
-        Take what moves hardly for what stands still, where it is no more than the rounding of the
+        Take what hardly moves for what does not, where it is no more than the rounding of the
         moves.
     """
     box = Box.unproved(claim, act)
@@ -272,7 +270,7 @@ class _Group:
             known = Statics.of(self.directions[~left]) if left.any() else self.statics
             self.is_covered = self._is_idle(known.moves)
             if np.any(self.may_open & left):
-                # What may open bears what nothing else does, as balance alone tells.
+                # What may open bears what nothing else does, as balance alone determines.
                 self.held, is_told = held_moves(known.moves, self.directions[left])
                 self.is_covered &= is_told or self._bears_none(self.held)
             if self.is_covered:
@@ -281,7 +279,7 @@ class _Group:
                 break
 
     def _is_idle(self, moves: Array) -> bool:
-        """Tell whether no load is left along moves, beyond those that nothing at all resists.
+        """Whether no load is left along moves, beyond those that nothing at all resists.
 
         Gears that carry nothing have none, to the last digit.
         """
@@ -290,7 +288,7 @@ class _Group:
         return bool((along <= EPS * len(moves) * self.load.max(axis=1, initial=0.0)).all())
 
     def _bears_none(self, moves: Array) -> bool:
-        """Tell whether what holds moves bears nothing."""
+        """Whether what holds moves bears nothing."""
         ways = np.abs(moves)
         if self.rounded:
             ways[ways <= BOUND.rounded * ways.max(axis=0, initial=0.0)] = 0.0
@@ -356,7 +354,7 @@ class _Group:
         rounding = rounding + found.rounding[pick] @ matrix + (stray + taken)[:, None]
         base, energy = self._under(left, misfit)
         base = base + taken[:, None] * self.is_left
-        # By what rigid parts contradict one another, one of them stands open.
+        # By what rigid parts contradict one another, one of them is open.
         width = width + np.abs(misfit @ self.rigid) @ np.abs(self.rigid).T
         base, energy = self._with(base, energy, rounding, width)
         errors = base + energy[:, None] * self.sizes
@@ -401,7 +399,7 @@ class _Group:
         return whole, places
 
     def _cover_twins(self, errors: Array) -> None:
-        """Give contacts that their twin stands for the twin's errors: it may be they that act."""
+        """Give contacts that their twin replaces the twin's errors: it may be they that act."""
         columns = self.claim.columns
         ends = columns.contacts, range(columns.arcs.start, columns.arcs.stop, 2)
         at = np.array([*ends[0], *ends[1]], dtype=np.intp)
@@ -448,7 +446,7 @@ class _Group:
         """Whether all that was assumed holds within the errors.
 
         A closed contact may as well be open in the exact equilibrium: the laws are monotone there
-        too. Then the coordinates may differ by more than the forces tell.
+        too. Then the coordinates may differ by more than the forces show.
         """
         claim, found, pick = self.claim, self.found, self.pick
         columns = claim.columns

@@ -8,11 +8,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.laws import Elements
 from loadshare.settings import BOUND
-
-Array = NDArray[np.float64]
 
 
 class Part:

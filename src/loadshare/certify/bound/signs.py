@@ -8,11 +8,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array, Flags
 from loadshare.certify.bound.claim import Claim
 from loadshare.certify.bound.laws import Act, Acts, Elements
-
-Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 def doubts(

@@ -8,9 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.settings import BOUND
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +85,7 @@ def held_moves(moves: Array, directions: Array) -> tuple[Array, bool]:
     -------
     ndarray, shape (n, k)
     bool
-        Whether balance alone tells the forces of those that hold something.
+        Whether balance alone determines the forces of those that hold something.
     """
     if not (moves.size and directions.size):
         return moves[:, :0], True

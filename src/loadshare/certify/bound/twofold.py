@@ -10,9 +10,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from loadshare.array_types import Array
 
 SPLIT = 134217729.0
 """2²⁷ + 1: cuts a double into two halves whose products are exact."""

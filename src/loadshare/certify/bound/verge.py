@@ -15,13 +15,12 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Array
 from loadshare.certify.bound.bound import Box, boxes
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.laws import Act, Acts, elements
 from loadshare.certify.bound.quick import quick_boxes
 from loadshare.settings import BOUND
-
-Array = NDArray[np.float64]
 
 
 def on_the_verge(claim: Claim, act: Acts, scale: Array, box: Box) -> Box:

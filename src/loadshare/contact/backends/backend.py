@@ -1,4 +1,4 @@
-"""The one small interface behind which solvers stand."""
+"""The one small interface of all solvers."""
 
 from __future__ import annotations
 

@@ -9,6 +9,7 @@ import numpy as np
 from loadshare.contact.backends.backend import KINDS_CONIC, Backend, BackendFailure
 from loadshare.contact.backends.conic import ConicForm, conic_form
 from loadshare.contact.programme import Point, Programme
+from loadshare.settings import CONTACT
 
 
 def cones_of(form: ConicForm) -> list[Any]:
@@ -40,8 +41,8 @@ class Clarabel:
         settings = clarabel.DefaultSettings()
         settings.verbose = False
         settings.presolve_enable = False
-        settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = 1e-11
-        settings.max_iter = 200
+        settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = CONTACT.interior
+        settings.max_iter = CONTACT.interior_steps
         answer = clarabel.DefaultSolver(
             form.quadratic, form.linear, form.matrix, form.bounds, cones_of(form), settings
         ).solve()

@@ -76,7 +76,7 @@ def conic_form(programme: Programme) -> ConicForm:
     equal: list[Row] = []
     below: list[Row] = []
     others: list[tuple[tuple[str, float], list[Row]]] = []
-    contacts: list[int] = []  # where each stands in its block
+    contacts: list[int] = []  # where each is in its block
     for e, closed in enumerate(programme.assumed_closed):
         entries = _entries(programme.rows[e])
         b, c = float(programme.linear[e]), float(programme.hertz[e])

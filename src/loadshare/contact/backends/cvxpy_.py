@@ -10,6 +10,7 @@ import numpy as np
 
 from loadshare.contact.backends.backend import KINDS_CONIC, Backend, BackendFailure
 from loadshare.contact.programme import Cone, Point, Programme
+from loadshare.settings import CONTACT
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,9 +102,8 @@ class Cvxpy:
             with warnings.catch_warnings():
                 # CVXPY doubts answers short of its tolerances; the certificate judges them here.
                 warnings.simplefilter("ignore", UserWarning)
-                form.problem.solve(
-                    solver=cp.CLARABEL, tol_gap_abs=1e-11, tol_gap_rel=1e-11, tol_feas=1e-11
-                )
+                names = ("tol_gap_abs", "tol_gap_rel", "tol_feas")
+                form.problem.solve(solver=cp.CLARABEL, **dict.fromkeys(names, CONTACT.interior))
         except cp.error.SolverError as error:
             raise BackendFailure(f"CVXPY gave no point ({error})") from error
         if form.x.value is None:

@@ -7,6 +7,7 @@ import numpy as np
 from loadshare.contact.backends.backend import KINDS_QP, Backend, BackendFailure
 from loadshare.contact.forms import quadratic_form
 from loadshare.contact.programme import Point, Programme
+from loadshare.settings import CONTACT
 
 
 class Osqp:
@@ -29,9 +30,9 @@ class Osqp:
             form.upper,
             verbose=False,
             polishing=True,
-            eps_abs=1e-9,
-            eps_rel=1e-9,
-            max_iter=100_000,
+            eps_abs=CONTACT.splitting,
+            eps_rel=CONTACT.splitting,
+            max_iter=CONTACT.splitting_steps,
         )
         answer = solver.solve(raise_error=False)
         z, dual = np.asarray(answer.x, dtype=float), np.asarray(answer.y, dtype=float)

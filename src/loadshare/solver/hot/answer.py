@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, cast
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,31 +18,23 @@ from loadshare.solver.hot.exchange import States
 from loadshare.solver.hot.iterate import Iterate
 from loadshare.train.equilibria import Equilibria, Names
 
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
 
 def equilibria(structure: Structure, iterate: Iterate, compiled: bool = False) -> Equilibria:
     """Return displacements and forces of all samples in SI units.
 
-    With `compiled`, products are those of Numba, which pass over zeros: the same but for round-off.
+    With `compiled`, for many samples, products pass over zeros: the same but for round-off.
     """
     names = Names(structure.train)
     to = _map(structure, names)
-    force, tables = (
-        iterate.force,
-        (iterate.x, iterate.x, iterate.force, iterate.force, iterate.force),
-    )
+    force, tables = iterate.force, (*[iterate.x] * 2, *[iterate.force] * 3)
     if compiled:
-        from loadshare.solver.hot import products
-
-        known = structure.cache.get(("entries",))
-        if known is None:
-            known = structure.remember(
-                ("entries",), [products.entries(part) for part in to.matrices]
-            )
-        found = [products.times(table, few) for table, few in zip(tables, known, strict=True)]
-        pushes = products.pushes
+        pairs = zip(tables, to.sparse, strict=True)
+        found = [np.ascontiguousarray((matrix @ table.T).T) for table, matrix in pairs]
     else:
         found = [table @ matrix for table, matrix in zip(tables, to.matrices, strict=True)]
-        pushes = _pushes
     rotation, displacement, reaction, torque, support = found
     rotation += to.turned
     count, gears, radials = len(force), len(names.gears), len(names.radials)
@@ -49,8 +43,8 @@ def equilibria(structure: Structure, iterate: Iterate, compiled: bool = False) -
         names,
         rotation,
         displacement.reshape(count, gears, 3),
-        pushes(force, flanks.start, flanks.stop, structure.force),
-        pushes(force, rings.start, rings.stop, structure.force),
+        _pushes(force, flanks.start, flanks.stop, structure.force),
+        _pushes(force, rings.start, rings.stop, structure.force),
         reaction.reshape(count, radials, 3),
         torque,
         support.reshape(count, gears, 2),
@@ -72,7 +66,7 @@ def pin(structure: Structure, loading: Loading, iterate: Iterate, states: States
 
 
 def without_noise(structure: Structure, iterate: Iterate, rows: NDArray[np.bool_]) -> bool:
-    """Let radial elements of some samples carry nothing where they carry round-off; tell if any do.
+    """Let radial elements of some samples drop what is round-off; return whether any do.
 
     What holds a gear that no load reaches pulls by what the sums of its contacts leave.
     """
@@ -86,13 +80,14 @@ def without_noise(structure: Structure, iterate: Iterate, rows: NDArray[np.bool_
 
 
 def _pushes(force: Array, first: int, last: int, unit: float) -> Array:
-    """Forces of contacts [N]; round-off may let one pull by a hair."""
+    """Forces of contacts [N]; rounding may let one pull."""
     found = np.maximum(force[:, first:last], 0.0)
     found *= unit
     return found
 
 
-class _Map(NamedTuple):
+@dataclass(frozen=True)
+class _Map:
     """From coordinates (n) and forces (m) to physical quantities in SI units.
 
     Attributes
@@ -106,6 +101,13 @@ class _Map(NamedTuple):
 
     matrices: tuple[Array, ...]
     turned: Array
+
+    @cached_property
+    def sparse(self) -> list[csr_array]:
+        """The matrices transposed: a coordinate belongs to one gear or two, a force to one."""
+        from scipy.sparse import csr_array
+
+        return [csr_array(matrix.T) for matrix in self.matrices]
 
 
 def _map(structure: Structure, names: Names) -> _Map:

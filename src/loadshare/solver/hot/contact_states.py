@@ -2,10 +2,10 @@
 
 An active set is one such number for every row and every radial element.
 
-A radial law is a chain of at most three pieces (:mod:`loadshare.contact.radial`), told by five
+A radial law is a chain of at most three pieces (:mod:`loadshare.contact.radial`), given by five
 numbers: it rises with `first` up to `stick`, jumps to `bound`, stays level up to `reach`, and rises
 with `last` beyond. A round ring has first = stick = bound = 0; a rigid one has an infinite `last`.
-A last piece that is a power stands as its tangent where the element is.
+A last piece that is a power is given by its tangent where the element is.
 """
 
 from __future__ import annotations

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Flags
 from loadshare.scene.loading import Loading
 from loadshare.scene.scene import Array
 from loadshare.scene.statics import unresisted
@@ -23,8 +24,6 @@ from loadshare.solver.hot.contact_states import FREE, HELD, LEVEL
 from loadshare.solver.hot.exchange import States
 from loadshare.solver.hot.iterate import Iterate, pushes
 from loadshare.solver.hot.vectorised import arc_at, pick
-
-Flags = NDArray[np.bool_]
 
 
 def determined(
@@ -193,7 +192,7 @@ def _fixed(
 ) -> Flags:
     """Whether samples of one set of carrying elements are determined, shape (len(rows),).
 
-    `near`, shape (len(rows), flat), tells which flanks and stops they touch.
+    `near`, shape (len(rows), flat), is which flanks and stops they touch.
     """
     left_by = _moves(structure, loading, some)
     moves, level = left_by.moves, left_by.level
@@ -247,7 +246,7 @@ def _touched(
     rows: NDArray[np.intp],
     near: Flags,
 ) -> _Touched:
-    """Find what samples touch, from where they stand."""
+    """Find what samples touch where they are."""
     moves, flat, x = left_by.moves, left_by.flat, iterate.x[rows]
     touches, directions = [near[:, flat - structure.springs]], []
 

@@ -1,6 +1,6 @@
 """From set to set until every sample is consistent.
 
-Samples that stand on the same set are solved together. Of all sets the one with most samples goes
+Samples on the same set are solved together. Of all sets the one with most samples goes
 first, so that few visits serve many.
 """
 
@@ -204,7 +204,7 @@ class _Rounds:
     """Sets that single samples went through, so that they do not go around for long.
 
     To and fro between two sets that differ in what carries nothing, a contact on the verge or a
-    gear that no load holds against its ring, is no question of forces: the larger set stands, and
+    gear that no load holds against its ring, is no question of forces: the larger set is taken, and
     the certificate says whether it may.
     """
 

@@ -82,7 +82,7 @@ class Proximal:
             self._face_arcs()
             # A radius that gives way as much as the rest is held: steeper, and a float that has far
             # to roll would do so in tiny steps, each pressed out of the round and back again.
-            # Slip that is remembered may have less room than that would tell apart.
+            # Slip that is remembered may have less room than that would resolve.
             yielding = 0.0 if self.structure.train.slip is not None else self.pull
             rounded = max(SEARCH.shared * softer, yielding)
             self.laws = Laws(self.structure, self.loading, self.force, softer, rounded)
@@ -96,12 +96,12 @@ class Proximal:
             yield states
 
     def store(self, iterate: Iterate) -> None:
-        """Write down where the passes stand."""
+        """Write down where the passes are."""
         iterate.x[0], iterate.force[0], iterate.stays[0] = self.x, self.force, True
         iterate.root[0] = np.maximum(np.cbrt(np.maximum(self.force, 0.0)), iterate.floor[0])
 
     def without_idle(self, states: States) -> States:
-        """Open what carries all but nothing where the passes stand."""
+        """Open what carries all but nothing where the passes are."""
         idle = np.abs(self.force) <= SEARCH.idle * np.abs(self.force).max(initial=0.0)
         apart = idle[self.scalar :].reshape(-1, 2).all(axis=1)
         law = self.laws.graph
@@ -275,7 +275,7 @@ def _with_idle_open(
 ) -> tuple[Iterate, Found]:
     """Open contacts that carry round-off, if the set holds without them where the gears are.
 
-    Of many no bound could tell whether they act.
+    Of many no bound could show whether they act.
     """
     pushes = np.abs(iterate.force[0])
     idle = pushes[structure.columns.contacts] <= HOT.sign * pushes.max(initial=0.0)

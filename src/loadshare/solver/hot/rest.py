@@ -1,7 +1,7 @@
 """Where what no force holds may rest.
 
 A set whose forces are right may leave bodies loose. At their displacement of least norm they may
-stand in one another's way, though there is room for all: closing what is in the way carries nothing
+be in one another's way, though there is room for all: closing what is in the way carries nothing
 and opens again. So a place in the free room is sought instead. Source: formulation, section 4.
 """
 
@@ -25,7 +25,7 @@ def rest(
     rooms : ndarray, shape (k,)
         How far these may close; negative where they overlap.
     discs : list of (ndarray (2, l), ndarray (2,), float)
-        Offset of a radial element by the shares, where it stands, and how far out it may be.
+        Offset of a radial element by the shares, where it is, and how far out it may be.
     size : float
         Largest displacement, of which round-off is a part.
     """
@@ -50,7 +50,7 @@ def rest(
 def _tangents(
     discs: list[tuple[Array, Array, float]], share: Array
 ) -> list[tuple[Array, Array, float, Array]]:
-    """Every disc with its outward normal towards where its element stands."""
+    """Every disc with its outward normal towards its element."""
     found = []
     for matrix, start, reach in discs:
         offset = start + matrix @ share

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from loadshare.contact.law import roots
 from loadshare.scene.loading import Loading
 from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.solver.hot import contact_states as at
-from loadshare.solver.hot.vectorised import root_of
 
 
 class Laws:
@@ -66,7 +66,7 @@ class Laws:
         force[..., : self.scalar] = flat / self.compliance
         if len(self.power):
             b, u = self.compliance[self.power], flat[..., self.power]
-            force[..., self.power] = root_of(b, self.hertz, np.where(u > 0.0, u, 1.0)) ** 3
+            force[..., self.power] = roots(b, self.hertz, np.where(u > 0.0, u, 1.0)) ** 3
         if len(self.table):
             k, rows = self._pieces(flat), np.arange(len(self.table))
             beyond = flat[..., self.table] - self.ends[rows, k]
@@ -142,7 +142,7 @@ class Laws:
             return self._chosen(radius, (self.first * radius, jumping, law.bound, beyond))
 
     def _chosen(self, radius: Array, values: tuple[Array | float, ...]) -> Array:
-        """What belongs to the piece on which each radial element stands."""
+        """What belongs to the piece on which each radial element is."""
         rising, jumping, level, beyond = values
         found = np.where(radius <= self.level, level, beyond)
         found = np.where(radius <= self.jump, jumping, found)

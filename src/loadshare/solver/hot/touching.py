@@ -132,7 +132,7 @@ def _rows(matrix: Array) -> Rows:
 
 @compiled
 def _number_all(of, here, states, held, number, carries, first, key):  # type: ignore[no-untyped-def]
-    """Tell and number what carries; returns how many sets there are."""
+    """Find and number what carries; returns how many sets there are."""
     count, contacts, last = 0, carries.shape[1] - here.radial.shape[1], 0
     for s in range(len(states)):
         least, certain = here.least[s], held[s]
@@ -218,7 +218,7 @@ def _touches(of, here, s, element, carries):  # type: ignore[no-untyped-def]
     y = _along(of.vectors, c + 1, here, s) - here.gap[r, c + 1]
     radius = np.sqrt(x * x + y * y)
     is_level = carries[s, carries.shape[1] - here.radial.shape[1] + j] == LEVEL
-    # It may be told twice, at either end of a level piece.
+    # It may count twice, at either end of a level piece.
     return (reach - radius <= PLACES.play) + (is_level and radius - stick <= PLACES.play)
 
 

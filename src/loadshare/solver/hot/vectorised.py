@@ -7,6 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import Flags
+from loadshare.contact.arc import rolled
+from loadshare.contact.law import roots
 from loadshare.scene.loading import Loading
 from loadshare.scene.scene import Array
 from loadshare.scene.statics import Basis
@@ -18,7 +21,6 @@ from loadshare.solver.hot.rest import rest
 
 Rows = NDArray[np.intp]
 States = NDArray[np.int8]
-Flags = NDArray[np.bool_]
 _BOTH = np.eye(2)
 
 
@@ -44,7 +46,7 @@ def settle(
     rows : ndarray of int, shape (k,)
         Samples to solve.
     iterate : Iterate
-        Where each sample stands; renewed in place.
+        Where each sample is; renewed in place.
     one_only : ndarray of bool, shape (S,)
         Exchange only one element of these samples.
 
@@ -225,7 +227,7 @@ class _Passes:
             if (self.settled | self.refused | hopeless).all():
                 break
         # What creeps on without end is left to the certificate.
-        # Where the forces stand, what still moves is held by none.
+        # Where the forces no longer change, what still moves is held by none.
         self.settled |= (previous <= HOT.creep) | balanced
         self.settled &= ~self.burst
         self.settled &= ~self.refused
@@ -317,7 +319,7 @@ class _Passes:
             misfit = off.max(axis=1) / largest
             misfit[waiting.any(axis=1)] = 1.0
             self.loose[touching | (np.abs(force) <= HOT.sign * self.push[:, None])] = 0
-            following = root_of(b, c, np.where(touching, compression, 1.0))
+            following = roots(b, c, np.where(touching, compression, 1.0))
             self.root[:, self.power] = np.maximum(
                 np.where(touching, following, HOT.shrink * root), floor
             )
@@ -554,7 +556,7 @@ class _Passes:
         return closes[finite], room[finite], discs
 
     def store(self, iterate: Iterate) -> None:
-        """Write back where the samples stand."""
+        """Write back where the samples are."""
         columns = self.basis.columns
         iterate.x[self.rows] = self.x
         force = np.zeros((len(self.rows), len(self.structure.kinds)))
@@ -573,7 +575,7 @@ def solve(matrix: Array, sides: Array, size: int) -> Array:
 
     Rigid contacts that push along one line leave their shares open: the matrix is singular, and any
     solution is one. The refined proximal solution tends to the one of least norm; shares that
-    contradict one another grow without bound and are told by their signs.
+    contradict one another grow without bound and are recognised by their signs.
 
     Parameters
     ----------
@@ -624,18 +626,6 @@ def change(now: Array, before: Array) -> Array:
     return np.asarray(np.abs(now - before).max(axis=1, initial=0.0) / np.maximum(size, 1e-300))
 
 
-def root_of(b: Array, c: Array, compression: Array) -> Array:
-    """Return F^(1/3) of the law b F + c F^(2/3), c > 0, from above as in `PowerLaw.force`."""
-    y = np.sqrt(compression / c)
-    y = np.where(b > 0.0, np.minimum(y, np.cbrt(compression / np.where(b > 0.0, b, 1.0))), y)
-    for _ in range(60):
-        step = ((b * y + c) * y**2 - compression) / ((3.0 * b * y + 2.0 * c) * y)
-        y = y - step
-        if (np.abs(step) <= HOT.root * y).all():
-            break
-    return y
-
-
 def piece(axis: Array, values: Array, where: Array) -> tuple[Array, Array, Array]:
     """Start on the axis, start value and slope of the pieces of tables that hold some places.
 
@@ -655,20 +645,17 @@ def arc_at(loading: Loading, a: int, rows: Rows, x: Array) -> tuple[Array, Array
     """Normal (k, 3) and margin (k,) of an arc at the coordinates x (k, n); see `Arc`."""
     nominal = loading.nominal[a]
     moved = pick(loading.shift, rows)[:, a] + x @ loading.relative[a].T
-    d = nominal + moved
-    here = np.sqrt((d * d).sum(axis=1))
-    grown = 2.0 * moved @ nominal + (moved * moved).sum(axis=1)
-    distance = np.sqrt(nominal @ nominal)
-    margin = grown / (here + distance)
+    d, here, margin = rolled(nominal, moved)
     beyond = d @ nominal <= 0.0
     if beyond.any():
-        d[beyond], here[beyond] = nominal, distance
+        d[beyond] = nominal
+        here[beyond] = distance = np.sqrt(nominal @ nominal)
         margin[beyond] = moved[beyond] @ nominal / distance
     return d / here[:, None], margin + pick(loading.clearance, rows)[:, a]
 
 
 def until(offset: Array, velocity: Array, reach: Array, slow: Array) -> Array:
-    """How far to go until |offset + t velocity| = reach, (k,); infinite for what stands still."""
+    """How far to go until |offset + t velocity| = reach, (k,); infinite for what does not move."""
     square = (velocity * velocity).sum(axis=1)
     along = (offset * velocity).sum(axis=1)
     inside = np.maximum(reach * reach - (offset * offset).sum(axis=1), 0.0)
@@ -737,7 +724,7 @@ def misplaced(
     length_band: Array,
     faint: Array,
 ) -> tuple[Flags, States]:
-    """Whether a radial element has left its place, and where it should stand instead.
+    """Whether a radial element has left its place, and where it should be instead.
 
     A friction bound up to `faint` is none.
     """

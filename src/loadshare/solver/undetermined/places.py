@@ -60,7 +60,7 @@ def places(free: FreeSet) -> Places:
 
 
 def _ranges(free: FreeSet, parts: Sequence[_Part], x: Array) -> dict[str, Range]:
-    """Least and largest values of what is told of the coordinates, about the least place x."""
+    """Least and largest values of what is reported of the coordinates, about the least place x."""
     scene = free.scene
     least_play = PLACES.play * scene.length_unit() + PLACES.inside * float(
         np.abs(x).max(initial=0.0)
@@ -80,7 +80,7 @@ def _ranges(free: FreeSet, parts: Sequence[_Part], x: Array) -> dict[str, Range]
 
 
 def _told(scene: Scene) -> Iterator[tuple[list[tuple[str, float, float]], list[int], Array]]:
-    """Yield what is told: its names with constant and rate, and which coordinates add up to it."""
+    """Yield what is reported: names with constant and rate, and coordinates that add up to it."""
     one = np.ones(1)
     turned = {
         gear: moved

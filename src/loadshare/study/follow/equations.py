@@ -16,6 +16,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from loadshare.contact.arc import rolled
+from loadshare.contact.law import roots
 from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
 from loadshare.settings import FOLLOW
@@ -209,11 +211,8 @@ class Equations:
         a, matrix = k - self.arcs.start, self.matrix(k, numbers)
         nominal = numbers.nominal[:, a]
         moved = numbers.shift[:, a] + (matrix @ z[:, : self.n, None])[:, :, 0]
-        offset = nominal + moved
-        radius = np.sqrt((offset * offset).sum(axis=1))
-        apart = np.sqrt((nominal * nominal).sum(axis=1))
-        grown = 2.0 * (moved * nominal).sum(axis=1) + (moved * moved).sum(axis=1)
-        margin = grown / (radius + apart) + numbers.clearance[:, a]
+        offset, radius, margin = rolled(nominal, moved)
+        margin = margin + numbers.clearance[:, a]
         size, slope, beyond = np.zeros_like(radius), np.zeros_like(radius), None
         where = self.polar_at.get(k)
         if where is not None:
@@ -406,13 +405,8 @@ def pressed(b: Array, c: Array, approach: Array) -> tuple[Array, Array]:
     """Force and slope of closed contacts, δ = bF + cF^(2/3), continued oddly below zero."""
     size = np.abs(approach)
     with np.errstate(divide="ignore", invalid="ignore"):
-        root = np.minimum(np.sqrt(size / c), np.cbrt(size / b))
-        # Both bounds lie above the root of a convex function: Newton descends to it.
-        for _ in range(FOLLOW.roots):
-            step = ((b * root + c) * root**2 - size) / ((3.0 * b * root + 2.0 * c) * root)
-            root = np.where(size > 0.0, np.where(step > 0.0, root - step, root), 0.0)
-            if not (step > FOLLOW.root * root).any():
-                break
+        curved = roots(b, np.where(c > 0.0, c, 1.0), np.where(size > 0.0, size, 1.0))
+        root = np.where((c > 0.0) & (size > 0.0), curved, np.cbrt(size / b))
         slope = 1.0 / (b + np.where(c > 0.0, 2.0 / 3.0 * c / root, 0.0))
     return np.copysign(root**3, approach), slope
 

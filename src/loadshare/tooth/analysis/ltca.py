@@ -28,7 +28,7 @@ from loadshare.tooth.unloaded.positions import ContactLine, GearPair, MeshPositi
 LOADS = (0.1, 0.25, 0.5, 0.75, 0.9, 0.95, 1.0)
 """Parts of the rated torque: those of the fit, others to see its misfit, and the seed's three."""
 POINTS: dict[str, int] = {"finite elements": 32, "slices": 16}
-"""Points on a contact line by model: more would refine what the slices do not tell."""
+"""Points on a contact line by model: more would refine what the slices do not show."""
 BATCH = 2**16
 """Entries of the compliance matrices of positions that are solved at once: a few megabytes."""
 Model = Literal["finite elements", "slices"]
@@ -124,7 +124,7 @@ def ltca(
     points : int, optional
         Points on each contact line; by default 32 with finite elements, 16 with slices.
     progress : callable, optional
-        Told after each position how many are done, and how many there are.
+        Called after each position with how many are done, and how many there are.
     means : bool
         Whether the law of a position is the mean over its part of the cycle, from equal parts.
 
@@ -262,7 +262,7 @@ def _under_all(problems: Sequence[ContactProblem], loads: Array) -> Iterator[tup
 def _line_loads(
     position: MeshPosition, problem: ContactProblem, contacts: Sequence[Contact]
 ) -> tuple[tuple[LineLoad, ...], ...]:
-    """The contacts under every load told line by line."""
+    """The contacts under every load, line by line."""
     force = np.stack([contact.force for contact in contacts])
     distance = np.stack([contact.distance for contact in contacts])
     told = []

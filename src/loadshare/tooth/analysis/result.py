@@ -100,7 +100,7 @@ class Ltca:
     """Loaded tooth contact at K positions of the mesh cycle and under L torques.
 
     Law, secant, tangent and increment are those of the positions, or of the means over the parts
-    of the cycle that they stand for where contact between them was solved as well.
+    of the cycle that they represent where contact between them was solved as well.
 
     Attributes
     ----------
@@ -156,7 +156,7 @@ class Ltca:
 
     @cached_property
     def elastic(self) -> Array:
-        """Approach (K, L) [m] that the law tells: at the positions, or their means."""
+        """Approach (K, L) [m] that the law gives: at the positions, or their means."""
         if self.beside is None:
             return self.approach
         every = np.array([[c.approach for c in row] for row in self.beside.contacts])
@@ -164,7 +164,7 @@ class Ltca:
 
     @cached_property
     def told(self) -> Array:
-        """Δφ (K, L) [rad at the driver] that the law tells: at the positions, or their means."""
+        """Δφ (K, L) [rad at the driver] that the law gives: at the positions, or their means."""
         lead = self.unloaded_error
         if self.beside is not None:
             every = np.array([p.transmission_error for p in self.beside.positions])
@@ -258,7 +258,7 @@ class Ltca:
 
 
 def _edges(position: int, load: int, one: LineLoad) -> list[EdgeContact]:
-    """Loaded ends of a line; a line's ends stand on edges of the flanks.
+    """Loaded ends of a line; a line's ends are on edges of the flanks.
 
     The tip is named where the end's flank coordinate lies nearer to the tip than one spacing of
     the points, or than a thousandth of the flank.

@@ -1,4 +1,4 @@
-"""Means of what a position of the mesh cycle stands for: its part of the cycle.
+"""Means over the part of the mesh cycle that a position represents.
 
 Where a pair of teeth comes into contact or leaves it, a spur mesh jumps, and positions a part of
 the cycle apart see that part of it only which they happen to hit. The mean over a position's part
@@ -49,7 +49,7 @@ def cells(count: int, changes: Sequence[float]) -> Cells:
     Parameters
     ----------
     count : int
-        Positions; position k stands for the phases from (k − ½)/count to (k + ½)/count.
+        Positions; position k represents the phases from (k − ½)/count to (k + ½)/count.
     changes : sequence of float
         Phases at which the number of pairs in contact changes, or the course of their lines.
     """

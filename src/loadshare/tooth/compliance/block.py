@@ -12,7 +12,7 @@ fillets), the core under it, and the rim under the two halves of the root spaces
      ───┴─────┴───        free side of the rim, clamped
 
 Farther away the rim goes on without teeth, in elements that grow longer, so that the cut sides
-stand where the load is no longer felt. The section is swept over the face width. Every second node
+are where the load is no longer felt. The section is swept over the face width. Every second node
 of the grids is a vertex; the nodes between make the hexahedra curved (27 nodes), so a coarse mesh
 follows involute and fillet closely.
 """

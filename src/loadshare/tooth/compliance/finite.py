@@ -21,7 +21,7 @@ REACH = 4.0
 class FiniteElements(Compliance):
     """Bending, shear, root and rim of one gear from quadratic hexahedra.
 
-    Tooth 0 stands in the middle of `teeth` teeth, whose rim goes on without teeth on either side;
+    Tooth 0 is in the middle of `teeth` teeth, whose rim goes on without teeth on either side;
     it is clamped on its free side and where it is cut from the gear. Every flank node is loaded in
     turn along its normal and the middle surfaces of all the teeth are read, so the influence of a
     loaded tooth on its neighbours is included; all teeth are alike, so one set of loads serves

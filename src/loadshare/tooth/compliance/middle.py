@@ -7,6 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
+from loadshare.settings import TEETH
 from loadshare.tooth.geometry.body import Array, ToothBody
 from loadshare.tooth.geometry.flank import dot, solve_2
 
@@ -103,7 +104,7 @@ class MiddleSurface:
         """
         flank, inward = self.facing(uw, side)
         zw = uw.copy()
-        for _ in range(30):
+        for _ in range(TEETH.meets):
             here, *slopes = self.surface(zw)
             miss = flank - here
             # The foot moves in the surface until what is left lies along the normal.

@@ -10,7 +10,7 @@ form of N. I. Muskhelishvili (*Some Basic Problems of the Mathematical Theory of
 
 with powers of z as φ and ψ, so what a root does is a sum over n. P. Sainsot, P. Velex and
 O. Duverger (J. Mech. Des. 126 (2004), 748) fitted it by polynomials. The sum holds for thin and
-thick, external and internal bodies alike, and tells how far a loaded tooth moves its neighbours.
+thick, external and internal bodies alike, and says how far a loaded tooth moves its neighbours.
 """
 
 from __future__ import annotations

@@ -35,7 +35,7 @@ from loadshare.tooth.geometry.body import Array, ToothBody
 LEAN = 18.0 / np.pi
 """Lean of a half-plane's edge under a linear traction, by the work it does; as for `Ring`."""
 ROUND = 40.0
-"""Radius, in depths, of the ring that stands for the flat body of a face gear."""
+"""Radius, in depths, of the ring that replaces the flat body of a face gear."""
 
 
 class Slices(Compliance):
@@ -49,7 +49,7 @@ class Slices(Compliance):
     width_degree : int, optional
         Degree of the polynomials over the width; by default the width over the height decides.
     rigid_body : bool
-        Whether the teeth stand on half-planes instead of the gear's body: Weber and Banaschek's
+        Whether the teeth are on half-planes instead of the gear's body: Weber and Banaschek's
         plane theory.
     """
 

@@ -58,7 +58,7 @@ def certify_contacts(
         yielded = batch.yielded(force)
         distance = yielded + batch.gap - approach[:, None]
         deflection = np.abs(yielded).max(axis=1)
-        deflection = np.where(deflection > 0.0, deflection, 1e-6)
+        deflection = np.where(deflection > 0.0, deflection, TEETH.least_deflection)
         found = {
             "pull": np.max(-force, axis=1) / load,
             "penetration": np.max(-distance, axis=1) / deflection,

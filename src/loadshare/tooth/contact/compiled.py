@@ -1,8 +1,7 @@
 """Contacts one after another, compiled with Numba: surfaces, exchange of points, Newton's method.
 
-What the numbers mean is told where the arrays are made: `problem` for the strips, `programme` for
-the programme. All of it stands in this one file, because Numba looks at no other to tell whether
-what it keeps on disk is still valid; limits are handed over for the same reason.
+What the numbers mean is explained where the arrays are made: `problem` for the strips, `programme`
+for the programme. Limits are arguments: nothing that is compiled depends on another file.
 Arrays are copied by loops: a slice on the left would take
 seconds to compile, for what it says of wrong shapes.
 """

@@ -107,7 +107,7 @@ class ContactBatch:
     """Contact problems of K positions, stacked so that one pass serves all.
 
     Problems with fewer points than the largest, N, are filled up with points that yield nothing
-    and stand far off.
+    and are far off.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 r"""A contact line as a row of strips on two elastic bodies.
 
-Each point of a line stands for a strip of length ℓ and half-width b that carries its force as a
+Each point of a line represents a strip of length ℓ and half-width b that carries its force as a
 half-ellipse of pressure across. On a half-space such a strip moves the middle of the line, at the
 distance x, by
 
@@ -66,9 +66,9 @@ def axis_ratio(curvature_ratio: ArrayLike) -> Array:
 
     wanted = np.asarray(curvature_ratio, dtype=float)
     beta = np.maximum(np.clip(wanted, 0.0, 1.0) ** (2.0 / pi), TEETH.longest)
-    for _ in range(30):
+    for _ in range(TEETH.meets):
         k, e = ellipkm1(beta**2), ellipe(1.0 - beta**2)
-        near = beta > 1.0 - 1e-5
+        near = beta > 1.0 - TEETH.circle
         # Both differences vanish as e² for a circle, where their ratio tends to β^(3/2).
         minor, major = k - e, np.where(near, 1.0, e / beta**2 - k)
         found = np.where(near, beta**1.5, minor / major)
@@ -76,9 +76,9 @@ def axis_ratio(curvature_ratio: ArrayLike) -> Array:
         slope = np.where(
             near, 1.5, (2.0 * e / beta**2 - k) / major - e / np.where(near, 1.0, minor)
         )
-        step = (np.maximum(wanted, 1e-300) / found) ** (1.0 / slope)
+        step = (np.maximum(wanted, np.finfo(float).tiny) / found) ** (1.0 / slope)
         beta = np.clip(beta * step, TEETH.longest, 1.0)
-        if np.all((np.abs(step - 1.0) < 1e-9) | (beta <= TEETH.longest) | (beta >= 1.0)):
+        if np.all((np.abs(step - 1.0) < TEETH.fits) | (beta <= TEETH.longest) | (beta >= 1.0)):
             break
     return np.where(beta <= TEETH.longest, 0.0, beta)
 
@@ -112,7 +112,9 @@ def width_factor(along: ArrayLike, across: ArrayLike) -> Array:
         return np.ones(along.shape)
     ratio = np.where(flat, 0.0, along / across)
     turned = ratio > 1.0  # the line runs along the minor axis
-    beta = np.maximum(axis_ratio(np.where(turned, 1.0 / np.where(turned, ratio, 1.0), ratio)), 1e-9)
+    beta = np.maximum(
+        axis_ratio(np.where(turned, 1.0 / np.where(turned, ratio, 1.0), ratio)), TEETH.longest
+    )
     k, e, m = ellipkm1(beta**2), ellipe(1.0 - beta**2), 1.0 - beta**2
     circle = m < 1e-6
     m = np.where(circle, 1.0, m)
@@ -166,7 +168,7 @@ class StripLine:
     Parameters
     ----------
     length : array (n,)
-        Length of line of each point [m]; the points stand in line, one after another.
+        Length of line of each point [m]; the points are in line, one after another.
     curvature, curvature_along : array (n,)
         Relative curvatures across and along the line [1/m].
     modulus, poisson : tuple of float

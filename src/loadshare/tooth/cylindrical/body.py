@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
 
+from loadshare.settings import TEETH
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.geometry.body import Array, ToothBody
 
@@ -164,7 +165,7 @@ def _by_length(curve: Curve) -> Curve:
     chord = np.abs(np.diff(curve(grid)))
     chord[0] = abs(curve(np.zeros(1))[0]) * abs(np.angle(curve(grid[:1]) / curve(grid[1:2]))[0])
     length = np.concatenate([[0.0], np.cumsum(chord)])
-    flat = length[1] <= 1e-9 * length[-1]
+    flat = length[1] <= TEETH.fits * length[-1]
     if flat:
         grid, length = grid[1:], length[1:] - length[1]
     share = length / length[-1]

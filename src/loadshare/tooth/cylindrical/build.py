@@ -1,4 +1,4 @@
-"""Putting two cylindrical gears in mesh, with every interference told."""
+"""Putting two cylindrical gears in mesh, with every interference reported."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from loadshare.involute import (
     root_clearance,
     tips_pass,
 )
+from loadshare.settings import TEETH
 from loadshare.tooth.cylindrical.checks import gear_problems
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.cylindrical.pair import (
@@ -83,7 +84,7 @@ def _partner_problems(
 ) -> Iterator[Problem]:
     kind = driver.kind * driven.kind
     helix = -kind * driver.helix_angle
-    fits = math.isclose(driven.helix_angle, helix, rel_tol=1e-9, abs_tol=1e-12)
+    fits = math.isclose(driven.helix_angle, helix, rel_tol=TEETH.fits, abs_tol=TEETH.fits)
     checks: tuple[Check, ...] = (
         same("module", driven.module, driver.module, "driver"),
         same("pressure_angle", driven.pressure_angle, driver.pressure_angle, "driver"),
@@ -162,7 +163,7 @@ def _tip_problems(
     # The partner's tip may come down to where this gear's involute ends; where that lies
     # beyond the partner's base point of the line of action, only a lower tip helps.
     limit = max(pair.partner_roll(gear.form_roll, of_driven=name == "driven"), 0.0)
-    if other.kind * (other.tip_roll - limit) > 1e-9:
+    if other.kind * (other.tip_roll - limit) > TEETH.fits:
         largest = other.addendum_to(other.base_radius * math.hypot(1.0, limit))
         cuts = f"the tip of this gear cuts into the root fillet of the {name}"
         yield problem(key, other.addendum, cuts, f"at most {digits(largest)}")

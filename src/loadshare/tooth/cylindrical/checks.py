@@ -1,4 +1,4 @@
-"""What can be wrong with a cylindrical gear, each told with the dimension that causes it."""
+"""What can be wrong with a cylindrical gear, each with the dimension that causes it."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from loadshare.errors import Problem
 from loadshare.involute import inverse_inv
+from loadshare.settings import TEETH
 from loadshare.tooth.cylindrical.body import fillet_angle, rack_tip_half_width
 from loadshare.tooth.cylindrical.gear import HelicoidGear
 from loadshare.tooth.problems import Check, digits, failed, millimetres, problem
@@ -84,7 +85,7 @@ def _external_problems(gear: HelicoidGear, key: str) -> Iterator[Problem]:
             "the tip of the generating rack has no room for this radius",
             f"at most {digits(largest)} with this dedendum",
         )
-    if gear.profile_shift < gear.least_profile_shift - 1e-12:
+    if gear.profile_shift < gear.least_profile_shift - TEETH.fits:
         yield problem(
             f"{key}.profile_shift",
             gear.profile_shift,

@@ -134,7 +134,7 @@ class FaceBody(ToothBody):
         )
         axial = np.broadcast_to(length, polar.shape)
         sine, cosine = axis[0], axis[2]
-        for _ in range(30):
+        for _ in range(TEETH.meets):
             point = axial[..., None] * axis + arm
             rise = point[..., 0] / np.hypot(point[..., 0], point[..., 1])
             step = (gear.blank(point)[0] - length) / (sine**2 * rise + cosine**2)

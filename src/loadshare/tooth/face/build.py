@@ -1,4 +1,4 @@
-"""Putting a pinion and a face gear in mesh, with every limit told."""
+"""Putting a pinion and a face gear in mesh, with every limit reported."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from loadshare.errors import Problem
 from loadshare.involute import inv
+from loadshare.settings import TEETH
 from loadshare.tooth.cylindrical.checks import (
     elasticity_checks,
     gear_problems,
@@ -123,7 +124,7 @@ def _shift_problems(pinion: HelicoidGear, shaper: Shaper) -> Iterator[Problem]:
     teeth = shaper.teeth - pinion.teeth
     excess = pinion.profile_shift - shaper.profile_shift
     room = 0.5 * teeth * inv(shaper.pressure_angle) / math.tan(shaper.pressure_angle)
-    if not (excess <= 1e-12 if teeth == 0 else excess < room):
+    if not (excess <= TEETH.fits if teeth == 0 else excess < room):
         largest = digits(shaper.profile_shift + room)
         yield problem(
             "driver.profile_shift",
@@ -195,7 +196,7 @@ def _contact_problems(pair: FaceGearPair) -> Iterator[Problem]:
             f"less than {digits(pinion.addendum_to(tip))} with the shaper's addendum",
             "A larger addendum of the shaper makes room.",
         )
-    if pair.roll_range[0] < pinion.form_roll - 1e-9:
+    if pair.roll_range[0] < pinion.form_roll - TEETH.fits:
         roll, angle = max(pair.shaper_roll(pinion.form_roll), 0.0), pair.working_angle
         depth = shaper.base_radius * (math.cos(angle) + roll * math.sin(angle))
         yield problem(

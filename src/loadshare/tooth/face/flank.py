@@ -143,7 +143,7 @@ def undercut_limit(gear: FaceGear) -> float:
         return float(regularity(flank, np.array(tip), np.array(flank.side * angle)))
 
     # Near Φ = 0 the margin is negative; it grows without bound towards 90°.
-    angle = root_of(margin, 1e-6, 0.5 * math.pi - 1e-6)
+    angle = root_of(margin, TEETH.beside, 0.5 * math.pi - TEETH.beside)
     point = flank.patch(np.array(tip), np.array(flank.side * angle), 0.0).point
     return float(gear.blank(point)[0])
 
@@ -192,7 +192,7 @@ def planar_pointing_limit(gear: FaceGear) -> float:
 
     # With depth > 1 the left side falls before it rises; the root sought is on the rising branch.
     lowest = math.acos(1.0 / depth) if depth > 1.0 else 0.0
-    return gear.axial_scale / math.cos(root_of(margin, lowest, 0.5 * math.pi - 1e-6))
+    return gear.axial_scale / math.cos(root_of(margin, lowest, 0.5 * math.pi - TEETH.beside))
 
 
 class NoLimitError(ValueError):
@@ -210,4 +210,4 @@ def root_of(function: Callable[[float], float], low: float, high: float) -> floa
     ends = function(low), function(high)
     if not min(ends) <= 0.0 <= max(ends):
         raise NoLimitError
-    return float(brentq(function, low, high, xtol=1e-14, rtol=1e-14))
+    return float(brentq(function, low, high, xtol=TEETH.zero, rtol=TEETH.zero))

@@ -54,7 +54,7 @@ class FaceMisalignment:
 class FaceGearPair(GearPair):
     """A spur pinion and a face gear, built by `face_gear_pair`.
 
-    The pinion's axis points away from the gear's, and the middle of its face width stands over the
+    The pinion's axis points away from the gear's, and the middle of its face width is over the
     middle of the gear's. Stations of a contact line are distances along the major axis of the
     contact ellipse from the ideal pair's point of contact.
 
@@ -103,7 +103,7 @@ class FaceGearPair(GearPair):
 
     @property
     def middle(self) -> float:
-        """Middle of the gear's face width (L1 + L2)/2 [m], where the pinion's middle stands."""
+        """Middle of the gear's face width (L1 + L2)/2 [m], where the pinion's middle is."""
         return 0.5 * (self.gear.inner + self.gear.outer)
 
     def shaper_roll(self, roll: Roll) -> Roll:

@@ -1,4 +1,4 @@
-"""Solid teeth of all gears, and where a gear stands in the fixed frame."""
+"""Solid teeth of all gears, and where a gear is in the fixed frame."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ Array: TypeAlias = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class PitchDeviations:
-    """Where the loaded flanks of a gear's teeth stand against even pitches.
+    """Where the loaded flanks of a gear's teeth are, compared with even pitches.
 
     Parameters
     ----------
     cumulative : tuple of float
-        By tooth, in the order in which they come into mesh: how far each stands ahead in the sense
+        By tooth, in the order in which they come into mesh: how far each is ahead in the sense
         of rotation, as an arc of the pitch circle [m]; 0 for teeth beyond the list.
     first : int
         Tooth of pair 0, from 1.
@@ -54,7 +54,7 @@ class Gear:
         return (first - 1 - pair) % self.teeth + 1
 
     def ahead(self, pair: int) -> float:
-        """Angle by which the tooth of a pair stands ahead [rad]."""
+        """Angle by which the tooth of a pair is ahead [rad]."""
         number = self.tooth_of(pair)
         if self.pitch is None or number > len(self.pitch.cumulative):
             return 0.0
@@ -78,7 +78,7 @@ class Placement:
 
 
 def fixed() -> Placement:
-    """The fixed frame itself, in which every driver stands."""
+    """The fixed frame itself, in which every driver is."""
     return Placement(np.zeros(3), np.eye(3))
 
 
@@ -96,7 +96,7 @@ class ToothBody(ABC):
     gear : Gear
         The gear.
     placement : Placement
-        Where it stands.
+        Where it is.
     foot : float
         The u at which the fillet ends and the flank begins.
     """

@@ -1,9 +1,8 @@
 """Points of tooth flanks, and the valleys of the gap between them, compiled with Numba.
 
-What is computed is told where the numbers are made: :mod:`loadshare.tooth.cylindrical.flank`,
-:mod:`loadshare.tooth.face.flank` and `valley`. A point is an array (6, 3): the
-position, the unit normal, and the derivatives of either over both surface parameters. All of it
-stands in this one file, because Numba looks at no other to tell whether what it keeps is valid.
+What is computed is explained where the numbers are made: :mod:`loadshare.tooth.cylindrical.flank`,
+:mod:`loadshare.tooth.face.flank` and `valley`. A point is an array (6, 3): the position, the unit
+normal, and the derivatives of either over both surface parameters.
 """
 
 from __future__ import annotations

@@ -132,7 +132,7 @@ class Extents:
 
 
 def least_gap(lines: Extents, points: int = FEWEST) -> tuple[Array, Array, Trace]:
-    """Least gap on each line, ends included, and the station where it stands.
+    """Least gap on each line, ends included, and its station.
 
     Two grids find the place; where the slope of the gap changes sign beside it, the secant of the
     slope gives the station.
@@ -204,7 +204,7 @@ def meet(
     a, b = start
     other = other_at(a, b)
     gap = dot(other.point - own.point, own.normal)
-    for _ in range(25):
+    for _ in range(TEETH.meets):
         apart = own.point + gap[..., None] * own.normal - other.point
         step = solve_3(other.rays[0], other.rays[1], -own.normal, apart)
         a, b, gap = a + step[0], b + step[1], gap + step[2]

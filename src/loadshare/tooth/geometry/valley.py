@@ -25,7 +25,7 @@ Index: TypeAlias = NDArray[np.int64] | NDArray[np.bool_]
 
 
 class Flanks(NamedTuple):
-    """Both flanks, as compiled code reads them; the driven gear's frame stands at `origin`."""
+    """Both flanks, as compiled code reads them; the driven gear's frame is at `origin`."""
 
     driver: HelicoidNumbers
     driven: FaceNumbers
@@ -157,7 +157,7 @@ class Margin(Protocol):
     """Distance from the nearest edge [m] at stations (k, n) on lines (k,), negative outside."""
 
     def __call__(self, stations: Array, lines: NDArray[np.int64], *, near: bool = False) -> Array:
-        """The margin (k, n); where `near`, what is known from earlier calls may stand for it."""
+        """The margin (k, n); where `near`, what is known from earlier calls may replace it."""
         ...
 
 

@@ -209,7 +209,7 @@ def law_of(pair: PairFile, found: Ltca) -> MeshLaw:
 
 
 def _sureness(pair: PairFile) -> dict[str, Any]:
-    """How far the law hangs on its rims and on its positions, where slices can tell."""
+    """How far the law depends on its rims and on its positions, where slices can show it."""
     from loadshare.tooth.pair.sensitivity import rim_effects, sampled_deflection
 
     found: dict[str, Any] = {}

@@ -19,6 +19,7 @@ from platformdirs import user_cache_path
 
 from loadshare._version import __version__
 from loadshare.output import write_whole
+from loadshare.settings import TEETH
 from loadshare.tooth.law.file import MeshLaw, law_of, law_text, parsed_law
 
 if TYPE_CHECKING:
@@ -110,8 +111,8 @@ def write_entry(key: str, text: str, place: str = LAWS) -> None:
 
 @cache
 def code_hash(room: Path = Path(__file__).parents[1]) -> str:
-    """SHA-256 of the sources of this room: another method gives another entry."""
-    found = hashlib.sha256()
+    """SHA-256 of the sources of this room and its settings: another method, another entry."""
+    found = hashlib.sha256(repr(TEETH).encode())
     for file in sorted(room.rglob("*.py")):
         found.update(file.relative_to(room).as_posix().encode())
         found.update(file.read_bytes())

@@ -27,13 +27,13 @@ def resolve(case: Case, progress: Tick | None = None) -> Case:
     """Replace `geometry`, `law_file` and the words for `law` of the meshes of a case by numbers.
 
     Laws of pairs are computed at the positions of the case, once for each pair file, and kept on
-    disk (:mod:`loadshare.tooth.law.folder`). File names count from the file in which they stand.
+    disk (:mod:`loadshare.tooth.law.folder`). File names are relative to the file that gives them.
 
     Parameters
     ----------
     case : Case
     progress : callable, optional
-        Told after each computed position how many are done, and how many there are.
+        Called after each computed position with how many are done, and how many there are.
 
     Returns
     -------
@@ -110,7 +110,7 @@ def _read(
 
     laws: dict[str, MeshLaw] = {}
     pairs: dict[str, PairFile] = {}
-    problems: dict[Problem, None] = {}  # what several meshes share is told once
+    problems: dict[Problem, None] = {}  # what several meshes share is reported once
     positions = case.operating.positions
     known: dict[Path, PairFile] = {}
     for name, source in sources.items():
@@ -183,7 +183,7 @@ def _laws(pairs: dict[str, PairFile], progress: Tick | None) -> dict[str, MeshLa
 
 
 def _from(progress: Tick | None, before: int, total: int) -> Tick | None:
-    """Progress of one pair told as that of all."""
+    """Progress of one pair as that of all."""
     if progress is None:
         return None
     tell = progress

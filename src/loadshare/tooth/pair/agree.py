@@ -9,17 +9,13 @@ from typing import TYPE_CHECKING
 from loadshare.case.keys import dotted
 from loadshare.case.line_of_action import line_of_action
 from loadshare.errors import Problem
+from loadshare.settings import TEETH
 from loadshare.tooth.face.pair import FaceGearPair
 from loadshare.tooth.problems import degrees, millimetres
 
 if TYPE_CHECKING:
     from loadshare.case import Case, Gear
     from loadshare.tooth.pair.file import PairFile
-
-RADIUS = 1e-3
-"""How far a base radius of the case may be from the pair's, as a part of it [-]."""
-ANGLE = math.radians(0.05)
-"""How far an angle of the case may be from the pair's [rad]."""
 
 
 def disagreements(case: Case, name: str, pair: PairFile) -> Iterator[Problem]:
@@ -49,7 +45,7 @@ def disagreements(case: Case, name: str, pair: PairFile) -> Iterator[Problem]:
         # The helix is not needed for the law; a case that leaves it out says nothing of it.
         angles.append(("helix_angle", line.helix_angle, _base_helix(pair)))
     for key, own, wanted in angles:
-        if abs(abs(own) - wanted) > ANGLE:
+        if abs(abs(own) - wanted) > TEETH.angle:
             given = getattr(mesh, key) is not None
             path = dotted(("meshes", name, key if given else "geometry"))
             message = f"{here} {degrees(wanted)}"
@@ -64,7 +60,7 @@ def _gear(
     gear: Gear = case.gears[name]
     if gear.type != kind:
         yield case.problem(dotted(("gears", name, "type")), f"{here} a gear of type {kind}", kind)
-    elif abs(gear.acting_radius - radius) > RADIUS * radius:
+    elif abs(gear.acting_radius - radius) > TEETH.radius * radius:
         keys = gear.given("base_radius", "inner_radius", "module")
         message = f"{here} the base radius {millimetres(radius)}"
         if keys == ["inner_radius"]:

@@ -136,7 +136,7 @@ class PairFile:
         Parameters
         ----------
         progress : callable, optional
-            Told after each position how many are done, and how many there are.
+            Called after each position with how many are done, and how many there are.
 
         Raises
         ------
@@ -178,7 +178,7 @@ def load_pair(path: str | Path) -> PairFile:
     Raises
     ------
     CaseError
-        With all problems of the file at once; those of the geometry are told when every value
+        With all problems of the file at once; those of the geometry are reported when every value
         can be read.
     """
     path = Path(path)

@@ -11,7 +11,7 @@ from pydantic import Field, Strict
 from loadshare.case.element import Element, Rule
 from loadshare.case.quantity import ANGLE, LENGTH, TORQUE, Angle, Dimension, Length, Quantity
 from loadshare.case.words import count
-from loadshare.settings import ALLOWED
+from loadshare.settings import ALLOWED, TEETH
 from loadshare.tooth.analysis.ltca import POINTS
 
 PRESSURE = Dimension("Pa", "a pressure", "206 GPa")
@@ -26,8 +26,6 @@ Teeth = Annotated[int, Strict(), Field(ge=4, le=ALLOWED.teeth)]
 Positions = Annotated[int, Strict(), Field(ge=1, le=ALLOWED.positions)]
 
 Deviations = Annotated[tuple[Length, ...], Field(min_length=1)]
-CLOSING = 1e-6
-"""What measured single pitch deviations may add up to around a gear by rounding [m]."""
 
 ABOUT = ("title", "source", "notes", "assumed")
 """The keys that say something about a pair and nothing about its teeth."""
@@ -114,7 +112,7 @@ class Body(Element):
                 most = "" if key == "single" else " at most"
                 told = f"has {count(len(values))}"
                 yield Rule(told, ("pitch", key), f"{self.teeth}{most}, one per tooth")
-            elif key == "single" and abs(sum(v.si for v in values)) > CLOSING:
+            elif key == "single" and abs(sum(v.si for v in values)) > TEETH.closing:
                 off = f"{1e6 * sum(v.si for v in values):.4g} µm"
                 yield Rule(f"adds up to {off} around the gear", ("pitch", key), "0")
         if pitch.first_tooth > self.teeth:

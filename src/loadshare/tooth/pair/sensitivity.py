@@ -1,6 +1,6 @@
 """How far a computed law hangs on the rims and on where the mesh cycle is sampled.
 
-Both are found by slices, whatever the pair is analysed by: only ratios are told, and slices take a
+Both are found by slices, whatever the pair is analysed by: only ratios are given, and slices take a
 moment.
 """
 

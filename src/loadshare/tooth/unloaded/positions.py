@@ -47,7 +47,7 @@ class ContactLine:
     normals : array (n, 3)
         Unit vectors from the driver into the driven tooth.
     length : array (n,)
-        Length of line that each point stands for [m]; the sum is the length of the line.
+        Length of line that each point represents [m]; the sum is the length of the line.
     gap : array (n,)
         Distance of the unloaded flanks along the normal [m] when the driver has the transmission
         error of the position: 0 where the flanks first touch (which need not be one of the
@@ -173,7 +173,7 @@ class GearPair(ABC):
     def openings(self, pairs: Array) -> Array:
         """How far pitch deviations part the flanks of pairs (m,) along their normals [m].
 
-        A tooth that stands ahead is nearer to its partner on the driver, and farther on the driven
+        A tooth that is ahead is nearer to its partner on the driver, and farther on the driven
         gear; that the contact line moves along with it is left out.
         """
         one, two = self.driver.gear, self.driven.gear
@@ -337,7 +337,7 @@ def touching(
     """
     driver, driven = pair.ideal(np.array(phases))
     error = np.zeros(len(phases))
-    for _ in range(20):
+    for _ in range(TEETH.meets):
         found = pair.extents(driver + error, driven)
         for k, phase in enumerate(phases):
             if k not in found.position:

@@ -142,7 +142,7 @@ def _alone(pair: GearPair, found: Extents) -> tuple[Extents, Array, Array]:
 
 
 def _sooner(pair: GearPair, met: Array, pairs: Array, line: Array, refined: Array) -> Array:
-    """Which answers (m, 1, 1) of Newton's method stand: on both flanks, and no later than the line.
+    """Which answers (m, 1, 1) of Newton's method count: on both flanks, no later than the line.
 
     Next to a line contact the equations are nearly singular and can lead off the flanks; the place
     of the least gap on the line then stands. It leaves out that the profile slopes across the line,
@@ -162,7 +162,7 @@ def _newton(
 
     Returns them, and for which pairs (m, 1) they are solved.
     """
-    for _ in range(20):
+    for _ in range(TEETH.meets):
         a, b, c, d, turn = np.moveaxis(unknowns, -1, 0)
         own = pair.driver_patch(pairs, (a, b), driver + turn)
         other = pair.driven_patch(pairs, (c, d), driven)
