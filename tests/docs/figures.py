@@ -353,7 +353,7 @@ def validation_rules() -> Iterator[Rule]:
     )
     yield rule("along z, gear 1 gives {}", lambda: [moved("1", "z").omega["I"]])
     yield rule(
-        "here they run from {} to {}",
+        "here they range from {} to {}",
         lambda: [f(moved(g).pair_omega["II"] for g in ("7", "8", "9", "10")) for f in (min, max)],
     )
     for mesh, name, torque in (("1-2", "T12", 1107.7), ("1-3", "T13", 1068.5)):

@@ -77,3 +77,28 @@ def test_every_page_can_be_read(browser, site, width, dark):
             found.append(f"{too_wide(browser, width)} px too wide")
         bad += [f"{name}: {one}" for one in found]
     assert bad == []
+
+
+MISSED = """
+const controls = "a[href], button, input:not([type=radio]):not([type=checkbox]), summary";
+return [...document.querySelectorAll(controls)]
+  .filter((c) => c.checkVisibility({ checkVisibilityCSS: true, checkOpacity: true }))
+  .filter((c) => c.getClientRects().length && !c.dataset.reached)
+  .map((c) => c.outerHTML.slice(0, 100));
+"""
+"""Controls on the screen that were not reached."""
+
+
+@pytest.mark.parametrize("page", ["index.html", "gallery/float.html"])
+def test_the_keyboard_reaches_every_control(browser, site, page):
+    from selenium.webdriver.common.action_chains import ActionChains
+    from selenium.webdriver.common.keys import Keys
+
+    on_screen(browser, 1280)
+    browser.get((site / page).as_uri())
+    shown = len(browser.execute_script(MISSED))
+    assert shown > 20
+    for _ in range(shown + 10):
+        ActionChains(browser).send_keys(Keys.TAB).perform()
+        browser.execute_script("document.activeElement.dataset.reached = 'yes'")
+    assert browser.execute_script(MISSED) == []

@@ -100,3 +100,16 @@ def test_a_page_from_a_fresh_installation(newcomer, page):
         assert blocks.differences(block.text, real) == [], block.text.splitlines()[0]
         shown += 1
     assert shown >= 6
+
+
+@pytest.mark.slow
+def test_shipped_cases_come_with_a_fresh_installation(newcomer):
+    code = (
+        "import loadshare as ls\n"
+        "print(len(ls.examples()) > 20, 'solve' in dir(ls))\n"
+        "print(ls.solve(ls.examples('star/floating_sun_4')))\n"
+    )
+    words = [newcomer / "python", "-c", code]
+    done = subprocess.run(words, capture_output=True, encoding="utf-8", check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("True True\nResult of floating_sun_4: 1 of 1 positions certified")

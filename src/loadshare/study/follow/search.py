@@ -218,7 +218,7 @@ class Search:
             self.gaps.append(Gap(first, last, first.why))
             return True
         if last.value - first.value <= self.least:
-            self.gaps.append(Gap(first, last, "nothing could be proved however near"))
+            self.gaps.append(Gap(first, last, "no proof was found, however close"))
             return True
         return False
 
