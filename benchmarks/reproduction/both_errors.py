@@ -240,7 +240,7 @@ def _others(others: Mapping[str, Case]) -> str:
             )
         )
     header = ("other directions", "Ω of 1-2", *(f"Ω of {m}" for m in printed.SHARES_II))
-    return "Quite other directions serve as well:\n\n" + table(header, rows)
+    return "Very different directions fit as well:\n\n" + table(header, rows)
 
 
 def _why_torques(both: BothErrors) -> str:
@@ -283,8 +283,8 @@ def _cycle_told(cycle: Result) -> str:
         f"by up to {spread:.4f} over the cycle and Ω of 1-2 by {max(one) - min(one):.4f}: “does "
         "not change much”, as the paper says. It finds stage I best shared at position 5 and "
         f"stage II at position 4; here these are {best('I')} and {best('II')}. That cannot be "
-        "compared: all meshes of a kind are taken in phase, and the paper prints neither how they "
-        "stand to each other nor where its cycle begins."
+        "compared: all meshes of a kind are taken in phase, and the paper prints neither their "
+        "relative phases nor where its cycle begins."
     )
 
 

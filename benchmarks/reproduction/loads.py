@@ -155,8 +155,8 @@ def chapter(found: Loads) -> Chapter:
     excess = (printed.LIGHT_TEST - 1) / (printed.LIGHT_THEORY - 1)
     blocks = (
         "`cases/fgfbstts/load.toml` with the fitted directions: 20 to 160 % of 1100 N·m, and the "
-        "one load for which the text prints coefficients, 283 N·m. Table 2 itself is not in the "
-        "source at hand, so only these two figures can be compared. The paper does not say of "
+        "one load for which the text prints coefficients, 283 N·m. Table 2 itself is not in our "
+        "source, so only these two figures can be compared. The paper does not say of "
         "which stage they are; the larger Ω II is taken.",
         entries_table(entries),
         table(header, rows),
@@ -164,7 +164,8 @@ def chapter(found: Loads) -> Chapter:
         "**What agrees.** Ω falls with the load. With fixed errors and linear springs the "
         "differences of torque do not depend on the load, as the table shows, so Ω − 1 goes with "
         "1/T.",
-        f"**Why the sizes part.** The errors of Fig. 10 give {light.two:.3f} at 283 N·m. The rule "
+        f"**Why the sizes differ.** The errors of Fig. 10 give {light.two:.3f} at 283 N·m. The "
+        f"rule "
         "alone takes the paper's own 1.067 of Fig. 10 to "
         f"{_carried(printed.SHARES_II['7-10']):.2f} (less here, as pinion 4 then also carries more "
         f"than half), and its 1.016 of Fig. 11 to "

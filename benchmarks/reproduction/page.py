@@ -41,7 +41,8 @@ def page(chapters: Sequence[Chapter], used: Mapping[str, str]) -> str:
     blocks += [
         "## How this page was made",
         "`make reproduce` solves the cases, fits what is fitted, and writes this page and its "
-        "pictures. Every position is certified; every number on the page is computed then, and the "
+        "pictures. Every position is certified; every number on the page is computed in that run, "
+        "and the "
         "same case files give the same page.",
         table(
             ("file", "SHA-256 of its physical content"),

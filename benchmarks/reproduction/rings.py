@@ -248,7 +248,7 @@ def point_chapter(seed: Seed, found: Rings) -> Chapter:
         f"On the rings all coordinates are within {100 * worst:.1f} %. The printed points lie "
         "nearer to the middle than the printed thresholds: a pinion that floats fully would lie "
         "at the threshold. So they belong to rings that are not printed and a little smaller, on "
-        "whose boundary they stand, as the paper says. In ample rings the computed points lie "
+        "whose boundary they lie, as the paper says. In ample rings the computed points lie "
         f"{listed(beyond)} further out.\n\n"
         f"The paper says that these floats are obviously larger than pinion 1's. Here pinion 1, "
         f"which is assumed to be free, moves by {one:.1f} µm, pinion 4 by {four:.1f} µm: what "
@@ -274,11 +274,12 @@ def _geometry_told(found: Rings) -> str:
     paper = ("*paper*", "–", "–", "–", *(f"{v:g}" for v in geometry.PRINTED))
     spread = [(min(v), max(v)) for v in zip(*(g.values for g in found.geometries), strict=True)]
     return (
-        "**What is fitted, and how surely.** The paper prints no radius and no angle. Base radius "
+        "**What is fitted, and how well it is determined.** The paper prints no radius and no "
+        "angle. Base radius "
         "of pinion 4, angle of the idlers and pressure angle of the case files are a fit to these "
         "figures and those of Fig. 14, so Figs. 13 and 14 are no independent test of "
         "the geometry: three numbers give them all. Fitted anew to the four figures below, "
-        "weighed in other ways:\n\n"
+        "with other weights:\n\n"
         + table(header, [*geometry.rows(list(found.geometries)), paper])
         + f"\n\nr_b4 between {spread[0][0]:.1f} and {spread[0][1]:.1f} mm, ψ between "
         f"{spread[1][0]:.2f}° and {spread[1][1]:.2f}° and α_t between {spread[2][0]:.1f}° and "

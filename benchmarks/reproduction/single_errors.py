@@ -190,7 +190,7 @@ def installation_chapter(seed: Seed, found: Installation) -> Chapter:
         "(paper: 6 first, 7 to 10 alike and far less). Gear 6 leads here too: Ω − 1 is "
         f"{(two['6'] - 1) / (max(two[g] for g in far) - 1):.1f} times that of the next. "
         f"{_mirrored_told(found)}\n\n"
-        "**Why the sizes part.** What an error adds within one pair goes with the cosine of the "
+        "**Why the sizes differ.** What an error adds within one pair goes with the cosine of the "
         "angle between the error and one direction of its gear, so the size depends on the "
         "direction that is not printed. Within what it leaves open lie the printed figures for: "
         f"{inside}. {_matching_told(found)}",
@@ -228,7 +228,7 @@ def _matching_told(found: Installation) -> str:
         f"{printed.OMEGA_INSTALLATION['II']}:\n\n"
         + table(header, rows)
         + "\n\nWhere gear 6 also leads, the other four are alike and far less, as printed. Such a "
-        "direction explains the sizes; it is not taken over, as Figs. 10 and 13 alone are fitted."
+        "direction explains the sizes; it is not adopted, because only Figs. 10 and 13 are fitted."
     )
 
 
@@ -254,7 +254,7 @@ def eccentricity_chapter(seed: Seed, found: Eccentricity) -> Chapter:
         "and over a whole revolution an eccentricity passes through every direction, so mirrored "
         "gears reach the same largest Ω. The torques are periodic, once per revolution, as "
         "printed; the larger of two branches, which is drawn, rises twice.\n\n"
-        f"**Why the sizes part.** The printed Ω II − 1 is {part:.2f} of what the full amplitude "
+        f"**Why the sizes differ.** The printed Ω II − 1 is {part:.2f} of what the full amplitude "
         "gives. An eccentricity that turns reaches its full effect at some angle, which the "
         "computed figures hold; the five positions of one mesh cycle, over which a gear hardly "
         "turns, would show a part of it that depends on the phase. The paper prints neither the "

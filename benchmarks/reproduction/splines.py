@@ -215,11 +215,11 @@ def clearance_chapter(seed: Seed, found: Clearance, full: FullFloat) -> Chapter:
         f"{printed.FLOATS['4']:.0f} µm ({part:.2f} µm) the computed states are the printed ones. "
         f"Below F_m/K_w = {stick:.2f} µm the friction bound is "
         "not reached and the clearance does not matter.",
-        "**Why the sizes part.** The clearance that is needed is the float of Fig. 11, so it is "
+        "**Why the sizes differ.** The clearance that is needed is the float of Fig. 11, so it is "
         "smaller than the paper's by the same factor. For the same reason the curves begin at "
         f"{start['4']:.4f} and {start['5']:.4f}, not near the shares without floats "
-        f"({rigid['4']:.3f} and {rigid['5']:.3f}): with no clearance a pinion still hangs on a "
-        "shaft that bends, and "
+        f"({rigid['4']:.3f} and {rigid['5']:.3f}): with no clearance a pinion is still held by a "
+        f"shaft that bends, and "
         f"K_w = {printed.BENDING / 1e6:.1f} N/µm is so soft that the {full.float_of('4'):.0f} µm "
         "that pinion 4 needs take a fraction of the force.",
     )
@@ -282,7 +282,7 @@ def _relief(found: FullFloat) -> str:
     miss = found.unrelieved("5") / printed.FLOATS["5"] - 1
     needed = share_of_push(found, printed.SHARES_II["7-10"], printed.FLOATS["4"])
     return (
-        "**Why the floats part: the relief.** A pinion moves until its pair shares evenly. That "
+        "**Why the floats differ: relief.** A pinion moves until its pair shares evenly. That "
         "takes a displacement that follows from the errors and the geometry alone, and no shaft, "
         f"stiff or soft, changes it. The printed floats are {times['4']:.0f} and "
         f"{times['5']:.0f} times the computed ones. They have the size of the force "
@@ -303,7 +303,7 @@ def _residual(found: FullFloat) -> str:
     left = {p: per_omega[p] * (printed.FLOATING_SHARES_II[PAIRS[p][1]] - 1) for p in PINIONS}
     own = found.position.floats["4"].friction or 0.0
     return (
-        "**Why the shares part.** In full float only friction keeps a pinion from its place. The "
+        "**Why the shares differ.** In full float only friction keeps a pinion from its place. The "
         f"printed 1.016 and 1.007 would need a lateral force of {left['4']:.0f} N on pinion 4 and "
         f"{left['5']:.0f} N on pinion 5. Both splines carry about the same torque, so friction "
         "that follows the torque would be about the same on both; the paper does not print the "
@@ -325,7 +325,7 @@ def _others(others: Mapping[str, FullFloat]) -> str:
     ]
     header = ("other directions", "float 4 [µm]", "float 5 [µm]", "F/K_w 4 [µm]", "F/K_w 5 [µm]")
     return (
-        "The prediction does not hang on which of the possible directions is taken, because the "
+        "The prediction does not depend on which of the possible directions is chosen, because the "
         "shares of Fig. 10 fix what a float has to even out:\n\n" + table(header, rows)
     )
 

@@ -48,7 +48,7 @@ def stability_report(
         "## Outcomes",
         "",
         "Certified / refused / wrong / crashed; in brackets how many of the wrong ones would pass "
-        "at 1e-6. A dash: not for it.",
+        "at 1e-6. A dash: not applicable.",
         "",
         "| family | " + " | ".join(methods) + " |",
         "|---" * (len(methods) + 1) + "|",
@@ -64,7 +64,7 @@ def stability_report(
 
 
 _HOW = (
-    "- A family turns one knob from harmless to extreme, with fixed seeds; "
+    "- Each family varies one parameter from harmless to extreme, with fixed seeds; "
     "`python -m benchmarks.stress --family NAME --problem N` shows and explains a single problem.",
     "- Whether a problem has an answer is decided before any method sees it: two linear "
     "programmes, written from the train and solved by HiGHS, ask whether forces can balance the "
@@ -76,8 +76,9 @@ _HOW = (
     "dimensionless data. Slow ones are given fewer: "
     + ", ".join(f"{name} every {n}th problem" for name, n in EVERY.items())
     + ".",
-    "- Not for it: OSQP, PIQP and DAQP solve no cones, so problems with splines or round rings are "
-    "not for them; friction that follows the torque has no energy, so it is not for SLSQP.",
+    "- Not applicable: OSQP, PIQP and DAQP solve no cones, so they cannot treat problems with "
+    "splines or round rings; friction that follows the torque has no energy, so SLSQP cannot "
+    "treat it.",
 )
 
 
@@ -91,7 +92,7 @@ def _ours(cells: Sequence[Cell]) -> list[str]:
         f"{counts.get('refused', 0)} refused, {counts.get('wrong', 0)} wrong, "
         f"{counts.get('crashed', 0)} crashed. Of those with an answer {missed} were not certified; "
         f"of those without one {unnamed} were refused without naming an element that lacks it. "
-        + ("What was asked for is met." if met else "**What was asked for is not met.**")
+        + ("The requirement is met." if met else "**The requirement is not met.**")
     ]
     for cell in cells:
         if cell.failures:
@@ -127,5 +128,5 @@ def _sentence(cells: Sequence[Cell]) -> str:
         f"Of {total} problems {missed} that have an answer are not certified, {wrong} answers are "
         f"wrong, {crashed} attempts crash. Worst on *{FAMILIES[worst.family].title}* "
         f"({worst.counts['certified']} of {worst.total - worst.counts['not for it']} certified). "
-        "Commonest: " + "; ".join(common) + "."
+        "Most common: " + "; ".join(common) + "."
     )
