@@ -199,3 +199,48 @@ def test_meshes_of_a_loop_go_through_their_cycles_as_a_march_does(name: str) -> 
     for mesh in one:
         # A step that falls between two positions may round either way.
         assert np.mean(one[mesh] == other[mesh]) > 0.98, mesh
+
+
+def ravigneaux(backlash: float | None) -> Drive:
+    """Short planets between a sun and long planets, which mesh with a sun and the ring."""
+    drive = Drive(backlash)
+    drive.gear("s1", 24)
+    drive.gear("s2", 30)
+    drive.gear("r", -70)
+    drive.carrier("c")
+    far, near, apart = (0.5 * MODULE * z for z in (50, 40, 36))
+    for k in range(4):
+        turn = 0.5 * np.pi * k
+        bent = turn + np.arccos((far**2 + near**2 - apart**2) / (2.0 * far * near))
+        drive.gear(f"q{k}", 20, (far * np.cos(turn), far * np.sin(turn)), carrier="c")
+        drive.gear(f"p{k}", 16, (near * np.cos(bent), near * np.sin(bent)), carrier="c")
+        for pair in (("s1", f"p{k}"), (f"p{k}", f"q{k}"), ("s2", f"q{k}"), (f"q{k}", "r")):
+            drive.mesh(*pair)
+    return drive
+
+
+@pytest.mark.parametrize("backlash", [None, 3e-5])
+@pytest.mark.parametrize(
+    ("driving", "output", "held", "ratio"),
+    [
+        ("s1", "r", "c", 70 / 24),
+        ("s1", "r", "s2", 0.7 + 0.3 * 70 / 24),
+        ("s2", "c", "s1", 1.8),
+        ("s2", "r", "c", -70 / 30),
+        ("s1", "r", "", 1.0),
+    ],
+)
+def test_a_ravigneaux_set_has_its_gears(
+    driving: str, output: str, held: str, ratio: float, backlash: float | None
+) -> None:
+    """The last: both suns on one shaft, so that all goes round as one piece."""
+    drive = ravigneaux(backlash)
+    if held:
+        drive.gears[held]["held"] = True
+    else:
+        drive.shaft("s1", "s2")
+    case = drive.case(driving, output, 300.0)
+    assert 1.0 / build_train(case).gears[output].ratio == pytest.approx(abs(ratio), rel=1e-12)
+    position = ls.solve(case).positions[0]
+    assert position.loads.gears[output] == pytest.approx(-300.0 * ratio, rel=1e-9)
+    assert sum(position.loads.gears.values()) == pytest.approx(0.0, abs=1e-8)

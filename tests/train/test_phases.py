@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -121,6 +122,41 @@ def test_sets_that_cannot_be_put_together_are_told_where_they_would_fit() -> Non
     assert "miss each other by 0.3 of a pitch" in told
     assert "3.33333 deg apart" in told
     assert "divides 108" in told
+
+
+@pytest.mark.parametrize(("ring", "parts"), [(-70, 40), (0, 60)])
+def test_planets_in_pairs_are_told_where_they_would_fit(ring: int, parts: int) -> None:
+    """To a ring the two gears run alike and their difference counts; to a second sun, the sum."""
+    last = {"teeth": abs(ring or 30), "type": "internal" if ring else "external"}
+    gears: dict[str, Any] = {
+        "sun": {"teeth": 30, "centre": ["0 mm", "0 mm", "0 mm"]},
+        "last": {**last, "centre": ["0 mm", "0 mm", "60 mm"]},
+        "c": {"type": "carrier", "centre": ["0 mm", "0 mm"]},
+    }
+    # Both planets 20 teeth: 50 mm from a sun, and from a ring of 70 as well.
+    for name, turn, height in (("p", 0.0, 15.0), ("q", 47.156357, 45.0)):
+        place = {"distance": "50 mm", "height": f"{height} mm"}
+        for k, angle in (("1", 0.0), ("2", 91.0)):
+            gears[name + k] = {"teeth": 20, "carrier": "c"}
+            gears[name + k]["centre"] = {**place, "angle": f"{turn + angle} deg"}
+    for name, gear in gears.items():
+        if name != "c":
+            gear |= {
+                "module": "2 mm",
+                "face_width": "20 mm" if name in ("sun", "last") else "40 mm",
+            }
+    meshes = {f"sun-p{k}": {"law": "iso"} for k in (1, 2)}
+    meshes |= {f"p{k}-q{k}": {"law": "iso"} for k in (1, 2)}
+    meshes |= {f"q{k}-last": {"law": "iso"} for k in (1, 2)}
+    gears["last"]["held"] = True
+    case = ls.Case(
+        operating={"input": "sun", "output": "c", "torque": "100 N*m"}, gears=gears, meshes=meshes
+    )
+    with pytest.raises(CaseError) as caught:
+        ls.solve(case)
+    told = str(caught.value)
+    assert "cannot be put together" in told
+    assert f"divides {parts}." in told
 
 
 def test_a_law_is_read_at_each_meshs_own_place() -> None:

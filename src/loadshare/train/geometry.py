@@ -25,6 +25,7 @@ from loadshare.train.kinematics import Kinematics, settle
 from loadshare.train.mesh import running_contact
 from loadshare.train.period import Period, period_of
 from loadshare.train.phases import MEETS, WHOLE, Meeting, Misfit, phases
+from loadshare.train.ring import transverse
 from loadshare.train.willis import Links
 
 
@@ -169,7 +170,7 @@ def _in_phase(case: spec.Case, pairs: Mapping[str, Pair]) -> dict[str, Pair]:
     }
     found, misfits = phases(meetings)
     told = [
-        _misfit_told(case, pairs[m.mesh], m)
+        _misfit_told(case, pairs, m)
         for m in misfits
         if all(case.gears[g].tooth is not None for g in case.meshes[m.mesh].ends)
     ]
@@ -191,25 +192,49 @@ def _phases_against(case: spec.Case, found: Mapping[str, float]) -> Iterator[Pro
             yield case.problem(path, "contradicts the teeth and where they stand", allowed, hint)
 
 
-def _misfit_told(case: spec.Case, pair: Pair, misfit: Misfit) -> Problem:
+def _misfit_told(case: spec.Case, pairs: Mapping[str, Pair], misfit: Misfit) -> Problem:
     """Say by how much teeth miss each other, and where a planet between two gears would fit."""
+    pair = pairs[misfit.mesh]
     message = (
         f"cannot be put together: its teeth miss each other by {abs(misfit.pitches):.2g} of a "
         "pitch where all others meet"
     )
-    ends = {pair.driver.name, pair.driven.name}
-    hint = ""
-    for planet in (pair.driver, pair.driven):
-        others = {n for m in case.meshes.values() if planet.name in m.ends for n in m.ends}
-        teeth = [case.gears[n].teeth or 0 for n in sorted(others - {planet.name})]
-        kinds = sorted(case.gears[n].type for n in others - {planet.name})
-        if planet.kind == "external" and kinds == ["external", "internal"] and ends <= others:
-            step = 360.0 / sum(teeth)
-            hint = (
-                f"Gears that stand about the same axis fit at angles {step:.6g} deg apart, and "
-                f"evenly spaced if their number divides {sum(teeth)}."
+    return case.problem(("meshes", misfit.mesh), message, hint=_spacing_told(case, pairs, pair))
+
+
+def _spacing_told(case: spec.Case, pairs: Mapping[str, Pair], pair: Pair) -> str:
+    """Say how far apart planets fit that lead from one gear to another about the same axis.
+
+    A planet that is turned on from one to the next by its pitch shifts the two gears against each
+    other by z₁ + z₂ parts of a revolution where they run against each other as seen from it, by
+    their difference where they run alike.
+    """
+    gears = {g.name: g for p in pairs.values() for g in (p.driver, p.driven)}
+    meshing: dict[str, list[str]] = {name: [] for name in gears}
+    for mesh in case.meshes.values():
+        for one, other in (mesh.ends, mesh.ends[::-1]):
+            meshing[one].append(other)
+
+    def about(one: str, other: str) -> bool:
+        between = transverse(gears[one].centre - gears[other].centre, gears[other].axis)
+        return bool(np.linalg.norm(between) <= MEETS * gears[other].base_radius)
+
+    for planet, last in ((pair.driver, pair.driven), (pair.driven, pair.driver)):
+        near = [n for n in meshing[planet.name] if n != last.name]
+        through = [n for n in near if not about(n, last.name)]
+        beyond = [n for other in through for n in meshing[other] if n != planet.name]
+        first = next((gears[n] for n in (*near, *beyond) if about(n, last.name)), None)
+        if first is None or about(planet.name, last.name):
+            continue
+        teeth = [round(g.teeth or 0) for g in (first, last)]
+        alike = first.sense * last.sense * float(first.axis @ last.axis) > 0.0
+        whole = abs(teeth[0] - teeth[1]) if alike else sum(teeth)
+        if whole:
+            return (
+                f"Gears that stand about the same axis fit at angles {360.0 / whole:.6g} deg "
+                f"apart, and evenly spaced if their number divides {whole}."
             )
-    return case.problem(("meshes", misfit.mesh), message, hint=hint)
+    return ""
 
 
 def _kinematics(case: spec.Case) -> Kinematics:
@@ -286,9 +311,11 @@ def _pairs(case: spec.Case, gears: Mapping[str, Gear]) -> dict[str, Pair]:
         # Where the load presses neither, the names tell.
         coast = pressed[name] < 0 if pressed.get(name) else against
         turned = coast and not mesh.given("backlash", "normal_backlash")
-        if turned:
-            driver, driven = driven, driver
         contact, counted = running_contact(driver, driven)
+        if turned:
+            # The other flank of the same two gears, whichever senses they are counted in.
+            driver, driven = driven, driver
+            contact, counted = running_contact(driver, driven, counted[1])
         normals = [contact.normal(line.pressure_angle, drive) for drive in (True, False)]
         pair = Pair(driver, driven, (normals[0], normals[1]), turned, line, counted=counted)
         if mesh.backlash == "teeth":

@@ -251,12 +251,18 @@ def approach_of(mesh: Mesh, drive: bool, gears: Mapping[str, Gear]) -> Approach:
     return Approach(turning, shifting)
 
 
-def running_contact(driver: Gear, driven: Gear) -> tuple[Contact, tuple[int, int]]:
+def running_contact(
+    driver: Gear, driven: Gear, way: int | None = None
+) -> tuple[Contact, tuple[int, int]]:
     """Contact of two gears as they run, seen from their carrier, and how they are counted in it.
 
-    See `Mesh.counted`.
+    Parameters
+    ----------
+    driver, driven : Gear
+    way : int, optional
+        Which way the driver runs, over the sense in which it is counted (see `Mesh.counted`).
     """
-    way = -1 if driver.relative < 0.0 else 1
+    way = way or (-1 if driver.relative < 0.0 else 1)
     contact = contact_of(replace(driver, sense=way * driver.sense), driven)
     return contact, (way, contact.driven_sense * driven.sense)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from loadshare.train.gear import Gear, cross
 from loadshare.train.ring import transverse
-from loadshare.train.willis import Links, along, seen_from
+from loadshare.train.willis import NOISE, Links, along, seen_from
 
 
 def members(
@@ -48,7 +48,9 @@ def members(
     relative = dict(speeds)
     for name, frame in frames.items():
         if gears[name].kind != "carrier":
-            relative[name] -= along(gears[name], gears[frame]) * speeds[frame]
+            apart = speeds[name] - along(gears[name], gears[frame]) * speeds[frame]
+            # What goes round with its carrier as one piece does not turn on it.
+            relative[name] = apart if abs(apart) > NOISE * abs(speeds[frame]) else 0.0
     turned = {}
     for seed in dict.fromkeys(walks.values()):
         moving = (relative[name] for name, walk in walks.items() if walk == seed and relative[name])
