@@ -136,8 +136,11 @@ return bad;
 
 
 @contextmanager
-def chromium(profile: Path) -> Iterator[Any]:
-    """A browser without a network. Without one the test is skipped, with CI set it fails."""
+def chromium(profile: Path, offline: bool = True) -> Iterator[Any]:
+    """A browser without a network, or one that reaches a server of the test's own.
+
+    Where there is no browser the test is skipped, with CI set it fails.
+    """
     named = (shutil.which(n) for n in ("chromium", "chromium-browser", "google-chrome"))
     program, driver = next(filter(None, named), None), shutil.which("chromedriver")
     if program is None or driver is None:
@@ -155,8 +158,9 @@ def chromium(profile: Path) -> Iterator[Any]:
         options.add_argument(flag)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     found = webdriver.Chrome(options=options, service=Service(driver))
-    # Pages must do without a network; the browser has none either.
-    found.set_network_conditions(offline=True, latency=0, throughput=0)
+    if offline:
+        # Pages must do without a network; the browser has none either.
+        found.set_network_conditions(offline=True, latency=0, throughput=0)
     yield found
     found.quit()
 

@@ -23,6 +23,7 @@ from loadshare.cli.command import Command, Group
 from loadshare.cli.draw import draw
 from loadshare.cli.everywhere import taking
 from loadshare.cli.exits import room_told
+from loadshare.cli.explore import explore
 from loadshare.cli.exporting import export
 from loadshare.cli.importing import import_machine
 from loadshare.cli.ltca import ltca
@@ -51,10 +52,23 @@ app = typer.Typer(
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 STUDIES = (sweep, critical, sensitivity, tolerance, march, compare, fit, study)
-CASES = (run, batch, report, draw, check, export, *STUDIES)
+CASES = (run, batch, report, draw, check, export, explore, *STUDIES)
 SCRIPTED = (run, *STUDIES)
 """Commands one of whose files can be JSON, and so be printed by ``--json``."""
-for command in (run, batch, report, draw, check, schema, new, ltca, export, warm, *STUDIES):
+for command in (
+    run,
+    batch,
+    report,
+    draw,
+    explore,
+    check,
+    schema,
+    new,
+    ltca,
+    export,
+    warm,
+    *STUDIES,
+):
     has = {"json": command in SCRIPTED, "allow_outside": command in CASES, "quiet": True}
     app.command(cls=Command)(taking(command, *(name for name, wanted in has.items() if wanted)))
 app.command("import", cls=Command)(taking(import_machine, "quiet"))

@@ -8,6 +8,7 @@ compiled anew when one changes (`code_cache.py`).
 from loadshare.settings.allowed import ALLOWED
 from loadshare.settings.certificate import BOUND, CERTIFY
 from loadshare.settings.contact import CONTACT, LAWS
+from loadshare.settings.explore import EXPLORE
 from loadshare.settings.hot import ABREAST, EXCHANGE, HOT, SEARCH, STATICS
 from loadshare.settings.job import JOB
 from loadshare.settings.precision import EPS
@@ -23,6 +24,7 @@ __all__ = [
     "CONTACT",
     "EPS",
     "EXCHANGE",
+    "EXPLORE",
     "FIT",
     "FOLLOW",
     "HOT",

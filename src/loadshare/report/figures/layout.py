@@ -18,6 +18,10 @@ from loadshare.train.gear import Vector, transverse_frame
 from loadshare.train.ring import transverse
 
 FLOATS, ELASTIC, FIXED = "floats", "on an elastic bearing", "on a rigid bearing"
+FLAT = 1e-9
+"""Heights that differ by less than this part of the train are one height."""
+OUTSIDE = 1.07
+"""Radius of an internal gear's bent arrow over its largest radius: inside it are the pinions."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -116,6 +120,44 @@ class Layout:
     bodies: Mapping[str, Body]
     pairs: tuple[Pair, ...]
     shafts: tuple[tuple[str, str], ...]
+
+    @property
+    def common_axis(self) -> Vector:
+        """Axis along which most gears turn, pointing the way the first of them does."""
+        bodies = list(self.bodies.values())
+
+        def alike(body: Body) -> int:
+            return sum(abs(float(body.axis @ other.axis)) > 1.0 - 1e-6 for other in bodies)
+
+        return max(bodies, key=alike).axis
+
+    def heights_differ(self, axis: Vector) -> bool:
+        """Whether there is more to be seen from the side."""
+        heights = [float(body.centre @ axis) for body in self.bodies.values()]
+        size = max(body.base_radius for body in self.bodies.values())
+        crossed = any(abs(float(b.axis @ axis)) < 1.0 - 1e-6 for b in self.bodies.values())
+        return crossed or max(heights) - min(heights) > FLAT * size
+
+    def reach(self, body: Body) -> float:
+        """Largest radius that is drawn of a gear [m]."""
+        pitch = [p.radii[body.name] for p in self.pairs if body.name in p.radii]
+        largest = max([body.base_radius, *body.rims, *pitch])
+        return OUTSIDE * largest if body.kind == "internal" else largest
+
+    def radii(self, body: Body) -> tuple[dict[str, float], dict[str, float]]:
+        """Radii [m] of the full and of the dashed circles of a gear, by what they are."""
+        if body.kind == "face":
+            rims = dict(zip(("inner", "outer"), body.rims, strict=False))
+            acting = {"acting radius": body.base_radius}
+            return (rims, acting) if rims else (acting, {})
+        if body.kind == "carrier":
+            return {}, {"pin circle": body.base_radius}
+        found: dict[str, float] = {}
+        for radii in (p.radii for p in self.pairs if body.name in p.radii):
+            radius = radii.pop(body.name)
+            if not any(math.isclose(radius, known, rel_tol=1e-6) for known in found.values()):
+                found[f"pitch circle with {next(iter(radii))}"] = radius
+        return found, {"base circle": body.base_radius}
 
 
 def layout_of(case: Sections, train: Train | None) -> Layout:

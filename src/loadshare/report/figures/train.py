@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from typing import Any
 
 import altair as alt
@@ -35,8 +34,6 @@ from loadshare.train.gear import Vector, transverse_frame
 
 WIDTH, HEIGHT = 620.0, 560.0
 """Room for a view [px]."""
-FLAT = 1e-9
-"""Heights that differ by less than this part of the train are one height."""
 SAME = 1.0
 """Centres that are closer than this are one on the drawing [px]."""
 SENSE = math.radians(75.0)
@@ -48,8 +45,6 @@ CENTRE_LINES: dict[str, dict[str, Any]] = {
     "fits": {"color": SOFT, "strokeWidth": 0.9, "strokeDash": [10, 3, 2, 3]},
     "misfit": {"color": WARNING, "strokeWidth": 3},
 }
-OUTSIDE = 1.07
-"""Radius of an internal gear's bent arrow over its largest radius: inside it are the pinions."""
 
 
 def train(case: Sections) -> Figure:
@@ -78,10 +73,10 @@ def train(case: Sections) -> Figure:
         raise LoadshareError("no gear has a centre that could be read, so nothing can be drawn")
     ends = {pair.name: (pair.driver, pair.driven) for pair in layout.pairs}
     palette = Palette(layout.bodies, ends)
-    axis = _common_axis(list(layout.bodies.values()))
+    axis = layout.common_axis
     frame = transverse_frame(axis)
     views = [_View(layout, palette, frame, plan=True)]
-    if _heights_differ(layout, axis):
+    if layout.heights_differ(axis):
         # Upwards is the common axis; to the right stays to the right.
         views.append(_View(layout, palette, np.array([frame[0], axis]), plan=False))
     scale = min(view.scale for view in views)
@@ -105,22 +100,6 @@ def _train_of(case: Sections) -> Train | None:
         return None
 
 
-def _common_axis(bodies: Sequence[Body]) -> Vector:
-    """Axis along which most gears turn, pointing the way the first of them does."""
-
-    def alike(body: Body) -> int:
-        return sum(abs(float(body.axis @ other.axis)) > 1.0 - 1e-6 for other in bodies)
-
-    return max(bodies, key=alike).axis
-
-
-def _heights_differ(layout: Layout, axis: Vector) -> bool:
-    heights = [float(body.centre @ axis) for body in layout.bodies.values()]
-    size = max(body.base_radius for body in layout.bodies.values())
-    crossed = any(abs(float(b.axis @ axis)) < 1.0 - 1e-6 for b in layout.bodies.values())
-    return crossed or max(heights) - min(heights) > FLAT * size
-
-
 def _misfit_told(pair: Pair) -> str:
     have, need = (significant(MILLIMETRE.of(v), 6) for v in (pair.distance, pair.needed))
     return (
@@ -134,8 +113,8 @@ class _View(Panel):
     def __init__(self, layout: Layout, palette: Palette, frame: Vector, *, plan: bool) -> None:
         self.layout, self.palette, self.frame, self.plan = layout, palette, frame, plan
         # Large gears first, so that small ones lie on top.
-        self.bodies = sorted(layout.bodies.values(), key=lambda b: -self._radius(b))
-        reach = np.vstack([self._flat_array(b.circle(self._radius(b))) for b in self.bodies])
+        self.bodies = sorted(layout.bodies.values(), key=lambda b: -self.layout.reach(b))
+        reach = np.vstack([self._flat_array(b.circle(self.layout.reach(b))) for b in self.bodies])
         low, high = reach.min(axis=0), reach.max(axis=0)
         room = 0.04 * float(high[0] - low[0])
         names = [MILLIMETRE.title(direction_name(v)) for v in frame]
@@ -176,12 +155,6 @@ class _View(Panel):
     def _flat(self, points: Vector) -> list[Point]:
         return [(float(x), float(y)) for x, y in np.atleast_2d(self._flat_array(points))]
 
-    def _radius(self, body: Body) -> float:
-        """Largest radius that is drawn of a gear [m]."""
-        pitch = [p.radii[body.name] for p in self.layout.pairs if body.name in p.radii]
-        largest = max([body.base_radius, *body.rims, *pitch])
-        return OUTSIDE * largest if body.kind == "internal" else largest
-
     def _is_round(self, body: Body) -> bool:
         """Whether a gear is seen as a circle, not from the side."""
         return abs(float(np.cross(self.frame[0], self.frame[1]) @ body.axis)) > 1.0 - 1e-6
@@ -191,7 +164,7 @@ class _View(Panel):
         for body in self.bodies:
             stroke = {"stroke": self.palette.gear(body.name).colour, "strokeWidth": 1.3}
             area = {"filled": True, "fillOpacity": 0.05, "fill": stroke["stroke"]}
-            full, dashed = self._radii(body)
+            full, dashed = self.layout.radii(body)
             for radii, style in (
                 (full, area if body.kind != "internal" else {}),
                 (dashed, {"strokeDash": [4, 3]}),
@@ -205,21 +178,6 @@ class _View(Panel):
                 (tip,) = hover("circle:N")
                 layers += self.line(rows, "circle", tip, **stroke, **style)
         return layers
-
-    def _radii(self, body: Body) -> tuple[dict[str, float], dict[str, float]]:
-        """Radii [m] of the full and of the dashed circles of a gear, by what they are."""
-        if body.kind == "face":
-            rims = dict(zip(("inner", "outer"), body.rims, strict=False))
-            acting = {"acting radius": body.base_radius}
-            return (rims, acting) if rims else (acting, {})
-        if body.kind == "carrier":
-            return {}, {"pin circle": body.base_radius}
-        found: dict[str, float] = {}
-        for radii in (p.radii for p in self.layout.pairs if body.name in p.radii):
-            radius = radii.pop(body.name)
-            if not any(math.isclose(radius, known, rel_tol=1e-6) for known in found.values()):
-                found[f"pitch circle with {next(iter(radii))}"] = radius
-        return found, {"base circle": body.base_radius}
 
     def _lines(self) -> list[Any]:
         """Centre lines, shafts between gears that are not coaxial, axes of crossed gears."""
@@ -284,7 +242,7 @@ class _View(Panel):
             if body.sense == 0 or not self._is_round(body):
                 continue
             internal = body.kind == "internal"
-            radius = self._radius(body) if internal else 0.72 * body.base_radius
+            radius = self.layout.reach(body) if internal else 0.72 * body.base_radius
             turn = body.sense * SENSE * (0.4 if internal else 1.0)
             bent = body.circle(radius, math.radians(100.0), turn)
             points = self._flat(bent)

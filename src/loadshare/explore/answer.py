@@ -1,0 +1,281 @@
+"""A setting solved: every figure as text, as report and screen say it, and shapes to draw."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from loadshare.case import Case
+from loadshare.errors import CaseError, Refused
+from loadshare.explore.inputs import Inputs
+from loadshare.explore.pictures import float_shapes, train_forces, train_shapes
+from loadshare.job import solve
+from loadshare.job.positions import prepared
+from loadshare.report.numbers import decimals, fixed, omega, small
+from loadshare.report.page.verdict import largest_forces, resting, sharing, trust
+from loadshare.report.palette import palette_of
+from loadshare.report.records import Cell, Record, Table, table
+from loadshare.report.words import boundary_name
+from loadshare.results import Position, Result
+from loadshare.settings import EXPLORE
+
+CERTIFIED, PARTLY, REFUSED, INVALID = "certified", "partly refused", "refused", "invalid"
+Plain = dict[str, Any]
+Setting = Mapping[str, object]
+MOVING = ("gears.", "meshes.", "errors.")
+"""Beginnings of keys that may move what the drawing of the train shows."""
+
+
+def setting_of(inputs: Inputs, given: Setting) -> Case:
+    """Return the case as a page has set it.
+
+    Raises
+    ------
+    CaseError
+        If it cannot be used.
+    """
+    changes = inputs.changes(given)
+    return inputs.case.replace(changes) if changes else inputs.case
+
+
+def invalid(error: CaseError) -> Plain:
+    """Return what is said of a setting that makes no case."""
+    return {"status": INVALID, "messages": [str(problem) for problem in error.problems]}
+
+
+def answer_of(inputs: Inputs, given: Setting, position: int) -> Plain:
+    """Solve a setting, at all positions where they are few, else at the one that is shown.
+
+    Parameters
+    ----------
+    inputs : Inputs
+    given : mapping of str to object
+        Inputs that differ from the case.
+    position : int
+        1-based, of which pictures are drawn; the last one where there are fewer.
+    """
+    try:
+        case = setting_of(inputs, given)
+        count = prepared(case)[1].train.count
+    except CaseError as error:
+        return invalid(error)
+    position = min(position, count)
+    few = count <= EXPLORE.together
+    result, messages = _solved(case, None if few else [position])
+    found: Plain = {"position": position, "count": count, "messages": messages}
+    found["solved"] = count if few else 1
+    if result is None:
+        return {"status": REFUSED} | found
+    shown = next((p for p in result.positions if p.position == position), None)
+    found |= {"status": PARTLY if messages else CERTIFIED, "bound": _bound_told(result, count)}
+    found |= {"tables": [plain(t) for t in _tables(result)], "bars": list(_bars(result, shown))}
+    if shown is not None:
+        found["floats"] = list(float_shapes(result, shown))
+        found["forces"] = train_forces(shown)
+        found["states"] = plain(states(shown))
+    if any(key.startswith(MOVING) for key in given):
+        found["train"] = train_shapes(case)
+    return found
+
+
+def whole_of(inputs: Inputs, given: Setting) -> Plain:
+    """Solve a setting at all positions, and tell how far its answer is to be trusted.
+
+    This is what takes too long to follow a slider.
+    """
+    try:
+        case = setting_of(inputs, given)
+        prepared(case)
+    except CaseError as error:
+        return invalid(error)
+    result, messages = _solved(case, None)
+    found: Plain = {"messages": messages}
+    if result is None:
+        return {"status": REFUSED} | found
+    found |= {"status": PARTLY if messages else CERTIFIED, "trust": trust(result)}
+    found["tables"] = [plain(t) for t in _tables(result)]
+    if len(result.positions) > 1:
+        found["cycle"] = {
+            "positions": [p.position for p in result.positions],
+            "omega": {name: list(values) for name, values in _cycle(result)},
+        }
+    return found
+
+
+def _solved(case: Case, positions: list[int] | None) -> tuple[Result | None, list[str]]:
+    """Return what is certified, and why the rest is not."""
+    try:
+        return solve(case, positions=positions), []
+    except Refused as refusal:
+        return refusal.partial, str(refusal).splitlines()
+
+
+def _bound_told(result: Result, count: int) -> str:
+    """How good an answer is, in a sentence: what was proved when it was judged."""
+    done = len(result.positions)
+    where = f"{done} of {count} positions" if count > 1 else "the answer"
+    proved = max(p.certificate.proved for p in result.positions)
+    return (
+        f"{where} certified: every torque within {small(proved)} of the exact equilibrium's, "
+        "as a part of the largest torque"
+    )
+
+
+def _tables(result: Result) -> Iterator[Table]:
+    if result.stages:
+        yield sharing(result)
+    if result.positions[0].floats:
+        yield resting(result)
+    rows = largest_forces(result)
+    yield table("Largest forces", rows, ("what", "where"), ("value",), {"value": "most"})
+
+
+def plain(found: Table) -> Plain:
+    """Return a table as plain data, every cell as its text."""
+    return {
+        "title": found.title,
+        "columns": [[column.title, column.figures] for column in found.columns],
+        "rows": [[cell.text for cell in row] for row in found.rows],
+        "values": [[cell.value for cell in row] for row in found.rows],
+        "notes": list(found.notes),
+    }
+
+
+def _bars(result: Result, shown: Position | None) -> Iterator[Plain]:
+    """Yield Ω of every branch: the largest over the positions, and at the one that is shown."""
+    palette = palette_of(result)
+    for stage, meshes in result.stages.items():
+        for mesh in meshes:
+            known = [p.share[mesh] for p in result.positions]
+            most = max((s for s in known if s is not None), default=None)
+            here = shown.share[mesh] if shown else None
+            yield {
+                "stage": stage,
+                "mesh": mesh,
+                "colour": palette.mesh(mesh).colour,
+                "most": most,
+                "here": here,
+                "text": omega(most),
+            }
+
+
+def _cycle(result: Result) -> Iterator[tuple[str, list[float | None]]]:
+    """Yield the largest Ω of every stage at each position."""
+    for stage, meshes in result.stages.items():
+        yield (
+            stage,
+            [
+                max((s for m in meshes if (s := p.share[m]) is not None), default=None)
+                for p in result.positions
+            ],
+        )
+
+
+def states(shown: Position) -> Table:
+    """Which contacts carry at a position: flanks, boundaries of floats, splines."""
+    rows = list(_states(shown))
+    title = f"Contact states at position {shown.position}"
+    return table(title, rows, ("element", "state"), ("force",), {"force": "force [N]"})
+
+
+def _states(shown: Position) -> Iterator[Record]:
+    train, force = shown.train, shown.equilibrium.flank_force
+    floats = shown.floats.values()
+    sizes = [*force.values(), *(t.force for f in floats for t in f.boundaries)]
+    places = decimals(sizes)
+    least = 0.5 * 10.0**-places
+
+    def row(element: str, state: str, size: float) -> Record:
+        text = fixed(size, places) if size > 0.0 else ""
+        return {"element": Cell(element), "state": Cell(state), "force": Cell(text, size)}
+
+    for name, mesh in train.meshes.items():
+        flanks = {drive: force[mesh.flank_name(drive)] for drive in mesh.flanks}
+        closed = {("drive" if drive else "coast"): f for drive, f in flanks.items() if f > least}
+        told = " and ".join(closed) + (" flanks" if len(closed) > 1 else " flank")
+        state = f"{told} closed" if closed else "open"
+        yield row(f"mesh {name}", state, sum(closed.values()))
+    for found in floats:
+        touching = [touch for touch in found.boundaries if touch.touching]
+        for touch in touching:
+            yield row(f"gear {found.gear}", f"on {boundary_name(touch.name)}", touch.force)
+        if not touching and found.boundaries:
+            yield row(f"gear {found.gear}", found.state, 0.0)
+        if found.spline:
+            yield row(f"spline {found.gear}", found.spline, found.spline_force)
+
+
+def case_of(inputs: Inputs) -> Plain:
+    """Return what a page must know of its case before anything is changed."""
+    case = inputs.case
+    train = prepared(case)[1].train
+    return {
+        "title": case.title or case.name,
+        "name": case.name,
+        "inputs": [
+            [
+                one.key,
+                one.text,
+                one.number,
+                one.unit,
+                one.low,
+                one.high,
+                one.step,
+                one.whole,
+                one.turning,
+                one.about,
+                one.assumed,
+            ]
+            for one in inputs.every.values()
+        ],
+        "tied": tied(inputs),
+        "positions": train.count,
+        "angles": angles(case),
+        "stages": [stage.name for stage in train.stages],
+        "floats": list(train.floating),
+        "train": train_shapes(case),
+        "studies": spreads(case),
+    }
+
+
+def tied(inputs: Inputs) -> list[tuple[str, tuple[str, ...]]]:
+    """Return names with a star, and the inputs that take the same value under each."""
+    found: dict[str, int] = {}
+    for key in inputs.every:
+        section, _, rest = key.partition(".")
+        if not rest or section in ("operating", "march"):
+            continue
+        names = [n for n in getattr(inputs.case, section) if key.startswith(_named(section, n))]
+        if names:
+            name = f"{section}.*{key[len(_named(section, max(names, key=len))) :]}"
+            found[name] = found.get(name, 0) + 1
+    usable = []
+    for name, times in found.items():
+        if times > 1:
+            try:
+                usable.append((name, inputs.keys(name)))
+            except CaseError:
+                continue
+    return usable
+
+
+def _named(section: str, name: str) -> str:
+    from loadshare.case.keys import dotted
+
+    return dotted((section, name))
+
+
+def angles(case: Case) -> list[float] | None:
+    """Return how far the input gear has turned at each position [deg]; None if it stands."""
+    train = prepared(case)[1].train
+    if train.count > EXPLORE.most_points:
+        return None
+    turned = [train.rotations(k + 1)[train.input] for k in range(train.count)]
+    return [round(math.degrees(angle), 6) for angle in turned] if any(turned) else None
+
+
+def spreads(case: Case) -> dict[str, Plain]:
+    """Return the tolerance studies of a case: their inputs and settings, as the file has them."""
+    data = case.to_dict().get("study", {})
+    return {name: one for name, one in data.items() if one.get("kind") == "tolerance"}

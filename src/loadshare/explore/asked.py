@@ -1,0 +1,79 @@
+"""What a request must be: its size, its form. Any other is answered with a message."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import Any, NoReturn
+
+from starlette.requests import Request
+
+from loadshare.settings import EXPLORE
+
+
+class Unasked(Exception):  # noqa: N818 -- a request that is none
+    """A request that cannot be answered, with why.
+
+    Parameters
+    ----------
+    status : int
+        Of HTTP.
+    message : str
+    """
+
+    def __init__(self, status: int, message: str) -> None:
+        self.status = status
+        super().__init__(message)
+
+
+async def asked(request: Request) -> dict[str, Any]:
+    """Return the body of a request.
+
+    Raises
+    ------
+    Unasked
+        If it is too long, or no JSON object as a page sends it.
+    """
+    kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if kind != "application/json":
+        raise Unasked(415, f'the content type is "{kind}"; allowed: application/json')
+    held = b""
+    async for piece in request.stream():
+        held += piece
+        if len(held) > EXPLORE.body:
+            raise Unasked(413, f"the request is longer than {EXPLORE.body} bytes")
+    try:
+        found = json.loads(held, parse_constant=_no_number)
+    except (ValueError, RecursionError):
+        raise Unasked(400, "the request is no JSON") from None
+    if not isinstance(found, dict):
+        raise Unasked(400, "the request is no JSON object")
+    return found
+
+
+def _no_number(text: str) -> NoReturn:
+    raise ValueError(text)
+
+
+def setting(body: Mapping[str, Any]) -> dict[str, object]:
+    """Return the inputs that a page has changed, by key."""
+    given = body.get("changes", {})
+    if not isinstance(given, dict):
+        raise Unasked(400, "changes is no object of values by key")
+    return given
+
+
+def number(body: Mapping[str, Any], name: str, default: int, least: int, most: int) -> int:
+    """Return a whole number of a request, within its bounds."""
+    given = body.get(name, default)
+    if isinstance(given, bool) or not isinstance(given, int) or not least <= given <= most:
+        raise Unasked(400, f"{name} is no whole number from {least} to {most}")
+    return given
+
+
+def text(body: Mapping[str, Any], name: str) -> str:
+    """Return a text of a request."""
+    given = body.get(name)
+    if not isinstance(given, str) or not given or len(given) > EXPLORE.text * 10:
+        raise Unasked(400, f"{name} is no text")
+    return given

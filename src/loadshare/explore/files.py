@@ -1,0 +1,63 @@
+"""A setting as a case file that extends the case it was made of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+
+from loadshare.case.reader import load_case
+from loadshare.case.writer import toml_text
+from loadshare.explore.inputs import Inputs
+
+
+def case_file(inputs: Inputs, given: Mapping[str, object], file: Path | None) -> dict[str, str]:
+    """Return a setting as the text of a case file, its name, and a note on where it belongs.
+
+    Parameters
+    ----------
+    inputs : Inputs
+        Of the case, with what the command line has changed of the file.
+    given : mapping of str to object
+        Inputs that a page has changed.
+    file : Path or None
+        Of the case; without one, the text stands alone.
+
+    Raises
+    ------
+    CaseError
+        If the setting makes no case.
+    """
+    changed = inputs.case.replace(inputs.changes(given))
+    name = f"{inputs.case.name or 'case'}_explored.toml"
+    if file is None:
+        return {"name": name, "text": changed.to_toml(), "note": ""}
+    apart = _apart(load_case(file).to_dict(), changed.to_dict())
+    if apart is None:
+        note = "It stands alone: something of the original is gone, which extending cannot say."
+        return {"name": name, "text": changed.to_toml(), "note": note}
+    head = tomlkit.document()
+    head.add("extends", tomlkit.item(file.name))
+    text = f"{tomlkit.dumps(head).rstrip()}\n\n{toml_text(apart)}"
+    return {"name": name, "text": text, "note": f"Put it beside {file.name}, which it extends."}
+
+
+def _apart(base: Mapping[str, Any], changed: Mapping[str, Any]) -> dict[str, Any] | None:
+    """Return what tables have to say beside those they extend; None where keys are gone."""
+    if set(base) - set(changed):
+        return None
+    found: dict[str, Any] = {}
+    for key, value in changed.items():
+        known = base.get(key)
+        if known == value and key in base:
+            continue
+        if isinstance(known, Mapping) and isinstance(value, Mapping):
+            inner = _apart(known, value)
+            if inner is None:
+                return None
+            found[key] = inner
+        else:
+            found[key] = value
+    return found

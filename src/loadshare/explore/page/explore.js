@@ -1,0 +1,259 @@
+// The page: what is set, what was asked, what is shown; they are told apart by a number.
+import { byId, card, element, table } from "./dom.js";
+import { Latest, Single, post } from "./ask.js";
+import { Control, listFound, read } from "./controls.js";
+import { drawFloats } from "./floats.js";
+import { drawForces, drawTrain } from "./train.js";
+import { drawBars, drawLines } from "./bars.js";
+import { comparison, pinnedBars } from "./pins.js";
+import { copyLink, linked, savePicture, saveText } from "./save.js";
+
+const IDLE = 350; // milliseconds without a change after which the rest is worked out
+const FIRST = 6; // controls at the beginning
+const MOVES = /^(gears|meshes|errors)\./;
+
+const page = { case: null, inputs: new Map(), setting: new Map(), controls: [], position: 1, asked: 0, shown: null, pins: [] };
+const latest = new Latest("answer", show), whole = new Single("whole");
+let resting = 0, ofCase = null;
+
+// --- What is set
+
+const valueOf = (key) => (page.setting.has(key) ? page.setting.get(key) : page.inputs.get(key).text);
+
+function change(keys, value) {
+  for (const key of keys) {
+    if (value === page.inputs.get(key).text) page.setting.delete(key);
+    else page.setting.set(key, value);
+  }
+  for (const control of page.controls)
+    if (control.keys.some((key) => keys.includes(key))) control.show(valueOf(control.keys[0]));
+  ask();
+}
+
+function reset() {
+  page.setting.clear();
+  for (const control of page.controls) control.show(valueOf(control.keys[0]));
+  ask();
+}
+
+async function take(name) {
+  if (page.controls.some((control) => control.name === name)) return focus(name);
+  let keys = page.inputs.has(name) ? [name] : page.case.tied.find(([tied]) => tied === name)?.[1];
+  if (!keys) {
+    const found = await post("keys", { name }).catch(() => ({ messages: ["the server was not reached"] }));
+    if (!found.keys) { byId("done").textContent = (found.messages || []).join(" "); return null; }
+    keys = found.keys;
+  }
+  const control = new Control(name, keys.map((key) => page.inputs.get(key)), valueOf(keys[0]), actions);
+  page.controls.push(control);
+  byId("controls").append(control.place);
+  return control;
+}
+
+function focus(name) {
+  const control = page.controls.find((one) => one.name === name);
+  control.field.focus();
+  return control;
+}
+
+const actions = {
+  change,
+  back(control) {
+    for (const key of control.keys) page.setting.delete(key);
+    for (const one of page.controls) one.show(valueOf(one.keys[0]));
+    ask();
+  },
+  remove(control) {
+    page.controls = page.controls.filter((one) => one !== control);
+    control.place.remove();
+  },
+};
+
+// --- What is asked
+
+function ask() {
+  page.asked += 1;
+  const { body } = document;
+  body.dataset.asked = page.asked;
+  body.dataset.state = "asking";
+  tell("solving", page.shown ? "what is shown is of the setting before" : "");
+  forget();
+  latest.ask({ asked: page.asked, changes: Object.fromEntries(page.setting), position: page.position });
+}
+
+// What belongs to one setting alone, and is not there yet for the next.
+function forget() {
+  clearTimeout(resting);
+  whole.stop();
+  byId("trust").replaceChildren(element("p", { class: "note" }, "is worked out when nothing moves"));
+  byId("cycle").hidden = true;
+}
+
+async function rest(asked) {
+  const found = await whole.ask({ changes: Object.fromEntries(page.setting) });
+  if (!found || asked !== page.asked) return;
+  if (found.trust) {
+    byId("trust").replaceChildren(element("dl", {}, ...Object.entries(found.trust).flatMap(([name, told]) =>
+      [element("dt", {}, name), element("dd", {}, told)])));
+  } else byId("trust").replaceChildren(element("p", { class: "note" }, (found.messages || ["no answer"]).join(" ")));
+  if (found.cycle) {
+    const lines = new Map(Object.entries(found.cycle.omega).map(([stage, values]) => [`stage ${stage}`, values]));
+    drawLines(byId("cycle"), "cycle", { x: found.cycle.positions, lines, title: "position" });
+  }
+  if (found.tables && page.shown.answer.count > page.shown.answer.solved)
+    byId("trust").append(...found.tables.map((one) => card({ ...one, title: `${one.title}, all positions` })));
+}
+
+// --- What is shown
+
+function tell(state, told, outcome = "") {
+  byId("state").textContent = state;
+  byId("told").textContent = told;
+  document.body.dataset.outcome = outcome;
+}
+
+function show(asked, answer) {
+  const present = asked.asked === page.asked;
+  if (!answer.tables) {
+    if (!present) return;
+    empty();
+    document.body.dataset.state = "none";
+    tell(answer.status, answer.status === "invalid" ? "this setting makes no case; nothing was solved" : "there is no answer for this setting", answer.status);
+    say(answer.messages);
+    return;
+  }
+  page.shown = { ...asked, answer };
+  byId("answer").dataset.of = asked.asked;
+  byId("of").textContent = settingTold(asked);
+  byId("tables").replaceChildren(...answer.tables.map(card));
+  byId("states").replaceChildren(...(answer.states ? table(answer.states) : []));
+  draw();
+  if (!present) return;
+  document.body.dataset.state = "present";
+  tell(answer.status, answer.bound, answer.status);
+  say(answer.messages);
+  place(answer.count);
+  resting = setTimeout(() => rest(asked.asked), IDLE);
+}
+
+function draw() {
+  const { answer, changes } = page.shown;
+  drawBars(byId("bars"), answer.bars, pinnedBars(page.pins));
+  drawFloats(byId("floats"), answer.floats || [], (gear) => ({
+    pinned: page.pins.flatMap((pin) => (pin.answer.floats || []).filter((f) => f.gear === gear).map((f) => [pin.name, f.here])),
+  }));
+  const shapes = answer.train || page.case.train;
+  if (ofCase !== shapes && (answer.train ? Object.keys(changes).some((key) => MOVES.test(key)) : true)) {
+    drawTrain(byId("train"), shapes);
+    ofCase = shapes;
+  }
+  drawForces(answer.forces);
+  byId("pins").hidden = !page.pins.length;
+  byId("compared").replaceChildren(...comparison(page.pins, page.shown, settingTold, unpin));
+}
+
+function empty() {
+  page.shown = null;
+  delete byId("answer").dataset.of;
+  byId("of").textContent = "";
+  for (const id of ["tables", "states", "floats"]) byId(id).replaceChildren();
+  drawBars(byId("bars"), [], []);
+  drawForces({});
+  byId("compared").replaceChildren();
+}
+
+function say(messages) {
+  byId("messages").replaceChildren(...(messages || []).map((message) => element("li", {}, message)));
+}
+
+function settingTold({ changes, position }) {
+  const told = Object.entries(changes).map(([key, value]) => `${key} = ${value}`);
+  const more = told.length > 5 ? `, and ${told.length - 5} more` : "";
+  const where = page.case.positions > 1 ? `Pictures at position ${position}. ` : "";
+  return `${where}${told.length ? `Setting: ${told.slice(0, 5).join(", ")}${more}` : "As the case has it"}.`;
+}
+
+// --- Position
+
+function place(count) {
+  const holder = byId("position");
+  if (holder.dataset.count === String(count)) return;
+  holder.dataset.count = count;
+  page.position = Math.min(page.position, count);
+  holder.replaceChildren();
+  if (count < 2) return;
+  const angles = page.case.angles?.length === count ? page.case.angles : null;
+  const told = element("span", { class: "small" });
+  const slider = element("input", { type: "range", id: "position-slider", min: 1, max: count, step: 1 });
+  const label = () => {
+    const angle = angles ? `, input turned by ${angles[page.position - 1]}°` : "";
+    told.textContent = `${page.position} of ${count}${angle}`;
+    slider.setAttribute("aria-valuetext", told.textContent);
+  };
+  slider.addEventListener("input", () => { page.position = Number(slider.value); label(); ask(); });
+  slider.value = page.position;
+  label();
+  holder.append(element("div", { class: "control" }, element("div", { class: "head" },
+    element("label", { class: "key", for: "position-slider" }, "Position shown"), told), slider));
+}
+
+// --- Pins
+
+function pin() {
+  if (document.body.dataset.state !== "present") return;
+  const name = page.pins.some((one) => one.name === "A") && !page.pins.some((one) => one.name === "B") ? "B" : "A";
+  page.pins = [...page.pins.filter((one) => one.name !== name), { name, ...page.shown }].sort((a, b) => (a.name < b.name ? -1 : 1));
+  draw();
+}
+
+function unpin(name) {
+  page.pins = page.pins.filter((one) => one.name !== name);
+  if (page.shown) draw();
+  else byId("pins").hidden = !page.pins.length;
+}
+
+// --- Beginning
+
+function firstNames() {
+  const keys = [...page.inputs.keys()], nonzero = (key) => page.inputs.get(key).number !== 0;
+  const own = (pattern) => keys.filter((key) => pattern.test(key) && nonzero(key));
+  const tied = page.case.tied.map(([name]) => name).filter((name) => /^rings\.\*\.(float|radius)$/.test(name));
+  const errors = own(/^errors\..*\.amount$/).flatMap((key) => [key, key.replace(/amount$/, "direction")]);
+  return [...tied, ...own(/^(rings|splines|bearings)\..*(float|radius|clearance)/), ...own(/^operating\.(torque|power)/),
+    ...errors.slice(0, 2), ...own(/friction$/), ...own(/^meshes\..*stiffness/), ...errors, ...keys];
+}
+
+async function begin() {
+  page.case = await fetch("/case").then((reply) => reply.json());
+  page.inputs = new Map(page.case.inputs.map(read).map((one) => [one.key, one]));
+  document.title = `${page.case.title} – loadshare explorer`;
+  byId("title").textContent = page.case.title;
+  byId("name").textContent = page.case.name;
+  place(page.case.positions);
+  const link = linked(page.inputs);
+  for (const [key, value] of Object.entries(link.changes)) page.setting.set(key, value);
+  if (link.position <= page.case.positions) page.position = link.position;
+  const names = link.names.length ? link.names : [...new Set(firstNames())].slice(0, FIRST);
+  const asked = ask();
+  for (const name of names) await take(name);
+  return asked;
+}
+
+const search = byId("search");
+const all = () => [...page.inputs.values()];
+const list = () => listFound(all(), page.case.tied.map(([name]) => name), (name) => { search.value = ""; list(); take(name).then((c) => c && focus(c.name)); });
+search.addEventListener("input", list);
+search.addEventListener("keydown", (event) => {
+  if (event.key === "Escape") { search.value = ""; list(); }
+  if (event.key !== "Enter" || !search.value.trim()) return;
+  const first = byId("found").querySelector("button");
+  if (first && !/[=*]/.test(search.value)) first.click();
+  else take(search.value.trim()).then((control) => { if (control) { search.value = ""; list(); focus(control.name); } });
+});
+const view = () => ({ changes: Object.fromEntries(page.setting), names: page.controls.map((one) => one.name), position: page.position });
+byId("reset").addEventListener("click", reset);
+byId("pin").addEventListener("click", pin);
+byId("link").addEventListener("click", () => copyLink(view()));
+byId("toml").addEventListener("click", () => saveText(view()));
+for (const kind of ["svg", "png"]) byId(kind).addEventListener("click", () => savePicture(kind, page, settingTold));
+begin().catch((error) => { document.body.dataset.state = "none"; tell("failed", `The page could not begin: ${error.message}`, "failed"); });

@@ -1,0 +1,156 @@
+"""Shapes that a page draws: floats in their regions, the train with its forces."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from loadshare.case import Case
+from loadshare.errors import CaseError
+from loadshare.report.figures.layout import Body, Layout, layout_of
+from loadshare.report.figures.marks import Point, circle
+from loadshare.report.figures.region import Journey, Region
+from loadshare.report.numbers import significant
+from loadshare.report.palette import Palette, palette_of
+from loadshare.report.units import MICROMETRE, MILLIMETRE, engineering
+from loadshare.report.words import direction_name
+from loadshare.results import Position, Result
+from loadshare.train import build_train
+from loadshare.train.gear import Vector, transverse_frame
+
+Plain = dict[str, Any]
+PLACES = 4
+"""Decimals of lengths to draw, in µm or mm: far below a pixel."""
+
+
+def float_shapes(result: Result, shown: Position) -> Iterator[Plain]:
+    """Yield every float: its region at the shown position, and where its centre is at all.
+
+    Lengths are in µm, in the gear's transverse frame, from the centre's own place.
+    """
+    palette = palette_of(result)
+    here = replace(result, positions=(shown,))
+    for gear in shown.floats:
+        journey = Journey(here, shown.train, gear)
+        region, rest = journey.region, journey.rests[0]
+        middle, half = journey.view
+        size = math.hypot(*rest.reaction)
+        force = engineering([size], "N")
+        yield {
+            "gear": gear,
+            "colour": palette.gear(gear).colour,
+            "axes": [direction_name(v) for v in result.frames[gear]],
+            "view": [*_point(middle), MICROMETRE.of(half)],
+            "pieces": [_path(piece) for piece in region.pieces] if region else [],
+            "edges": [[b.name, _path(b.path), list(b.outward)] for b in region.boundaries]
+            if region
+            else [],
+            "circles": [
+                [name, _path(circle((0.0, 0.0), r))] for name, r in journey.circles.items()
+            ],
+            "path": [_point(p.displacement[gear]) for p in result.positions],
+            "here": _point(shown.displacement[gear]),
+            "reaction": [v / size for v in rest.reaction] if size > 0.0 else None,
+            "force": f"{significant(force.of(size))} {force.name}" if size > 0.0 else "",
+            "told": journey.told[:-1],
+        }
+
+
+def _edges(region: Region | None) -> list[Any]:
+    """Boundaries of a region: name, path, and the way out of it."""
+    return [[b.name, _path(b.path), [*b.outward]] for b in (region.boundaries if region else ())]
+
+
+def train_forces(shown: Position) -> dict[str, float]:
+    """Force of every mesh at a position [N]."""
+    return dict(shown.loads.meshes)
+
+
+def train_shapes(case: Case) -> Plain | None:
+    """Return the train to scale, seen along the axis of most gears and from the side, in mm.
+
+    None where no gear stands anywhere.
+    """
+    try:
+        train = build_train(case)
+    except CaseError:
+        return None
+    layout = layout_of(case, train)
+    if not layout.bodies:
+        return None
+    ends = {pair.name: (pair.driver, pair.driven) for pair in layout.pairs}
+    palette = Palette(layout.bodies, ends)
+    axis = layout.common_axis
+    frame = transverse_frame(axis)
+    frames = [frame]
+    if layout.heights_differ(axis):
+        frames.append(np.array([frame[0], axis]))
+    return {"views": [_view(layout, palette, frame) for frame in frames]}
+
+
+def _view(layout: Layout, palette: Palette, frame: Vector) -> Plain:
+    bodies = sorted(layout.bodies.values(), key=lambda b: -layout.reach(b))
+    reach = np.vstack([_flat(b.circle(layout.reach(b)), frame) for b in bodies])
+    low, high = reach.min(axis=0), reach.max(axis=0)
+    against = np.cross(frame[0], frame[1])
+    return {
+        "title": f"Seen against {direction_name(against)}",
+        "axes": [direction_name(v) for v in frame],
+        "low": low.round(PLACES).tolist(),
+        "high": high.round(PLACES).tolist(),
+        "gears": [_gear(layout, palette, body, frame, against) for body in bodies],
+        "shafts": [_line((layout.bodies[n].centre for n in ends), frame) for ends in layout.shafts],
+        "meshes": [
+            {
+                "name": pair.name,
+                "at": _line([pair.pitch_point], frame)[0],
+                "push": None if pair.push is None else (frame @ pair.push).round(6).tolist(),
+                "colour": palette.mesh(pair.name).colour,
+            }
+            for pair in layout.pairs
+        ],
+    }
+
+
+def _gear(layout: Layout, palette: Palette, body: Body, frame: Vector, against: Vector) -> Plain:
+    full, dashed = layout.radii(body)
+    is_round = abs(float(against @ body.axis)) > 1.0 - 1e-6
+    return {
+        "name": body.name,
+        "colour": palette.gear(body.name).colour,
+        "centre": _line([body.centre], frame)[0],
+        "round": is_round,
+        "full": [_ring(body, radius, frame, is_round) for radius in full.values()],
+        "dashed": [_ring(body, radius, frame, is_round) for radius in dashed.values()],
+        "held": body.held,
+        "role": body.role,
+        "sense": body.sense if is_round else 0,
+    }
+
+
+def _ring(body: Body, radius: float, frame: Vector, is_round: bool) -> Any:
+    """Radius of a circle that is seen as one, or the path of one that is seen from the side."""
+    if is_round:
+        return round(MILLIMETRE.of(radius), PLACES)
+    return _flat(body.circle(radius), frame).round(PLACES).tolist()
+
+
+def _flat(points: Vector, frame: Vector) -> Vector:
+    return np.asarray(MILLIMETRE.factor * points @ frame.T)
+
+
+def _line(points: Iterable[Vector], frame: Vector) -> list[list[float]]:
+    found: list[list[float]] = _flat(np.array(list(points)), frame).round(PLACES).tolist()
+    return found
+
+
+def _point(point: Point) -> list[float]:
+    return [round(MICROMETRE.of(v), PLACES) for v in point]
+
+
+def _path(points: Iterable[Point]) -> list[list[float]]:
+    return [_point(p) for p in points]

@@ -1,0 +1,308 @@
+"""The page in a browser: what it shows is of the present inputs, for everyone and everywhere."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+
+import pytest
+from selenium.webdriver.common.action_chains import ActionChains
+from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.support.ui import WebDriverWait
+from tests.chromium import CONTRAST, NAMES, badly_set, on_screen, too_wide
+from tests.explore.conftest import SEED
+from tests.explore.test_server import told
+from tests.explore.walks import contradicted, opened, settled, walked
+from tests.report.pages import EVIL_CASE
+from tests.support import shipped
+
+from loadshare.case import Case, load_case
+from loadshare.explore.inputs import Inputs
+
+PICTURES = "figure:not([hidden]) > svg"
+
+
+@pytest.fixture(scope="module")
+def inputs():
+    return Inputs(load_case(SEED))
+
+
+def types(browser, name, text):
+    """Write into the field of an input, as with a keyboard."""
+    field = browser.find_element(By.CSS_SELECTOR, f".control[data-name='{name}'] .value")
+    field.click()
+    field.send_keys(Keys.CONTROL, "a")
+    field.send_keys(text, Keys.ENTER)
+    return settled(browser)
+
+
+def test_the_page_opens_without_a_complaint(browser, seed, inputs):
+    opened(browser, seed)
+    assert browser.get_log("browser") == []
+    assert "Limit rings on the floating pinions" in browser.title
+    says = settled(browser)
+    assert says["outcome"] == "certified"
+    assert says["tables"] == told(inputs.case)
+    loaded = browser.execute_script(
+        "return performance.getEntriesByType('resource').map((entry) => entry.name)"
+    )
+    assert loaded
+    assert all(name.startswith(seed) for name in loaded)
+
+
+def test_a_slider_moves_the_answer(browser, seed, inputs):
+    opened(browser, seed)
+    slider = browser.find_element(By.CSS_SELECTOR, "[data-name='rings.5.float'] [type=range]")
+    for key in (Keys.ARROW_RIGHT, Keys.PAGE_DOWN, Keys.HOME, Keys.END):
+        slider.send_keys(key)
+        says = settled(browser)
+        assert contradicted(says, inputs, told) == ""
+    assert says["fields"]["rings.5.float"] == "5.5 um"
+
+
+@pytest.mark.parametrize("seed_number", [1, 2])
+def test_a_walk_never_shows_what_is_not_of_the_present_inputs(browser, seed, inputs, seed_number):
+    _walk(browser, seed, inputs, steps=25, number=seed_number)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(100))
+def test_a_hundred_walks_of_fifty_steps(browser, seed, inputs, number):
+    _walk(browser, seed, inputs, steps=50, number=1000 + 7919 * number)
+
+
+def _walk(browser, seed, inputs, steps, number):
+    opened(browser, seed)
+    seen, marked = walked(browser, steps, number)
+    assert marked > 0
+    assert len({one["asked"] for one in seen}) >= steps // 8
+    assert [bad for one in seen if (bad := contradicted(one, inputs, told))] == []
+
+
+def test_an_old_answer_that_comes_late_is_marked(browser, seed):
+    """From the first change on, what is shown is told to be of the setting before."""
+    opened(browser, seed)
+    says = browser.execute_script(
+        """const slider = document.querySelector("[data-name='rings.5.float'] [type=range]");
+        slider.value = 1.23;
+        slider.dispatchEvent(new Event("input", { bubbles: true }));
+        return [document.body.dataset.state, document.getElementById("verdict").textContent];"""
+    )
+    assert says[0] == "asking"
+    assert "setting before" in says[1]
+    assert settled(browser)["fields"]["rings.5.float"] == "1.23 um"
+
+
+def test_a_lost_server_leaves_no_answer(browser, served):
+    with served(shipped("star/floating_sun_4")) as address:
+        opened(browser, address, names=["operating.torque"])
+    slider = browser.find_element(By.CSS_SELECTOR, "[data-name='operating.torque'] [type=range]")
+    slider.send_keys(Keys.ARROW_RIGHT)
+    says = settled(browser)
+    assert says["outcome"] == "failed"
+    assert says["tables"] == []
+    assert "server" in says["messages"][0]
+    browser.get_log("browser")
+
+
+@pytest.mark.parametrize(
+    ("text", "outcome", "why"),
+    [
+        ("3", "invalid", "has no unit"),
+        ("nan um", "invalid", "is not finite"),
+        ("1e308 um", "invalid", "of a size that no machine has"),
+        ("3 kg", "invalid", "a length is needed"),
+        ("0.004 mm", "certified", ""),
+    ],
+)
+def test_what_is_typed(browser, seed, inputs, text, outcome, why):
+    opened(browser, seed, names=["rings.5.float"])
+    says = types(browser, "rings.5.float", text)
+    assert says["outcome"] == outcome
+    assert why in " ".join(says["messages"])
+    assert contradicted(says, inputs, told) == ""
+    if outcome == "invalid":
+        assert browser.find_elements(By.CSS_SELECTOR, "#floats svg, #bars svg, #tables table") == []
+
+
+def test_inputs_are_found_by_search(browser, seed):
+    opened(browser, seed, names=["rings.5.float"])
+    field = browser.find_element(By.ID, "search")
+    field.send_keys("shaft 2-4 stiff")
+    (found,) = browser.find_elements(By.CSS_SELECTOR, "#found button")
+    assert found.text.startswith('shafts."2-4".stiffness')
+    field.send_keys(Keys.ENTER)
+    name = "return document.activeElement.closest('.control').dataset.name"
+    assert browser.execute_script(name) == 'shafts."2-4".stiffness'
+    field.send_keys("rings.4.float=rings.5.clearance", Keys.ENTER)
+    WebDriverWait(browser, 10).until(
+        lambda b: len(b.find_elements(By.CSS_SELECTOR, ".control[data-name]")) == 3
+    )
+    field.send_keys("rings.*.flaot*", Keys.ENTER)
+    told_ = WebDriverWait(browser, 10).until(lambda b: b.find_element(By.ID, "done").text)
+    assert "matches no key" in told_
+
+
+def test_tied_inputs_move_together(browser, seed, inputs):
+    opened(browser, seed, names=["rings.*.float", "rings.4.float", "rings.5.float"])
+    says = types(browser, "rings.*.float", "2.5 um")
+    assert set(says["fields"].values()) == {"2.5 um"}
+    del says["fields"]["rings.*.float"]
+    assert contradicted(says, inputs, told) == ""
+
+
+def test_a_dial_turns_an_error(browser, seed, inputs):
+    opened(browser, seed, names=["errors.6.installation.direction"])
+    dial = browser.find_element(By.CSS_SELECTOR, "svg.dial")
+    ActionChains(browser).move_to_element_with_offset(dial, -20, 0).click().perform()
+    says = settled(browser)
+    assert abs(abs(float(says["fields"].popitem()[1].split()[0])) - 180.0) < 3.0
+    dial = browser.find_element(By.CSS_SELECTOR, "svg.dial")
+    ActionChains(browser).move_to_element_with_offset(dial, 0, -20).click().perform()
+    says = settled(browser)
+    assert abs(float(says["fields"]["errors.6.installation.direction"].split()[0]) - 90.0) < 3.0
+    assert contradicted(says, inputs, told) == ""
+
+
+def test_pinned_settings_are_compared(browser, seed):
+    opened(browser, seed, names=["rings.5.float"])
+    browser.find_element(By.ID, "pin").click()
+    types(browser, "rings.5.float", "1 um")
+    browser.find_element(By.ID, "pin").click()
+    types(browser, "rings.5.float", "4 um")
+    rows = {
+        row.find_elements(By.TAG_NAME, "td")[0].text: [
+            cell.text for cell in row.find_elements(By.TAG_NAME, "td")[1:]
+        ]
+        for row in browser.find_elements(By.CSS_SELECTOR, "#compared tbody tr")
+    }
+    case = load_case(SEED)
+    wanted = [
+        told(case.replace({"rings.5.float": text}))[0][1][-1]
+        for text in ("2.74 um", "1 um", "4 um")
+    ]
+    assert rows["stage II: Ω = Kγ"][:3] == wanted
+    assert len(browser.find_elements(By.CSS_SELECTOR, "#floats [stroke-dasharray='2 2']")) >= 4
+    browser.find_element(By.CSS_SELECTOR, "[aria-label='unpin A']").click()
+    heads = browser.find_elements(By.CSS_SELECTOR, "#compared th")
+    assert [head.text for head in heads] == ["figure", "B", "now", "change, B to now"]
+
+
+def test_a_link_opens_the_view_again(browser, seed, inputs):
+    opened(browser, seed)
+    types(browser, "rings.5.float", "3.21 um")
+    browser.find_element(By.ID, "link").click()
+    address = browser.current_url
+    before = settled(browser)
+    browser.get("about:blank")
+    browser.get(address)
+    after = settled(browser)
+    assert (after["tables"], after["fields"]) == (before["tables"], before["fields"])
+    assert contradicted(after, inputs, told) == ""
+
+
+def test_a_bad_link_does_no_harm(browser, seed, inputs):
+    for bad in ("%7Bnope", "%00", json.dumps({"changes": {"x": "<img src=x>", "title": 3}})):
+        browser.get("about:blank")
+        browser.get(f"{seed}#{bad}")
+        assert settled(browser)["tables"] == told(inputs.case)
+    assert browser.get_log("browser") == []
+
+
+def test_what_is_saved(browser, seed, tmp_path):
+    """The case as a file that extends the original; the view as SVG and PNG."""
+    browser.execute_cdp_cmd(
+        "Browser.setDownloadBehavior", {"behavior": "allow", "downloadPath": str(tmp_path)}
+    )
+    opened(browser, seed, names=["rings.5.float"])
+    types(browser, "rings.5.float", "3.21 um")
+    names = {"toml": "limit_ring_explored.toml", "svg": "limit_ring.svg", "png": "limit_ring.png"}
+    for button, name in names.items():
+        browser.find_element(By.ID, button).click()
+        file = tmp_path / name
+        WebDriverWait(browser, 20).until(lambda _, file=file: file.exists())
+        WebDriverWait(browser, 20).until(lambda _, file=file: file.stat().st_size > 0)
+    written = tomllib.loads((tmp_path / names["toml"]).read_text())
+    assert written == {"extends": "limit_ring.toml", "rings": {"5": {"float": "3.21 um"}}}
+    assert (tmp_path / names["png"]).read_bytes().startswith(b"\x89PNG\r\n")
+    drawn = (tmp_path / names["svg"]).read_text()
+    assert "rings.5.float = 3.21 um" in drawn
+    assert "Gear 5" in drawn
+
+
+def test_hostile_texts_do_nothing(browser, served):
+    case = Case(tomllib.loads(EVIL_CASE), name="</title><script>window.pwned=1</script>")
+    with served(case) as address:
+        browser.get(address)
+        settled(browser)
+        browser.find_element(By.ID, "pin").click()
+        field = browser.find_element(By.ID, "search")
+        field.send_keys("stiffness")
+        assert browser.find_elements(By.CSS_SELECTOR, "#found button")
+        field.send_keys("<img src=x onerror=window.pwned=1>*", Keys.ENTER)
+        WebDriverWait(browser, 60).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trust dl"))
+        assert browser.execute_script("return window.pwned") is None
+        assert browser.find_elements(By.CSS_SELECTOR, "main img, main script, main b, main i") == []
+        assert browser.get_log("browser") == []
+
+
+def test_nothing_is_compiled_and_no_other_script_runs(browser, seed):
+    opened(browser, seed, names=[])
+    browser.execute_script(
+        """const script = document.createElement("script");
+        script.textContent = "window.pwned = true";
+        document.body.append(script);
+        setTimeout(() => {
+          try { new Function("return true")(); window.compiling = "works"; }
+          catch (error) { window.compiling = "refused"; }
+        }, 0);"""
+    )
+    found = WebDriverWait(browser, 10).until(lambda b: b.execute_script("return window.compiling"))
+    assert found == "refused"
+    assert browser.execute_script("return window.pwned") is None
+    browser.get_log("browser")
+
+
+SHOWN = ("fgfbstts/limit_ring", "nrel_5mw/gearbox", "fgfbstts/full_float", "two_path/nasa")
+
+
+@pytest.mark.parametrize("width", [390, 1280, 1920])
+@pytest.mark.parametrize("name", SHOWN)
+def test_the_page_fits_every_screen(browser, served, name, width):
+    """No scrolling sideways, no words that overlap or are cut; contrast and names of controls."""
+    on_screen(browser, width, dark=width == 1280)
+    with served(shipped(name)) as address:
+        browser.get(address)
+        settled(browser)
+        WebDriverWait(browser, 60).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trust dl"))
+        browser.find_element(By.ID, "pin").click()
+        assert too_wide(browser, width) <= 0
+        pictures = browser.find_elements(By.CSS_SELECTOR, PICTURES)
+        assert len(pictures) >= 2
+        assert [bad for one in pictures for bad in badly_set(browser, one)] == []
+        assert browser.execute_script(CONTRAST) == []
+        assert browser.execute_script(NAMES) == []
+    on_screen(browser, 1280)
+
+
+def test_contrast_of_an_answer_that_is_not_there_yet(browser, seed):
+    for dark in (False, True):
+        on_screen(browser, 1280, dark=dark)
+        opened(browser, seed)
+        browser.execute_script("document.body.dataset.state = 'asking'")
+        assert browser.execute_script(CONTRAST) == []
+    on_screen(browser, 1280)
+
+
+def test_every_control_is_reached_by_the_keyboard(browser, seed):
+    opened(browser, seed, names=["rings.5.float", "errors.6.installation.direction"])
+    wanted = browser.execute_script(
+        """return [...document.querySelectorAll("a[href], button, input, summary")]
+        .filter((c) => c.checkVisibility() && !c.disabled).length;"""
+    )
+    seen = set()
+    for _ in range(wanted + 2):
+        ActionChains(browser).send_keys(Keys.TAB).perform()
+        seen.add(browser.switch_to.active_element.id)
+    assert len(seen) >= wanted

@@ -1,0 +1,262 @@
+"""The server: equal to `ls.solve`, refusing what is not asked properly, remembering nobody."""
+
+from __future__ import annotations
+
+import json
+import random
+import socket
+import tomllib
+from concurrent.futures import ThreadPoolExecutor
+from urllib.parse import urlsplit
+
+import pytest
+from tests.explore.asking import answer, ask
+from tests.explore.conftest import SEED
+from tests.report.pages import EVIL, EVIL_CASE
+from tests.support import CASES, shipped
+
+import loadshare as ls
+from loadshare.case import Case, load_case
+from loadshare.explore.answer import answer_of, plain
+from loadshare.explore.guard import hosts_of
+from loadshare.explore.inputs import Inputs
+from loadshare.report.page.verdict import largest_forces, resting, sharing
+
+FLOAT = "rings.5.float"
+
+
+def told(case):
+    """What a page must show of a case: rows of tables, from a solve of its own."""
+    result = ls.solve(case)
+    rows = [plain(sharing(result))["rows"]] if result.stages else []
+    if result.positions[0].floats:
+        rows.append(plain(resting(result))["rows"])
+    forces = [[cell.text for cell in row.values()] for row in largest_forces(result)]
+    return [*rows, forces]
+
+
+def shown(found):
+    return [table["rows"] for table in found["tables"]]
+
+
+@pytest.mark.parametrize("text", ["0 um", "1.5 um", "2.97657 um", "4 um", "0.002 mm"])
+def test_an_answer_is_that_of_solve(seed, text):
+    found = answer(seed, {FLOAT: text, "operating.power": "1234.5 kW"})
+    assert found["status"] == "certified"
+    case = load_case(SEED).replace({FLOAT: text, "operating.power": "1234.5 kW"})
+    assert shown(found) == told(case)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "nrel_5mw/gearbox",
+        "planetary/differential",
+        "star/floating_sun_5",
+        "two_path/nasa",
+        "fgfbstts/rigid_closed_form",
+        "fgfbstts/full_float",
+    ],
+)
+def test_any_case_can_be_explored(served, name):
+    with served(shipped(name)) as address:
+        status, _, case = ask(address, "/case")
+        found = answer(address)
+        rest = ask(address, "/whole", {})[2]
+    assert status == 200
+    assert found["status"] == "certified"
+    assert shown(found) == told(shipped(name))
+    assert "Bound" in rest["trust"]
+    assert case["positions"] == found["count"]
+
+
+def test_many_positions_are_solved_one_by_one(served):
+    with served(shipped("fgfbstts/all_elements")) as address:
+        found = answer(address, position=7)
+        beyond = answer(address, position=5000)
+    assert (found["count"], found["solved"], found["position"]) == (20, 1, 7)
+    result = ls.solve(shipped("fgfbstts/all_elements"), positions=[7])
+    assert shown(found)[0] == plain(sharing(result))["rows"]
+    assert beyond["position"] == 20
+
+
+@pytest.mark.parametrize(
+    ("changes", "why"),
+    [
+        ({FLOAT: "3"}, "has no unit"),
+        ({FLOAT: 3}, "has no unit"),
+        ({FLOAT: "nan um"}, "is not finite"),
+        ({FLOAT: "inf um"}, "is not finite"),
+        ({FLOAT: "1e308 um"}, "of a size that no machine has"),
+        ({FLOAT: "1e999 um"}, "is not finite|of a size"),
+        ({FLOAT: "-1 um"}, "is negative"),
+        ({FLOAT: "3 N"}, "a length is needed"),
+        ({FLOAT: ""}, "is not a number"),
+        ({FLOAT: "<img src=x onerror=alert(1)>"}, "is not a number"),
+        ({"meshes.4-6.law_file": "/etc/passwd"}, "is no input"),
+        ({FLOAT: "9" * 500}, "is too long"),
+        ({FLOAT: None}, "is not a value"),
+    ],
+)
+def test_a_setting_that_makes_no_case_is_told(seed, changes, why):
+    import re
+
+    found = answer(seed, changes)
+    assert found["status"] == "invalid"
+    assert re.search(why, " ".join(found["messages"]))
+    assert "tables" not in found
+
+
+def test_a_refused_setting_is_told(seed):
+    """A load that would press teeth together by more than they are high."""
+    found = answer(seed, {"operating.power": "2e9 kW"})
+    assert found["status"] == "refused"
+    assert len(found["messages"]) == 5
+    assert "displacements are too large" in found["messages"][0]
+    assert "tables" not in found
+
+
+BODIES = [
+    (b"", 400),
+    (b"[]", 400),
+    (b"null", 400),
+    (b"{", 400),
+    (b'{"position": NaN}', 400),
+    (b'{"position": 1e308}', 400),
+    (b'{"position": -1}', 400),
+    (b'{"position": true}', 400),
+    (b'{"changes": []}', 400),
+    (b"[" * 100_000, 400),
+    (b'{"a":' * 20_000, 400),
+    (b"\xff\xfe", 400),
+    (b" " * 300_000, 413),
+]
+
+
+@pytest.mark.parametrize(("body", "status"), BODIES)
+def test_odd_requests_are_answered_with_a_message(seed, body, status):
+    path = "/answer"
+    found = ask(seed, path, body)
+    assert found[0] == status
+    assert found[2]["status"] == "failed"
+    assert found[2]["messages"]
+
+
+def test_other_methods_types_and_paths(seed):
+    assert ask(seed, "/answer")[0] == 405
+    assert ask(seed, "/nowhere")[0] == 404
+    assert ask(seed, "/answer", b"{}", {"Content-Type": "text/plain"})[0] == 415
+    for path in ("/page/../server.py", "/page/%2e%2e%2fserver.py", "/page//etc/passwd", "/page/x"):
+        assert ask(seed, path)[0] == 404
+
+
+@pytest.mark.parametrize(
+    ("headers", "status"),
+    [
+        ({}, 200),
+        ({"Host": "localhost:{port}"}, 200),
+        ({"Host": "evil.example"}, 403),
+        ({"Host": "127.0.0.1"}, 403),
+        ({"Host": "127.0.0.1:1"}, 403),
+        ({"Host": ""}, 403),
+        ({"Origin": "http://127.0.0.1:{port}"}, 200),
+        ({"Origin": "http://evil.example"}, 403),
+        ({"Origin": "null"}, 403),
+        ({"Origin": "http://localhost:{port}"}, 403),
+        ({"Sec-Fetch-Site": "same-origin"}, 200),
+        ({"Sec-Fetch-Site": "cross-site"}, 403),
+        ({"Sec-Fetch-Site": "same-site"}, 403),
+    ],
+)
+@pytest.mark.parametrize("path", ["/", "/case", "/answer"])
+def test_who_may_ask(seed, path, headers, status):
+    port = urlsplit(seed).port
+    sent = {name: value.format(port=port) for name, value in headers.items()}
+    found = ask(seed, path, {} if path == "/answer" else None, sent)
+    assert found[0] == status
+    assert "default-src 'none'" in found[1]["content-security-policy"]
+    assert "unsafe" not in found[1]["content-security-policy"]
+    assert "access-control-allow-origin" not in found[1]
+
+
+def test_further_names():
+    hosts = hosts_of("0.0.0.0", 8000, ["Gears.example", "proxy.example:443"])
+    assert {"gears.example", "gears.example:8000", "proxy.example:443"} <= hosts
+    assert "0.0.0.0:8000" not in hosts
+    assert "[::1]:80" in hosts_of("::1", 80)
+    assert "localhost" in hosts_of("127.0.0.1", 80)
+
+
+def test_a_hundred_at_once_do_not_mix(served):
+    """Everybody gets the answer to their own setting, whoever asks meanwhile."""
+    draw, case = random.Random(5), shipped("star/floating_sun_4")
+    texts = [f"{draw.uniform(100.0, 900.0):.3f} N*m" for _ in range(12)]
+    wanted = {text: told(case.replace({"operating.torque": text})) for text in texts}
+    asked = [draw.choice(texts) for _ in range(100)]
+    with served(case) as address, ThreadPoolExecutor(100) as people:
+        found = list(people.map(lambda text: answer(address, {"operating.torque": text}), asked))
+    assert all(shown(one) == wanted[text] for one, text in zip(found, asked, strict=True))
+    assert len({str(rows) for rows in wanted.values()}) == len(texts)
+
+
+def test_someone_who_goes_away_does_no_harm(seed):
+    parts = urlsplit(seed)
+    body = json.dumps({"changes": {}}).encode()
+    for cut in (0, 5, len(body)):
+        with socket.create_connection((parts.hostname, parts.port)) as line:
+            head = (
+                f"POST /answer HTTP/1.1\r\nHost: {parts.netloc}\r\n"
+                f"Content-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n"
+            )
+            line.sendall(head.encode() + body[:cut])
+    assert answer(seed)["status"] == "certified"
+
+
+def test_a_setting_is_saved_as_a_case_that_extends_the_original(seed, tmp_path):
+    changes = {FLOAT: "3.3 um", "errors.6.installation.direction": "10 deg"}
+    found = ask(seed, "/toml", {"changes": changes})[2]
+    written = tomllib.loads(found["text"])
+    assert written["extends"] == "limit_ring.toml"
+    assert set(written) == {"extends", "rings", "errors"}
+    for name in ("base.toml", "limit_ring.toml"):
+        (tmp_path / name).write_text((CASES / "fgfbstts" / name).read_text())
+    (tmp_path / found["name"]).write_text(found["text"])
+    case = load_case(tmp_path / found["name"])
+    inputs = Inputs(load_case(SEED))
+    assert case == inputs.case.replace(inputs.changes(changes))
+    assert ask(seed, "/toml", {"changes": {FLOAT: "3"}})[2]["status"] == "invalid"
+
+
+def test_what_the_command_line_changed_is_saved_as_well(served, tmp_path):
+    case = load_case(SEED).replace({"rings.4.float": "1 um"})
+    with served(case, SEED) as address:
+        found = ask(address, "/toml", {"changes": {FLOAT: "2 um"}})[2]
+    assert tomllib.loads(found["text"])["rings"] == {
+        "4": {"float": "1 um"},
+        "5": {"float": "2 um"},
+    }
+
+
+def test_a_case_that_lacks_a_key_of_its_file_is_saved_whole(served):
+    case = load_case(SEED).replace({"errors.6": None})
+    with served(case, SEED) as address:
+        found = ask(address, "/toml", {"changes": {}})[2]
+    assert Case(tomllib.loads(found["text"])) == case
+    assert "stands alone" in found["note"]
+
+
+def test_hostile_texts_travel_as_texts(served):
+    case = Case(tomllib.loads(EVIL_CASE), name="evil")
+    with served(case) as address:
+        status, headers, found = ask(address, "/case")
+        page = ask(address, "/")[2].decode()
+    assert status == 200
+    assert headers["content-type"] == "application/json"
+    assert found["title"] == EVIL
+    assert EVIL not in page
+
+
+def test_an_answer_has_no_number_that_is_none():
+    """Browsers read no NaN and no infinity."""
+    for name in ("fgfbstts/limit_ring", "star/floating_sun_3"):
+        json.dumps(answer_of(Inputs(shipped(name)), {}, 1), allow_nan=False)
