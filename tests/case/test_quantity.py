@@ -168,3 +168,14 @@ def test_registry_is_built_fast():
 def test_importing_the_room_does_not_import_pint():
     code = "import sys, loadshare.case; sys.exit('pint' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+@pytest.mark.parametrize("si", units.FACTORS)
+def test_common_units_are_known_without_the_registry_and_as_it_says(si):
+    """To the last digit, and of no other kind."""
+    for unit, factor in units.FACTORS[si].items():
+        given = units._parse(unit)
+        assert float((given / units._parse(si)).to_base_units().magnitude) == factor
+        for other in units.FACTORS:
+            same = given.dimensionality == units._parse(other).dimensionality
+            assert (units.si_factor(unit, other) is not None) == same == (other == si)

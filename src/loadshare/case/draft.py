@@ -10,6 +10,7 @@ from pydantic import ConfigDict, PrivateAttr, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from loadshare.case.content import ENDS, Content, Sections
+from loadshare.case.described import description
 from loadshare.case.element import Element, elements_in, written
 from loadshare.case.keys import Path, ends_of
 from loadshare.case.origin import Origin
@@ -89,8 +90,7 @@ def read_draft(
         The valid elements and the problems of the others.
     """
     fields = Content.model_fields
-    # With all values given: looking for defaults takes longer than reading a small case.
-    draft = Draft.model_construct(**{name: _nothing(about) for name, about in _fields().items()})
+    draft = Draft.model_construct(**defaults())
     draft._data, draft._origin = data, origin
     if before is not None and [*before[1]["gears"]] != draft.names("gears"):
         # A name a-b may tell other gears.
@@ -104,7 +104,7 @@ def read_draft(
     for name, about in fields.items():
         if about.is_required() and data.get(name, {}) == {}:
             missing = "is empty" if name in data else "is missing"
-            draft.tell((name,), missing, hint=about.description or "")
+            draft.tell((name,), missing, hint=description(Content, name))
         elif name in data:
             _read_section(draft, name, about, before)
     return draft
@@ -144,13 +144,15 @@ def _as_data(given: Any, depth: int) -> Any:
     return as_text(given)
 
 
-def _nothing(about: FieldInfo) -> Any:
-    return about.default if about.default_factory is None else {}
+def defaults() -> dict[str, Any]:
+    """Return what sections are where nothing is said; to find out so late costs more than to read.
 
-
-@cache
-def _fields() -> Mapping[str, FieldInfo]:
-    return Draft.model_fields
+    Pydantic looks at the signature of what makes each default.
+    """
+    return {
+        name: about.default if about.default_factory is None else {}
+        for name, about in Draft.model_fields.items()
+    }
 
 
 def _read_section(

@@ -55,7 +55,8 @@ class Element(BaseModel):
     model_config = ConfigDict(
         extra="forbid",
         frozen=True,
-        use_attribute_docstrings=True,
+        # Most cases hold few kinds of elements; what reads a kind is built with the first of it.
+        defer_build=True,
         protected_namespaces=(),
     )
 
@@ -86,6 +87,14 @@ class Element(BaseModel):
         if broken:
             raise ValidationError.from_exception_data(type(self).__name__, broken)
         return self
+
+    @classmethod
+    def model_json_schema(cls, *args: Any, **settings: Any) -> dict[str, Any]:
+        """Return the schema, which tells what stands below the fields in the source."""
+        from loadshare.case.described import describe
+
+        describe(cls)
+        return super().model_json_schema(*args, **settings)
 
     def given(self, *fields: str) -> list[str]:
         """Return those of the named fields that hold a value, as the keys of the case file.

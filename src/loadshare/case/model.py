@@ -14,7 +14,8 @@ from pydantic import PrivateAttr
 from loadshare.case.checks import check
 from loadshare.case.content import ABOUT, Content
 from loadshare.case.copies import with_copies
-from loadshare.case.draft import as_data, read_draft
+from loadshare.case.draft import as_data, defaults, read_draft
+from loadshare.case.element import Element
 from loadshare.case.keys import Path, covers, parse
 from loadshare.case.origin import Origin
 from loadshare.case.revise import differing, revise
@@ -67,7 +68,12 @@ class Case(Content):
         problems = [*draft.problems, *check(draft)]
         if problems:
             raise CaseError(problems)
-        super().__init__(**{n: getattr(draft, n) for n in Content.model_fields if n in data})
+        given = {n: getattr(draft, n) for n in Content.model_fields if n in data}
+        # Each section was read by itself: to read all of them once more would say nothing new.
+        made = Content.model_construct(_fields_set={*given}, **{**defaults(), **given})
+        for slot in ("__dict__", "__pydantic_fields_set__", "__pydantic_extra__"):
+            object.__setattr__(self, slot, getattr(made, slot))
+        self.model_post_init(None)
         self._data, self._origin, self._name = data, origin, name
 
     @property
@@ -79,7 +85,7 @@ class Case(Content):
     def hash(self) -> str:
         """SHA-256 of what bears on the mechanics: the values in SI units, no titles and notes."""
         if self._hash is None:
-            content = self.model_dump(mode="json", by_alias=True, exclude=set(ABOUT), context="SI")
+            content = {n: _in_si(getattr(self, n)) for n in Content.model_fields if n not in ABOUT}
             text = json.dumps(content, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
             self._hash = hashlib.sha256(text.encode()).hexdigest()
         return self._hash
@@ -192,3 +198,12 @@ class Case(Content):
         from loadshare.case.view import case_view
 
         return case_view(self).html
+
+
+def _in_si(part: Any) -> Any:
+    """Return a section as plain data, with every value in SI units."""
+    if isinstance(part, dict):
+        return {name: _in_si(item) for name, item in part.items()}
+    if isinstance(part, Element):
+        return part.model_dump(mode="json", by_alias=True, context="SI")
+    return part

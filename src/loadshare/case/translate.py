@@ -8,6 +8,7 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
+from loadshare.case.described import description
 from loadshare.case.element import MARK, Element, Rule, elements_in
 from loadshare.case.keys import Path
 from loadshare.case.words import choices, count, did_you_mean
@@ -151,9 +152,10 @@ def _told(error: ErrorDetails, model: type[Element]) -> Rule:
     if kind == "missing" and isinstance(path[-1], int):
         return Rule(f"has {count(path[-1])}, more are needed", path[:-1])
     if kind == "missing":
-        about = _fields(model, path[:-1]).get(path[-1])
-        described = ((about and about.description) or "").split("\n")[0]
-        return Rule("is missing", path, hint=described)
+        holder = _table(model, path[:-1])
+        names = {about.alias or n: n for n, about in holder.model_fields.items()} if holder else {}
+        said = description(holder, names[str(path[-1])]) if holder and path[-1] in names else ""
+        return Rule("is missing", path, hint=said.split("\n")[0])
     if kind == "literal_error":
         words = context["expected"].replace(" or ", ", ").replace("'", "").split(", ")
         hint = did_you_mean(error["input"], words)
@@ -169,10 +171,16 @@ def _told(error: ErrorDetails, model: type[Element]) -> Rule:
 
 def _fields(model: type[Element], path: Path) -> dict[str | int, FieldInfo]:
     """Fields, by their keys, of the table that a path leads to; none where it does not exist."""
-    found = _by_key(model)
+    table = _table(model, path)
+    return _by_key(table) if table else {}
+
+
+def _table(model: type[Element], path: Path) -> type[Element] | None:
+    """Kind of the table that a path leads to; None where it leads nowhere."""
+    found: type[Element] | None = model
     for step in path:
-        inner = next(elements_in(found[step].annotation), None) if step in found else None
-        found = _by_key(inner) if inner else {}
+        fields = _by_key(found) if found else {}
+        found = next(elements_in(fields[step].annotation), None) if step in fields else None
     return found
 
 

@@ -167,6 +167,8 @@ class Bound(NamedTuple):
     rank: float = 1e-11
     """Singular value of the directions, relative to the largest, that counts as zero. Directions
     are cosines and ratios of radii; what geometry makes dependent is so to some 1e-16."""
+    by_singular_values: int = 32
+    """Directions, and coordinates, up to which singular values take no longer than reflections."""
     loose: float = 1e-7
     """Part of a coordinate in a move that nothing resists from which on it is undetermined."""
     on_the_verge: int = 7

@@ -178,7 +178,7 @@ def test_a_case_built_in_python_counts_from_the_working_folder(case, spur, tmp_p
 @pytest.mark.slow
 def test_the_seeds_ranges():
     """Fig. 7 of the paper. What is left of the difference is told on the page; this keeps it."""
-    case = load_case(PAIRS.parent / "fgfbstts/from_geometry.toml")
+    case = load_case(PAIRS.parent / "from_geometry.toml")
     found = resolve(case)
     ranges = {"1-2": (7.46e5, 9.27e5), "4-6": (3.77e6, 4.78e6), "6-10": (6.17e6, 6.68e6)}
     for (name, (low, high)), pair in zip(ranges.items(), ("p12", "p46", "p610"), strict=True):

@@ -37,14 +37,20 @@ class Statics:
     def of(cls, directions: Array) -> Statics:
         """Return the statics of some rows of A.
 
-        With Q R = Aᵀ, columns in the order of their pivots, and Z T the transpose of the rows of R
-        that are not zero: a tenth of the work of singular values.
+        From their singular values while they are few. Of many, with Q R = Aᵀ, columns in the order
+        of their pivots, and Z T the transpose of the rows of R that are not zero: that takes a
+        tenth of the work, and a library that a small case need not wait for.
         """
-        from scipy.linalg import lapack
-
         count, n = directions.shape
         if not directions.any():
             return cls(directions, np.zeros((count, n)), np.eye(count), np.eye(n))
+        if max(count, n) <= BOUND.by_singular_values:
+            u, sizes, vt = np.linalg.svd(directions)
+            rank = int((sizes > BOUND.rank * sizes[0]).sum())
+            particular = (u[:, :rank] / sizes[:rank]) @ vt[:rank]
+            return cls(directions, particular, u[:, rank:], vt[rank:].T)
+        from scipy.linalg import lapack
+
         factors, order, scales, *_ = lapack.dgeqp3(directions.T)
         sizes = np.abs(np.diagonal(factors))
         rank = int((sizes > BOUND.rank * sizes.max()).sum())

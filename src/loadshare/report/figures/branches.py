@@ -227,14 +227,14 @@ def _bars(
         legend=None,
     )
     bars = chart(shown).mark_bar(height=13)
-    layers = [bars.encode(y=y, x=x, x2="start:Q", color=colours, tooltip=hover)]
+    layers = [bars.encode(y=y, x=x, x2=alt.X2("start:Q"), color=colours, tooltip=hover)]
     # What is printed as the reference shall not stand on its other side by round-off.
     below = [round(row[reading.field], reading.places) < start for row in shown]
     for is_below, align, dx in ((True, "right", -5), (False, "left", 5)):
         part = [row for row, its in zip(shown, below, strict=True) if its is is_below]
         if part:
             text = chart(part).mark_text(align=align, dx=dx, fontSize=10)
-            layers.append(text.encode(x=x, y=y, text="text:N", tooltip=hover))
+            layers.append(text.encode(x=x, y=y, text=alt.Text("text:N"), tooltip=hover))
     if reading.reference is not None:
         layers.append(_reference_rule(reading, x=x))
     return alt.layer(*layers).properties(width=WIDTH, height=ROW * len(rows))

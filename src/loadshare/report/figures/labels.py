@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import Any
 
+import altair as alt
 import numpy as np
 
 from loadshare.report.figures.marks import Drawing, Point, Row, chart, path_rows, rimmed
@@ -118,12 +119,15 @@ class Labels:
         leaders, self._leaders = self._leaders, []
         if not rows:
             return []
-        words = chart(rows).encode(x=x, y=y, text="text:N")
+        words = chart(rows).encode(x=x, y=y, text=alt.Text("text:N"))
         told = rimmed(words, colour, fontSize=SIZE, baseline="middle", **style)
         if not leaders:
             return told
         line = chart(leaders).mark_line(color=colour, strokeWidth=0.6)
-        return [line.encode(x=x, y=y, order="order:Q", detail="label:N"), *told]
+        return [
+            line.encode(x=x, y=y, order=alt.Order("order:Q"), detail=alt.Detail("label:N")),
+            *told,
+        ]
 
     def _around(
         self, anchor: Point, letters: int, gap: float

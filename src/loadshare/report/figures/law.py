@@ -120,6 +120,6 @@ def _panel(
     )
     working = chart(points).mark_point(filled=True, size=44, opacity=0.9)
     return alt.layer(
-        lines.encode(x=x, y=y, detail="curve:N"),
+        lines.encode(x=x, y=y, detail=alt.Detail("curve:N")),
         working.encode(x=x, y=y, **by_mesh, tooltip=told),
     ).properties(width=300, height=200)

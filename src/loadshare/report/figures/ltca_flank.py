@@ -116,8 +116,8 @@ def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str, part: floa
         areas = chart(rows).mark_line(filled=True, interpolate="linear-closed", clip=True)
         shown = areas.encode(
             **_axes(plane),
-            order="order:Q",
-            detail="cell:N",
+            order=alt.Order("order:Q"),
+            detail=alt.Detail("cell:N"),
             color=alt.Color("value:Q", title=["pressure", "[MPa]"], **_shades(top)),
             tooltip=told,
         )

@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 import altair as alt
+from altair.utils.schemapi import debug_mode
 
 from loadshare.report.figure import Figure
 from loadshare.report.palette import DASHES, INK, SHAPES, SOFT, WARNING, Look
@@ -22,7 +23,9 @@ Told = str | Sequence[str]
 
 def chart(rows: Sequence[Mapping[str, Any]]) -> Drawing:
     """Return a chart on plain rows."""
-    return alt.Chart(alt.InlineData(values=tuple(rows)))
+    # What is checked with the specification need not be checked row by row before.
+    with debug_mode(False):
+        return alt.Chart(alt.InlineData(values=tuple(rows)))
 
 
 def channels(field: str, looks: Mapping[str, Look], title: str) -> dict[str, Any]:
@@ -273,10 +276,12 @@ class Panel:
         self, rows: Sequence[Row], by: str = "", tooltip: Any = None, **style: Any
     ) -> list[Drawing]:
         """Return paths as a layer, one for each value of the field `by`; no layer without rows."""
-        told = {"detail": f"{by}:N"} if by else {}
+        # Channels, not their short forms: to find out which is meant, Altair hashes its schema.
+        told: dict[str, Any] = {"order": alt.Order("order:Q")}
+        told |= {"detail": alt.Detail(f"{by}:N")} if by else {}
         told |= {"tooltip": tooltip} if tooltip else {}
         drawn = chart(rows).mark_line(**style)
-        return [drawn.encode(x=self.x, y=self.y, order="order:Q", **told)] if rows else []
+        return [drawn.encode(x=self.x, y=self.y, **told)] if rows else []
 
     def points(self, rows: Sequence[Row], tooltip: Any, **style: Any) -> list[Drawing]:
         """Return points as a layer; no layer without rows."""

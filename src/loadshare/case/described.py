@@ -1,0 +1,61 @@
+"""What the texts below the fields of elements say: for the schema, and for what is missing.
+
+They are read from the source when they are first asked for. Few cases need them, and reading them
+when the elements are defined would take a quarter of the time in which a command starts.
+"""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import textwrap
+from collections.abc import Iterator
+from functools import cache
+from itertools import pairwise
+
+from loadshare.case.element import Element, elements_in
+
+
+def description(model: type[Element], field: str) -> str:
+    """Return what is said of a field of an element; empty where nothing is."""
+    return next((told[field] for m in model.__mro__ if field in (told := _told(m))), "")
+
+
+def describe(model: type[Element]) -> None:
+    """Let the schema of an element, and of all that it may hold, say what is said of the fields."""
+    for each in _within(model):
+        for name, about in each.model_fields.items():
+            about.description = description(each, name) or about.description
+        each.model_rebuild(force=True)
+
+
+def _within(model: type[Element]) -> Iterator[type[Element]]:
+    """Yield the elements that an element may hold, and at last itself."""
+    seen: dict[type[Element], None] = {}
+
+    def visit(one: type[Element]) -> None:
+        for about in one.model_fields.values():
+            for inner in elements_in(about.annotation):
+                if inner not in seen:
+                    visit(inner)
+        seen[one] = None
+
+    visit(model)
+    yield from seen
+
+
+@cache
+def _told(model: type) -> dict[str, str]:
+    if not (issubclass(model, Element) and model is not Element):
+        return {}
+    (tree,) = ast.parse(textwrap.dedent(inspect.getsource(model))).body
+    assert isinstance(tree, ast.ClassDef)
+    return {
+        field.target.id: inspect.cleandoc(text.value.value)
+        for field, text in pairwise(tree.body)
+        if isinstance(field, ast.AnnAssign)
+        and isinstance(field.target, ast.Name)
+        and isinstance(text, ast.Expr)
+        and isinstance(text.value, ast.Constant)
+        and isinstance(text.value.value, str)
+    }
