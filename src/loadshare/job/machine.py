@@ -14,7 +14,7 @@ from loadshare.certify import Judge, Verdicts
 from loadshare.certify.validity import Measuring, measuring
 from loadshare.scene.loading import Loading, loading_of
 from loadshare.scene.structure import Structure, structure_of
-from loadshare.settings import JOB
+from loadshare.settings import JOB, RULE
 from loadshare.solver.balance import is_unbalanced
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.answer import equilibria, pin, without_noise
@@ -22,6 +22,7 @@ from loadshare.solver.hot.determined import determined
 from loadshare.solver.hot.exchange import Engine, Found, States, exchange, first_sets
 from loadshare.solver.hot.iterate import Iterate, at_rest, pushes
 from loadshare.solver.hot.proximal import search
+from loadshare.solver.hot.rule import rule_of
 from loadshare.train import Train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.placed import standing
@@ -195,6 +196,8 @@ class Machine:
                 first = slice(part.start, part.start + JOB.trial_samples) if many else part
                 self._begin(first, begin, loading, iterate, states)
         found = self._trial_samples(parts, loading, iterate, states, engine) if many else None
+        if found is not None and parts[0].stop >= RULE.worth * RULE.taught:
+            found = self._taught(parts, loading, iterate, states, engine, found)
         more = exchange(
             self.structure, loading, iterate, engine, states, only=~found.solved if found else None
         )
@@ -202,19 +205,19 @@ class Machine:
         begun = bool(starts) or beside is not None
         left = ~found.solved
         quick = engine is not vectorised.settle
-        tries = np.full(loading.count, 0 if begun or quick else 1)
+        numpy = vectorised.settle
+        attempts = (engine, False), (numpy, False), (numpy, True)
+        tries = np.full(loading.count, 2 - begun - quick)
         searched = np.zeros(loading.count, dtype=bool)
         while True:
             found = found.without(left)
-            for number, singly in enumerate((False, True)):
-                # A beginning or compiled code that fails: once more from rest, with NumPy,
-                # at last by one element after another.
+            for number, (other, singly) in enumerate(attempts):
+                # A beginning or compiled code that fails: once more from rest, then with
+                # NumPy, at last by one element after another.
                 fresh = ~found.solved & ~searched & (tries == number)
                 if fresh.any():
                     rest = at_rest(self.structure, loading)
-                    more = exchange(
-                        self.structure, loading, rest, vectorised.settle, only=fresh, singly=singly
-                    )
+                    more = exchange(self.structure, loading, rest, other, only=fresh, singly=singly)
                     iterate, found = (
                         iterate.completed(rest, fresh & more.solved),
                         found.completed(more),
@@ -303,6 +306,37 @@ class Machine:
                     iterate,
                     states,
                 )
+        return found
+
+    def _taught(
+        self,
+        parts: Sequence[slice],
+        loading: Loading,
+        iterate: Iterate,
+        states: States,
+        engine: Engine,
+        found: Found,
+    ) -> Found:
+        """Solve more of every part; the others begin where a rule says, which these teach."""
+        some = np.zeros(loading.count, dtype=bool)
+        for part in parts:
+            some[part.start : part.start + RULE.taught] = True
+        some &= ~found.solved
+        found = found.completed(
+            exchange(self.structure, loading, iterate, engine, states, only=some)
+        )
+        rows, push = self.structure.rows, pushes(loading)
+        for part in parts:
+            first = slice(part.start, part.start + RULE.taught)
+            if not found.solved[first].all():
+                continue
+            share = np.abs(iterate.force[first]) / push[first, None]
+            rule = rule_of(loading, part, found.states[first, :rows], share)
+            if rule is not None:
+                named = rule.named[RULE.taught :]
+                others = slice(first.stop, part.stop)
+                states[others, :rows] = rule.states[named]
+                iterate.begin(others, rule.share, loading, named)
         return found
 
     def _start(self, index: int, engine: Engine) -> _Start | None:

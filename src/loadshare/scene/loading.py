@@ -92,6 +92,11 @@ class Loading:
         return np.asarray(self.hertz.any(axis=0))
 
     @cached_property
+    def has_curves(self) -> bool:
+        """Whether any element's law is a power or a table."""
+        return bool(self.curved.any() or (self.tabulated >= 0).any())
+
+    @cached_property
     def laws(self) -> bytes:
         """What the structure of a set depends on: kinds of laws, compliances that do not vary."""
         first = self.radial[:, :, 0]

@@ -9,7 +9,7 @@ from loadshare.settings.allowed import ALLOWED
 from loadshare.settings.certificate import BOUND, CERTIFY
 from loadshare.settings.contact import CONTACT, LAWS
 from loadshare.settings.explore import EXPLORE
-from loadshare.settings.hot import ABREAST, EXCHANGE, HOT, SEARCH, STATICS
+from loadshare.settings.hot import ABREAST, EXCHANGE, HOT, RULE, SEARCH, STATICS
 from loadshare.settings.job import JOB
 from loadshare.settings.precision import EPS
 from loadshare.settings.studies import FIT, FOLLOW, MARCH, SENSITIVITY, TOLERANCE
@@ -32,6 +32,7 @@ __all__ = [
     "LAWS",
     "MARCH",
     "PLACES",
+    "RULE",
     "SEARCH",
     "SENSITIVITY",
     "STATICS",

@@ -145,7 +145,9 @@ def _check(case: spec.Case, columns: Sequence[Column], arrays: Mapping[Path, Arr
     """
     for pick in (np.argmin, np.argmax):
         rows = {c.path: int(pick(arrays[c.path])) if c.path in arrays else 0 for c in columns}
-        case.replace({dotted(c.path): c.text(rows[c.path]) for c in columns})
+        # The first sample was judged before.
+        if any(rows.values()):
+            case.replace({dotted(c.path): c.text(rows[c.path]) for c in columns})
 
 
 def _groups(columns: Sequence[Column], count: int) -> list[NDArray[np.intp]]:

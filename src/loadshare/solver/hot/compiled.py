@@ -21,7 +21,7 @@ from loadshare.solver.hot.iterate import Iterate
 from loadshare.solver.hot.kernel.conclude import conclude
 from loadshare.solver.hot.kernel.fill import fill
 from loadshare.solver.hot.kernel.options import cached
-from loadshare.solver.hot.kernel.passes import run
+from loadshare.solver.hot.kernel.passes import give_up, run
 from loadshare.solver.hot.kernel.set_arrays import Rows, States, packed_set, unpacked
 from loadshare.solver.hot.kernel.work import work_for
 
@@ -84,8 +84,7 @@ def _settle_all(  # type: ignore[no-untyped-def]
             fill(s, work, rows, waiting, first, count, width, xs, forces, roots, floors, one_only)
             run(s, work, one_only, 0 if last else int(ABREAST.few * count), width)
             if last:
-                for m in range(count):
-                    work.live[m] = 0.0
+                give_up(work, count)
             conclude(s, work, count, width, xs, forces, roots, one_only, verdict, proposal)
             for m in range(count):
                 if work.live[m] > 0.0:

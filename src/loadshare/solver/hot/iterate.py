@@ -49,12 +49,28 @@ class Iterate:
         for name in ("x", "force", "root", "floor", "stays"):
             getattr(self, name)[row] = getattr(other, name)[0]
 
-    def begin(self, samples: slice, share: Array, loading: Loading) -> None:
-        """Take the laws of some samples first at forces in these shares (m,) of the load."""
-        roots = np.cbrt(pushes(loading)[samples])
-        np.multiply(
-            roots[:, None], np.cbrt(np.maximum(share, HOT.least_share)), out=self.root[samples]
-        )
+    def begin(
+        self,
+        samples: slice,
+        share: Array,
+        loading: Loading,
+        which: NDArray[np.intp] | None = None,
+    ) -> None:
+        """Take the laws of some samples first at forces in shares of the load.
+
+        Parameters
+        ----------
+        samples : slice
+        share : ndarray, shape (m,), (S, m) or (k, m)
+            For all of them, for each, or for each that `which` names.
+        loading : Loading
+        which : ndarray of int, shape (S,), optional
+        """
+        if not loading.has_curves:
+            return
+        roots, of_load = np.cbrt(np.maximum(share, HOT.least_share)), np.cbrt(pushes(loading))
+        roots = roots if which is None else roots[which]
+        np.multiply(of_load[samples, None], roots, out=self.root[samples])
 
 
 def at_rest(structure: Structure, loading: Loading) -> Iterate:

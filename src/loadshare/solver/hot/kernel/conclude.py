@@ -9,7 +9,7 @@ from loadshare.solver.hot.contact_states import DONE, OTHER
 from loadshare.solver.hot.kernel.options import bare
 from loadshare.solver.hot.kernel.signs import look_at_radials, look_at_rows, propose, stopped
 from loadshare.solver.hot.kernel.sums import add_product, clear
-from loadshare.solver.hot.kernel.work import BAND, DRIFTS, MOVED, STATICS, STILL, TOTAL
+from loadshare.solver.hot.kernel.work import BAND, DRIFTS, GIVEN_UP, MOVED, STATICS, STILL, TOTAL
 
 
 @bare
@@ -39,6 +39,8 @@ def conclude(s, work, count, width, xs, forces, roots, one_only, verdict, propos
             continue
         if sign == HOT.sign and work.mistakes[m] == 0 and work.each[DRIFTS, m] == 0.0:
             verdict[row] = DONE
+            continue
+        if sign == HOT.gross and work.mistakes[m] == 0 and work.each[GIVEN_UP, m] > 0.0:
             continue
         verdict[row] = OTHER
         if sign > HOT.sign and work.mistakes[m] == 0:

@@ -15,6 +15,7 @@ from loadshare.solver.hot.kernel.work import (
     BEYONDS,
     DRIFTS,
     EXTRA,
+    GIVEN_UP,
     PATIENT,
     PREVIOUS,
     STATICS,
@@ -38,7 +39,7 @@ def fill(s, work, rows, waiting, first, count, width, xs, forces, roots, floors,
         work.each[PATIENT, m] = HOT.patience if one_only[i] else ABREAST.patience
         work.live[m], work.go[m] = 1.0 if m < count else 0.0, 1.0
         work.each[BAND, m], work.each[DRIFTS, m], work.singular[m] = 0.0, 0.0, 0.0
-        work.each[PREVIOUS, m], work.each[TURN, m] = np.inf, 0.0
+        work.each[PREVIOUS, m], work.each[TURN, m], work.each[GIVEN_UP, m] = np.inf, 0.0, 0.0
     _load(s, work, width)
     _statics(s, work, width)
     _laws(s, work, width, xs, forces, roots)

@@ -18,6 +18,7 @@ from loadshare.solver.hot.kernel.work import (
     DU,
     DV,
     EXTRA,
+    GIVEN_UP,
     INNER,
     OUTER,
     PATIENT,
@@ -144,10 +145,12 @@ def _judge(s, work, law_misfit, number, one_only, width):  # type: ignore[no-unt
         pulled = pulled and wrong
         # Forces without bound and what is not a number are left undecided.
         burst = not work.strongest[m] <= HOT.burst * (work.push[m] if work.push[m] > 0.0 else 1.0)
-        undecided = work.singular[m] > 0.0 or (burst and not settled)
-        hopeless = work.longest[m] >= work.each[PATIENT, m]
+        outside = False
         for t in range(s.turning_radials.shape[0]):
-            hopeless = hopeless or work.radial[t, BEYONDS, m] >= HOT.outside
+            outside = outside or work.radial[t, BEYONDS, m] >= HOT.outside
+        hopeless = outside or work.longest[m] >= work.each[PATIENT, m]
+        # Far outside of its level piece a slip may leave nothing that resists.
+        undecided = (work.singular[m] > 0.0 and not outside) or (burst and not settled)
         if settled or pulled or undecided or hopeless:
             sign = HOT.sign if settled else (HOT.gross if pulled else np.inf)
             work.each[BAND, m] = 0.0 if undecided else sign
@@ -183,3 +186,16 @@ def run(s, work, one_only, enough, width):  # type: ignore[no-untyped-def]
         if s.turning.shape[0] > 0:
             follow_arcs(s, work, distance, width)
         lives -= _judge(s, work, law_misfit, number, one_only, width)
+
+
+@bare
+def give_up(work, count):  # type: ignore[no-untyped-def]
+    """Let the passes of samples end that have not settled.
+
+    Those whose laws are all but met may be told from the signs what is clearly wrong.
+    """
+    for m in range(count):
+        if work.live[m] > 0.0:
+            nearly = work.misfit[m] <= HOT.nearly * HOT.settled / HOT.law
+            work.live[m], work.each[BAND, m] = 0.0, HOT.gross if nearly else 0.0
+            work.go[m], work.each[GIVEN_UP, m] = 0.0, 1.0

@@ -64,10 +64,11 @@ class Work(NamedTuple):
     better: States  # (radials, width): where they should stand
 
 
-BAND, PATIENT, DRIFTS, PREVIOUS, TURN = 0, 1, 2, 3, 4
+BAND, PATIENT, DRIFTS, PREVIOUS, TURN, GIVEN_UP = 0, 1, 2, 3, 4, 5
 """Of a sample: band by which its signs are judged, 0 if they are not; passes that a flank may be
-without contact; 1 for a drift; misfit of the pass before; what arcs still turn."""
-_EACH = 5
+without contact; 1 for a drift; misfit of the pass before; what arcs still turn; 1 where the passes
+ended before it had settled."""
+_EACH = 6
 STATICS, STILL, MOVED, TOTAL = 0, 1, 2, 3
 """Of a spring: force without redundants and turned loads, gap and compression without them, and
 with them; force of the redundants and turned loads."""

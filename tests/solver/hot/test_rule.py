@@ -1,0 +1,70 @@
+"""The rule that names a sample's set: what it learns, and that it changes no answer."""
+
+import numpy as np
+import pytest
+from tests.support import CASES
+
+from benchmarks.workloads import workloads
+from loadshare.job import machine as job_machine
+from loadshare.job.machine import Machine
+from loadshare.scene.loading import loading_of
+from loadshare.settings import RULE
+from loadshare.solver.hot import vectorised
+from loadshare.solver.hot.exchange import exchange, first_sets
+from loadshare.solver.hot.iterate import at_rest, pushes
+from loadshare.solver.hot.rule import rule_of
+from loadshare.train.samples import samples_of
+
+TAUGHT, COUNT = 256, 768
+
+
+@pytest.fixture(scope="module")
+def rings():
+    """A machine with limit rings, samples of errors, and what exchange finds from rest."""
+    work = workloads(CASES, quick=True)[0]
+    ((_, samples),) = samples_of(work.case, work.some(COUNT))
+    machine, situations = Machine(samples.train), samples.situations(1)
+    loading = loading_of(machine.structure, situations)
+    iterate = at_rest(machine.structure, loading)
+    states = first_sets(machine.structure, loading)
+    found = exchange(machine.structure, loading, iterate, vectorised.settle, states)
+    return machine, situations, loading, iterate, found
+
+
+def test_it_names_most_sets_of_samples_that_it_has_not_seen(rings):
+    machine, _, loading, iterate, found = rings
+    taught = slice(0, TAUGHT)
+    states = found.states[:, : machine.structure.rows]
+    share = np.abs(iterate.force[taught]) / pushes(loading)[taught, None]
+    rule = rule_of(loading, slice(0, COUNT), states[taught], share)
+    right = (rule.states[rule.named] == states).all(axis=1)[TAUGHT:]
+    _, times = np.unique(states, axis=0, return_counts=True)
+    assert right.mean() >= max(0.7, 1.1 * times.max() / COUNT)
+
+
+def test_samples_of_one_set_need_no_rule(rings):
+    machine, _, loading, iterate, found = rings
+    states = np.repeat(found.states[:1, : machine.structure.rows], TAUGHT, axis=0)
+    assert rule_of(loading, slice(0, COUNT), states, np.abs(iterate.force[:TAUGHT])) is None
+
+
+def test_answers_are_those_from_rest_in_fewer_visits(rings, monkeypatch):
+    monkeypatch.setattr(job_machine, "RULE", RULE._replace(taught=TAUGHT, worth=3))
+    machine, situations, _, iterate, found = rings
+    answers = machine.answer(situations, 1e-9, vectorised.settle, starts=(1,))
+    assert found.solved.all()
+    assert answers.passed.all()
+    assert answers.turns.mean() < found.turns.mean()
+    flanks = machine.structure.columns.flanks
+    force = np.maximum(iterate.force[:, flanks], 0.0) * machine.structure.force
+    # Another beginning moves an answer by round-off.
+    assert np.abs(answers.equilibria.flank_force - force).max() <= 1e-12 * force.max()
+
+
+def test_numbers_that_do_not_vary_teach_nothing(rings):
+    machine, situations, *_ = rings
+    loading = loading_of(machine.structure, situations.take(np.zeros(COUNT, dtype=np.intp)))
+    states = np.zeros((TAUGHT, machine.structure.rows), dtype=np.int8)
+    states[::2, 0] = 1
+    share = np.zeros((TAUGHT, len(machine.structure.kinds)))
+    assert rule_of(loading, slice(0, COUNT), states, share) is None
