@@ -135,7 +135,7 @@ def test_sensitivity(command, tmp_path):
         *("sensitivity", RING, "rings.4.float", "--position", 1),
         *("--set", "rings.4.float=0 um"),
     )
-    assert "stands on the verge" in at_kink.stdout
+    assert "is on the verge" in at_kink.stdout
     assert "lower stop" in at_kink.stdout
 
 
@@ -222,7 +222,7 @@ def test_studies_are_listed(command, measured):
     [
         (("sweep", RING, "--over", "rings.4.float"), "is not of the form"),
         (("sweep", RING, "--over", "rings.4.flot=0 um:1 um:2"), "Did you mean float"),
-        (("sweep", RING, "--over", "a=0:1:2", "-o", "x.txt"), "does not tell what to write"),
+        (("sweep", RING, "--over", "a=0:1:2", "-o", "x.txt"), "does not say what to write"),
         (("critical", RING, "--over", "rings.4.float=0 um:1 N"), "cannot be expressed"),
         (("critical", RING, "--over", "rings.4.float=0:1 um"), "0 has no unit"),
         (
