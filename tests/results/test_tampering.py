@@ -203,7 +203,7 @@ def test_a_position_left_out_is_missed(small):
 
 def test_text_that_is_no_plain_json_is_refused(small):
     text = small.to_json()
-    assert "the key omega stands twice" in told(text.replace('"pair_omega"', '"omega"'))
+    assert "the key omega appears twice" in told(text.replace('"pair_omega"', '"omega"'))
     torque = f"{small.positions[0].torque['4-6']!r}"
     for number in ("NaN", "Infinity", "-Infinity", "1e999"):
         assert "not a finite number" in told(text.replace(torque, number))

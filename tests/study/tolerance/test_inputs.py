@@ -190,7 +190,7 @@ def test_all_that_is_wrong_is_told_at_once():
         "matches no key of the case",
         "is not positive",
         'mean = "much": cannot be read',
-        "cannot be told in N",
+        "cannot be expressed in N",
         "is negative",
         "A truncated normal distribution keeps within limits",
         "is drawn by rings.*.float already",
