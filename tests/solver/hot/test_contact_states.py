@@ -23,7 +23,7 @@ from loadshare.scene import assemble
 from loadshare.scene.loading import loading_of
 from loadshare.settings import CERTIFY
 from loadshare.solver.hot import contact_states as at
-from loadshare.solver.hot import vectorised
+from loadshare.solver.hot import radials, vectorised
 from loadshare.train import build_train
 from loadshare.train.samples import samples_of
 
@@ -153,7 +153,7 @@ def moved(law: at.Graph, place: int, radius: float, pull: float) -> int:
     """Where an element that is out by `radius` and pulled by `pull` should stand."""
     bands = np.array([FORCE_BAND]), np.array([LENGTH_BAND]), np.array([FORCE_BAND])
     offset, load = np.array([[0.6, 0.8]]) * radius, np.array([[0.6, 0.8]]) * pull
-    wrong, other = vectorised.misplaced(place, law, offset, load, *bands)
+    wrong, other = radials.misplaced(place, law, offset, load, *bands)
     return int(other[0]) if wrong[0] else place
 
 

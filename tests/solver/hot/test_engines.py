@@ -19,7 +19,7 @@ import loadshare as ls
 from loadshare.job.engines import engine_named
 from loadshare.job.machine import Answers, Machine
 from loadshare.settings import ABREAST, CERTIFY, JOB
-from loadshare.solver.hot import compiled, vectorised
+from loadshare.solver.hot import compiled, radials, vectorised
 from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot.kernel.signs import misplaced
 from loadshare.train import build_train
@@ -159,7 +159,7 @@ def test_radial_elements_move_alike_from_place_to_place(data):
     graph = at.Graph(*(np.array([v]) for v in law))
     bands = (np.array([1e-12]),) * 3
     offset, force = np.array([[0.6 * u, 0.8 * u]]), np.array([[0.6 * p, 0.8 * p]])
-    wrong, moved = vectorised.misplaced(place, graph, offset, force, *bands)
+    wrong, moved = radials.misplaced(place, graph, offset, force, *bands)
     other = misplaced(place, law, *offset[0], *force[0], 1e-12, 1e-12, 1e-12)
     assert other == (moved[0] if wrong[0] else place)
 

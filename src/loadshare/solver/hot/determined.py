@@ -21,9 +21,9 @@ from loadshare.scene.structure import Structure
 from loadshare.settings import PLACES, STATICS
 from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot.contact_states import FREE, HELD, LEVEL
+from loadshare.solver.hot.elements import arc_at, pick
 from loadshare.solver.hot.exchange import States
 from loadshare.solver.hot.iterate import Iterate, pushes
-from loadshare.solver.hot.vectorised import arc_at, pick
 
 
 def determined(

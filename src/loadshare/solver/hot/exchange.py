@@ -20,8 +20,8 @@ from loadshare.scene.statics import Basis
 from loadshare.scene.structure import Structure
 from loadshare.settings import EXCHANGE
 from loadshare.solver.hot import contact_states as at
+from loadshare.solver.hot.elements import pick
 from loadshare.solver.hot.iterate import Iterate
-from loadshare.solver.hot.vectorised import pick
 
 States = NDArray[np.int8]
 Engine = Callable[

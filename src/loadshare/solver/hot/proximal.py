@@ -25,10 +25,11 @@ from loadshare.scene.structure import Structure
 from loadshare.settings import HOT, SEARCH
 from loadshare.solver.hot import contact_states as at
 from loadshare.solver.hot import vectorised
+from loadshare.solver.hot.elements import arc_at
 from loadshare.solver.hot.exchange import Found, States, exchange, first_sets
 from loadshare.solver.hot.iterate import Iterate, at_rest
+from loadshare.solver.hot.radials import beyond
 from loadshare.solver.hot.softened import Laws
-from loadshare.solver.hot.vectorised import arc_at, beyond
 
 _HALVES = 0.5 ** np.arange(SEARCH.halvings, -1, -1)
 

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.array_types import Flags
-from loadshare.contact.arc import rolled
 from loadshare.contact.law import roots
 from loadshare.scene.loading import Loading
 from loadshare.scene.scene import Array
@@ -16,12 +13,13 @@ from loadshare.scene.statics import Basis
 from loadshare.scene.structure import Structure
 from loadshare.settings import HOT
 from loadshare.solver.hot import contact_states as at
+from loadshare.solver.hot.elements import arc_at, pick, piece
 from loadshare.solver.hot.iterate import Iterate
+from loadshare.solver.hot.radials import Block, beyond, block, misplaced, until
 from loadshare.solver.hot.rest import rest
 
 Rows = NDArray[np.intp]
 States = NDArray[np.int8]
-_BOTH = np.eye(2)
 
 
 def settle(
@@ -95,20 +93,6 @@ def settle(
     return verdict.astype(np.int8), np.where(wrong, moved, states).astype(np.int8)
 
 
-@dataclass(slots=True)
-class _Block:
-    """Tangent of a radial element of the set: compression = offset + compliance · force.
-
-    On the level piece the force along `along` is `bound` and the compression that way is free.
-    """
-
-    columns: slice
-    compliance: Array
-    offset: Array
-    along: Array
-    bound: Array | None
-
-
 class _Passes:
     """Newton passes of some samples on one set.
 
@@ -127,7 +111,7 @@ class _Passes:
         How many of these show that it has left its place.
     fixed : dict of int to Graph
         Laws of radial elements that do not follow the torque.
-    linear : dict of int to _Block
+    linear : dict of int to Block
         Tangents of radial elements that stay the same.
     """
 
@@ -181,7 +165,7 @@ class _Passes:
         self.outside = np.zeros((count, structure.switches - structure.rows), dtype=int)
         self.patience = np.where(states[structure.rows :] == at.WALL, HOT.inward, HOT.outside)
         self.fixed: dict[int, at.Graph] = {}
-        self.linear: dict[int, _Block] = {}
+        self.linear: dict[int, Block] = {}
 
     def run(self, patient: Flags) -> None:
         """Pass until every sample is settled, refused, or asks for another set.
@@ -232,7 +216,7 @@ class _Passes:
         self.settled &= ~self.burst
         self.settled &= ~self.refused
 
-    def _pass(self, blocks: list[_Block]) -> None:
+    def _pass(self, blocks: list[Block]) -> None:
         """One Newton pass: redundants, forces, compressions, coordinates."""
         particular, n = self.basis.particular, self.basis.redundant
         tangent, shift = self._tangents()
@@ -342,7 +326,7 @@ class _Passes:
             gap[:, k] = margin + self.x @ base
         return load, gap
 
-    def _blocks(self) -> list[_Block]:
+    def _blocks(self) -> list[Block]:
         """Tangents of the radial elements where they are now."""
         blocks = []
         for j, status, k in self.radial:
@@ -565,11 +549,6 @@ class _Passes:
         iterate.root[np.ix_(self.rows, columns)] = self.root
 
 
-def pick(array: Array, rows: Rows) -> Array:
-    """Return the rows of an array, or its only one."""
-    return array[rows] if len(array) > 1 else array
-
-
 def solve(matrix: Array, sides: Array, size: int) -> Array:
     """Solve (k, n, n) symmetric systems; singular ones through a proximal term.
 
@@ -610,11 +589,6 @@ def solve(matrix: Array, sides: Array, size: int) -> Array:
     return solved
 
 
-def times(matrices: Array, vectors: Array) -> Array:
-    """Return the products of (k, n, n) with (k, n)."""
-    return np.asarray((matrices @ vectors[:, :, None])[:, :, 0])
-
-
 def size_of(vectors: Array) -> Array:
     """Largest entry of every row."""
     return np.asarray(np.abs(vectors).max(axis=1, initial=0.0))
@@ -626,143 +600,6 @@ def change(now: Array, before: Array) -> Array:
     return np.asarray(np.abs(now - before).max(axis=1, initial=0.0) / np.maximum(size, 1e-300))
 
 
-def piece(axis: Array, values: Array, where: Array) -> tuple[Array, Array, Array]:
-    """Start on the axis, start value and slope of the pieces of tables that hold some places.
-
-    Parameters
-    ----------
-    axis, values : ndarray, shape (S or 1, tables, points)
-    where : ndarray, shape (S, tables)
-    """
-    last = (~np.isnan(axis)).sum(axis=2) - 2
-    k = np.minimum(np.maximum((axis <= where[:, :, None]).sum(axis=2) - 1, 0), last)
-    at = np.arange(len(k))[:, None] if len(axis) > 1 else 0, np.arange(k.shape[1])
-    x0, y0 = axis[(*at, k)], values[(*at, k)]
-    return x0, y0, (values[(*at, k + 1)] - y0) / (axis[(*at, k + 1)] - x0)
-
-
-def arc_at(loading: Loading, a: int, rows: Rows, x: Array) -> tuple[Array, Array]:
-    """Normal (k, 3) and margin (k,) of an arc at the coordinates x (k, n); see `Arc`."""
-    nominal = loading.nominal[a]
-    moved = pick(loading.shift, rows)[:, a] + x @ loading.relative[a].T
-    d, here, margin = rolled(nominal, moved)
-    beyond = d @ nominal <= 0.0
-    if beyond.any():
-        d[beyond] = nominal
-        here[beyond] = distance = np.sqrt(nominal @ nominal)
-        margin[beyond] = moved[beyond] @ nominal / distance
-    return d / here[:, None], margin + pick(loading.clearance, rows)[:, a]
-
-
-def until(offset: Array, velocity: Array, reach: Array, slow: Array) -> Array:
-    """How far to go until |offset + t velocity| = reach, (k,); infinite for what does not move."""
-    square = (velocity * velocity).sum(axis=1)
-    along = (offset * velocity).sum(axis=1)
-    inside = np.maximum(reach * reach - (offset * offset).sum(axis=1), 0.0)
-    far = (np.sqrt(along * along + square * inside) - along) / square
-    return np.where(square > slow * slow, np.maximum(far, 0.0), np.inf)
-
-
-def beyond(law: at.Graph) -> States:
-    """Place of a radial element past its level piece."""
-    rigid = np.where(law.reach > 0.0, at.WALL, at.PINNED)
-    return np.where(np.isinf(law.last), rigid, at.STOP).astype(np.int8)
-
-
-def direction(first: Array, second: Array) -> Array:
-    """Unit vectors along `first`, or `second` where that is zero, or x."""
-    vector = np.where((first != 0.0).any(axis=1)[:, None], first, second)
-    size = np.sqrt((vector * vector).sum(axis=1))
-    along = vector / np.where(size > 0.0, size, 1.0)[:, None]
-    along[size == 0.0] = (1.0, 0.0)
-    return along
-
-
-def block(
-    columns: slice, status: int, law: at.Graph, offset: Array, force: Array, push: Array
-) -> _Block:
-    """Tangent of a radial element at its current offset and force."""
-    count = len(offset)
-    radius, size = (np.sqrt((v * v).sum(axis=1)) for v in (offset, force))
-    if status in (at.CORNER, at.WALL):
-        along = direction(force, offset)
-        limit = law.stick if status == at.CORNER else law.reach
-        inner, outer = np.zeros(count), limit / np.where(size > 0.0, size, push)
-        start = limit
-    else:
-        along = direction(offset, force)
-        if status == at.STICK:
-            inner = outer = 1.0 / law.first
-            start = np.zeros(count)
-        elif status == at.PINNED:
-            inner = outer = start = np.zeros(count)
-        elif status == at.SLIP:
-            # Beyond the piece the true tangent is too soft to find the way back.
-            inner, start = np.zeros(count), np.zeros(count)
-            outer = np.clip(radius, law.stick, law.reach) / np.maximum(law.bound, HOT.faint * push)
-        else:
-            reached = np.maximum(radius, law.reach)
-            pull = law.bound + law.last * (reached - law.reach)
-            inner = 1.0 / law.last
-            outer = np.where(pull > 0.0, reached / np.where(pull > 0.0, pull, 1.0), inner)
-            start = law.reach - law.bound / law.last
-    # Across its offset a force vanishes in the end, whatever its compliance there: one that a small
-    # force makes immense would only drown all others.
-    outer = np.minimum(outer, HOT.softest)
-    dyad = along[:, :, None] * along[:, None, :]
-    compliance = inner[:, None, None] * dyad + outer[:, None, None] * (_BOTH - dyad)
-    bound = law.bound if status == at.SLIP else None
-    return _Block(columns, compliance, start[:, None] * along, along, bound)
-
-
-def misplaced(
-    status: int,
-    law: at.Graph,
-    offset: Array,
-    force: Array,
-    force_band: Array,
-    length_band: Array,
-    faint: Array,
-) -> tuple[Flags, States]:
-    """Whether a radial element has left its place, and where it should be instead.
-
-    A friction bound up to `faint` is none.
-    """
-    radius, size = (np.sqrt((v * v).sum(axis=1)) for v in (offset, force))
-    jump = law.bound > law.first * law.stick * (1.0 + HOT.rounded)
-    past = beyond(law)
-    rubs = law.bound > faint
-    level = np.where(law.reach > law.stick, np.where(rubs, at.SLIP, at.OPEN), past)
-    back = np.where(law.stick > 0.0, np.where(jump, at.CORNER, at.STICK), at.PINNED)
-    back = np.where((law.bound == 0.0) & (law.reach > 0.0), at.OPEN, back)
-    inward = (offset * force).sum(axis=1) < 0.0
-    stays = np.full(len(radius), status)
-    if status == at.OPEN:
-        up, down = radius > law.reach + length_band, rubs & (radius > length_band)
-        after, before = past, np.where(radius < law.stick, at.STICK, level)
-    elif status == at.STICK:
-        up, down = size > law.first * law.stick + force_band, False
-        gone = np.where(radius > law.reach + length_band, past, level)
-        after, before = np.where(jump, at.CORNER, gone), stays
-    elif status == at.CORNER:
-        down = inward | (size < law.first * law.stick - force_band)
-        up = (size > law.bound + force_band) & ~inward
-        after, before = level, np.full(len(radius), at.STICK)
-    elif status == at.PINNED:
-        yields = (law.bound > 0.0) | (law.reach > 0.0) | np.isfinite(law.last)
-        up = (size > law.bound + force_band) & yields
-        down, after, before = False, level, stays
-    elif status == at.SLIP:
-        up = (radius > law.reach + length_band) & rubs & ~inward
-        down = (radius < law.stick - length_band) | inward | ~rubs
-        after, before = past, np.where(rubs, back, level)
-    elif status == at.STOP:
-        up, down = False, ((radius < law.reach - length_band) | inward) & (law.reach > 0.0)
-        # A stop that carries next to nothing sticks: it does not use up its friction.
-        slips = (law.reach > law.stick) & (radius >= law.stick) & (size > HOT.gross * law.bound)
-        after, before = stays, np.where(slips, level, back)
-    else:
-        up, down = False, inward | (size <= force_band)
-        after, before = stays, np.full(len(radius), at.OPEN)
-    wrong = np.broadcast_to(up | down, radius.shape)
-    return wrong, np.where(up, after, before).astype(np.int8)
+def times(matrices: Array, vectors: Array) -> Array:
+    """Return the products of (k, n, n) with (k, n)."""
+    return np.asarray((matrices @ vectors[:, :, None])[:, :, 0])

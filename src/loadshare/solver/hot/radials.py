@@ -1,0 +1,144 @@
+"""Radial elements of many samples: tangents where they are, and whether they have left it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare.array_types import Flags
+from loadshare.scene.scene import Array
+from loadshare.settings import HOT
+from loadshare.solver.hot import contact_states as at
+
+States = NDArray[np.int8]
+_BOTH = np.eye(2)
+
+
+@dataclass(slots=True)
+class Block:
+    """Tangent of a radial element of the set: compression = offset + compliance · force.
+
+    On the level piece the force along `along` is `bound` and the compression that way is free.
+    """
+
+    columns: slice
+    compliance: Array
+    offset: Array
+    along: Array
+    bound: Array | None
+
+
+def until(offset: Array, velocity: Array, reach: Array, slow: Array) -> Array:
+    """How far to go until |offset + t velocity| = reach, (k,); infinite for what does not move."""
+    square = (velocity * velocity).sum(axis=1)
+    along = (offset * velocity).sum(axis=1)
+    inside = np.maximum(reach * reach - (offset * offset).sum(axis=1), 0.0)
+    far = (np.sqrt(along * along + square * inside) - along) / square
+    return np.where(square > slow * slow, np.maximum(far, 0.0), np.inf)
+
+
+def beyond(law: at.Graph) -> States:
+    """Place of a radial element past its level piece."""
+    rigid = np.where(law.reach > 0.0, at.WALL, at.PINNED)
+    return np.where(np.isinf(law.last), rigid, at.STOP).astype(np.int8)
+
+
+def direction(first: Array, second: Array) -> Array:
+    """Unit vectors along `first`, or `second` where that is zero, or x."""
+    vector = np.where((first != 0.0).any(axis=1)[:, None], first, second)
+    size = np.sqrt((vector * vector).sum(axis=1))
+    along = vector / np.where(size > 0.0, size, 1.0)[:, None]
+    along[size == 0.0] = (1.0, 0.0)
+    return along
+
+
+def block(
+    columns: slice, status: int, law: at.Graph, offset: Array, force: Array, push: Array
+) -> Block:
+    """Tangent of a radial element at its current offset and force."""
+    count = len(offset)
+    radius, size = (np.sqrt((v * v).sum(axis=1)) for v in (offset, force))
+    if status in (at.CORNER, at.WALL):
+        along = direction(force, offset)
+        limit = law.stick if status == at.CORNER else law.reach
+        inner, outer = np.zeros(count), limit / np.where(size > 0.0, size, push)
+        start = limit
+    else:
+        along = direction(offset, force)
+        if status == at.STICK:
+            inner = outer = 1.0 / law.first
+            start = np.zeros(count)
+        elif status == at.PINNED:
+            inner = outer = start = np.zeros(count)
+        elif status == at.SLIP:
+            # Beyond the piece the true tangent is too soft to find the way back.
+            inner, start = np.zeros(count), np.zeros(count)
+            outer = np.clip(radius, law.stick, law.reach) / np.maximum(law.bound, HOT.faint * push)
+        else:
+            reached = np.maximum(radius, law.reach)
+            pull = law.bound + law.last * (reached - law.reach)
+            inner = 1.0 / law.last
+            outer = np.where(pull > 0.0, reached / np.where(pull > 0.0, pull, 1.0), inner)
+            start = law.reach - law.bound / law.last
+    # Across its offset a force vanishes in the end, whatever its compliance there: one that a small
+    # force makes immense would only drown all others.
+    outer = np.minimum(outer, HOT.softest)
+    dyad = along[:, :, None] * along[:, None, :]
+    compliance = inner[:, None, None] * dyad + outer[:, None, None] * (_BOTH - dyad)
+    bound = law.bound if status == at.SLIP else None
+    return Block(columns, compliance, start[:, None] * along, along, bound)
+
+
+def misplaced(
+    status: int,
+    law: at.Graph,
+    offset: Array,
+    force: Array,
+    force_band: Array,
+    length_band: Array,
+    faint: Array,
+) -> tuple[Flags, States]:
+    """Whether a radial element has left its place, and where it should be instead.
+
+    A friction bound up to `faint` is none.
+    """
+    radius, size = (np.sqrt((v * v).sum(axis=1)) for v in (offset, force))
+    jump = law.bound > law.first * law.stick * (1.0 + HOT.rounded)
+    past = beyond(law)
+    rubs = law.bound > faint
+    level = np.where(law.reach > law.stick, np.where(rubs, at.SLIP, at.OPEN), past)
+    back = np.where(law.stick > 0.0, np.where(jump, at.CORNER, at.STICK), at.PINNED)
+    back = np.where((law.bound == 0.0) & (law.reach > 0.0), at.OPEN, back)
+    inward = (offset * force).sum(axis=1) < 0.0
+    stays = np.full(len(radius), status)
+    if status == at.OPEN:
+        up, down = radius > law.reach + length_band, rubs & (radius > length_band)
+        after, before = past, np.where(radius < law.stick, at.STICK, level)
+    elif status == at.STICK:
+        up, down = size > law.first * law.stick + force_band, False
+        gone = np.where(radius > law.reach + length_band, past, level)
+        after, before = np.where(jump, at.CORNER, gone), stays
+    elif status == at.CORNER:
+        down = inward | (size < law.first * law.stick - force_band)
+        up = (size > law.bound + force_band) & ~inward
+        after, before = level, np.full(len(radius), at.STICK)
+    elif status == at.PINNED:
+        yields = (law.bound > 0.0) | (law.reach > 0.0) | np.isfinite(law.last)
+        up = (size > law.bound + force_band) & yields
+        down, after, before = False, level, stays
+    elif status == at.SLIP:
+        up = (radius > law.reach + length_band) & rubs & ~inward
+        down = (radius < law.stick - length_band) | inward | ~rubs
+        after, before = past, np.where(rubs, back, level)
+    elif status == at.STOP:
+        up, down = False, ((radius < law.reach - length_band) | inward) & (law.reach > 0.0)
+        # A stop that carries next to nothing sticks: it does not use up its friction.
+        slips = (law.reach > law.stick) & (radius >= law.stick) & (size > HOT.gross * law.bound)
+        after, before = stays, np.where(slips, level, back)
+    else:
+        up, down = False, inward | (size <= force_band)
+        after, before = stays, np.full(len(radius), at.OPEN)
+    wrong = np.broadcast_to(up | down, radius.shape)
+    return wrong, np.where(up, after, before).astype(np.int8)
