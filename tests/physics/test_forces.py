@@ -125,3 +125,11 @@ def test_forces_are_samples_of_one_machine():
         assert batch.certified.all()
         moved = batch.displacement.sel(gear="a").values[:, 0, 1]
         assert moved == pytest.approx((FORCE * ALONG[1] + sizes) / 2e8, rel=1e-12)
+
+
+def test_a_change_may_bring_the_first_force_or_torque_from_outside() -> None:
+    case = shipped("planetary/four_planets")
+    pushed = case.replace({"operating.forces.sun": ["0 N", "50 N"]})
+    assert pushed.operating.forces["sun"][1].si == 50.0
+    assert case.replace({"operating.external.sun": "3 N*m"}).operating.external["sun"].si == 3.0
+    assert not case.operating.forces

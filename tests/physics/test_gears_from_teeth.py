@@ -11,6 +11,7 @@ import loadshare as ls
 from loadshare.case import Case
 from loadshare.case.gears import Tooth
 from loadshare.case.line_of_action import line_of_action
+from loadshare.errors import CaseError
 from loadshare.involute import (
     base_distance,
     contact_ratio,
@@ -177,3 +178,23 @@ def test_a_star_from_teeth_is_the_one_from_typed_numbers():
         assert other.positions[0].rotation[gear] == pytest.approx(turned, rel=1e-9, abs=1e-15)
     # Three planets around a floating sun share evenly, wherever their pins are.
     assert own.omega["I"] == pytest.approx(1.0, abs=1e-9)
+
+
+def test_teeth_that_do_not_reach_each_other_are_told_how_far_apart_they_would_mesh() -> None:
+    """A ring of 75 teeth about planets of 24 beside a sun of 24: 51 mm, where the sun has 48."""
+    centre = ["0 mm", "0 mm"]
+    gears: dict[str, dict] = {
+        "sun": {"teeth": 24, "centre": centre},
+        "ring": {"teeth": 75, "type": "internal", "held": True, "centre": centre},
+        "p": {"teeth": 24, "carrier": "c", "copies": 3, "centre": {"angle": "0 deg"}},
+    }
+    for gear in gears.values():
+        gear |= {"module": "2 mm", "face_width": "30 mm"}
+    gears["c"] = {"type": "carrier", "centre": centre}
+    case = ls.Case(
+        operating={"input": "sun", "output": "c", "torque": "100 N*m"},
+        gears=gears,
+        meshes={"sun-p": {"law": "iso"}, "p-ring": {"law": "iso"}},
+    )
+    with pytest.raises(CaseError, match=r"48 mm apart; without backlash it would be 51 mm"):
+        ls.solve(case)

@@ -14,6 +14,9 @@ from loadshare.case.origin import CHANGES, Origin
 from loadshare.case.words import as_given, did_you_mean
 from loadshare.errors import CaseError, Problem
 
+BY_GEAR = (("operating", "external"), ("operating", "forces"))
+"""Tables whose keys are gears; a case without one has room for it."""
+
 
 def revise(
     data: Mapping[str, Any], origin: Origin, changes: Mapping[str, Any]
@@ -88,8 +91,8 @@ def change(data: dict[str, Any], path: Path, value: Any) -> str | None:
     data : dict
         A case as plain data.
     path : tuple of str or int
-        The key; the table that holds it must exist, or be a section of a case file or the table of
-        a gear's errors.
+        The key; the table that holds it must exist, or be a section of a case file, the table of
+        a gear's errors, or one of torques or forces by gear.
     value : object
         The new value; None removes the key.
 
@@ -105,6 +108,8 @@ def change(data: dict[str, Any], path: Path, value: Any) -> str | None:
             errors = section.setdefault(path[1], {})
             if path[2] == "pin" and isinstance(errors, dict):
                 errors.setdefault("pin", {})
+        if path[:2] in BY_GEAR and len(path) == 3 and isinstance(section, dict):
+            section.setdefault(path[1], {})
     holder: Any = look_up(data, path[:-1])
     step: Any = path[-1]
     if value is None:

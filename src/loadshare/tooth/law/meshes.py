@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from loadshare.case.checks.fit import mm
 from loadshare.case.keys import dotted, parse
 from loadshare.case.line_of_action import centre_distance
 from loadshare.case.place import minus
 from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
+from loadshare.involute import distance_without_backlash
 
 if TYPE_CHECKING:
-    from loadshare.case import Case
+    from loadshare.case import Case, Gear
     from loadshare.tooth.law.file import MeshLaw
     from loadshare.tooth.pair.file import PairFile
 
 Tick = Callable[[int, int], None]
 
+APART = 0.1
+"""How far centres may be from where teeth mesh without backlash and need no word, in modules."""
 SOURCES = ("geometry", "law_file")
 """Keys of a mesh that name a file its law follows from."""
 
@@ -153,10 +158,12 @@ def _by_formula(
         measured = mesh.law == "iso"
         pair = case.gears[mesh.driver], case.gears[mesh.driven]
         offset = minus(centres[mesh.driven], centres[mesh.driver])
+        distance = centre_distance(pair[0], offset)
         try:
-            stiffness = mesh_stiffness(pair, centre_distance(pair[0], offset), measured=measured)
+            stiffness = mesh_stiffness(pair, distance, measured=measured)
         except ValueError as error:
-            problems.append(case.problem(("meshes", name, "law"), str(error)))
+            path, hint = ("meshes", name, "law"), _distance_told(pair, distance)
+            problems.append(case.problem(path, str(error), hint=hint))
             continue
         compliance = 1.0 / (stiffness * pair[0].acting_radius ** 2)
         found[name] = {
@@ -165,6 +172,18 @@ def _by_formula(
             "holds_from": f"{least_torque(pair)!r} N*m",
         }
     return found, problems
+
+
+def _distance_told(pair: tuple[Gear, Gear], distance: float) -> str:
+    """Say at which centre distance [m] two gears would mesh, if they stand too far apart."""
+    one, two = pair[0].tooth, pair[1].tooth
+    if one is None or two is None:
+        return ""
+    with suppress(ValueError):
+        fits = distance_without_backlash(one, two)
+        if abs(fits - distance) > APART * one.module:
+            return f"The centres are {mm(distance)} apart; without backlash it would be {mm(fits)}."
+    return ""
 
 
 def _laws(pairs: dict[str, PairFile], progress: Tick | None) -> dict[str, MeshLaw]:
