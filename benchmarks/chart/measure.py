@@ -276,9 +276,10 @@ def _batch(workload: Workload, samples: Sequence[Sample], method: str) -> Measur
 
     positions = build_train(workload.case).count
     _, setup = solve(min(16, workload.count))
-    needed = samples[-1].number + 1
-    _, seconds = solve(needed)
-    count = int(min(workload.count, max(needed, PATIENCE * needed / max(seconds, 1e-6))))
+    # So many that what a call costs by itself does not decide how many are solved.
+    needed, some = samples[-1].number + 1, min(workload.count, 1000)
+    _, seconds = solve(some)
+    count = int(min(workload.count, max(needed, PATIENCE * some / max(seconds, 1e-6))))
     solve(count)
     times = Times()
     answers, seconds = solve(count, times)
