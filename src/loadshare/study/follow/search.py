@@ -108,7 +108,7 @@ class Search:
         self.gaps: list[Gap] = []
         self._equations: dict[WorkingSet, Equations] = {}
         self._hints: dict[tuple[float, float], float] = {}
-        self._sharp: dict[float, bool] = {}
+        self._alone: dict[float, tuple[bool, bool]] = {}
 
     def run(self) -> None:
         """Find all changes, by value, and what could not be proved.
@@ -261,19 +261,28 @@ class Search:
         return left
 
     def _hidden(self, active: WorkingSet, stretch: tuple[Point, Point]) -> bool:
-        """Give up a stretch at both ends of which round-off alone leaves no enclosure."""
-        if any(self._sharp[point.value] for point in stretch):
+        """Give up a stretch of which no part, however short, could be proved."""
+        first, last = stretch
+        known = [self._alone[point.value] for point in stretch]
+        if not any(enclosed for _, enclosed in known):
+            self.gaps.append(Gap(*stretch, "round-off hides what holds its bodies"))
+            return True
+        if any(holds for holds, _ in known):
             return False
-        self.gaps.append(Gap(*stretch, "round-off hides what holds its bodies"))
+        middle, z = 0.5 * (first.value + last.value), 0.5 * (first.z + last.z)
+        if self._prove(self._equations[active], [(middle, middle, z, z)]).holds[0]:
+            return False
+        self.gaps.append(Gap(*stretch, "all of it is as near to a change as round-off"))
         return True
 
     def _look_at_ends(self, active: WorkingSet, stretches: list[tuple[Point, Point]]) -> None:
-        """Tell of the ends of stretches whether each is enclosed by itself."""
+        """Tell of the ends of stretches whether the set holds there, and each is enclosed."""
         ends = {p.value: (p.value, p.value, p.z, p.z) for s in stretches for p in s}
-        new = {value: end for value, end in ends.items() if value not in self._sharp}
+        new = {value: end for value, end in ends.items() if value not in self._alone}
         if new:
-            enclosed = self._prove(self._equations[active], list(new.values())).enclosed
-            self._sharp |= dict(zip(new, enclosed.tolist(), strict=True))
+            found = self._prove(self._equations[active], list(new.values()))
+            both = zip(found.holds.tolist(), found.enclosed.tolist(), strict=True)
+            self._alone |= dict(zip(new, both, strict=True))
 
     def _crossed(self, stretch: Stretch) -> bool:
         """Find and prove the change between two ends; on failure note where it may be."""
