@@ -58,10 +58,13 @@ TABLES = (
 LIMITS = "<!-- limits -->"
 ALLOWED = (
     ("size of a file", "{bytes} bytes; a regular file, no pipe and no device"),
+    ("size of a gear unit or workbook to import", "{other_bytes} bytes"),
     ("size of a file of results", "{result_bytes} bytes"),
     ("files that extend one another", "{files}"),
     ("tables and lists within one another", "{depth}"),
-    ("elements of a section, entries of a list", "{entries}"),
+    ("elements of a section", "{elements}"),
+    ("entries of a table, and of a list of keys", "{entries}"),
+    ("problems that are told", "{problems}"),
     ("a name", "1 to {name} printable characters"),
     ("a number with its unit", "0, or {smallest:g} to {largest:g} in SI units"),
     ("a coefficient of friction", "0 to {friction:g}"),
@@ -71,6 +74,8 @@ ALLOWED = (
     ("steps of a march", "{steps}"),
     ("points of a sweep", "{points}"),
     ("revolutions of a march", "{revolutions:g}"),
+    ("positions of a common period", "{common}"),
+    ("samples of a study", "{samples}"),
 )
 """What a case file may hold, in words; the numbers are those of the settings."""
 

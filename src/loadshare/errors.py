@@ -6,6 +6,9 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+LONGEST = 400
+"""Characters of a key in a message: more than keys of any length allowed have."""
+
 
 @dataclass(frozen=True)
 class Problem:
@@ -35,7 +38,8 @@ class Problem:
     hint: str = ""
 
     def __str__(self) -> str:
-        place = " = ".join(part for part in (self.key, self.given) if part)
+        key = self.key if len(self.key) <= LONGEST else f"{self.key[:LONGEST]}…"
+        place = " = ".join(part for part in (key, self.given) if part)
         parts = [f"{': '.join(part for part in (self.file, place, self.message) if part)}."]
         if self.allowed:
             parts.append(f"Allowed: {self.allowed}" + ("." if self.allowed[-1] != "…" else ""))

@@ -38,6 +38,14 @@ def read_file(path: Path, most: int) -> bytes:
     return content
 
 
+def real(path: Path) -> Path:
+    """Return a path without links; one that leads around in a circle as it stands.
+
+    `Path.resolve` raises there, or not, by the version of Python.
+    """
+    return Path(os.path.realpath(path))
+
+
 def _without_waiting(path: str, flags: int) -> int:
     """Open a file at once, though it be a pipe that nobody writes."""
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))

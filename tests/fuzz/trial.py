@@ -71,6 +71,7 @@ STUDIES: dict[str, dict[str, Any]] = {
     "tolerance": {
         "kind": "tolerance",
         "samples": 16,
+        "indices": 16,
         "seed": 1,
         "limit": 1.2,
         "inputs": {

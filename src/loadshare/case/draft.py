@@ -12,7 +12,7 @@ from pydantic.fields import FieldInfo
 from loadshare.case.content import ENDS, Content, Sections
 from loadshare.case.described import description
 from loadshare.case.element import Element, elements_in, written
-from loadshare.case.keys import Path, ends_of
+from loadshare.case.keys import Path, dotted, ends_of
 from loadshare.case.origin import Origin
 from loadshare.case.place import Vector
 from loadshare.case.quantity import as_text
@@ -22,6 +22,7 @@ from loadshare.errors import CaseError, Problem
 from loadshare.settings import ALLOWED
 
 Found = TypeVar("Found")
+MORE = f"has more problems than these {ALLOWED.problems:,}"
 
 
 class Draft(Sections):
@@ -43,8 +44,16 @@ class Draft(Sections):
         return self._problems
 
     def tell(self, path: Path, message: str, allowed: str = "", hint: str = "") -> None:
-        """Add a problem with a key."""
+        """Add a problem with a key.
+
+        Raises
+        ------
+        CaseError
+            If there are more than a case may have.
+        """
         self._problems.append(self.problem(path, message, allowed, hint))
+        if len(self._problems) >= ALLOWED.problems:
+            raise CaseError([*self._problems, self.problem((), MORE, "", "")])
 
     def once(self, name: str, find: Callable[[], Found]) -> Found:
         """Return what several checks look at, found once all elements have been read."""
@@ -110,13 +119,15 @@ def read_draft(
     return draft
 
 
-def as_data(given: Any) -> Any:
+def as_data(given: Any, file: str = "case") -> Any:
     """Return what a user built in Python as plain data, the same that a file would give.
 
     Parameters
     ----------
     given : object
         Elements, tables, lists, physical values; names may be numbers, None means left out.
+    file : str
+        Where it stands, for messages.
 
     Returns
     -------
@@ -126,21 +137,25 @@ def as_data(given: Any) -> Any:
     Raises
     ------
     CaseError
-        If it is nested too deeply.
+        If it is nested too deeply, or a table has too many entries.
     """
-    return _as_data(given, 0)
+    return _as_data(given, (), file)
 
 
-def _as_data(given: Any, depth: int) -> Any:
-    if depth > ALLOWED.depth:
+def _as_data(given: Any, path: Path, file: str) -> Any:
+    if len(path) > ALLOWED.depth:
         allowed = f"at most {ALLOWED.depth} tables and lists within one another"
-        raise CaseError([Problem("case", "", "", "is nested too deeply", allowed)])
+        raise CaseError([Problem(file, "", "", "is nested too deeply", allowed)])
     if isinstance(given, Element):
         return written(given)
     if isinstance(given, Mapping):
-        return {str(k): _as_data(item, depth + 1) for k, item in given.items() if item is not None}
+        if len(given) > ALLOWED.entries:
+            told = f"has {len(given)} entries", f"at most {ALLOWED.entries}"
+            raise CaseError([Problem(file, dotted(path), "", *told)])
+        named = ((str(k), item) for k, item in given.items() if item is not None)
+        return {key: _as_data(item, (*path, key), file) for key, item in named}
     if isinstance(given, list | tuple):
-        return [_as_data(item, depth + 1) for item in given]
+        return [_as_data(item, (*path, k), file) for k, item in enumerate(given)]
     return as_text(given)
 
 
@@ -167,8 +182,9 @@ def _read_section(
     if before is not None and value is known:
         setattr(draft, name, getattr(before[0], name))
         return
-    if isinstance(value, Mapping | list) and len(value) > ALLOWED.entries:
-        draft.tell((name,), f"has {len(value)} entries", f"at most {ALLOWED.entries}")
+    most = ALLOWED.elements if isinstance(value, Mapping) else ALLOWED.entries
+    if isinstance(value, Mapping | list) and len(value) > most:
+        draft.tell((name,), f"has {len(value)} entries", f"at most {most}")
         return
     if model is not None and not isinstance(value, Mapping):
         draft.tell((name,), "cannot stand here", "a table")

@@ -58,8 +58,8 @@ class Case(Content):
         origin: Origin | None = None,
         **sections: Any,
     ) -> None:
-        data = as_data({**(content or {}), **sections})
-        self._take(data, origin or Origin(name or "case", outside=True), name, None)
+        origin = origin or Origin(name or "case", outside=True)
+        self._take(as_data({**(content or {}), **sections}, origin.file), origin, name, None)
 
     def _take(self, data: dict[str, Any], origin: Origin, name: str, before: Case | None) -> None:
         """Read plain data, but for what it shares with a case before, and check all of it."""

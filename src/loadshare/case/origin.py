@@ -9,6 +9,7 @@ from pathlib import Path as FilePath
 from loadshare.case.keys import Path, dotted, look_up
 from loadshare.case.words import as_given
 from loadshare.errors import Problem
+from loadshare.input import real
 from loadshare.settings import ALLOWED
 
 CHANGES = "changes"
@@ -51,7 +52,7 @@ class Origin:
         if "\0" in str(named) or any(len(part) > ALLOWED.file_name for part in named.parts):
             return Problem(file, key, given, "is no name of a file", "the name of a file")
         folder = FilePath(self.file).parent
-        if self.outside or file == CHANGES or named.resolve().is_relative_to(folder.resolve()):
+        if self.outside or file == CHANGES or real(named).is_relative_to(real(folder)):
             return None
         message = "is outside the folder of the case"
         allowed = f"a file beside {self.file}, or in a folder below"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import tomllib
+from ast import literal_eval
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path as FilePath
@@ -13,18 +14,20 @@ from typing import Any
 from loadshare.case.checks import check
 from loadshare.case.copies import with_copies
 from loadshare.case.draft import Draft, as_data, read_draft
-from loadshare.case.keys import Path, merge, parse, walk
+from loadshare.case.keys import Path, dotted, merge, parse, walk
 from loadshare.case.model import Case
 from loadshare.case.origin import Origin
 from loadshare.case.recognise import KINDS, near_names, what_folder_is, what_is
 from loadshare.case.revise import change, revise
 from loadshare.case.words import as_given
 from loadshare.errors import CaseError, Problem
-from loadshare.input import Unreadable, read_file
+from loadshare.input import Unreadable, read_file, real
 from loadshare.outside import OUTSIDE
 from loadshare.settings import ALLOWED
 
 _PLACE = re.compile(r"(.*) \(at (.*)\)", re.DOTALL)
+_NAMES = re.compile(r"\((?:'(?:\\.|[^'\\])*',? ?)+\)")
+"""A key as the parser tells it."""
 NO_FILE = "no such file or directory"
 _DEEP = f"is nested deeper than {ALLOWED.depth} tables and lists"
 _STEP = r"""(?:[\w-]++|"(?:\\.|[^"\\\n])*+"|'[^'\n]*+')"""
@@ -93,7 +96,7 @@ def load_draft(path: str | FilePath, changes: Mapping[str, Any] | None = None) -
     path = FilePath(path)
     origin = _origin(path)
     data, files, problems = _read(path, (), origin)
-    data, origin = with_copies(as_data(data), replace(origin, files=files))
+    data, origin = with_copies(as_data(data, str(path)), replace(origin, files=files))
     data, origin = revise(data, origin, changes or {})
     draft = read_draft(data, origin)
     draft.problems[:] = [*problems, *draft.problems, *check(draft)]
@@ -169,7 +172,7 @@ def _base_of(path: FilePath, base: object, chain: tuple[FilePath, ...], origin: 
     outside = origin.outside_problem(target, str(path), "extends", given)
     if outside is not None:
         raise CaseError([outside])
-    if target.resolve() in [file.resolve() for file in chain]:
+    if real(target) in map(real, chain):
         circle = " → ".join(str(file) for file in (*chain, target))
         raise CaseError([Problem(str(path), "extends", given, f"closes a circle: {circle}")])
     try:
@@ -199,11 +202,12 @@ def read_toml(path: FilePath) -> dict[str, Any]:
         known = what_is(held, path.name)
         if known is not None:
             raise CaseError([Problem(str(path), "", "", known)])
-        data = _parsed(held.decode("utf-8").replace("\r\n", "\n"))
+        data = _parsed(held.decode("utf-8-sig").replace("\r\n", "\n"))
     except tomllib.TOMLDecodeError as error:
         match = _PLACE.fullmatch(str(error))
         what, where = match.groups() if match else (str(error), "an unknown place")
-        why = f"is not valid TOML at {where}: {what.lower()}"
+        what = _NAMES.sub(lambda names: dotted(literal_eval(names[0])), what[:1].lower() + what[1:])
+        why = f"is not valid TOML at {where}: {what}"
     except UnicodeDecodeError as error:
         why = f"is not UTF-8 text at byte {error.start}"
     except FileNotFoundError:

@@ -12,6 +12,7 @@ from loadshare.case.described import description
 from loadshare.case.element import MARK, Element, Rule, elements_in
 from loadshare.case.keys import Path
 from loadshare.case.words import choices, count, did_you_mean
+from loadshare.settings import ALLOWED
 
 # What each kind of finding is called; the braces are filled from pydantic's context.
 WANTED = {
@@ -122,7 +123,8 @@ def translate(error: ValidationError, model: type[Element]) -> list[Rule]:
     list of Rule
         The same, for the user.
     """
-    found = error.errors(include_url=False)
+    # How many there are of one element is told by none of them; each looks at all others.
+    found = error.errors(include_url=False)[: ALLOWED.problems]
     return [_told(one, model) for one in found if not _follows(one, found)]
 
 

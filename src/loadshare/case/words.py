@@ -9,8 +9,11 @@ from difflib import SequenceMatcher, get_close_matches
 from typing import Any
 
 from loadshare.case.keys import BARE
+from loadshare.settings import ALLOWED
 
 LONGEST = 72
+BITS = 4 * LONGEST
+"""Of a whole number that is shown in decimals."""
 _DIGITS = re.compile(r"\d+")
 
 
@@ -35,6 +38,8 @@ def did_you_mean(word: object, known: Iterable[str]) -> str:
         return ""
     options = list(known)
     near = [option for option in options if option.casefold() == word.casefold()]
+    if not near and len(options) > ALLOWED.options:
+        return ""
     if not near:
         near = [o for o in get_close_matches(word, options, n=5) if _is_slip(word, o)][:1]
     near = near[:1] or [option for option in options if _is_part(word, option)][:MOST]
@@ -60,7 +65,7 @@ def _is_slip(word: str, option: str) -> bool:
 def _is_part(word: str, option: str) -> bool:
     """Whether one of two words consists of whole words of the other, as radius of base_radius."""
     short, long = sorted((word, option), key=len)
-    return len(short) > 2 and re.search(rf"(^|_){re.escape(short)}(_|$)", long) is not None
+    return len(short) > 2 and f"_{short}_" in f"_{long}_"
 
 
 def choices(known: Iterable[str], most: int = 24) -> str:
@@ -112,6 +117,9 @@ def _toml(value: Any) -> str:
         return f"[{', '.join(map(_toml, value))}]"
     if isinstance(value, str | bool):
         return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, int) and value.bit_length() > BITS:
+        # Python writes no numbers of thousands of digits; the last of them do not matter here.
+        return hex(value >> max(value.bit_length() - BITS, 0))
     return str(value)
 
 

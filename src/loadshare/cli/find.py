@@ -9,7 +9,7 @@ from pathlib import Path
 from loadshare.cli.exits import UNUSABLE, fail
 from loadshare.cli.files import keep_inputs
 from loadshare.cli.waiting import echo
-from loadshare.input import Unreadable, read_file
+from loadshare.input import Unreadable, read_file, real
 from loadshare.settings import ALLOWED
 
 
@@ -40,7 +40,7 @@ def find_cases(given: Iterable[Path]) -> list[Path]:
         if not here:
             echo(f"{path}: {_told_of(path)}", err=True)
         for file in here:
-            found.setdefault(file.resolve(), file)
+            found.setdefault(real(file), file)
     if not found:
         fail(["No case found. A case is a .toml file."], UNUSABLE)
     keep_inputs(found.values())

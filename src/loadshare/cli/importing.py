@@ -12,6 +12,7 @@ from loadshare.cli.console import say
 from loadshare.cli.exits import UNUSABLE, fail, problems_told
 from loadshare.cli.files import keep_inputs, save_text, tell_written
 from loadshare.cli.options import Force, output
+from loadshare.input import real
 from loadshare.output import STANDARD
 from loadshare.report.numbers import counted
 
@@ -35,7 +36,7 @@ def import_machine(
     from loadshare.exchange.rexs import import_rexs
     from loadshare.exchange.spreadsheet import import_tables, is_spreadsheet
 
-    known = unit.resolve() if unit.is_dir() else unit
+    known = real(unit) if unit.is_dir() else unit
     target = to or Path(known.name or "case").with_suffix(".toml")
     if target != STANDARD and target.exists() and not force:
         fail([f"{target}: exists already; --force overwrites it"], UNUSABLE)

@@ -8,16 +8,24 @@ from typing import NamedTuple
 class Allowed(NamedTuple):
     """What a case file may hold: far more than any machine needs, and no more than can be read."""
 
-    bytes: int = 16 * 2**20
-    """Size of a file."""
+    bytes: int = 4 * 2**20
+    """Size of a file: read in five seconds, whatever stands in it."""
+    other_bytes: int = 16 * 2**20
+    """Size of another program's file: a gear unit, a workbook."""
     result_bytes: int = 2**30
     """Size of a file that holds a result."""
     files: int = 20
     """Files that extend one another."""
     depth: int = 20
     """Tables and lists within one another."""
+    elements: int = 1000
+    """Elements of a section. Checks look at pairs of them, and a train of 64 branches has 200."""
     entries: int = 10_000
-    """Elements of a section, and entries of a list."""
+    """Entries of a table, and of a list that names keys."""
+    problems: int = 1000
+    """Problems of a case that are told."""
+    options: int = 200
+    """Names among which the nearest one to a slip is looked for."""
     name: int = 200
     """Characters of a name."""
     file_name: int = 255

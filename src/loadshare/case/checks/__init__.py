@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain, islice
 
 from loadshare.case.checks import carriers, fit, floats, flow, layout, loads, meshing, names
-from loadshare.case.draft import Draft
+from loadshare.case.draft import MORE, Draft
 from loadshare.errors import Problem
+from loadshare.settings import ALLOWED
 
 CHECKS = (
     names.check_gear_names,
@@ -61,5 +63,7 @@ def check(draft: Draft) -> Iterator[Problem]:
     Problem
         What is wrong between them.
     """
-    for rule in CHECKS:
-        yield from rule(draft)
+    found = chain.from_iterable(rule(draft) for rule in CHECKS)
+    yield from islice(found, ALLOWED.problems)
+    if next(found, None) is not None:
+        yield draft.problem((), MORE, "", "")

@@ -59,7 +59,7 @@ def export_rexs(result: Result, unit: str | Path) -> str:
     if not found:
         why = "has no mesh of this case: gears must be named as the import names them"
         raise CaseError([Problem(str(unit), "", "", why)])
-    content = read_file(unit, ALLOWED.bytes)
+    content = read_file(unit, ALLOWED.other_bytes)
     if content[:2] == b"PK":
         raise CaseError([Problem(str(unit), "", "", "is an archive: unpack it first")])
     if content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{":

@@ -75,7 +75,7 @@ def read_model(path: Path) -> Model:
         If it cannot be read or is no REXS.
     """
     try:
-        content = read_file(path, ALLOWED.bytes)
+        content = read_file(path, ALLOWED.other_bytes)
         if path.suffix.lower() in OTHERS:
             _refuse(path, OTHERS[path.suffix.lower()])
         if content[:4] == b"PK\x03\x04":
@@ -112,10 +112,10 @@ def _unpacked(path: Path, content: bytes) -> bytes:
                 _refuse(path, f"is an archive with {len(inside)} REXS files, not 1")
             if inside[0].flag_bits & ENCRYPTED:
                 _refuse(path, "is an encrypted archive")
-            if inside[0].file_size > ALLOWED.bytes:
-                raise Unreadable(f"is larger than {ALLOWED.bytes // 2**20} MiB")
+            if inside[0].file_size > ALLOWED.other_bytes:
+                raise Unreadable(f"is larger than {ALLOWED.other_bytes // 2**20} MiB")
             with archive.open(inside[0]) as file:
-                return file.read(ALLOWED.bytes)
+                return file.read(ALLOWED.other_bytes)
     except DAMAGED:
         _refuse(path, "is a damaged archive")
 

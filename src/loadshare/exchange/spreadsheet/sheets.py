@@ -70,7 +70,7 @@ def sheets_of(path: Path) -> list[Sheet]:
 
 def _of_csv(file: Path) -> Sheet:
     try:
-        text = read_file(file, ALLOWED.bytes).decode("utf-8-sig")
+        text = read_file(file, ALLOWED.other_bytes).decode("utf-8-sig")
         rows = list(csv.reader(StringIO(text, newline=""), strict=True))
     except OSError as error:
         raise _unread(file, (error.strerror or "cannot be read").lower()) from None
@@ -116,10 +116,10 @@ def _of_workbook(path: Path) -> list[Sheet]:
 
 def _workbook_content(path: Path) -> BytesIO:
     """What a workbook holds, which must not unpack into very much more."""
-    content = BytesIO(read_file(path, ALLOWED.bytes))
+    content = BytesIO(read_file(path, ALLOWED.other_bytes))
     with zipfile.ZipFile(content) as archive:
-        if sum(part.file_size for part in archive.infolist()) > 4 * ALLOWED.bytes:
-            raise Unreadable(f"unpacks into more than {4 * ALLOWED.bytes // 2**20} MiB")
+        if sum(part.file_size for part in archive.infolist()) > 4 * ALLOWED.other_bytes:
+            raise Unreadable(f"unpacks into more than {4 * ALLOWED.other_bytes // 2**20} MiB")
     return content
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
-import tempfile
 import weakref
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -15,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from loadshare.case import Case, Study
-from loadshare.errors import CaseError, LoadshareError, Problem
+from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.engines import ENGINES, chosen
 from loadshare.job.positions import wanted_positions
@@ -36,6 +34,7 @@ from loadshare.study.tolerance.result import (
 )
 from loadshare.study.tolerance.resume import check_part
 from loadshare.study.tolerance.statistics import Summary, exceedance, summary
+from loadshare.study.tolerance.temporary import TemporaryFolder
 from loadshare.study.tolerance.worst import WorstCase, check_worst, worst_case
 from loadshare.train import build_train
 
@@ -135,20 +134,14 @@ def _folder(out: str | Path | None, job: Job) -> Iterator[Folder]:
         with alone_in(path):
             yield Folder(path, job)
         return
+    place = TemporaryFolder()
     try:
-        path = Path(tempfile.mkdtemp(prefix="loadshare-"))
-    except OSError as error:
-        raise LoadshareError(
-            f"samples: there is no folder for temporary files ({error.strerror or error}). "
-            "Allowed: a folder that can be written, as TMPDIR, or as --output (out in Python)"
-        ) from None
-    try:
-        folder = Folder(path, job, lasting=False)
+        folder = Folder(place.path, job, lasting=False)
         yield folder
     except BaseException:
-        shutil.rmtree(path, ignore_errors=True)
+        place.remove()
         raise
-    weakref.finalize(folder, shutil.rmtree, path, ignore_errors=True)
+    weakref.finalize(folder, place.remove)
 
 
 def _asked(case: Case, name: str | None, given: Mapping[str, Any]) -> tuple[Case, str]:
