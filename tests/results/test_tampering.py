@@ -17,6 +17,7 @@ import xarray as xr
 from tests.support import answer, coasting, round_ring, shipped
 
 import loadshare as ls
+from benchmarks.limit import limited
 from loadshare.certify import certify
 from loadshare.results.claim import claim_of
 from loadshare.results.derive import position_of, result_from
@@ -306,4 +307,32 @@ def test_arrays_that_another_program_wrote_again_are_refused(small, tmp_path):
         arrays = arrays.load()
     arrays.to_netcdf(file, engine="h5netcdf")
     with pytest.raises(ls.ResultError, match="it lacks its digest"):
+        ls.load_result(file)
+
+
+@pytest.mark.parametrize(
+    ("change", "wanted"),
+    [
+        ({"positions": [{}] * 1_000_000}, "positions[0].position"),
+        ({"frames": {f"g{k}": 1 for k in range(100_000)}}, "more problems"),
+        ({"stamp": {f"x{k}": 1 for k in range(100_000)}}, ""),
+    ],
+)
+def test_a_small_file_of_many_mistakes_takes_a_moment_and_little_memory(tmp_path, change, wanted):
+    """A million empty positions, 4 MB, took more than 5 GB and ended the process."""
+    document = json.loads(ls.solve(shipped("star/floating_sun_3")).to_json())
+    file = tmp_path / "result.json"
+    file.write_text(json.dumps({**document, **change}), encoding="utf-8")
+    with limited(10.0), pytest.raises(ls.ResultError) as told:
+        ls.load_result(file)
+    assert wanted in str(told.value)
+    assert len(told.value.problems) <= 1000
+
+
+def test_positions_are_compared_in_a_moment(tmp_path):
+    document = json.loads(ls.solve(shipped("star/floating_sun_3")).to_json())
+    document["stamp"]["positions"] = list(range(1, 100_000)) * 2
+    file = tmp_path / "result.json"
+    file.write_text(json.dumps(document), encoding="utf-8")
+    with limited(10.0), pytest.raises(ls.ResultError, match="appears twice"):
         ls.load_result(file)

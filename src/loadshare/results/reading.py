@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import math
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields, replace
 from functools import cache
-from typing import Any, NoReturn
+from itertools import islice
+from typing import Annotated, Any, NoReturn
 
 import numpy as np
-from pydantic import TypeAdapter, ValidationError
+from pydantic import FailFast, TypeAdapter, ValidationError
 
 from loadshare._version import __version__
 from loadshare.case import Case
@@ -29,6 +31,7 @@ from loadshare.results.digest import DIGEST, digest_of
 from loadshare.results.document import FORMAT, OLDER, as_data, to_document
 from loadshare.results.result import Effort, Position, Result, Stamp
 from loadshare.scene import assemble
+from loadshare.settings import ALLOWED
 from loadshare.solver.position import of_least_norm
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium, Range
@@ -71,7 +74,7 @@ class _File:
 
     stamp: Stamp
     input: dict[str, Any]
-    positions: list[_Position]
+    positions: Annotated[list[_Position], FailFast()]
 
 
 def read_document(text: str, file: str) -> tuple[Result, dict[str, Any]]:
@@ -118,7 +121,9 @@ Wrong = tuple[Path, str, str, str]
 
 
 def _raise(wrong: Iterable[Wrong], file: str, hint: str = AGAIN) -> None:
-    problems = [Problem(file, dotted(path), *told) for path, *told in wrong]
+    problems = [
+        Problem(file, dotted(path), *told) for path, *told in islice(wrong, ALLOWED.problems)
+    ]
     if problems:
         last = problems.pop()
         raise ResultError(
@@ -149,8 +154,7 @@ def _parsed(text: str, file: str) -> dict[str, Any]:
     def table(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         found = dict(pairs)
         if len(found) < len(pairs):
-            keys = [key for key, _ in pairs]
-            twice = next(key for key in keys if keys.count(key) > 1)
+            twice = Counter(key for key, _ in pairs).most_common(1)[0][0]
             raise ValueError(f"the key {twice} appears twice in one table")
         return found
 
@@ -186,6 +190,9 @@ def _read(text: str, file: str) -> _File:
     try:
         return _reader().validate_json(text, strict=True)
     except ValidationError as error:
+        if error.error_count() > ALLOWED.problems:
+            # Each of them told takes a thousand times its room in the file.
+            _fail(file, f"holds {error.error_count()} values that cannot stand there")
         raise ResultError(
             Problem(
                 file,
@@ -227,18 +234,22 @@ def _wrong_positions(given: _File, train: Train) -> Iterator[Wrong]:
     asked, there = given.stamp.positions, [p.position for p in given.positions]
     if not asked:
         yield ("stamp", "positions"), "[]", "is empty", "the positions that were asked for"
+    wanted: set[int] = set()
     for at, index in enumerate(asked):
-        if index in asked[:at]:
+        if index in wanted:
             yield ("stamp", "positions", at), f"{index}", "appears twice", ""
+        wanted.add(index)
+    found: set[int] = set()
     for at, index in enumerate(there):
         path: Path = ("positions", at, "position")
         if not 1 <= index <= train.count:
             yield path, f"{index}", "is no position of the case", f"1 to {train.count}"
-        elif index in there[:at]:
+        elif index in found:
             yield path, f"{index}", "appears twice", ""
+        found.add(index)
     for told, some in (
-        ("is missing", [k for k in asked if k not in there]),
-        ("was not asked for", [k for k in dict.fromkeys(there) if k not in asked]),
+        ("is missing", [k for k in asked if k not in found]),
+        ("was not asked for", [k for k in dict.fromkeys(there) if k not in wanted]),
     ):
         yield from ((("positions",), "", f"position {k} {told}", "") for k in some)
 
