@@ -279,9 +279,14 @@ def test_an_interrupt_from_the_keyboard_stops_a_batch_in_processes(cases, tmp_pa
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
-@pytest.mark.parametrize("jobs", ["1", "2"])
 @pytest.mark.parametrize(
-    ("sent", "code"), [((signal.SIGINT, signal.SIGINT), 130), ((signal.SIGTERM,), 143)]
+    ("sent", "code", "jobs"),
+    [
+        ((signal.SIGINT, signal.SIGINT), 130, "2"),
+        ((signal.SIGTERM,), 143, "1"),
+        pytest.param((signal.SIGINT, signal.SIGINT), 130, "1", marks=pytest.mark.slow),
+        pytest.param((signal.SIGTERM,), 143, "2", marks=pytest.mark.slow),
+    ],
 )
 def test_a_batch_ends_where_it_stands(cases, tmp_path, environment, sent, code, jobs):
     """At the second Ctrl-C and at SIGTERM what is under way is left, and what is kept is told."""

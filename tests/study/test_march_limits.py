@@ -44,7 +44,9 @@ def test_next_to_no_room_is_next_to_a_spring(friction, room):
             assert np.abs(apart).max() <= 2.0 * room + 1e-15
 
 
-@pytest.mark.parametrize("clearance", [1e-5, 1.19e-4, 4e-4])
+@pytest.mark.parametrize(
+    "clearance", [1e-5, *(pytest.param(c, marks=pytest.mark.slow) for c in (1.19e-4, 4e-4))]
+)
 def test_friction_of_a_millionth_of_a_newton(clearance):
     found = ls.march(spline(1e-6, clearance))
     without = ls.march(spline(0.0, clearance))

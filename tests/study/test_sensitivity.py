@@ -88,7 +88,7 @@ def disagreeing(told: dict[str, Verdict]) -> dict[str, Verdict]:
             ['meshes."4-6".law.c[0]', "splines.5.*", "rings.5.float.*", "errors.9"],
         ),
         ("star/floating_sun_5", ['meshes."sun-planet1".*', "gears.sun.base_radius"]),
-        ("two_path/clocking_error", None),
+        pytest.param("two_path/clocking_error", None, marks=pytest.mark.slow),
     ],
 )
 def test_differences_of_full_solves(name, keys):

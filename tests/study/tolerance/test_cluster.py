@@ -87,6 +87,7 @@ def test_a_cluster_that_is_lost_leaves_what_is_done(reference, tmp_path):
     assert bits(out) == bits(reference)
 
 
+@pytest.mark.slow
 def test_the_commands_of_the_documentation(tmp_path):
     """Given as they stand, but for a port that is free, the folder, and fewer samples."""
     page = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")

@@ -421,8 +421,15 @@ def scatter(tmp_path) -> Path:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
-@pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
-@pytest.mark.parametrize("workers", ["1", "2"])
+@pytest.mark.parametrize(
+    ("sent", "code", "workers"),
+    [
+        (signal.SIGINT, 130, "1"),
+        (signal.SIGTERM, 143, "2"),
+        pytest.param(signal.SIGINT, 130, "2", marks=pytest.mark.slow),
+        pytest.param(signal.SIGTERM, 143, "1", marks=pytest.mark.slow),
+    ],
+)
 def test_a_study_that_is_stopped_says_what_is_kept(scatter, tmp_path, sent, code, workers):
     out = tmp_path / "study"
     words = ("tolerance", scatter, "-o", out, "--workers", workers)
