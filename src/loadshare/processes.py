@@ -64,9 +64,9 @@ def side_by_side(
     from loky import BrokenProcessPool
 
     waiting = deque((item, False) for item in items)
-    crew = [_Worker() for _ in range(min(workers, len(waiting)))]
+    crew = [Worker() for _ in range(min(workers, len(waiting)))]
     free = list(crew)
-    busy: dict[Future[Result], tuple[_Worker, Item, bool]] = {}
+    busy: dict[Future[Result], tuple[Worker, Item, bool]] = {}
     try:
         while busy or (waiting and not stopped()):
             # No more than are at work: what has been handed in cannot be called back.
@@ -93,7 +93,7 @@ def side_by_side(
                 worker.end()
 
 
-class _Worker:
+class Worker:
     """One process, and another when it dies: a pool that loses one of many loses them all."""
 
     def __init__(self) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import os
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
@@ -21,9 +22,12 @@ from loadshare.case import Case
 from loadshare.errors import CaseError
 from loadshare.explore.answer import answer_of, case_of, invalid, whole_of
 from loadshare.explore.asked import Unasked, asked, number, setting, text
+from loadshare.explore.crew import Crew
 from loadshare.explore.files import case_file
 from loadshare.explore.guard import Guard
 from loadshare.explore.inputs import Inputs
+from loadshare.explore.questions import piece_of, question_of
+from loadshare.explore.studies import criticals, safely, samples, slopes, trace
 from loadshare.settings import ALLOWED
 
 log = logging.getLogger("loadshare")
@@ -35,6 +39,7 @@ TYPES = {
     ".svg": "image/svg+xml",
 }
 INDEX = "index.html"
+STUDIES = {"critical": criticals, "sweep": trace, "slopes": slopes}
 Handler = Callable[[Request], Awaitable[Response]]
 
 
@@ -65,6 +70,7 @@ class Explorer:
         self.inputs, self.file = Inputs(case), file
         # One after another: each answer is there sooner than if they took turns.
         self.solver = ThreadPoolExecutor(1, "solver")
+        self.crew = Crew(max(1, (os.cpu_count() or 2) - 1))
 
     async def solved(self, work: Callable[[], dict[str, Any]]) -> dict[str, Any]:
         """Do work in the solver's thread."""
@@ -105,6 +111,28 @@ class Explorer:
             return JSONResponse({"keys": self.inputs.keys(name)})
         except CaseError as error:
             return JSONResponse(invalid(error))
+
+    async def study(self, request: Request) -> Response:
+        """A sweep, critical values or sensitivities, by the name of the path."""
+        body = await asked(request)
+        try:
+            question = question_of(self.inputs, body)
+        except CaseError as error:
+            return JSONResponse(invalid(error))
+        name = request.path_params["name"]
+        if name not in STUDIES:
+            raise Unasked(404, "there is no such study")
+        work = partial(safely, STUDIES[name])
+        return JSONResponse(await self.crew.done(request, work, question))
+
+    async def samples(self, request: Request) -> Response:
+        """A piece of a tolerance study."""
+        body = await asked(request)
+        try:
+            piece = piece_of(self.inputs, body)
+        except CaseError as error:
+            return JSONResponse(invalid(error))
+        return JSONResponse(await self.crew.done(request, samples, piece))
 
     async def toml(self, request: Request) -> Response:
         """A setting as a case file."""
@@ -152,6 +180,7 @@ def application(case: Case, hosts: Iterable[str], file: Path | None = None) -> G
     @asynccontextmanager
     async def lifespan(app: Starlette) -> AsyncIterator[None]:
         yield
+        explorer.crew.end()
         explorer.solver.shutdown(wait=False, cancel_futures=True)
 
     got = {"/": explorer.index, "/case": explorer.case, "/page/{name}": explorer.asset}
@@ -160,6 +189,8 @@ def application(case: Case, hosts: Iterable[str], file: Path | None = None) -> G
         "/whole": explorer.whole,
         "/keys": explorer.keys,
         "/toml": explorer.toml,
+        "/samples": explorer.samples,
+        "/study/{name}": explorer.study,
     }
     routes = [
         *(Route(path, _safely(handler), methods=["GET"]) for path, handler in got.items()),

@@ -63,7 +63,7 @@ export class Control {
     this.place = element("div", { class: "control", "data-name": this.name, role: "group", "aria-label": this.name },
       element("div", { class: "head" }, element("label", { class: "key", for: id }, this.name), this.field),
       input.turning ? element("div", { class: "with-dial" }, bar, this.dial()) : bar,
-      element("div", { class: "row" }, ...(this.actions.critical ? [this.critical, this.sweep] : []),
+      element("div", { class: "row" }, this.critical, this.sweep,
         button("Case", "value of the case for", () => this.actions.back(this)),
         button("✕", "remove the slider of", () => this.actions.remove(this))),
       this.told, this.events,

@@ -6,6 +6,7 @@ import { drawFloats } from "./floats.js";
 import { drawForces, drawTrain } from "./train.js";
 import { drawBars, drawLines } from "./bars.js";
 import { comparison, pinnedBars } from "./pins.js";
+import * as studies from "./studies.js";
 import { copyLink, linked, savePicture, saveText } from "./save.js";
 
 const IDLE = 350; // milliseconds without a change after which the rest is worked out
@@ -27,7 +28,7 @@ function change(keys, value) {
   }
   for (const control of page.controls)
     if (control.keys.some((key) => keys.includes(key))) control.show(valueOf(control.keys[0]));
-  ask();
+  ask(keys);
 }
 
 function reset() {
@@ -61,8 +62,10 @@ const actions = {
   back(control) {
     for (const key of control.keys) page.setting.delete(key);
     for (const one of page.controls) one.show(valueOf(one.keys[0]));
-    ask();
+    ask(control.keys);
   },
+  critical: (control) => studies.critical(control, view()),
+  sweep: (control) => studies.sweep(control, view(), () => page.shown && draw()),
   remove(control) {
     page.controls = page.controls.filter((one) => one !== control);
     control.place.remove();
@@ -71,8 +74,9 @@ const actions = {
 
 // --- What is asked
 
-function ask() {
+function ask(keys = null) {
   page.asked += 1;
+  studies.forget(keys, page.controls);
   const { body } = document;
   body.dataset.asked = page.asked;
   body.dataset.state = "asking";
@@ -140,6 +144,7 @@ function draw() {
   const { answer, changes } = page.shown;
   drawBars(byId("bars"), answer.bars, pinnedBars(page.pins));
   drawFloats(byId("floats"), answer.floats || [], (gear) => ({
+    trace: studies.traceOf(gear),
     pinned: page.pins.flatMap((pin) => (pin.answer.floats || []).filter((f) => f.gear === gear).map((f) => [pin.name, f.here])),
   }));
   const shapes = answer.train || page.case.train;
@@ -148,6 +153,7 @@ function draw() {
     ofCase = shapes;
   }
   drawForces(answer.forces);
+  studies.drawTrace(valueOf, answer);
   byId("pins").hidden = !page.pins.length;
   byId("compared").replaceChildren(...comparison(page.pins, page.shown, settingTold, unpin));
 }
@@ -159,6 +165,7 @@ function empty() {
   for (const id of ["tables", "states", "floats"]) byId(id).replaceChildren();
   drawBars(byId("bars"), [], []);
   drawForces({});
+  byId("trace").hidden = true;
   byId("compared").replaceChildren();
 }
 
@@ -214,6 +221,10 @@ function unpin(name) {
 
 // --- Beginning
 
+// Floats, clearances and errors that the case has: what a designer asks first.
+const mattering = () => [...page.inputs.values()].filter((one) => one.number !== 0 && !one.whole
+  && /^(rings|splines|bearings)\.|^errors\..*amount$/.test(one.key)).map((one) => one.key);
+
 function firstNames() {
   const keys = [...page.inputs.keys()], nonzero = (key) => page.inputs.get(key).number !== 0;
   const own = (pattern) => keys.filter((key) => pattern.test(key) && nonzero(key));
@@ -251,6 +262,9 @@ search.addEventListener("keydown", (event) => {
   else take(search.value.trim()).then((control) => { if (control) { search.value = ""; list(); focus(control.name); } });
 });
 const view = () => ({ changes: Object.fromEntries(page.setting), names: page.controls.map((one) => one.name), position: page.position });
+byId("slopes").addEventListener("click", () => studies.slopes({ ...view(), keys: [...new Set([...page.controls.flatMap((one) => one.keys), ...mattering()])] }));
+byId("tolerance").addEventListener("click", () => studies.tolerance(view(), page.controls));
+byId("stop").addEventListener("click", () => { studies.stop(); byId("study").textContent = `stopped: ${byId("study").textContent}`; });
 byId("reset").addEventListener("click", reset);
 byId("pin").addEventListener("click", pin);
 byId("link").addEventListener("click", () => copyLink(view()));

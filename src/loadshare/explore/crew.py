@@ -1,0 +1,91 @@
+"""Worker processes, each lent to one request at a time, and killed when that is broken off."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from starlette.requests import Request
+
+from loadshare.explore.asked import Unasked
+from loadshare.processes import Worker
+from loadshare.settings import EXPLORE
+
+Item = TypeVar("Item")
+Found = TypeVar("Found")
+
+
+class Crew:
+    """Some worker processes, started when they are first needed.
+
+    Parameters
+    ----------
+    count : int
+        Processes.
+    """
+
+    def __init__(self, count: int) -> None:
+        self.count, self.waiting = count, 0
+        self.free = [Worker() for _ in range(count)]
+        self.turn = asyncio.Semaphore(count)
+
+    async def done(self, request: Request, work: Callable[[Item], Found], item: Item) -> Found:
+        """Return what a worker finds, as long as somebody waits for it.
+
+        Parameters
+        ----------
+        request : Request
+            Its body read; when who sent it goes away, the worker is killed.
+        work : callable
+        item : object
+
+        Raises
+        ------
+        Unasked
+            If too many wait already, or nobody does any more.
+        """
+        if self.waiting >= self.count * EXPLORE.waiting:
+            raise Unasked(503, "too many studies are waiting; try again in a while")
+        gone = asyncio.ensure_future(_gone(request))
+        self.waiting += 1
+        try:
+            async with self.turn:
+                if gone.done():
+                    raise Unasked(499, "nobody waits for this any more")
+                return await self._by_one(gone, work, item)
+        finally:
+            self.waiting -= 1
+            gone.cancel()
+
+    async def _by_one(
+        self, gone: asyncio.Future[None], work: Callable[[Item], Found], item: Item
+    ) -> Found:
+        worker = self.free.pop()
+        finished = False
+        try:
+            begun = await asyncio.to_thread(worker.begin, work, item)
+            found: asyncio.Future[Found] = asyncio.wrap_future(begun)
+            either: set[asyncio.Future[Any]] = {found, gone}
+            await asyncio.wait(either, return_when=asyncio.FIRST_COMPLETED)
+            finished = found.done()
+            if not finished:
+                found.cancel()
+                raise Unasked(499, "nobody waits for this any more")
+            return found.result()
+        finally:
+            if not finished:
+                # At work for nobody, or never begun.
+                await asyncio.shield(asyncio.to_thread(worker.end))
+            self.free.append(worker)
+
+    def end(self) -> None:
+        """Kill all of them."""
+        for worker in self.free:
+            worker.end()
+
+
+async def _gone(request: Request) -> None:
+    """Return when who asked has gone away."""
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
