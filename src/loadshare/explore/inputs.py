@@ -13,6 +13,7 @@ from typing import Any, get_args
 
 from loadshare.case import Case
 from loadshare.case.content import Content
+from loadshare.case.described import description
 from loadshare.case.element import Element, elements_in
 from loadshare.case.keys import Path, dotted, look_up, parse
 from loadshare.case.quantity import Dimension
@@ -243,11 +244,12 @@ def _told(path: Path) -> tuple[str, Dimension | None]:
     told, dimension = "", None
     for step in path:
         fields = {
-            about.alias or name: about for name, about in getattr(model, "model_fields", {}).items()
+            about.alias or name: (name, about)
+            for name, about in getattr(model, "model_fields", {}).items()
         }
         if step in fields:
-            field = fields[str(step)]
-            lines = (field.description or "").splitlines()
+            name, field = fields[str(step)]
+            lines = description(model, name).splitlines()
             told = lines[0] if lines else told
             # Where a field may hold several elements, the one that knows the next step.
             models = list(elements_in(field.annotation))
