@@ -37,7 +37,8 @@ WALK = (
 const [steps, seed, done] = arguments;
 let state = seed;
 const draw = () => {
-  state = (1103515245 * state + 12345) % 2147483648;
+  // Small enough that every product is exact.
+  state = (1664525 * state + 1013904223) % 2147483648;
   return state / 2147483648;
 };
 const sleep = (ms) => new Promise((then) => setTimeout(then, ms));
