@@ -12,6 +12,7 @@ import textwrap
 from collections.abc import Iterator
 from functools import cache
 from itertools import pairwise
+from typing import Any
 
 from loadshare.case.element import Element, elements_in
 
@@ -21,12 +22,20 @@ def description(model: type[Element], field: str) -> str:
     return next((told[field] for m in model.__mro__ if field in (told := _told(m))), "")
 
 
-def describe(model: type[Element]) -> None:
-    """Let the schema of an element, and of all that it may hold, say what is said of the fields."""
+def schema_of(model: type[Element], **settings: Any) -> dict[str, Any]:
+    """Return the JSON Schema of an element and of all that it may hold, with what is said of fields.
+
+    Parameters
+    ----------
+    model : type of Element
+    **settings
+        As for `pydantic.BaseModel.model_json_schema`.
+    """
     for each in _within(model):
         for name, about in each.model_fields.items():
             about.description = description(each, name) or about.description
         each.model_rebuild(force=True)
+    return model.model_json_schema(**settings)
 
 
 def _within(model: type[Element]) -> Iterator[type[Element]]:

@@ -88,14 +88,6 @@ class Element(BaseModel):
             raise ValidationError.from_exception_data(type(self).__name__, broken)
         return self
 
-    @classmethod
-    def model_json_schema(cls, *args: Any, **settings: Any) -> dict[str, Any]:
-        """Return the schema, which tells what stands below the fields in the source."""
-        from loadshare.case.described import describe
-
-        describe(cls)
-        return super().model_json_schema(*args, **settings)
-
     def given(self, *fields: str) -> list[str]:
         """Return those of the named fields that hold a value, as the keys of the case file.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from loadshare.case.content import Content
+from loadshare.case.described import schema_of
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -34,7 +35,7 @@ def case_schema() -> dict[str, Any]:
     dict
         A schema of draft 2020-12; every key has a one-line description with its unit.
     """
-    schema: dict[str, Any] = _without_null(Content.model_json_schema(by_alias=True))
+    schema: dict[str, Any] = _without_null(schema_of(Content, by_alias=True))
     schema["properties"] = {**FILE_KEYS, **schema["properties"]}
     required = schema.pop("required")
     inherits = {"required": ["extends"]}

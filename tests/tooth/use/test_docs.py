@@ -4,6 +4,7 @@ import re
 
 from tests.tooth.use.pairs import PAIRS, written
 
+from loadshare.case.described import schema_of
 from loadshare.tooth import load_pair
 from loadshare.tooth.pair.model import CONTENTS
 
@@ -12,7 +13,7 @@ PAGE = (PAIRS.parents[2] / "docs/ltca.md").read_text(encoding="utf-8")
 
 def keys():
     for model in CONTENTS.values():
-        schema = model.model_json_schema()
+        schema = schema_of(model)
         for table in (schema, *schema["$defs"].values()):
             yield from table.get("properties", {})
 
