@@ -23,7 +23,7 @@ def description(model: type[Element], field: str) -> str:
 
 
 def schema_of(model: type[Element], **settings: Any) -> dict[str, Any]:
-    """Return the JSON Schema of an element and of all that it may hold, with what is said of fields.
+    """Return the JSON Schema of an element, with what is said of its fields and theirs.
 
     Parameters
     ----------
