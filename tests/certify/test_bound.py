@@ -15,7 +15,7 @@ from benchmarks.reference import NoReference, reference
 from benchmarks.stress.families import FAMILIES
 from loadshare.certify import certify
 from loadshare.certify.bound import Columns, bound_of, bounds
-from loadshare.certify.bound.statics import Statics
+from loadshare.certify.bound.statics import Statics, force_at_end
 from loadshare.certify.bound.twofold import power_two_thirds, product, two_product, two_sum
 from loadshare.job.engines import engine_named
 from loadshare.job.machine import Machine
@@ -204,3 +204,19 @@ def test_statics_are_those_of_singular_values() -> None:
         for told, true in ((found.redundant, left[:, rank:]), (found.moves, right[rank:].T)):
             assert told.shape == true.shape
             np.testing.assert_allclose(told @ told.T, true @ true.T, atol=1e-12)
+
+
+def test_what_ends_a_free_move_takes_more_than_the_load_along_it() -> None:
+    """A stop at one end of a lever that turns freely: the forces balance about its pivot."""
+    long, short = 0.96, 0.28
+    move = np.array([[long], [short]])
+    at_end, at_start = np.array([[1.0, 0.0]]), np.array([[0.0, 1.0]])
+    nothing = np.empty((0, 2, 2))
+    assert force_at_end(move, at_end, nothing) == pytest.approx(1.0 / long)
+    assert force_at_end(move, np.concatenate([at_end, at_start]), nothing) == pytest.approx(
+        1.0 / short
+    )
+    # A ring takes its force in any direction; what a move does not close takes none.
+    assert force_at_end(move, np.empty((0, 2)), np.eye(2)[None]) == pytest.approx(1.0)
+    assert force_at_end(np.array([[1.0], [0.0]]), at_start, nothing) == 1.0
+    assert force_at_end(move[:, :0], at_start, nothing) == 1.0

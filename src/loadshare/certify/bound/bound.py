@@ -117,8 +117,7 @@ def _boxes(claim: Claim, act: Acts, scale: Array, verge: Flags, softest: float) 
         rows = np.flatnonzero(group.reshape(-1) == number)
         part = _Enclosure(claim, found, rows, np.flatnonzero(found.active[sample]), left, rounding)
         force, coordinate = part.solve(scale[rows])
-        # What goes along a free move may end at a contact that does not act.
-        box.force[rows] = aside(claim, found, rows) + part.stray[:, None]
+        box.force[rows] = aside(claim, found, rows) + part.ended[:, None]
         box.force[np.ix_(rows, part.columns)] += force + part.shared
         box.coordinate[rows] = coordinate + np.where(part.statics.loose, np.inf, 0.0)
         box.doubtful[rows], box.above[rows] = part.doubts(found, force, coordinate)
@@ -207,8 +206,7 @@ class _Enclosure(Part):
         misfit = misfit + self.per_torque(self.room[rows], torque)
         over = np.abs(self.left[rows] - force @ known.directions) + self.rounding[rows]
         over += EPS * size * (np.abs(force) @ np.abs(known.directions))
-        # What goes along a free move may end at any contact, and push what that joins.
-        over += self.stray[rows][:, None]
+        over += self.ended[rows][:, None]
         apart = np.abs(misfit + moved @ known.directions.T - yielded) + self.width[rows]
         apart += EPS * size * (np.abs(moved) @ np.abs(known.directions).T + np.abs(misfit))
         sizes = np.abs(force) + np.abs(followed)

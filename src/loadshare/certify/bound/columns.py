@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.array_types import Array
-from loadshare.certify.bound.statics import Statics
+from loadshare.certify.bound.statics import Statics, force_at_end
 from loadshare.certify.bound.twofold import Twofold, quotient, two_product
 from loadshare.certify.mechanics import mechanics_of
 from loadshare.certify.rigid import rigid_shafts
@@ -229,6 +229,12 @@ class Columns:
             return torques
         first = np.flatnonzero(np.diff(self.meshes, prepend=-1))
         return np.asarray(np.add.reduceat(torques, first, axis=-1))
+
+    def force_at_end(self, moves: Array) -> float:
+        """Largest force of what may end one of some moves, per load along it; at least 1."""
+        high = self.matrix.high
+        pairs = high[self.first_pair :].reshape(-1, 2, high.shape[1])
+        return force_at_end(moves, high[self.contacts], pairs)
 
     def statics(self, columns: NDArray[np.intp]) -> Statics:
         """Return the statics of columns that act, computed once."""

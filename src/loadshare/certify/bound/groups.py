@@ -23,7 +23,7 @@ from loadshare.certify.bound.columns import Columns
 from loadshare.certify.bound.figures import Found, Sets, Workspace
 from loadshare.certify.bound.laws import CLOSED, OPEN
 from loadshare.certify.bound.layout import layout_of
-from loadshare.certify.bound.statics import Statics, held_moves
+from loadshare.certify.bound.statics import Statics, force_at_end, held_moves
 from loadshare.settings import BOUND
 
 Acts = NDArray[np.int8]
@@ -36,9 +36,9 @@ class Groups(NamedTuple):
     """
 
     known: Flags  # (G,): whether rigid parts do not share by themselves
-    is_loose: Flags  # (G,): whether something moves that nothing resists
     carries: Flags  # (G,): whether radial elements take part in carrying a load
     root: Array  # (G, …, rows): L, transposed
+    ended: Array  # (G,): force of what ends a move, per load; 0 where nothing moves freely
     moves: Array  # (G, …, n)
     held: Array  # (G, …, n): moves that only light contacts hold, per force of these
     spread: Array  # (G,): sum of the lengths of the rows of L
@@ -65,6 +65,7 @@ class Operators(NamedTuple):
     particular: Array  # P
     redundant: Array  # N
     moves: Array
+    ended: float  # force of what ends a move, per load; 0 where nothing moves freely
     held: Array  # moves that only light contacts hold, per force of these
     is_covered: bool  # whether balance tells these forces
 
@@ -165,7 +166,9 @@ class Plan:
             particular[first:] = part
         if len(self._statics) >= BOUND.sets:
             self._statics.clear()
-        found = Operators(particular, whole.redundant, whole.moves, borne, is_covered)
+        moves = whole.moves
+        ended = force_at_end(moves, self.contacts, self.pulls) if moves.size else 0.0
+        found = Operators(particular, whole.redundant, moves, ended, borne, is_covered)
         self._statics[acts.tobytes()] = found
         return found
 
@@ -186,6 +189,7 @@ class Plan:
         held = max((k.held.shape[1] for k in known), default=0)
         sizes = (
             (self_stresses, rows),
+            (),
             (moves, n),
             (held, n),
             *[()] * 6,
@@ -199,7 +203,7 @@ class Plan:
             *[(rows,)] * 3,
         )
         found = Groups._make(
-            [*np.zeros((3, count), bool), *(np.zeros((count, *size)) for size in sizes)]
+            [*np.zeros((2, count), bool), *(np.zeros((count, *size)) for size in sizes)]
         )
         for at in range(0, count, BOUND.sets_together):
             some = slice(at, at + BOUND.sets_together)
@@ -226,7 +230,7 @@ class Plan:
             redundant[g, on[g], : operators.redundant.shape[1]] = operators.redundant
             found.moves[g, : operators.moves.shape[1]] = operators.moves.T
             found.held[g, : operators.held.shape[1]] = operators.held.T
-            found.is_loose[g], found.known[g] = operators.moves.size > 0, operators.is_covered
+            found.ended[g], found.known[g] = operators.ended, operators.is_covered
         soft, softest = (np.where(on, self._both(figures), 0.0) for figures in (least, most))
         found.known[:] &= np.isfinite(soft + softest).all(axis=1)
         self._put_roots(found, redundant, soft)

@@ -351,7 +351,8 @@ class _Group:
             stray = np.abs(left @ self.statics.moves).max(axis=1) + EPS * scale
         taken = (self.load @ np.abs(self.held)).max(axis=1, initial=0.0)
         # What goes along a free move may end at any contact, and push what that joins.
-        rounding = rounding + found.rounding[pick] @ matrix + (stray + taken)[:, None]
+        ended = stray * columns.force_at_end(self.statics.moves)
+        rounding = rounding + found.rounding[pick] @ matrix + (ended + taken)[:, None]
         base, energy = self._under(left, misfit)
         base = base + taken[:, None] * self.is_left
         # By what rigid parts contradict one another, one of them is open.
@@ -388,7 +389,9 @@ class _Group:
             whole[:, at[self.turning] + k] += errors[:, self.line.stop :]
             if len(lined):
                 whole[:, at + k] += np.abs(size) / distance * way
-        proved = self._is_proved(whole, places, moved, stray, scale) & near
+        allowed = rounding_of(found.force[pick], scale) + EPS * scale
+        whole += np.where(stray <= allowed, ended, np.inf)[:, None]
+        proved = self._is_proved(whole, places, moved, scale) & near
         self._cover_twins(whole)
         shared = np.abs(self.rigid).max(axis=1, initial=0.0) > BOUND.shared
         whole[:, self.scalar[shared[: len(self.scalar)]]] = np.inf
@@ -440,9 +443,7 @@ class _Group:
         enough = np.where(back < BOUND.gain, most / (1.0 - np.minimum(back, BOUND.gain)), np.inf)
         return np.asarray(enough[:, None] * total)
 
-    def _is_proved(
-        self, errors: Array, places: Array, moved: Array, stray: Array, scale: Array
-    ) -> Flags:
+    def _is_proved(self, errors: Array, places: Array, moved: Array, scale: Array) -> Flags:
         """Whether all that was assumed holds within the errors.
 
         A closed contact may as well be open in the exact equilibrium: the laws are monotone there
@@ -451,8 +452,6 @@ class _Group:
         claim, found, pick = self.claim, self.found, self.pick
         columns = claim.columns
         force = np.abs(found.force[pick])
-        allowed = rounding_of(found.force[pick], scale) + EPS * scale
-        errors += np.where(stray <= allowed, stray, np.inf)[:, None]
         proved = np.isfinite(errors).all(axis=1) & np.isfinite(places).all(axis=1)
         light = np.maximum(force, BOUND.light * scale[:, None])[:, columns.flanks]
         proved &= (errors[:, columns.flanks] <= 0.1 * light).all(axis=1)

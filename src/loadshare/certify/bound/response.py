@@ -36,6 +36,8 @@ class Part:
         self.stray = np.abs(self.left @ moves).max(axis=1, initial=0.0)
         if moves.size:
             self.stray += EPS * np.abs(found.force[rows]).max(axis=1, initial=0.0)
+        # What goes along a free move may end at any contact, and push what that joins.
+        self.ended = self.stray * claim.columns.force_at_end(moves)
         self.left = self.left - self.left @ moves @ moves.T
         first = claim.columns.first_pair
         at = np.searchsorted(columns, np.arange(first, found.active.shape[1], 2))

@@ -77,6 +77,27 @@ def _orthogonal(factors: Array, scales: Array, size: int) -> Array:
     return np.asarray(lapack.dorgqr(reflections, scales)[0])
 
 
+def force_at_end(moves: Array, contacts: Array, pairs: Array) -> float:
+    """Force of the contact that ends a move which nothing resists, per load along it; at least 1.
+
+    A contact that a move hardly closes takes more force than the load along the move.
+
+    Parameters
+    ----------
+    moves : ndarray, shape (n, l)
+        Orthonormal.
+    contacts, pairs : ndarray, shape (k, n) and (q, 2, n)
+        Directions of contacts, and of what resists in two.
+    """
+    if not moves.size:
+        return 1.0
+    closing = np.concatenate(
+        [np.linalg.norm(contacts @ moves, axis=1), np.linalg.norm(pairs @ moves, axis=(1, 2))]
+    )
+    least = closing[closing > BOUND.loose].min(initial=1.0)
+    return float(np.sqrt(moves.shape[1]) / least)
+
+
 def held_moves(moves: Array, directions: Array) -> tuple[Array, bool]:
     """Moves (n, k) that others hold, as long as forces of all of these at most per load.
 

@@ -29,10 +29,11 @@ def bound_all(of, here, claim, found, group, errors):  # type: ignore[no-untyped
             stray = max(stray, abs(along))
         residual, scale = found.residual[s], found.scale[s]
         rest = found.rounding[s]
-        if group.is_loose[g]:
+        if group.ended[g] > 0.0:
             balanced = stray <= max(BOUND.balanced * scale, BOUND.rounded * found.push[s])
-            residual += stray + EPS * scale
-            rest += stray + EPS * scale
+            stray = group.ended[g] * (stray + EPS * scale)
+            residual += stray
+            rest += stray
         for k in range(group.held.shape[1]):
             along = 0.0
             for c in range(group.held.shape[2]):
