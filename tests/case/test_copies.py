@@ -124,3 +124,32 @@ def test_a_pin_without_an_error_can_be_given_one() -> None:
     case = Case(data).replace({"errors.planet3.pin.angular": "0.1 mrad"})
     assert case.errors["planet3"].pin.angular.si == pytest.approx(1e-4)
     assert list(case.errors) == ["planet3"]
+
+
+@pytest.mark.parametrize("first", [True, False], ids=["copy first", "all first"])
+def test_another_way_of_saying_it_counts_for_a_copy_too(first: bool) -> None:
+    data = changed(
+        bearings={
+            "planet": {"clearance": "20 um", "stiffness": "1e9 N/m"},
+            "planet2": {"ball_stiffness": "1e10 N/m^1.5"},
+        }
+    )
+    single = {"law": {"b": "2e-8 rad/(N*m)"}, "normal_backlash": "30 um"}
+    every = {"stiffness": "2e7 N*m/rad", "backlash": "50 um", "gap": "1e-5 rad"}
+    meshes = [("sun-planet2", single), ("sun-planet", every)]
+    data["meshes"] |= dict(meshes if first else meshes[::-1])
+    case = Case(data)
+    one, other = case.meshes["sun-planet2"], case.meshes["sun-planet3"]
+    assert one.given("stiffness", "law", "backlash", "normal_backlash", "gap") == [
+        "law",
+        "normal_backlash",
+        "gap",
+    ]
+    assert other.given("stiffness", "law", "backlash", "normal_backlash") == [
+        "stiffness",
+        "backlash",
+    ]
+    assert case.bearings["planet2"].given("clearance", "stiffness", "ball_stiffness") == [
+        "clearance",
+        "ball_stiffness",
+    ]

@@ -2,7 +2,7 @@
 
 A gear p with three copies stands for p1, p2 and p3; a mesh s-p for s-p1, s-p2 and s-p3; its
 bearing, ring, spline and errors for theirs. What is written of a single copy, such as errors.p2,
-counts before what is written of all.
+counts before what is written of all, be it in another way: a stiffness before a law.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
-from loadshare.case.content import ENDS, FLOATS
+from loadshare.case.content import ENDS, FLOATS, Sections
+from loadshare.case.element import elements_in, without_other_ways
 from loadshare.case.gears import COPIES
 from loadshare.case.keys import Path, dotted, ends_of, merge, parse
 from loadshare.case.origin import Origin
@@ -62,13 +63,14 @@ def with_copies(data: Data, origin: Origin) -> tuple[Data, Origin]:
         for name, element in before.items():
             count = pattern.count(*ends(name, element))
             if count is None:
-                _lay(after, name, element)
+                _lay(after, section, name, element)
                 continue
             became[name] = []
             for k in range(1, count + 1):
                 known = ends(name, element)
                 new = _renamed(name, known, pattern, k)
-                _lay(after, new, _copied(section, element, pattern, known, k), under=True)
+                single = _copied(section, element, pattern, known, k)
+                _lay(after, section, new, single, under=True)
                 became[name].append(new)
                 moved.append(((section, name), (section, new)))
         made[section] = after
@@ -152,12 +154,13 @@ def _copied(section: str, element: Any, pattern: _Pattern, ends: tuple[str, ...]
     return made
 
 
-def _lay(table: Data, name: str, element: Any, *, under: bool = False) -> None:
+def _lay(table: Data, section: str, name: str, element: Any, *, under: bool = False) -> None:
     """Put an element in a table; where one of its name stands, key by key, over it or under it."""
     there = table.get(name)
     if isinstance(there, dict) and isinstance(element, Mapping):
         low, high = (element, there) if under else (there, element)
-        table[name] = copy.deepcopy(dict(low))
+        model = next(elements_in(Sections.model_fields[section].annotation))
+        table[name] = copy.deepcopy(without_other_ways(model, low, high))
         merge(table[name], high)
     elif name not in table or not under:
         table[name] = element

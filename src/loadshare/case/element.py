@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, Self, TypeVar, get_args
+from typing import Annotated, Any, ClassVar, Self, TypeVar, get_args
 
 from pydantic import (
     BaseModel,
@@ -59,6 +59,9 @@ class Element(BaseModel):
         defer_build=True,
         protected_namespaces=(),
     )
+
+    WAYS: ClassVar[tuple[tuple[tuple[str, ...], ...], ...]] = ()
+    """For each matter that can be given in several ways, the keys of each way."""
 
     def rules(self) -> Iterator[Rule]:
         """Yield the rules across this element's fields that do not hold.
@@ -119,6 +122,22 @@ def written(element: Element) -> dict[str, Any]:
     """
     data: dict[str, Any] = element.model_dump(mode="json", by_alias=True, exclude_unset=True)
     return data
+
+
+def without_other_ways(model: type[Element], low: Any, high: Any) -> Any:
+    """Return of plain data what stays where other data of the element count before it.
+
+    Parameters
+    ----------
+    model : type of Element
+    low, high : mapping
+        Keys of an element, and those that count before them.
+    """
+    gone: set[str] = set()
+    for ways in model.WAYS:
+        if any(key in high for way in ways for key in way):
+            gone.update(key for way in ways if not any(k in high for k in way) for key in way)
+    return {key: value for key, value in low.items() if key not in gone}
 
 
 def elements_in(annotation: Any) -> Iterator[type[Element]]:

@@ -79,6 +79,8 @@ class Shaft(Element):
     shear_modulus: Modulus = Quantity("79.3 GPa", 79.3e9)
     """Shear modulus, that of steel when left out [force/area]."""
 
+    WAYS = ((("stiffness",), ("diameter", "length", "bore", "shear_modulus")),)
+
     clocking: Angle = Quantity("0 rad", 0.0)
     """Angle by which the second end lags the first when unloaded [angle]."""
 
@@ -148,6 +150,8 @@ class Spline(Element):
 
     radius: Radius | None = None
     """Radius at which the torque presses on the spline [length]: F_N = torque / radius."""
+
+    WAYS = ((("friction_force",), ("friction", "normal_force", "radius")),)
 
     def rules(self) -> Iterator[Rule]:
         """Yield what does not hold of the ways to give the friction."""
@@ -234,6 +238,8 @@ class Ring(Element):
 
     measured: Literal["assembled", "nominal"] = "assembled"
     """What the clearance is measured on: the gears with their installation errors, or without."""
+
+    WAYS = ((("neighbours", "float", "clearance"), ("radius", "offset")),)
 
     def rules(self) -> Iterator[Rule]:
         """Yield what does not hold of the two forms."""
@@ -335,6 +341,8 @@ class Bearing(Element):
 
     diameter: Radius | None = None
     """Mean diameter, by which its clearance changes as shaft and housing grow [length]."""
+
+    WAYS = (tuple((law,) for law in BEARING_LAWS),)
 
     def rules(self) -> Iterator[Rule]:
         """Yield what does not hold of the laws."""

@@ -184,6 +184,11 @@ class Mesh(Element):
     normal_backlash: Distance | None = None
     """Backlash along the line of action [length], in place of `backlash`."""
 
+    WAYS = (
+        (("stiffness",), ("law", "rated_torque"), ("table",), ("law_file",), ("geometry",)),
+        (("backlash",), ("normal_backlash",)),
+    )
+
     def rules(self) -> Iterator[Rule]:
         """Yield what does not hold of laws, gaps and backlashes."""
         laws = self.given(*LAWS)
