@@ -9,9 +9,14 @@ from loadshare.cli.console import console, say
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
-    from rich.table import Table
+    from rich.table import Column, Table
 
     from loadshare.report.records import Record
+
+GAP = 2
+"""Width between columns."""
+FOLDED = 12
+"""Width to which words and headers may be folded."""
 
 
 def table(
@@ -49,10 +54,56 @@ def table(
 
 
 def show(title: str, made: Table) -> None:
-    """Print a table under its title."""
-    say()
-    say(title, style="bold")
-    say(made)
+    """Print a table under its title; in parts, below one another, where no figure may be cut."""
+    for k, part in enumerate(_parts(made, console().width)):
+        say()
+        say(title if k == 0 else f"{title}, further columns", style="bold")
+        say(part)
+
+
+def _parts(made: Table, width: int) -> list[Table]:
+    """Return a table as tables that are at most so wide, each with the first column."""
+    least = [_least(column) for column in made.columns]
+    for column, need in zip(made.columns[1:], least[1:], strict=True):
+        # A header that does not even fit beside the first column is folded.
+        column.no_wrap &= least[0] + GAP + need <= width
+    least = [_least(column) for column in made.columns]
+    for column, need in zip(made.columns, least, strict=True):
+        column.min_width = need
+    parts: list[list[int]] = [[0]]
+    for k in range(1, len(least)):
+        if sum(least[i] + GAP for i in [*parts[-1], k]) - GAP > width and len(parts[-1]) > 1:
+            parts.append([0])
+        parts[-1].append(k)
+    return [made] if len(parts) == 1 else [_of_columns(made, part) for part in parts]
+
+
+def _least(column: Column) -> int:
+    """Least width of a column: figures stay whole, words and headers fold."""
+    from rich.cells import cell_len
+
+    cells = max((cell_len(str(cell)) for cell in column.cells), default=0)
+    header = cell_len(str(column.header))
+    if column.justify != "right":
+        return min(max(cells, header), FOLDED)
+    return max(cells, header if column.no_wrap else min(header, FOLDED))
+
+
+def _of_columns(made: Table, some: list[int]) -> Table:
+    """Return a table of some columns of another."""
+    columns = [made.columns[k] for k in some]
+    part = table(())
+    for c in columns:
+        part.add_column(
+            c.header,
+            justify=c.justify,
+            no_wrap=c.no_wrap,
+            overflow=c.overflow,
+            min_width=c.min_width,
+        )
+    for row in zip(*(c.cells for c in columns), strict=True):
+        part.add_row(*row)
+    return part
 
 
 def fits(made: Table) -> bool:
