@@ -9,7 +9,7 @@ export OPENBLAS_NUM_THREADS = 1
 export NO_MKDOCS_2_WARNING = 1
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-all test-lowest test-shuffled lint format types layers docs docs-serve cases \
+.PHONY: help run test test-all test-lowest test-shuffled lint format types layers docs docs-serve kernels cases \
 	bench stress reproduce fuzz fuzz-guided kills dist clean
 
 help: ## list the targets
@@ -31,10 +31,15 @@ $(VENV)/.bench: $(VENV)/.run
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[bench]'
 	@touch $@
 
-test: lint types layers docs ## check and test everything that is not slow
+# All that a test runs against, side by side; the tests find the kernels on disk.
+CHECKED := $(MAKE) --no-print-directory --output-sync -j $(WORKERS) kernels types docs lint layers
+
+test: $(VENV)/.dev ## check and test everything that is not slow
+	$(CHECKED)
 	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow"
 
-test-all: lint types layers docs ## the same with the slow tests
+test-all: $(VENV)/.dev ## the same with the slow tests
+	$(CHECKED)
 	$(BIN)/python -m pytest -n $(WORKERS)
 
 LOWEST := .venv-lowest
@@ -64,6 +69,9 @@ types: $(VENV)/.dev ## mypy, strict
 
 layers: $(VENV)/.dev ## data flows one way (import-linter)
 	$(BIN)/lint-imports
+
+kernels: $(VENV)/.run ## compile what is compiled, where it is not on disk yet
+	$(BIN)/loadshare warm
 
 docs: $(VENV)/.dev ## build the documentation, strict
 	$(BIN)/mkdocs build --strict --quiet

@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import pickle
 from collections.abc import Callable
+from contextlib import ExitStack
 from pathlib import Path
 from types import CodeType, FunctionType
 from typing import Any
@@ -15,6 +16,9 @@ from numba.core.caching import (
     IndexDataCacheFile,
     NullCache,
 )
+
+from loadshare.compile_watch import watch
+from loadshare.lock import one_after_another
 
 
 def fingerprint(function: Callable[..., Any]) -> str:
@@ -109,7 +113,10 @@ def _has_home() -> bool:
 
 
 class CodeCache(FunctionCache):
-    """Compiled code of a function on disk; what cannot be read or written is compiled anew."""
+    """Compiled code of a function on disk; what cannot be read or written is compiled anew.
+
+    Of several processes that miss the same code one compiles it, and the others wait for that.
+    """
 
     _impl_class = _Places
 
@@ -122,8 +129,35 @@ class CodeCache(FunctionCache):
             source_stamp=self._impl.locator.get_source_stamp(),
         )
         self._cache_file._function = function
+        self._alone = ExitStack()
+
+    def compiling(self, compile_: Callable[[Any], Any]) -> Callable[[Any], Any]:
+        """Return what compiles the function, and lets others do so once it is done."""
+
+        def one_compiles(sig: Any) -> Any:
+            with ExitStack() as self._alone:
+                return compile_(sig)
+
+        return one_compiles
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Load what was kept for some types; None where it is to be compiled here and now."""
+        found = self._read(sig, target_context)
+        if found is None and self._ready():
+            file = Path(self._cache_file._index_path).with_suffix(".lock")
+            if self._alone.enter_context(one_after_another(file, watch.waiting)):
+                return self._read(sig, target_context)
+        return found
+
+    def _ready(self) -> bool:
+        """Whether there is a folder to keep code in."""
+        try:
+            self._impl.locator.ensure_cache_path()
+        except OSError:
+            return False
+        return True
+
+    def _read(self, sig: Any, target_context: Any) -> Any:
         """Load what was kept for some types; None where that cannot be read."""
         try:
             return super().load_overload(sig, target_context)
@@ -133,7 +167,7 @@ class CodeCache(FunctionCache):
     def load_all(self, function: Any) -> bool:
         """Load all that is kept of a function, and tell whether there is any."""
         for sig, *_ in self._cache_file._load_index():
-            code = self.load_overload(sig, function.targetctx)
+            code = self._read(sig, function.targetctx)
             if code is not None:
                 # As the dispatcher does when it is called.
                 entry = (code.entry_point, code.fndesc, [code.library])

@@ -98,7 +98,8 @@ def jit(**how: Any) -> Callable[[Callable[..., Any]], Any]:
         from loadshare.code_cache import CodeCache, Lost
 
         try:
-            made._cache = CodeCache(function, lambda e: watch.not_kept(words_of(e)))
+            made._cache = cache = CodeCache(function, lambda e: watch.not_kept(words_of(e)))
+            made.compile = cache.compiling(made.compile)
         except Exception as error:  # noqa: BLE001 -- there is another way, whatever it is
             why = words_of(error)
             made._cache = Lost(lambda: watch.not_kept(why))

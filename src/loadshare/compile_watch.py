@@ -5,6 +5,8 @@ from __future__ import annotations
 import logging
 import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 log = logging.getLogger("loadshare")
@@ -75,6 +77,15 @@ class Watch:
             self._depth -= 1
             if self._depth == 0:
                 self._spent += time.monotonic() - self._begun
+
+    @contextmanager
+    def waiting(self) -> Iterator[None]:
+        """Another process compiles what is needed here: told as if this one did."""
+        self.started()
+        try:
+            yield
+        finally:
+            self.ended()
 
     def not_kept(self, why: str) -> None:
         """Say once that what was compiled is lost at the end."""

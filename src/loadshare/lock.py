@@ -8,8 +8,8 @@ import os
 import socket
 import sys
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 from pathlib import Path
 
 from loadshare.errors import LoadshareError
@@ -20,6 +20,8 @@ LOCK = ".loadshare.lock"
 """File of the lock; it says who holds it, and is removed when that one is done."""
 TAKEN = (errno.EACCES, errno.EDEADLK) if sys.platform == "win32" else (errno.EWOULDBLOCK,)
 """What the system answers where another process holds a lock."""
+AGAIN = 0.05
+"""Seconds after which those who wait look again."""
 FAR = 1 << 30
 """Byte that is locked on Windows, beyond the text, which others are to read."""
 
@@ -45,12 +47,57 @@ def alone_in(folder: Path) -> Iterator[None]:
     if handle is None:
         yield
         return
-    try:
+    with _held(file, handle):
         text = f"process {os.getpid()} on {socket.gethostname()}, since {_now()}"
         with suppress(OSError):
             # On a full disk it is held all the same, by who is not told.
             os.ftruncate(handle, 0)
             os.write(handle, text.encode())
+        yield
+
+
+@contextmanager
+def one_after_another(
+    file: Path, waiting: Callable[[], AbstractContextManager[object]] = nullcontext
+) -> Iterator[bool]:
+    """Be the only one who does something, once all who were before have done it.
+
+    Where nothing can be written, or the file system has no locks, nobody waits.
+
+    Parameters
+    ----------
+    file : Path
+        Of the lock, in a folder that exists.
+    waiting : callable, optional
+        Returns a context in which to wait; not called if there is nobody to wait for.
+
+    Yields
+    ------
+    bool
+        Whether another process was waited for.
+    """
+    waited = False
+    with ExitStack() as context:
+        while True:
+            try:
+                handle = _acquired(file, logging.DEBUG)
+                break
+            except LoadshareError:
+                if not waited:
+                    context.enter_context(waiting())
+                waited = True
+                time.sleep(AGAIN)
+    if handle is None:
+        yield waited
+        return
+    with _held(file, handle):
+        yield waited
+
+
+@contextmanager
+def _held(file: Path, handle: int) -> Iterator[None]:
+    """Let go of a lock in the end."""
+    try:
         yield
     finally:
         # While it is held; on Windows a file can be removed only when it is closed.
@@ -62,7 +109,7 @@ def alone_in(folder: Path) -> Iterator[None]:
                 file.unlink()
 
 
-def _acquired(file: Path) -> int | None:
+def _acquired(file: Path, level: int = logging.WARNING) -> int | None:
     """Return an open file that this process has locked; None where none can be."""
     while True:
         try:
@@ -85,7 +132,8 @@ def _acquired(file: Path) -> int | None:
                     f"{file.parent}: is in use by {told}. Wait until that has ended, or give "
                     "another folder."
                 ) from None
-            log.warning("%s: this file system has no locks; work here one at a time.", file.parent)
+            words = "%s: this file system has no locks; work here one at a time."
+            log.log(level, words, file.parent)
             return None
         _close(handle)
 

@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -23,6 +24,7 @@ from loadshare.job import engines
 from loadshare.job.engines import engine_at_hand, engine_named
 from loadshare.job.machine import Machine
 from loadshare.job.warm import warm
+from loadshare.lock import one_after_another
 from loadshare.settings import JOB
 from loadshare.solver.hot import vectorised
 from loadshare.train import build_train
@@ -216,6 +218,46 @@ def test_what_was_kept_and_is_damaged_is_compiled_anew(tmp_path, monkeypatch, en
     mended = loaded(file)
     assert mended(2.0) == 4.0
     assert sum(mended.stats.cache_hits.values()) == 1
+
+
+def test_of_processes_that_miss_the_same_code_one_compiles_it(tmp_path, monkeypatch):
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    (tmp_path / "kept.py").write_text(MODULE, encoding="utf-8")
+    go = tmp_path / "go"
+    script = f"""
+import sys, time; sys.path.insert(0, {str(tmp_path)!r})
+from pathlib import Path
+from kept import twice
+print("ready", flush=True)
+while not Path({str(go)!r}).exists(): time.sleep(1e-3)
+assert twice(2.0) == 4.0
+print(sum(twice.stats.cache_misses.values()))
+"""
+    words = [sys.executable, "-c", script]
+    both = [subprocess.Popen(words, stdout=subprocess.PIPE, text=True) for _ in range(2)]
+    assert [process.stdout.readline() for process in both] == ["ready\n"] * 2
+    go.touch()
+    assert sorted(int(process.communicate(timeout=60)[0]) for process in both) == [0, 1]
+    assert not list((tmp_path / "__pycache__").glob("*.lock"))
+
+
+def test_what_another_process_compiles_is_waited_for(tmp_path, monkeypatch):
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    file = tmp_path / "kept.py"
+    file.write_text(MODULE, encoding="utf-8")
+    twice = loaded(file)
+    (tmp_path / "__pycache__").mkdir(exist_ok=True)
+    index = Path(twice._cache._cache_file._index_path)
+    waits, waiting = threading.Event(), watch.waiting
+    monkeypatch.setattr(watch, "waiting", lambda: (waits.set(), waiting())[1])
+    thread = threading.Thread(target=twice, args=(2.0,))
+    with one_after_another(index.with_suffix(".lock")):
+        thread.start()
+        assert waits.wait(10.0)
+        assert not twice.overloads
+    thread.join(60.0)
+    assert twice.overloads
+    assert twice(3.0) == 6.0
 
 
 def test_what_cannot_be_written_any_more_is_told_once(tmp_path, monkeypatch, caplog):
