@@ -64,7 +64,7 @@ ALLOWED = (
     ("tables and lists within one another", "{depth}"),
     ("elements of a section", "{elements}"),
     ("entries of a table, and of a list of keys", "{entries}"),
-    ("problems that are told", "{problems}"),
+    ("problems that are reported", "{problems}"),
     ("a name", "1 to {name} printable characters"),
     ("a number with its unit", "0, or {smallest:g} to {largest:g} in SI units"),
     ("a coefficient of friction", "0 to {friction:g}"),

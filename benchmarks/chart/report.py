@@ -95,6 +95,7 @@ def speed_report(
     lines = [
         "# Speed against accuracy",
         "",
+        "How long does one equilibrium take, how exact is it, and how do other solvers compare? "
         f"Measured by `python -m benchmarks.chart{' --quick' * quick}` in {seconds:.0f} s.",
         "",
         "![Error against time](speed.png)",
@@ -109,19 +110,19 @@ def speed_report(
         "|---|---|",
         *(f"| {name} | {value} |" for name, value in facts.items()),
         "",
-        "Peers that were not installed: " + (", ".join(missing) or "none") + ".",
+        "Solvers that were not installed: " + (", ".join(missing) or "none") + ".",
         "",
         "| method | how it is used |",
         "|---|---|",
-        f"| {OURS[0]} | `solve_many`, compiled, one core, all positions; samples in, "
-        "labelled arrays out; median of three runs |",
+        f"| {OURS[0]} | `solve_many`, compiled, on one core, all positions, from samples to "
+        "labelled arrays; median of three runs |",
         f"| {OURS[1]} | the same algorithm in NumPy |",
-        f"| {OURS_NEW} | `solve` of a case never seen, all its positions (five), from the case in "
-        "memory to the certified result |",
-        f"| {OURS_SOLVE} | the same of a case solved just before |",
+        f"| {OURS_NEW} | `solve` of a new case, all its positions (five), from the case in memory "
+        "to the certified result |",
+        f"| {OURS_SOLVE} | the same for a case that was solved just before |",
         *(f"| {e.name} | {e.note} |" for e in PEERS.values()),
         "",
-        "## What was asked for",
+        "## Targets",
         "",
         *_ratios([*measures, *scaling], {m.workload: m.workload for m in scaling} | dict(titles)),
         "",
@@ -131,7 +132,8 @@ def speed_report(
         "",
         "## Figures",
         "",
-        "Errors are those of the answers given; what was not answered stands in its own column.",
+        "Errors are those of the answers that a method gave, *answered* says for how many samples "
+        "it gave one, and *certified* how many of these pass the certificate.",
         "",
     ]
     for workload, title in titles.items():
@@ -142,47 +144,51 @@ def speed_report(
 
 
 _HOW = (
-    "- Every method is given the same samples, drawn at fixed seeds. Peers get them as one "
-    "dimensionless problem with rows of unit norm, already written down: their time holds no "
-    "case, no assembly and no certificate. Ours holds all three.",
-    "- Each peer is driven through its own outer loop where a law, a ring's arc or a friction "
-    "bound needs one, and stops at its own tolerance.",
-    "- The error is the larger one of the relative errors of torques and of determined floats "
-    "against a 50-digit reference that is written from the physics and checked by its signs.",
-    "- Ours is measured before the peers and once more after them; the mean counts, because a "
-    "machine's speed changes within minutes.",
-    "- Times are medians over samples, after one run that is not counted; of a batch, the time "
-    "over its samples. Preparation stands apart. One core.",
-    "- Every peer has three times. *All* is what it takes from Python, its outer loop included. "
-    "*In calls* is what of it is spent inside the functions of its extension module that take new "
-    "data and solve, each call timed by itself, less the cost of looking at the clock; what that "
-    "module does to read its arguments is in it. *Reported* is the solver's own figure: DAQP's "
-    "leaves out what new data cost before the solve, Clarabel's has its first set-up in it every "
-    "time. CVXPY, SciPy and NumPy have no such calls of their own.",
-    "- Ratios are of processor time, which other processes on the machine disturb least, ours with "
-    "all that belongs to it, the peers' in calls unless said otherwise.",
-    "- The reduced problem has only those contacts that act in the answer of some sample of the "
-    "workload: a better reduction than can be had before all answers are known. DAQP gets it in "
-    "the redundants of the force method as well, so that no equation is left.",
-    "- Certified means that the answer passes the certificate at 1e-9.",
+    "- All methods solve the same samples, drawn with fixed seeds. Other solvers (*peers*) receive "
+    "each sample as a finished dimensionless problem with rows of unit norm, so their times "
+    "include no case, no assembly and no certificate. Our times include all three.",
+    "- A problem with a nonlinear law, a ring's arc or friction that follows the torque is solved "
+    "in several passes, each with the law's tangent at the last answer (Newton) or its secant "
+    "(Picard). Each peer runs through this outer loop and stops at its own tolerance.",
+    "- The error is the larger of two relative errors, that of the torques and that of the floats "
+    "whose place is determined, against a reference in 50 digits. The reference is written from "
+    "the physics, and the signs of its forces and gaps are checked.",
+    "- Our methods are timed before the peers and again after them, and the mean counts, because "
+    "the speed of a machine changes within minutes.",
+    "- Times are medians over the samples, after a first run that does not count. The time of a "
+    "batch is divided by the number of its samples. Set-up is listed separately. Everything runs "
+    "on one core.",
+    "- Every peer has three times. *All* is the time of the call from Python, including the outer "
+    "loop. *In calls* is the part of it that is spent in the functions of the solver's extension "
+    "module that take new data and solve, less the cost of reading the clock; reading their "
+    "arguments is included. *Reported* is the solver's own figure: DAQP's leaves out what it does "
+    "with new data before it solves, Clarabel's always includes its first set-up. CVXPY, SciPy "
+    "and NumPy have no such calls of their own.",
+    "- Ratios are ratios of processor time, which other processes disturb least: all of our time, "
+    "and a peer's time in calls unless stated otherwise.",
+    "- The *reduced* problem contains only the contacts that act in the answer of at least one "
+    "sample of the workload. This is a better reduction than anyone can make before the answers "
+    "are known. DAQP also receives it in the redundants of the force method (the few forces that "
+    "balance alone leaves open), without any equations.",
+    "- *Certified*: the answer passes the certificate at 1e-9.",
 )
 _LIMITS = (
-    "- A small machine with shared cores: times move by some ten per cent from run to run; "
-    "the ratios are taken from one run.",
-    "- Peers are called from Python; their loops are NumPy. A peer in compiled code with a "
-    "compiled loop would lose less on its outer loop, not on its inner one.",
-    "- CVXPY with parameters is compiled anew where a radial law changes its pieces (a clearance "
-    "that closes before the spline slips); that time counts.",
-    "- A float that hangs on forces below 1e-9 of the load (a pinion with play that nothing "
-    "presses on) is left out of the error: digits that no case file has decide where it rests.",
-    "- SLSQP and trust-constr are given fewer samples where they would take longer than the "
-    "patience of 12 s.",
+    "- The machine is small and its cores are shared. Times vary by some ten per cent from run to "
+    "run, so ratios are taken within one run.",
+    "- Peers are called from Python, and their outer loops use NumPy. With a compiled loop they "
+    "would lose less time between their calls; *in calls* shows what would remain.",
+    "- CVXPY with parameters compiles the problem again when a radial law changes its pieces (a "
+    "clearance that closes before the spline slips). That time counts.",
+    "- A float that is held by forces below 1e-9 of the load (a pinion with play that nothing "
+    "presses on) is left out of the error, because its place depends on digits that no case file "
+    "has.",
+    "- SLSQP and trust-constr get fewer samples where they would need more than 12 s.",
 )
 
 
 def _table(measures: Sequence[Measure], by: str = "") -> list[str]:
     head = ["method", "tolerance", "all µs", "processor µs", "in calls µs", "reported µs"]
-    head += ["median error", "worst error", "answered", "certified", "set-up ms", "says"]
+    head += ["median error", "worst error", "answered", "certified", "set-up ms", "message"]
     if by:
         head.insert(0, "train")
     lines = ["| " + " | ".join(head) + " |", "|---" * len(head) + "|"]
@@ -227,13 +233,14 @@ def _fastest(measures: Sequence[Measure], wanted: Ratio) -> tuple[Measure, float
 
 def _ratios(measures: Sequence[Measure], titles: Mapping[str, str]) -> list[str]:
     lines = [
-        "Processor time of the peer at its tightest tolerance over ours, per equilibrium, side by "
-        "side in this run; of several peers the fastest counts. Ours counts only if its worst "
-        "error is at most 1e-9 and its median at most 1e-12; the peer counts whatever its error. "
-        "The last but one column is the ratio to what the peer's solver reports of itself.",
+        "How many times faster we are than a peer at its tightest tolerance: its processor time "
+        "per equilibrium divided by ours, both from this run; of several peers the fastest counts. "
+        "A target is met only if our worst error is at most 1e-9, our median error at most 1e-12 "
+        "and every answer certified; the peer counts whatever its error. *Reported* is the ratio "
+        "with the time that the peer's solver reports itself. Errors are median and worst.",
         "",
-        "| workload | ours | peer | its time | ours µs | peer µs | ratio | asked | reported | "
-        "ours' errors | peer's |",
+        "| workload | ours | peer | its time | ours µs | peer µs | ratio | target | reported | "
+        "our errors | peer's errors |",
         "|---|---|---|---|---|---|---|---|---|---|---|",
     ]
     for wanted in WANTED:
@@ -242,9 +249,9 @@ def _ratios(measures: Sequence[Measure], titles: Mapping[str, str]) -> list[str]
         found = _fastest(measures, wanted)
         kind = "in calls" if wanted.calls else "all"
         if one is None or found is None:
-            told = "no answer of the peer" if one is not None else "no answer of ours"
+            missing = "no answer of the peer" if one is not None else "no answer of ours"
             lines.append(
-                f"| {title} | {wanted.ours} | {wanted.peers[0]} | {kind} | – | – | {told} | "
+                f"| {title} | {wanted.ours} | {wanted.peers[0]} | {kind} | – | – | {missing} | "
                 f"{_asked(wanted)} | – | – | – |"
             )
             continue
@@ -265,7 +272,7 @@ def _ratios(measures: Sequence[Measure], titles: Mapping[str, str]) -> list[str]
 
 
 def _asked(wanted: Ratio) -> str:
-    return "for the record" if wanted.wanted is None else f"≥ {wanted.wanted:g}"
+    return "none" if wanted.wanted is None else f"≥ {wanted.wanted:g}"
 
 
 def _growth(scaling: Sequence[Measure]) -> list[str]:
@@ -280,9 +287,9 @@ def _growth(scaling: Sequence[Measure]) -> list[str]:
     power, last = math.log(t1 / t0) / math.log(n1 / n0), t1 / points[-2][1]
     met = "met" if last <= n1 / points[-2][0] else "**not met**"
     return [
-        f"From {n0} to {n1} branches ours, batch, goes from {_figure(t0)} to {_figure(t1)} µs: "
-        f"growth with the power {power:.2f} of the number of branches. The last doubling costs "
-        f"×{last:.2f} (asked: at most linear, {met})."
+        f"From {n0} to {n1} branches, our batch takes from {_figure(t0)} to {_figure(t1)} µs: the "
+        f"time grows with the power {power:.2f} of the number of branches. The last doubling "
+        f"multiplies it by {last:.2f} (target: at most linear growth, {met})."
     ]
 
 
@@ -292,5 +299,5 @@ def _memory(memory: Mapping[str, float]) -> list[str]:
     met = "met" if memory["MiB"] < 1024.0 else "**not met**"
     return [
         f"{memory['equilibria']:,.0f} equilibria in {memory['seconds']:.0f} s with at most "
-        f"{memory['MiB']:.0f} MiB of memory (asked: less than 1024 for 10^6, {met})."
+        f"{memory['MiB']:.0f} MiB of memory (target: less than 1024 for 10^6, {met})."
     ]

@@ -126,18 +126,19 @@ def chapter(
     worst = max(abs(e.difference or 0.0) for e in shares if e.kind == "fitted")
     blocks = [
         "`cases/fgfbstts/both_errors.toml`: 50 µm of installation error and of eccentricity on "
-        "every gear. All installation errors point along x, as in Fig. 8. `ls.fit` turns the ten "
-        "eccentricities, starting from the directions of the case file, until the five printed "
-        f"shares are met (standard deviation {LAST_DIGIT:g}, half of the last digit).",
+        "every gear. All installation errors point along x, as in Fig. 8. `ls.fit` varies the "
+        "directions of the ten eccentricities, starting from those of the case file, until they "
+        f"reproduce the five printed shares (standard deviation {LAST_DIGIT:g}, half of the last "
+        "digit).",
         entries_table(shares),
-        *_what_is_told(both),
+        *_what_it_determines(both),
         _others(others),
         entries_table(torque_entries(both)),
         _why_torques(both),
     ]
     pictures = {}
     if cycle is not None:
-        blocks += ["{both_errors}", _cycle_told(cycle)]
+        blocks += ["{both_errors}", _over_the_cycle(cycle)]
         pictures["both_errors"] = torque_picture(
             seed,
             cycle,
@@ -195,7 +196,7 @@ def _level(cycle: Result, mesh: str, value: float) -> Level:
     return Level(value, mesh, below=cycle.positions[0].torque[mesh] > value)
 
 
-def _what_is_told(both: BothErrors) -> list[str]:
+def _what_it_determines(both: BothErrors) -> list[str]:
     sizes = both.fitted.singular_values
     kept = int((sizes > 1e-6 * sizes.max()).sum())
     fitted = table(
@@ -218,11 +219,11 @@ def _what_is_told(both: BothErrors) -> list[str]:
     return [
         "The fitted directions, from which everything below is predicted:",
         fitted,
-        f"**What the figure cannot tell apart.** Five shares, of which the pairs' add up to 2, "
-        f"determine {kept} combinations of ten directions; a direction and an initial phase are "
-        f"the same thing here. `ls.fit` says so: “{both.fitted.warnings[0]}” The variance of each "
-        "single direction is infinite. Only if seven are held at the values above, the other "
-        "three are determined:",
+        f"**What the figure cannot determine.** The two shares of each pair add up to 2, so five "
+        f"shares determine only {kept} combinations of the ten directions (a direction and an "
+        f"initial phase are the same thing here). `ls.fit` reports this: "
+        f"“{both.fitted.warnings[0]}” The variance of each single direction is infinite. If seven "
+        "are held at the values above, the other three are determined:",
         conditional,
         f"Correlations: {told}.",
     ]
@@ -240,7 +241,7 @@ def _others(others: Mapping[str, Case]) -> str:
             )
         )
     header = ("other directions", "Ω of 1-2", *(f"Ω of {m}" for m in printed.SHARES_II))
-    return "Very different directions fit as well:\n\n" + table(header, rows)
+    return "Very different directions fit equally well:\n\n" + table(header, rows)
 
 
 def _why_torques(both: BothErrors) -> str:
@@ -254,20 +255,20 @@ def _why_torques(both: BothErrors) -> str:
     both_shares = sum(printed.SHARE_I.values())
     return (
         f"**A misprint.** The printed T12 + T13 is {total:.1f} N·m, the input torque "
-        f"{printed.TORQUE} N·m; the printed 50.88 % of it is {0.5088 * printed.TORQUE:.1f} N·m, "
-        f"so T12 = {printed.TORQUES['1-2']} N·m is most likely a misprint (it is "
-        f"{100 * share:.2f} % of the printed sum). The two printed Ω of stage I add up to "
-        f"{both_shares:.3f}, not to 2.\n\n"
-        f"**Pairwise coefficients.** The printed torques of both pinions are alike "
+        f"{printed.TORQUE} N·m. The printed share, 50.88 %, of that torque is "
+        f"{0.5088 * printed.TORQUE:.1f} N·m, so T12 = {printed.TORQUES['1-2']} N·m is most likely "
+        f"a misprint (it is {100 * share:.2f} % of the printed sum). The two printed Ω of stage I "
+        f"add up to {both_shares:.3f}, not to 2.\n\n"
+        f"**Pairwise coefficients.** The printed torques of the two pinions are equal "
         f"({pinions[0]:.1f} and {pinions[1]:.1f} N·m) although T12 is {100 * apart:.1f} % above "
-        "T13. The paper's Ω of stage II therefore counts within each pinion's pair, and torques "
-        "that balance cannot agree with both rows: they miss by up to "
+        "T13. So the paper's Ω of stage II is taken within each pinion's pair, and torques that "
+        "balance cannot agree with both rows: they differ by up to "
         f"{max(abs(e.difference or 0.0) for e in torque_entries(both)):.0f} N·m. Shares can be "
         "compared, absolute torques cannot."
     )
 
 
-def _cycle_told(cycle: Result) -> str:
+def _over_the_cycle(cycle: Result) -> str:
     spread = max(
         max(p.pair_share[m] or 0.0 for p in cycle.positions)
         - min(p.pair_share[m] or 0.0 for p in cycle.positions)
@@ -279,12 +280,12 @@ def _cycle_told(cycle: Result) -> str:
         return min(cycle.positions, key=lambda p: _unevenness(p, cycle.stages[stage])).position
 
     return (
-        "With the stiffness of Fig. 7 in place of its middle, the shares within the pairs change "
-        f"by up to {spread:.4f} over the cycle and Ω of 1-2 by {max(one) - min(one):.4f}: “does "
-        "not change much”, as the paper says. It finds stage I best shared at position 5 and "
-        f"stage II at position 4; here these are {best('I')} and {best('II')}. That cannot be "
-        "compared: all meshes of a kind are taken in phase, and the paper prints neither their "
-        "relative phases nor where its cycle begins."
+        "With the stiffness curves of Fig. 7 instead of their middle, the shares within the pairs "
+        f"change by up to {spread:.4f} over the cycle and Ω of 1-2 by {max(one) - min(one):.4f}: "
+        "it “does not change much”, as the paper says. In the paper, stage I shares most evenly at "
+        f"position 5 and stage II at position 4; here these are {best('I')} and {best('II')}. The "
+        "positions cannot be compared: all meshes of a kind are assumed to be in phase, and the "
+        "paper prints neither their relative phases nor where its cycle begins."
     )
 
 

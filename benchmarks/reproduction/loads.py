@@ -161,23 +161,22 @@ def chapter(found: Loads) -> Chapter:
         entries_table(entries),
         table(header, rows),
         "{load}",
-        "**What agrees.** Ω falls with the load. With fixed errors and linear springs the "
-        "differences of torque do not depend on the load, as the table shows, so Ω − 1 goes with "
+        "**What agrees.** Ω falls with the load. With fixed errors and linear springs, differences "
+        "of torque do not depend on the load, as the table shows, so Ω − 1 is proportional to "
         "1/T.",
-        f"**Why the sizes differ.** The errors of Fig. 10 give {light.two:.3f} at 283 N·m. The "
-        f"rule "
-        "alone takes the paper's own 1.067 of Fig. 10 to "
-        f"{_carried(printed.SHARES_II['7-10']):.2f} (less here, as pinion 4 then also carries more "
-        f"than half), and its 1.016 of Fig. 11 to "
+        f"**Why the sizes differ.** The errors of Fig. 10 give {light.two:.3f} at 283 N·m. By the "
+        "rule 1/T alone, the paper's own 1.067 of Fig. 10 would become "
+        f"{_carried(printed.SHARES_II['7-10']):.2f} at this load (it is less here, because pinion "
+        f"4 then also carries more than half), and its 1.016 of Fig. 11 would become "
         f"{_carried(printed.FLOATING_SHARES_II['7-10']):.2f}. The printed "
         f"{printed.LIGHT_THEORY} is below both, so Fig. 18 was made neither with the errors of "
         "Fig. 10 nor with the shares of Fig. 11; its errors are not printed. All errors reduced to "
-        f"{100 * found.scale:.1f} % ({found.scale * printed.ERROR:.1f} µm in place of "
-        f"{printed.ERROR:.0f}) give {light.reduced:.3f}: this curve is in the picture, and is "
-        "fitted to that one figure only to show the trend beside it. In full float friction alone "
-        "counts, and Ω stays near 1.",
-        "The paper says that the test lies about 10 % above the theory; the two printed figures "
-        f"are {100 * above:.1f} % apart in Ω, and {excess:.2f} to 1 in Ω − 1.",
+        f"{100 * found.scale:.1f} % ({found.scale * printed.ERROR:.1f} µm instead of "
+        f"{printed.ERROR:.0f}) give {light.reduced:.3f}; the picture has this curve as well, "
+        "fitted to that one figure only to compare the trend. In full float only friction matters, "
+        "and Ω stays near 1.",
+        "The paper says that the test lies about 10 % above the theory. The two printed figures "
+        f"differ by {100 * above:.1f} % in Ω, and their Ω − 1 by a factor of {excess:.2f}.",
     )
     return Chapter(
         "Table 2 and Fig. 18: load",

@@ -40,9 +40,8 @@ def page(chapters: Sequence[Chapter], used: Mapping[str, str]) -> str:
         blocks += [_picture(b) if b.startswith("{") else b for b in chapter.blocks]
     blocks += [
         "## How this page was made",
-        "`make reproduce` solves the cases, fits what is fitted, and writes this page and its "
-        "pictures. Every position is certified; every number on the page is computed in that run, "
-        "and the "
+        "`make reproduce` solves the cases, makes the fits, and writes this page and its pictures. "
+        "Every position is certified, and every number on the page is computed in that run; the "
         "same case files give the same page.",
         table(
             ("file", "SHA-256 of its physical content"),

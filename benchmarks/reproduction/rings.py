@@ -182,13 +182,13 @@ def ring_chapter(seed: Seed, found: Rings) -> Chapter:
         "both rings. Thresholds from `ls.critical`.",
         entries_table(entries),
         "{rings}",
-        f"All within {100 * worst:.1f} %. Measured on Ω − 1, which is harder, pinion 4's pair has "
-        f"{past['4']:.2f} % (paper 4.7 %), pinion 5's {past['5']:.2f} % (paper 1.9 %).",
+        f"All are within {100 * worst:.1f} %. By the stricter measure Ω − 1, pinion 4's pair has "
+        f"{past['4']:.2f} % (paper 4.7 %) and pinion 5's {past['5']:.2f} % (paper 1.9 %).",
         _geometry_told(found),
         _stiffness_told(found),
         _mirror_told(found),
-        "**With an ample clearance** a free pinion shares evenly here, and the paper keeps 0.3 to "
-        "0.4 %. Without friction and in full float, nothing is there that could hold a difference.",
+        "**With an ample clearance**, a free pinion shares evenly here, while the paper keeps 0.3 "
+        "to 0.4 %. In full float without friction, nothing could sustain a difference.",
     )
     return Chapter(
         "Fig. 13: limit ring clearance",
@@ -228,8 +228,8 @@ def point_chapter(seed: Seed, found: Rings) -> Chapter:
     gears = seed.case("limit_ring").gears
     ratio = gears["2"].acting_radius / gears["4"].acting_radius
     blocks = (
-        "The same case, with rings as large as the printed points lie from the middle. So the "
-        "distance is the ring's and what is tested is the direction, and that both pinions press "
+        "The same case, with rings that end where the printed points are. The distance from the "
+        "centre is therefore given; what is tested is the direction, and that both pinions press "
         "on their rings.",
         entries_table(entries),
         table(
@@ -245,16 +245,16 @@ def point_chapter(seed: Seed, found: Rings) -> Chapter:
             rows,
         ),
         "{points}",
-        f"On the rings all coordinates are within {100 * worst:.1f} %. The printed points lie "
-        "nearer to the middle than the printed thresholds: a pinion that floats fully would lie "
-        "at the threshold. So they belong to rings that are not printed and a little smaller, on "
-        "whose boundary they lie, as the paper says. In ample rings the computed points lie "
-        f"{listed(beyond)} further out.\n\n"
+        f"On these rings all coordinates are within {100 * worst:.1f} %. The printed points are "
+        "nearer to the centre than the printed thresholds, while a pinion that floats freely would "
+        "be at the threshold. So the points belong to slightly smaller rings that the paper does "
+        "not print, and lie on their boundaries, as it says. In ample rings, the computed points "
+        f"are {listed(beyond)} further out.\n\n"
         f"The paper says that these floats are obviously larger than pinion 1's. Here pinion 1, "
-        f"which is assumed to be free, moves by {one:.1f} µm, pinion 4 by {four:.1f} µm: what "
-        "the errors open at a pinion's base circle, they open "
-        f"{ratio:.1f}-fold at the face gear's radius, where pinion 1 evens it out. The paper "
-        "prints neither the support nor the float of pinion 1 in this figure.",
+        f"which is assumed to be free, moves by {one:.1f} µm and pinion 4 by {four:.1f} µm: a gap "
+        f"at a pinion's base circle becomes {ratio:.1f} times as large at the radius of the face "
+        "gear, where pinion 1 compensates it. The paper prints neither the support nor the float "
+        "of pinion 1 in this figure.",
     )
     return Chapter(
         "Fig. 14: balance points",
@@ -275,16 +275,15 @@ def _geometry_told(found: Rings) -> str:
     spread = [(min(v), max(v)) for v in zip(*(g.values for g in found.geometries), strict=True)]
     return (
         "**What is fitted, and how well it is determined.** The paper prints no radius and no "
-        "angle. Base radius "
-        "of pinion 4, angle of the idlers and pressure angle of the case files are a fit to these "
-        "figures and those of Fig. 14, so Figs. 13 and 14 are no independent test of "
-        "the geometry: three numbers give them all. Fitted anew to the four figures below, "
-        "with other weights:\n\n"
+        "angle. The base radius r_b4 of pinion 4, the angle ψ of the idlers and the pressure angle "
+        "α_t in the case files are fitted to these figures and those of Fig. 14. So Figs. 13 and "
+        "14 do not test the geometry independently; but three numbers reproduce all their "
+        "figures. Fits to the four figures below with other weights give:\n\n"
         + table(header, [*geometry.rows(list(found.geometries)), paper])
         + f"\n\nr_b4 between {spread[0][0]:.1f} and {spread[0][1]:.1f} mm, ψ between "
         f"{spread[1][0]:.2f}° and {spread[1][1]:.2f}° and α_t between {spread[2][0]:.1f}° and "
-        f"{spread[2][1]:.1f}° serve about equally well: ψ is well determined, the other two are "
-        "not. No geometry of this family meets all four figures to the last digit."
+        f"{spread[2][1]:.1f}° fit about equally well: ψ is well determined, the other two are "
+        "not. No geometry of this kind reproduces all four figures to the last digit."
     )
 
 
@@ -309,8 +308,8 @@ def _stiffness_told(found: Rings) -> str:
     four, five = (d.computed for d in found.stiffness.comparison.deviations)
     covariance = found.stiffness.covariance
     apart = (
-        "The two cannot be told apart: only the compliance of a branch as a whole bears on "
-        "the shares."
+        "The two cannot be determined separately: only the compliance of a branch as a whole "
+        "affects the shares."
         if not math.isfinite(covariance[0, 1])
         else f"Their covariance is {covariance[0, 1] / 1e12:.3g} (MN·m/rad)²."
     )
@@ -318,9 +317,9 @@ def _stiffness_told(found: Rings) -> str:
         "`ls.fit` on the two shares without float, stiffnesses of stage II within the printed "
         "ranges:\n\n"
         + table(header, rows)
-        + f"\n\n{apart} The fit reaches {four:.4f} and {five:.4f}: one stiffness scales both "
-        "shares, and their ratio is the geometry's. The predictions on this page keep the middle "
-        "of the printed ranges."
+        + f"\n\n{apart} The fit reaches {four:.4f} and {five:.4f}: the stiffness scales both "
+        "imbalances alike, and their ratio follows from the geometry. The predictions on this page "
+        "use the middle of the printed ranges."
     )
 
 
@@ -339,12 +338,12 @@ def _mirror_told(found: Rings) -> str:
     return (
         "**Mirrored ΔA_y9.** With the printed sign, pinion 5's overloaded branch is "
         f"{found.as_printed.branch}, in the paper 8-10. With the other sign it is "
-        f"{found.mirrored.branch}, of the same size, but then the balance point of Fig. 14 turns "
-        "to the other side. An error on the other idler is out of the question:\n\n"
+        f"{found.mirrored.branch}, with the same Ω, but then the balance point of Fig. 14 moves to "
+        "the other side. An error on the other idler is out of the question:\n\n"
         + table(header, rows)
-        + "\n\nNo reading gives both. Either ΔA_y9 counts in a mirrored frame in one of the two "
-        "figures, or the names of the two branches are exchanged in Fig. 13. The size does not "
-        "depend on it, and sizes are compared."
+        + "\n\nNo reading gives both. Either one of the two figures takes ΔA_y9 in a mirrored "
+        "frame, or the names of the two branches are exchanged in Fig. 13. The values of Ω do not "
+        "depend on this, so they can be compared."
     )
 
 

@@ -187,13 +187,13 @@ def installation_chapter(seed: Seed, found: Installation) -> Chapter:
         table(("gear", "stage", "Ω, 50 µm along x", "Ω over all directions"), rows),
         "{installation}",
         f"**Order.** Stage I: {told(order(one))} (paper: 1 > 3 > 2). Stage II: {told(order(two))} "
-        "(paper: 6 first, 7 to 10 alike and far less). Gear 6 leads here too: Ω − 1 is "
+        "(paper: 6 first; 7 to 10 similar and far smaller). Gear 6 leads here too: its Ω − 1 is "
         f"{(two['6'] - 1) / (max(two[g] for g in far) - 1):.1f} times that of the next. "
-        f"{_mirrored_told(found)}\n\n"
-        "**Why the sizes differ.** What an error adds within one pair goes with the cosine of the "
-        "angle between the error and one direction of its gear, so the size depends on the "
-        "direction that is not printed. Within what it leaves open lie the printed figures for: "
-        f"{inside}. {_matching_told(found)}",
+        f"{_mirror_images(found)}\n\n"
+        "**Why the sizes differ.** The effect of an error within one pair is proportional to the "
+        "cosine of the angle between the error and a fixed direction of its gear, so it depends on "
+        "the direction, which is not printed. The range over all directions contains the printed "
+        f"figures for: {inside}. {_matching_directions(found)}",
     )
     return Chapter(
         "Fig. 8: installation error, one gear at a time",
@@ -205,30 +205,31 @@ def installation_chapter(seed: Seed, found: Installation) -> Chapter:
     )
 
 
-def _mirrored_told(found: Installation) -> str:
+def _mirror_images(found: Installation) -> str:
     two, three = (np.array(found.turned["I"][gear]) for gear in "23")
     apart = float(abs(two - three).max())
     if apart > TIE:
-        return f"Gears 2 and 3 are up to {apart:.4f} apart over all directions."
+        return f"Over all directions, gears 2 and 3 differ by up to {apart:.4f}."
     return (
-        "Gears 2 and 3 are equal here in every direction, as the layout is symmetric and both "
-        "torsion shafts are alike; the paper's small difference between them needs two different "
-        "directions or unlike shafts; neither is printed."
+        "Gears 2 and 3 are equal here in every direction, because the layout is symmetric and both "
+        "torsion shafts are alike. The paper's small difference between them would need two "
+        "different directions, or shafts that differ; it prints neither."
     )
 
 
-def _matching_told(found: Installation) -> str:
+def _matching_directions(found: Installation) -> str:
     rows = [
         (f"{angle:.1f}°", *(f"{omega[gear]:.4f}" for gear in STAGE_GEARS["II"]), told(order(omega)))
         for angle, omega in found.matching.items()
     ]
     header = ("common direction", *(f"gear {gear}" for gear in STAGE_GEARS["II"]), "order")
     return (
-        "In other directions than x, common to gears 6 to 10, gear 6 has the printed "
-        f"{printed.OMEGA_INSTALLATION['II']}:\n\n"
+        "If the errors of gears 6 to 10 all point in one direction other than x, gear 6 reaches "
+        f"the printed {printed.OMEGA_INSTALLATION['II']} in these:\n\n"
         + table(header, rows)
-        + "\n\nWhere gear 6 also leads, the other four are alike and far less, as printed. Such a "
-        "direction explains the sizes; it is not adopted, because only Figs. 10 and 13 are fitted."
+        + "\n\nIn those in which gear 6 also leads, the other four are similar and far smaller, as "
+        "printed. Such a direction would explain the sizes. It is not adopted, because only "
+        "Figs. 10 and 13 are fitted."
     )
 
 
@@ -255,11 +256,11 @@ def eccentricity_chapter(seed: Seed, found: Eccentricity) -> Chapter:
         "gears reach the same largest Ω. The torques are periodic, once per revolution, as "
         "printed; the larger of two branches, which is drawn, rises twice.\n\n"
         f"**Why the sizes differ.** The printed Ω II − 1 is {part:.2f} of what the full amplitude "
-        "gives. An eccentricity that turns reaches its full effect at some angle, which the "
-        "computed figures hold; the five positions of one mesh cycle, over which a gear hardly "
-        "turns, would show a part of it that depends on the phase. The paper prints neither the "
-        "phase nor the angle at which its figures were read. Both lie below the computed largest "
-        "values, as they must in either case.",
+        "gives. A rotating eccentricity reaches its full effect at some angle, and the computed "
+        "figures include that angle. Over the five positions of one mesh cycle a gear hardly "
+        "rotates, so they would show only a part that depends on the phase. The paper prints "
+        "neither the phase nor the angle at which its figures were read. Both figures lie below "
+        "the computed largest values, as they must in either case.",
     )
     return Chapter(
         "Fig. 9: eccentricity, one gear at a time",

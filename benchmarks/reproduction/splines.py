@@ -206,22 +206,22 @@ def clearance_chapter(seed: Seed, found: Clearance, full: FullFloat) -> Chapter:
             compared,
         ),
         "{clearance}",
-        f"**What agrees.** Ω II falls with the clearance and is level from full float on. Pinion "
-        f"{first_free} is free first, from {free[first_free]:.2f} µm, pinion {last_free} from "
-        f"{free[last_free]:.2f} µm: between the two, pair 8-10 and 9-10 shares evenly while pinion "
-        "4 is still held. This is what the paper finds at 0.3 mm, and it calls it a certain "
-        "independence of the two pinions. At 300 µm itself both are free here, as both need far "
-        "less; at the clearance that is the same part of pinion 4's float as 300 µm of the printed "
-        f"{printed.FLOATS['4']:.0f} µm ({part:.2f} µm) the computed states are the printed ones. "
-        f"Below F_m/K_w = {stick:.2f} µm the friction bound is "
-        "not reached and the clearance does not matter.",
+        f"**What agrees.** Ω II falls with the clearance and is constant once both pinions float "
+        f"freely. Pinion {first_free} is free first, from {free[first_free]:.2f} µm, pinion "
+        f"{last_free} from {free[last_free]:.2f} µm: between the two, the pair 8-10 and 9-10 "
+        "shares evenly while pinion 4 is still held. The paper finds the same at 0.3 mm and calls "
+        "it a certain independence of the two pinions. At 300 µm itself both are free here, as "
+        "both need far less. The last column scales the clearance: at "
+        f"{part:.2f} µm, the same part of pinion 4's float as 300 µm of the printed "
+        f"{printed.FLOATS['4']:.0f} µm, the computed states are the printed ones. Below "
+        f"F_m/K_w = {stick:.2f} µm the friction bound is not reached, and the clearance does not "
+        "matter.",
         "**Why the sizes differ.** The clearance that is needed is the float of Fig. 11, so it is "
         "smaller than the paper's by the same factor. For the same reason the curves begin at "
         f"{start['4']:.4f} and {start['5']:.4f}, not near the shares without floats "
-        f"({rigid['4']:.3f} and {rigid['5']:.3f}): with no clearance a pinion is still held by a "
-        f"shaft that bends, and "
-        f"K_w = {printed.BENDING / 1e6:.1f} N/µm is so soft that the {full.float_of('4'):.0f} µm "
-        "that pinion 4 needs take a fraction of the force.",
+        f"({rigid['4']:.3f} and {rigid['5']:.3f}): without clearance a pinion is still held only "
+        f"by a shaft that bends, and K_w = {printed.BENDING / 1e6:.1f} N/µm is so soft that the "
+        f"{full.float_of('4'):.0f} µm that pinion 4 needs take only a fraction of the force.",
     )
     return Chapter(
         "Fig. 12: spline clearance",
@@ -282,19 +282,17 @@ def _relief(found: FullFloat) -> str:
     miss = found.unrelieved("5") / printed.FLOATS["5"] - 1
     needed = share_of_push(found, printed.SHARES_II["7-10"], printed.FLOATS["4"])
     return (
-        "**Why the floats differ: relief.** A pinion moves until its pair shares evenly. That "
-        "takes a displacement that follows from the errors and the geometry alone, and no shaft, "
-        f"stiff or soft, changes it. The printed floats are {times['4']:.0f} and "
-        f"{times['5']:.0f} times the computed ones. They have the size of the force "
-        "on a pinion that cannot move, divided by the printed bending stiffness K_w of its "
-        "shaft:\n\n"
+        "**Why the floats differ: relief.** A pinion moves until its pair shares evenly. The "
+        "displacement that this takes follows from the errors and the geometry alone; the "
+        f"stiffness of the shaft does not affect it. The printed floats are {times['4']:.0f} and "
+        f"{times['5']:.0f} times the computed ones. They are about as large as the force on a "
+        "pinion that cannot move, divided by the printed bending stiffness K_w of its shaft:\n\n"
         + table(header, rows)
-        + f"\n\nFor pinion 5 this estimate from Fig. 10's shares meets the printed float within "
-        f"{abs(100 * miss):.1f} %. For pinion 4 Fig. 10's share gives more than is printed; "
-        f"{printed.FLOATS['4']:.0f} µm would belong to Ω of 7-10 = {needed:.4f}, and "
-        f"{printed.RIGID_RINGS['4']} is what the paper prints for this mesh in Fig. 13, whose "
-        "errors give the last column. An estimate of this kind leaves out that the force falls as "
-        "the pinion moves."
+        + f"\n\nFor pinion 5, this estimate from the shares of Fig. 10 is within "
+        f"{abs(100 * miss):.1f} % of the printed float. For pinion 4 it is larger than printed: "
+        f"{printed.FLOATS['4']:.0f} µm would follow from Ω of 7-10 = {needed:.4f}, and the paper "
+        f"prints {printed.RIGID_RINGS['4']} for this mesh in Fig. 13, whose errors give the last "
+        "column. Such an estimate ignores that the force falls as the pinion moves."
     )
 
 
@@ -303,14 +301,14 @@ def _residual(found: FullFloat) -> str:
     left = {p: per_omega[p] * (printed.FLOATING_SHARES_II[PAIRS[p][1]] - 1) for p in PINIONS}
     own = found.position.floats["4"].friction or 0.0
     return (
-        "**Why the shares differ.** In full float only friction keeps a pinion from its place. The "
-        f"printed 1.016 and 1.007 would need a lateral force of {left['4']:.0f} N on pinion 4 and "
-        f"{left['5']:.0f} N on pinion 5. Both splines carry about the same torque, so friction "
-        "that follows the torque would be about the same on both; the paper does not print the "
-        f"normal force. Here the friction bound is {own:.0f} N, which leaves "
-        f"{pair_omega(found.position, '4') - 1:.4f}. In stage I pinion 1 floats freely, and then "
-        "T12 = T13 exactly: a force that nothing holds must be zero. The printed 1.014 and 0.986 "
-        "leave a force that a free float cannot bear."
+        "**Why the shares differ.** In full float, only friction keeps a pinion from sharing "
+        f"evenly. The printed 1.016 and 1.007 would need a lateral force of {left['4']:.0f} N on "
+        f"pinion 4 and {left['5']:.0f} N on pinion 5. Both splines carry about the same torque, so "
+        "friction that follows the torque would be about the same on both; the paper does not "
+        f"print the normal force. Here the friction bound is {own:.0f} N, which leaves "
+        f"Ω − 1 = {pair_omega(found.position, '4') - 1:.4f}. In stage I, pinion 1 floats freely, "
+        "so T12 = T13 exactly: a force that nothing resists must be zero. The printed 1.014 and "
+        "0.986 imply such a force."
     )
 
 
@@ -326,7 +324,7 @@ def _others(others: Mapping[str, FullFloat]) -> str:
     header = ("other directions", "float 4 [µm]", "float 5 [µm]", "F/K_w 4 [µm]", "F/K_w 5 [µm]")
     return (
         "The prediction does not depend on which of the possible directions is chosen, because the "
-        "shares of Fig. 10 fix what a float has to even out:\n\n" + table(header, rows)
+        "shares of Fig. 10 determine what a float has to even out:\n\n" + table(header, rows)
     )
 
 

@@ -108,8 +108,8 @@ def over_cycle(case: Case, found: Stiffnesses) -> Result:
 def chapter(seed: Seed, found: Stiffnesses | None) -> Chapter:
     """What the page tells of Fig. 7."""
     if found is None:
-        told = "The pair files `cases/fgfbstts/pairs/` are not there: not computed."
-        return Chapter(TITLE, told, "–", (told,))
+        missing = "The pair files `cases/fgfbstts/pairs/` are missing: not computed."
+        return Chapter(TITLE, missing, "–", (missing,))
     entries = [
         Entry(f"{word} K of {mesh} [MN·m/rad]", end / 1e6, own / 1e6, 3, "chosen")
         for mesh, stiffness in found.items()
@@ -127,21 +127,21 @@ def chapter(seed: Seed, found: Stiffnesses | None) -> Chapter:
         f"all six ends of the printed ranges within {100 * worst:.1f} %, with teeth chosen for it",
         "chosen to agree",
         (
-            "The teeth of the three pairs (`cases/fgfbstts/pairs/`) go through loaded tooth "
-            "contact analysis: finite-element compliance of the teeth, Hertz contact, and the "
-            "contact programme under T, 0.95 T and 0.9 T, as in the paper's three curves. K is the "
-            "secant stiffness T/(Δφ − a) at the driver. The table compares five positions of the "
-            f"mesh cycle, as in the paper; the picture has {POSITIONS}.",
+            "A [loaded tooth contact analysis](ltca.md) of the three pairs "
+            "(`cases/fgfbstts/pairs/`): compliance of the teeth from finite elements, Hertz "
+            "contact, and the contact problem under T, 0.95 T and 0.9 T, like the paper's three "
+            "curves. K is the secant stiffness T/(Δφ − a) at the driver. The table compares five "
+            f"positions of the mesh cycle, as in the paper; the picture has {POSITIONS}.",
             entries_table(entries),
             "{stiffness}",
-            "**Chosen, not predicted.** The paper's Table 1 is missing: widths, reliefs and rims "
-            "were chosen so that the range comes near the printed one, so only the shape of the "
-            "curves is the analysis' own. The three loads give almost one curve. "
-            f"Between the five positions 6-10 reaches {last.peak / 1e6:.2f} MN·m/rad for a short "
-            f"while: its contact ratio is {last.contact_ratio:.2f}, so another pair of teeth joins "
-            f"in. The law a + b T + c T^(2/3) misses the angles by {100 * misfit:.1f} % at most.",
-            "**Unit.** What is printed, N·m⁻¹, must mean N·m/rad: taken as N/m, the meshes would "
-            "yield by centimetres.",
+            "**Chosen, not predicted.** The paper's Table 1 is missing. Widths, reliefs and rims "
+            "were chosen so that the ranges come close to the printed ones; only the shape of the "
+            "curves is a result. The three loads give almost the same curve. Between the five "
+            f"positions, 6-10 briefly reaches {last.peak / 1e6:.2f} MN·m/rad: its contact ratio is "
+            f"{last.contact_ratio:.2f}, so one more pair of teeth comes into contact. The law "
+            f"a + b T + c T^(2/3) reproduces the angles within {100 * misfit:.1f} %.",
+            "**Unit.** The printed N·m⁻¹ must mean N·m/rad: if it were N/m, the meshes would "
+            "deflect by centimetres.",
         ),
         {"stiffness": _picture(seed, found)},
     )

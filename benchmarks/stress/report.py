@@ -18,6 +18,8 @@ def stability_report(
     lines = [
         "# Stability where methods fail",
         "",
+        "Which problems make a solver fail, and how does it fail: with a refusal, or with a wrong "
+        "answer? Problems from harmless to extreme, given to every method. "
         f"Measured by `python -m benchmarks.stress{' --quick' * quick}` in {seconds:.0f} s.",
         "",
         "![Outcome of every method on every family](stability.png)",
@@ -36,27 +38,27 @@ def stability_report(
         "",
         "## The families",
         "",
-        "| family | knob | from harmless to extreme | problems |",
+        "| family | what varies | from harmless to extreme | problems |",
         "|---|---|---|---|",
     ]
     for name in dict.fromkeys(c.family for c in cells):
         family = FAMILIES[name]
-        told = ", ".join(f"{v:g}" for v in family.levels)
-        lines.append(f"| `{name}`: {family.title} | {family.knob} | {told} | {family.count} |")
+        levels = ", ".join(f"{v:g}" for v in family.levels)
+        lines.append(f"| `{name}`: {family.title} | {family.knob} | {levels} | {family.count} |")
     lines += [
         "",
         "## Outcomes",
         "",
-        "Certified / refused / wrong / crashed; in brackets how many of the wrong ones would pass "
-        "at 1e-6. A dash: not applicable.",
+        "Certified / refused / wrong / crashed; in brackets, how many of the wrong answers have no "
+        "residual above 1e-6. A dash: not applicable.",
         "",
         "| family | " + " | ".join(methods) + " |",
         "|---" * (len(methods) + 1) + "|",
     ]
     for name in dict.fromkeys(c.family for c in cells):
         row = {c.method: c for c in cells if c.family == name}
-        told = " | ".join(_counts(row[m]) if m in row else "–" for m in methods)
-        lines.append(f"| {FAMILIES[name].title} | {told} |")
+        counts = " | ".join(_counts(row[m]) if m in row else "–" for m in methods)
+        lines.append(f"| {FAMILIES[name].title} | {counts} |")
     lines += ["", "## How they fail", ""]
     for method in methods:
         lines += [f"**{method}.** {_sentence([c for c in cells if c.method == method])}", ""]
@@ -70,10 +72,10 @@ _HOW = (
     "programmes, written from the train and solved by HiGHS, ask whether forces can balance the "
     "load and whether the rigid limits leave room.",
     "- Certified: an answer that passes the certificate at 1e-9, evaluated outside the method. "
-    "Refused: the method itself says that it has none. Wrong: it claims an answer that fails, or "
-    "answers a problem that has none. Crashed: anything else.",
-    "- Peers are at their tightest tolerance, with their own outer loops, on the same "
-    "dimensionless data. Slow ones are given fewer: "
+    "Refused: the method itself reports that it found none. Wrong: it claims an answer that fails "
+    "the certificate, or answers a problem that has none. Crashed: anything else.",
+    "- Other solvers run at their tightest tolerance, with outer loops for nonlinear laws, on the "
+    "same dimensionless data. Slow ones get fewer problems: "
     + ", ".join(f"{name} every {n}th problem" for name, n in EVERY.items())
     + ".",
     "- Not applicable: OSQP, PIQP and DAQP solve no cones, so they cannot treat problems with "
@@ -88,11 +90,13 @@ def _ours(cells: Sequence[Cell]) -> list[str]:
     missed, unnamed = sum(c.missed for c in cells), sum(c.unnamed for c in cells)
     met = not (counts.get("wrong") or counts.get("crashed") or missed or unnamed)
     lines = [
-        f"Ours: {total} problems, {counts.get('certified', 0)} certified, "
+        f"`loadshare` (*ours*): {total} problems, {counts.get('certified', 0)} certified, "
         f"{counts.get('refused', 0)} refused, {counts.get('wrong', 0)} wrong, "
-        f"{counts.get('crashed', 0)} crashed. Of those with an answer {missed} were not certified; "
-        f"of those without one {unnamed} were refused without naming an element that lacks it. "
-        + ("The requirement is met." if met else "**The requirement is not met.**")
+        f"{counts.get('crashed', 0)} crashed. Of the problems that have an answer, {missed} were "
+        f"not certified; of those that have none, {unnamed} were refused without naming the "
+        "element for which there is none. "
+        + ("The target, no wrong answer and none of these, is met." * met)
+        + ("**The target, no wrong answer and none of these, is not met.**" * (not met))
     ]
     for cell in cells:
         if cell.failures:
@@ -105,12 +109,12 @@ def _ours(cells: Sequence[Cell]) -> list[str]:
 def _counts(cell: Cell) -> str:
     if cell.counts["not for it"] == cell.total:
         return "–"
-    told = " / ".join(str(cell.counts[o]) for o in ("certified", "refused", "wrong", "crashed"))
-    return f"{told} ({cell.loose})" if cell.counts["wrong"] else told
+    counts = " / ".join(str(cell.counts[o]) for o in ("certified", "refused", "wrong", "crashed"))
+    return f"{counts} ({cell.loose})" if cell.counts["wrong"] else counts
 
 
 def _sentence(cells: Sequence[Cell]) -> str:
-    """Say how a method fails: where most, and in its own words."""
+    """Say how a method fails: where most often, and with which message."""
     total = sum(c.total - c.counts["not for it"] for c in cells)
     missed = sum(c.missed for c in cells)
     wrong = sum(c.counts["wrong"] for c in cells)
@@ -125,8 +129,8 @@ def _sentence(cells: Sequence[Cell]) -> str:
             reasons[sentence] = reasons.get(sentence, 0) + weight
     common = sorted(reasons, key=lambda r: -reasons[r])[:3]
     return (
-        f"Of {total} problems {missed} that have an answer are not certified, {wrong} answers are "
-        f"wrong, {crashed} attempts crash. Worst on *{FAMILIES[worst.family].title}* "
+        f"Of {total} problems, {missed} that have an answer were not certified; {wrong} answers "
+        f"were wrong, {crashed} attempts crashed. Worst on *{FAMILIES[worst.family].title}* "
         f"({worst.counts['certified']} of {worst.total - worst.counts['not for it']} certified). "
         "Most common: " + "; ".join(common) + "."
     )

@@ -113,10 +113,11 @@ def _names(told: str, gear: str) -> bool:
 def _judged(train: Train, found: Equilibrium, truth: Truth) -> tuple[str, Outcome, float]:
     certificate = certify(train, found)
     if not certificate.passed:
-        told = "; ".join(
+        failing = "; ".join(
             f"{name.replace('_', ' ')} {r.scaled:.1e} at {r.where}"
             for name, r in certificate.failing.items()
         )
+        told = failing or f"bound on the torques {certificate.bound.relative:.1e}"
         return told, Outcome.WRONG, certificate.worst
     if not truth.solvable:
         return f"an answer where there is none ({truth.why})", Outcome.WRONG, math.inf

@@ -31,6 +31,7 @@ blocks = _load("blocks")
         "docs/spreadsheets.md",
         "docs/pictures.md",
         "docs/studies.md",
+        "docs/contact.md",
         "docs/results.md",
         "docs/api.md",
         "README.md",
@@ -44,7 +45,7 @@ def test_page(page: str):
             assert blocks.differences(block.text, real) == []
             shown += 1
     assert blocks.blocks_of(text), "the page has no block that was found"
-    if page in ("docs/tutorial.md", "docs/gearbox.md", "docs/pictures.md", "README.md"):
+    if page not in ("docs/results.md", "docs/studies.md"):
         assert shown > 0
 
 
