@@ -481,13 +481,13 @@ GIVEN: dict[str, tuple[str, ...]] = {
     "exit codes": (r"^\| (?:0|1|2|130|143) \|", r"exit code (?:is )?\d(?: or \d)?"),
     "settings, each also a constant of the code": (
         r"^\| (?:line of action turned|approach neglected|mesh compression|arm of a ring).*$",
-        r"1 % of either is about what mesh stiffnesses",
+        r"Mesh stiffnesses are known to about 1 %",
         r"κ [<≥] 1\b",
         r"some \$2/\\kappa - 1\$ times",
         r"64 starts from random contacts",
         r"a wedge of some 10⁻⁵ rad",
         r"height is 2\.25 modules",
-        r"gear of 17 teeth",
+        r"gear with 17 teeth",
         r"16 (?:independently|sequences|Sobol)",
         r"down to intervals of 1e-10\b",
         r"over 16 sequences",
@@ -506,7 +506,7 @@ GIVEN: dict[str, tuple[str, ...]] = {
         r"50 N per mm of face width",
         r"at T, 0\.95 T and 0\.9 T",
         r"at 0\.1, 0\.5 and 0\.9 T",
-        r"held at 0\b",
+        r"is set to 0\b",
     ),
     "printed by the seed paper": (
         r"\(8\.36 and 2\.91 µm there\)",
@@ -528,7 +528,7 @@ GIVEN: dict[str, tuple[str, ...]] = {
     "measured on a machine, by the benchmark that the text names": (
         r"^A million samples of this case.*$",
         r"^disk\. A loop over CVXPY.*$",
-        r"−6 to 62 µrad at 20 positions, 5 % of the loaded error",
+        r"−6 to 62 µrad at 20 positions, at most 5 % of the loaded error",
     ),
 }
 """Numbers that are no results of the library, or measured ones: patterns by kind."""

@@ -296,6 +296,10 @@ BESIDE = {
 """Styles of words that run along a rule, by their side of it."""
 BREADTH = 15.0
 """Room that words along a rule need beside it [px]."""
+LETTER = 4.6
+"""Length of a letter of these words, on average [px]."""
+TOP = 4.0
+"""Where they begin below the upper end of their rule [px]."""
 
 
 def rules(
@@ -306,7 +310,8 @@ def rules(
     Parameters
     ----------
     rows : sequence of dict
-        Each with ``x`` and ``text``; ``warns`` makes it a full line in the colour of warnings.
+        Each with ``x`` and ``text``; ``warns`` makes it a full line in the colour of warnings,
+        ``top`` is where its words begin below the upper end of the rule [px].
     x : channel
     pixels : float
         Of a unit of x.
@@ -324,11 +329,11 @@ def rules(
         if own:
             line = chart([row for row, _ in own]).encode(**where)
             layers.append(line.mark_rule(color=colour, strokeDash=dash, strokeWidth=1.3))
-        for side, style in BESIDE.items() if words else ():
-            told = [row for row, s in own if s == side]
-            if told:
-                text = chart(told).encode(**where, y=alt.value(4), text="text:N")
-                layers += rimmed(text, WARNING if warns else INK, **style)
+        groups = dict.fromkeys((side, row.get("top", TOP)) for row, side in own if side)
+        for side, top in groups if words else ():
+            named = [row for row, s in own if s == side and row.get("top", TOP) == top]
+            text = chart(named).encode(**where, y=alt.value(top), text="text:N")
+            layers += rimmed(text, WARNING if warns else INK, **BESIDE[side])
     return layers
 
 

@@ -15,6 +15,9 @@ from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import (
+    BREADTH,
+    LETTER,
+    TOP,
     Drawing,
     Row,
     axis,
@@ -222,11 +225,29 @@ def _lines(data: xr.Dataset, shown: _Shown, name: str, events: Sequence[Event]) 
     told = hover(("name:N", shown.by), ("x:Q", title), ("y:Q", shown.axis, ".6~g"))
     layers = curves(rows, "name", shown.looks, shown.by, x=x_axis, y=y_axis, tooltip=told)
     if events:
-        marked = [{"x": float(value), "text": text} for value, text in events]
-        ends = [*grid, *(mark["x"] for mark in marked)]
+        ends = [*grid, *(value for value, _ in events)]
+        pixels = WIDTH / ((max(ends) - min(ends)) or 1.0)
+        marked: list[Row] = [
+            {"x": float(value), "text": text, "top": _clear(shown, grid, value, text, pixels)}
+            for value, text in events
+        ]
         told = hover(("text:N", "event"), ("x:Q", title))
-        layers += rules(marked, x_axis, WIDTH / ((max(ends) - min(ends)) or 1.0), tooltip=told)
+        layers += rules(marked, x_axis, pixels, tooltip=told)
     return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT)
+
+
+def _clear(shown: _Shown, grid: np.ndarray, at: float, text: str, pixels: float) -> float:
+    """Where an event's words begin below the upper end of its rule, clear of the lines [px]."""
+    low, high = shown.domain(0.08)
+    near = at + np.linspace(-BREADTH, BREADTH, 5) / pixels
+    rising = np.argsort(grid)
+    lines = [np.interp(near, grid[rising], line[rising]) for line in shown.values]
+    places = (high - np.concatenate(lines)) / (high - low) * HEIGHT
+    length = LETTER * len(text) + TOP
+    for top in np.arange(TOP, HEIGHT - length, TOP):
+        if not ((places > top - TOP) & (places < top + length)).any():
+            return float(top)
+    return TOP
 
 
 def _maps(data: xr.Dataset, shown: _Shown, parameters: list[str]) -> Drawing:

@@ -29,6 +29,8 @@ MOST = 20
 BAR, TOTAL = COLOURS[0], COLOURS[1]
 SHARE, BELOW = "share of samples", "samples at or below"
 PERCENT = alt.Axis(format="~%", tickCount=4)
+HEADROOM = 1.3
+"""Height of the histogram over that of its largest bar."""
 
 
 def tolerance(data: xr.Dataset, stage: str = "system") -> Figure:
@@ -144,7 +146,10 @@ class _Distribution:
         ]
         told = hover(("x:Q", "Ω from", ".5f"), ("x2:Q", "to", ".5f"), ("share:Q", SHARE, ".4%"))
         bars = chart(rows).mark_rect(color=BAR, opacity=0.85, stroke="white", strokeWidth=0.3)
-        y = alt.Y("share:Q", title=SHARE, axis=PERCENT)
+        # The names of the marks are above the bars.
+        room = HEADROOM if self.marks else 1.0
+        scale = alt.Scale(domain=[0.0, room * float(part.max())], nice=False)
+        y = alt.Y("share:Q", title=SHARE, axis=PERCENT, scale=scale)
         ends = {"x2": "x2:Q", "y2": alt.datum(0), "tooltip": told}
         return self.panel(bars, None, y, HEIGHT, words=True, **ends)
 
@@ -164,7 +169,7 @@ def _inputs(one: xr.Dataset) -> Drawing:
     by_size = key.isel(input=np.argsort(-np.nan_to_num(key.values)))
     names = [str(n) for n in by_size["input"].values]
     shown = names[:MOST]
-    called = {"first_order": "alone", "total_order": "with all it interacts with"}
+    called = {"first_order": "alone", "total_order": "with interactions"}
     rows: list[Row] = []
     for order in orders:
         for name in shown:
@@ -177,7 +182,7 @@ def _inputs(one: xr.Dataset) -> Drawing:
     bounds = [end for end in ("low", "high") if any(end in row for row in rows)]
     told = hover(
         "input:N",
-        ("order:N", "its part"),
+        ("order:N", "share"),
         ("index:Q", "share of the variance", ".4f"),
         *((f"{end}:Q", end, ".4f") for end in bounds),
     )
