@@ -75,7 +75,16 @@ def test_lines_over_one_parameter(line, read):
     assert "1 of 5 points not certified" in words
     assert "made up" in words
     (rule,) = spec.marks("rule")
-    assert list(rule["rows"]) == [{"x": 3.0, "text": "the stop opens"}]
+    assert [(r["x"], r["text"]) for r in rule["rows"]] == [(3.0, "the stop opens")]
+
+
+def test_words_of_an_event_keep_clear_of_the_lines(line, read):
+    """Both lines fall from the upper left, so words near it begin below them."""
+    spec = read(sweep(line, events=[(1.0, "an event"), (7.0, "another event")]).spec)
+    (rule,) = spec.marks("rule")
+    first, second = (r["top"] for r in rule["rows"])
+    assert 30 < first < 200
+    assert second == 4
 
 
 def test_names_and_positions_can_be_chosen(line, read):
