@@ -4,34 +4,78 @@ from __future__ import annotations
 
 import http.client
 import json
+import re
 import time
+import tomllib
+from itertools import pairwise
 from urllib.parse import urlsplit
 
 import pytest
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
+from tests.chromium import badly_set
 from tests.explore.asking import ask
 from tests.explore.conftest import SEED
 from tests.explore.walks import opened, settled
+from tests.support import shipped
 
 import loadshare as ls
+from loadshare.explore.answer import plain
+from loadshare.explore.questions import Along
+from loadshare.explore.samples import omega_table
+from loadshare.settings import EXPLORE
 
 FLOAT = {"name": "rings.*.float", "low": 0.0, "high": 12.0}
 
 
+def study(address, name, body):
+    """The lines of a study's answer."""
+    status, headers, content = ask(address, f"/study/{name}", body)
+    assert status == 200
+    assert headers["content-type"] == "application/x-ndjson"
+    return [json.loads(line) for line in content.splitlines()]
+
+
 @pytest.mark.slow
 def test_critical_values_are_those_of_the_study(seed):
-    found = ask(seed, "/study/critical", FLOAT | {"low": 2.9, "high": 3.0})[2]
-    wanted = ls.critical(str(SEED), "rings.*.float", "2.9 um", "3.0 um", positions=[1])
-    assert [e["value"] for e in found["events"]] == sorted({e.value for e in wanted.events})
-    assert found["events"][0]["told"].startswith("gear 5 leaves its ring")
-    assert found["events"][0]["told"].endswith("at 2.977 um")
-    assert [gap[:2] for gap in found["gaps"]] == [[u.start, u.stop] for u in wanted.unproved]
+    """Searched stretch by stretch, the nearest to the present value first."""
+    lines = study(seed, "critical", FLOAT | {"low": 2.5, "high": 3.1, "at": 2.95})
+    assert [line["done"] for line in lines] == list(range(1, EXPLORE.stretches + 1))
+    assert {line["of"] for line in lines} == {EXPLORE.stretches}
+    wanted = ls.critical(str(SEED), "rings.*.float", "2.5 um", "3.1 um", positions=[1])
+    found = [event["value"] for line in lines for event in line["events"]]
+    # Where the search began shows in the last digits.
+    assert found == pytest.approx(sorted({e.value for e in wanted.events}), rel=1e-9)
+    told = lines[0]["events"][0]["told"]
+    assert told.startswith("gear 5 leaves its ring")
+    assert told.endswith("at 2.977 um")
+    gaps = [end for line in lines for gap in line["gaps"] for end in gap[:2]]
+    assert gaps == pytest.approx([e for u in wanted.unproved for e in (u.start, u.stop)], rel=1e-8)
+
+
+def test_stretches_make_the_whole_slider():
+    whole = Along(shipped("fgfbstts/limit_ring"), ("rings.4.float",), 0.0, 7.0, "um", 2, 1)
+    parts = whole.stretches(5.0)
+    assert parts[0].low <= 5.0 <= parts[0].high
+    ends = sorted((part.low, part.high) for part in parts)
+    assert ends[0][0] == 0.0
+    assert ends[-1][1] == 7.0
+    assert all(one[1] == other[0] for one, other in pairwise(ends))
+
+
+def test_a_stretch_whose_end_makes_no_case_is_told(seed):
+    """It is no reason to know nothing of the others."""
+    asked = {"name": "rings.4.float", "low": -1.0, "high": 2.0, "at": 2.0}
+    lines = study(seed, "critical", asked)
+    assert lines[0]["gaps"] == []
+    low, high, why = lines[-1]["gaps"][0]
+    assert (low, high) == (-1.0, -0.5)
+    assert "negative" in why
 
 
 def test_a_trace_is_a_sweep(seed):
-    found = ask(seed, "/study/sweep", FLOAT | {"points": 5, "position": 2})[2]
+    (found,) = study(seed, "sweep", FLOAT | {"points": 5, "position": 2})
     wanted = ls.sweep(str(SEED), {"rings.*.float": "0 um:12 um:5"}, positions=[2]).dataset
     assert found["x"] == [0.0, 3.0, 6.0, 9.0, 12.0]
     omega = wanted["omega"].sel(stage="II").values.tolist()
@@ -39,65 +83,116 @@ def test_a_trace_is_a_sweep(seed):
     assert len(found["places"]["4"]) == 5
 
 
-def test_what_matters(seed):
+def test_what_matters_comes_in_parts(seed):
     keys = ["rings.4.float", "rings.5.float", "errors.9.installation.amount"]
-    found = ask(seed, "/study/slopes", {"name": keys[0], "keys": keys})[2]
-    told = {row[0]: row[1:] for row in found["rows"]}
+    lines = study(seed, "slopes", {"keys": keys})
+    assert [line["done"] for line in lines] == [2, 3]
+    told = {row[0]: row[1:] for line in lines for row, _ in line["rows"]}
     wanted = ls.sensitivity(str(SEED), "rings.5.float", positions=[1])
     rate = wanted.omega["rings.5.float", "rising"]["system"] * 1e-6
     assert f"{rate:+.3g}" in told["rings.5.float"][0]
     assert told["rings.4.float"][0].startswith("0 ")
     assert set(told) == set(keys)
+    effects = {row[0]: effect for line in lines for row, effect in line["rows"]}
+    assert effects["rings.5.float"] > effects["rings.4.float"] == 0.0
 
 
-def test_pieces_make_the_whole_tolerance_study(seed):
-    ranges = {"rings.*.float": [0.0, 12.0], "errors.6.installation.direction": [-180.0, 180.0]}
-    values, first = [], 0
-    while first < 256:
-        asked = {"ranges": ranges, "samples": 256, "seed": 3, "first": first}
-        found = ask(seed, "/samples", asked)[2]
-        values += found["values"]
-        first += found["done"]
-    spreads = {
-        "rings.4.float=rings.5.float": {"distribution": "uniform", "low": "0 um", "high": "12 um"},
-        "errors.6.installation.direction": {
-            "distribution": "uniform",
-            "low": "-180 deg",
-            "high": "180 deg",
-        },
-    }
-    table = {"errors.6.installation": {"amount": "100.0 um", "direction": "90.0 deg"}}
-    whole = ls.tolerance(
-        ls.load_case(SEED).replace(table), spreads, samples=256, seed=3, indices=0, worst=False
+RANGES = {"rings.*.float": [0.0, 12.0], "errors.6.installation.direction": [-180.0, 180.0]}
+
+
+def figures(found, limit):
+    """The table of a page, from what `loadshare tolerance` finds."""
+    shown = [one for one in found.omega if one.over in found.overs]
+    return plain(omega_table(shown, limit))["rows"]
+
+
+def test_a_tolerance_study_of_what_is_shown_is_the_one_of_the_library(seed):
+    """The same samples, the same statistics to the last printed digit, at every stage of it."""
+    lines = study(seed, "tolerance", {"ranges": RANGES, "samples": 512, "seed": 3, "limit": 1.003})
+    begun, *parts = lines
+    assert len(parts) > 1
+    assert [part["done"] for part in parts] == sorted(part["done"] for part in parts)
+    case = ls.load_case(SEED).replace(
+        {"errors.6.installation": {"amount": "100.0 um", "direction": "90.0 deg"}}
     )
-    wanted = whole.to_frame(["omega.system"])["omega.system"].tolist()
-    assert values == pytest.approx(wanted, rel=1e-9)
+    table = tomllib.loads(begun["begun"]["toml"])["study"]["explorer"]
+    assert table["inputs"]["rings.4.float=rings.5.float"]["distribution"] == "uniform"
+    case = case.replace({"study.explorer": table})
+    found = ls.tolerance(case, indices=0, worst=False)
+    assert parts[-1]["table"]["rows"] == figures(found, 1.003)
+    assert parts[-1]["done"] == found.samples == 512
+    assert sum(parts[-1]["histogram"]["counts"]) == found.of("system", "stage").summary.count
+    early = ls.tolerance(case, samples=parts[0]["done"], indices=0, worst=False)
+    assert parts[0]["table"]["rows"] == figures(early, 1.003)
+
+
+def test_a_study_of_the_case_is_the_one_that_its_file_describes(served):
+    case = shipped("nrel_5mw/gearbox")
+    with served(case) as address:
+        offered = ask(address, "/case")[2]["studies"]
+        begun, *parts = study(address, "tolerance", {"study": "pins", "samples": 32, "seed": 1})
+    assert set(offered) == {"pins", "teeth"}
+    assert begun["begun"]["limit"] == 1.1
+    found = ls.tolerance(case, study="pins", samples=32, indices=0, worst=False)
+    assert parts[-1]["table"]["rows"] == figures(found, 1.1)
+    assert begun["begun"]["inputs"] == [[i.name, str(i.distribution)] for i in found.inputs.every]
+
+
+def test_samples_without_an_answer_are_counted(seed):
+    """A load that would press teeth together by more than they are high."""
+    asked = {"changes": {"operating.power": "2e9 kW"}, "ranges": RANGES, "samples": 20}
+    last = study(seed, "tolerance", asked)[-1]
+    assert (last["done"], last["refused"]) == (20, 20)
+    assert last["reasons"][0].startswith("20 × ")
+    assert "table" not in last
+
+
+def test_what_is_no_length_scatters_about_its_setting(seed):
+    asked = {"ranges": {"operating.power": [0.0, 9.0]}, "changes": {"operating.power": "100 kW"}}
+    begun = study(seed, "tolerance", asked | {"samples": 1})[0]["begun"]
+    told = "truncated normal mean 100, deviation 2, low 94, high 106 kW"
+    assert begun["inputs"] == [["operating.power", told]]
 
 
 @pytest.mark.parametrize(
-    ("path", "body", "status"),
+    ("name", "body", "status"),
     [
-        ("/study/nothing", FLOAT, 404),
-        ("/study/sweep", {}, 400),
-        ("/study/sweep", FLOAT | {"points": 10**6}, 400),
-        ("/study/sweep", FLOAT | {"low": "x"}, 400),
-        ("/study/slopes", FLOAT | {"keys": "x"}, 400),
-        ("/samples", {}, 400),
-        ("/samples", {"ranges": {"rings.4.float": [1]}}, 400),
-        ("/samples", {"ranges": {"rings.4.float": [0, 1]}, "samples": 10**9}, 400),
+        ("nothing", FLOAT, 404),
+        ("sweep", {}, 400),
+        ("sweep", FLOAT | {"points": 10**6}, 400),
+        ("sweep", FLOAT | {"low": "x"}, 400),
+        ("critical", FLOAT | {"low": 5.0, "high": 1.0}, 400),
+        ("critical", FLOAT | {"at": None}, 400),
+        ("slopes", FLOAT | {"keys": "x"}, 400),
+        ("slopes", {"keys": []}, 400),
+        ("tolerance", {}, 400),
+        ("tolerance", {"ranges": {"rings.4.float": [1]}}, 400),
+        ("tolerance", {"ranges": {"rings.4.float": [0, 1]}, "samples": 10**9}, 400),
+        ("tolerance", {"ranges": {"rings.4.float": [0, 1]}, "seed": -1}, 400),
+        ("tolerance", {"study": "no such"}, 400),
     ],
 )
-def test_odd_studies_are_answered_with_a_message(seed, path, body, status):
-    found = ask(seed, path, body)
+def test_odd_studies_are_answered_with_a_message(seed, name, body, status):
+    found = ask(seed, f"/study/{name}", body)
     assert found[0] == status
     assert found[2]["messages"]
 
 
-def test_a_study_that_cannot_be_is_told(seed):
-    told = ask(seed, "/study/critical", {"name": "rings.4.float", "low": 5.0, "high": 1.0})[2]
-    assert "is not below" in told["messages"][0]
-    told = ask(seed, "/study/sweep", FLOAT | {"name": "title"})[2]
-    assert "is no number" in told["messages"][0] or "matches no key" in told["messages"][0]
+@pytest.mark.parametrize(
+    ("name", "body", "why"),
+    [
+        ("sweep", FLOAT | {"name": "title"}, "is no number|matches no key"),
+        ("slopes", {"keys": ["title"]}, "is no number|matches no key"),
+        ("tolerance", {"ranges": {"rings.4.float": [2, 1]}}, "is not above low"),
+        ("tolerance", {"ranges": {"rings.4.float": [-1, 1]}}, "negative"),
+        ("tolerance", {"ranges": {"title": [0, 1]}}, "is no number|matches no key"),
+    ],
+)
+def test_a_study_that_cannot_be_is_told(seed, name, body, why):
+    status, _, content = ask(seed, f"/study/{name}", body)
+    assert status == 200
+    found = content if isinstance(content, dict) else json.loads(content)
+    assert re.search(why, " ".join(found["messages"]))
 
 
 def test_a_study_that_is_broken_off_is_stopped(seed):
@@ -109,7 +204,21 @@ def test_a_study_that_is_broken_off_is_stopped(seed):
         line.request("POST", "/study/sweep", body, {"Content-Type": "application/json"})
         time.sleep(0.1)
         line.close()
-    found = ask(seed, "/study/sweep", FLOAT | {"points": 3})[2]
+    (found,) = study(seed, "sweep", FLOAT | {"points": 3})
+    assert len(found["x"]) == 3
+
+
+def test_a_tolerance_study_that_is_broken_off_frees_its_worker(seed):
+    """In the middle of its lines."""
+    parts = urlsplit(seed)
+    line = http.client.HTTPConnection(parts.hostname, parts.port, timeout=300)
+    body = json.dumps({"ranges": RANGES, "samples": 100_000})
+    line.request("POST", "/study/tolerance", body, {"Content-Type": "application/json"})
+    reply = line.getresponse()
+    assert "begun" in json.loads(reply.readline())
+    assert json.loads(reply.readline())["done"] < 100_000
+    line.close()
+    (found,) = study(seed, "sweep", FLOAT | {"points": 3})
     assert len(found["x"]) == 3
 
 
@@ -140,12 +249,89 @@ def test_ticks_trace_and_a_study_on_the_page(browser, seed):
     says = settled(browser)
     assert says["fields"]["rings.*.float"].startswith("2.976")
     assert browser.find_elements(By.CSS_SELECTOR, "#trace svg .here")
-    browser.find_element(By.ID, "samples").send_keys("0")
-    browser.find_element(By.ID, "tolerance").click()
-    WebDriverWait(browser, 120).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#histogram svg"))
-    browser.find_element(By.ID, "stop").click()
-    told = browser.find_element(By.ID, "study").text
-    time.sleep(0.5)
-    assert told.startswith("stopped")
-    assert browser.find_element(By.ID, "study").text == told
     assert browser.get_log("browser") == []
+
+
+def shown(browser, identity):
+    return browser.find_element(By.ID, identity)
+
+
+def begin(browser, samples):
+    """Begin a tolerance study on the page, and wait for its first figures."""
+    shown(browser, "samples").clear()
+    shown(browser, "samples").send_keys(str(samples))
+    shown(browser, "tolerance").click()
+    WebDriverWait(browser, 120).until(
+        lambda b: (
+            b.find_elements(By.CSS_SELECTOR, "#histogram svg")
+            and b.find_elements(By.CSS_SELECTOR, "#statistics table")
+        )
+    )
+
+
+def test_a_tolerance_study_grows_is_stopped_and_says_of_what_it_is(browser, seed):
+    opened(browser, seed, names=["rings.5.float"])
+    begin(browser, 100_000)
+    assert "uniform" in shown(browser, "scattering").get_attribute("textContent")
+    assert "[study.explorer]" in shown(browser, "scatter-toml").get_attribute("textContent")
+    assert badly_set(browser, browser.find_element(By.CSS_SELECTOR, "#histogram svg")) == []
+    before = shown(browser, "sampled").text
+    WebDriverWait(browser, 120).until(lambda b: shown(b, "sampled").text != before)
+    shown(browser, "stop").click()
+    told = shown(browser, "sampled").text
+    assert told.startswith("stopped: ")
+    assert told.endswith("of 100000 samples")
+    time.sleep(0.5)
+    assert shown(browser, "sampled").text == told
+    assert not shown(browser, "stop").is_enabled()
+    # Begun again, it ends with the setting; what was found says of which setting it is.
+    begin(browser, 100_000)
+    assert not shown(browser, "earlier").is_displayed()
+    slider = browser.find_element(By.CSS_SELECTOR, "[data-name='rings.5.float'] [type=range]")
+    slider.send_keys(Keys.ARROW_RIGHT)
+    settled(browser)
+    told = shown(browser, "sampled").text
+    assert told.startswith("stopped, as the setting has changed: ")
+    assert shown(browser, "earlier").is_displayed()
+    assert "As the case has it" in shown(browser, "sampled-of").text
+    time.sleep(0.5)
+    assert shown(browser, "sampled").text == told
+    assert browser.get_log("browser") == []
+
+
+def test_a_tolerance_study_comes_to_its_end(browser, served):
+    """The numbers on the page are those of the library, for the seed and count of the case."""
+    case = shipped("nrel_5mw/gearbox")
+    with served(case) as address:
+        opened(browser, address, names=[])
+        fields = [shown(browser, name).get_attribute("value") for name in ("samples", "seed")]
+        assert fields == ["4096", "1"]
+        begin(browser, 32)
+        WebDriverWait(browser, 120).until(lambda b: not shown(b, "stop").is_enabled())
+        assert shown(browser, "sampled").text == "32 of 32 samples"
+        rows = browser.execute_script(
+            """return [...document.querySelectorAll("#statistics tbody tr")].map((row) =>
+            [...row.cells].map((cell) => cell.textContent));"""
+        )
+    found = ls.tolerance(case, study="pins", samples=32, indices=0, worst=False)
+    assert rows == figures(found, 1.1)
+    assert browser.get_log("browser") == []
+
+
+def test_what_matters_on_the_page(browser, seed):
+    opened(browser, seed, names=["rings.5.float", "operating.power"])
+    shown(browser, "slopes").click()
+    WebDriverWait(browser, 120).until(
+        lambda b: (
+            b.find_elements(By.CSS_SELECTOR, "#mattering tr") and not shown(b, "slopes-told").text
+        )
+    )
+    rows = browser.find_elements(By.CSS_SELECTOR, "#mattering tbody tr")
+    keys = [row.find_element(By.TAG_NAME, "td").text for row in rows]
+    assert {"rings.5.float", "operating.power", "errors.6.installation.amount"} <= set(keys)
+    effects = [abs(float(row.text.split()[-1].replace("−", "-"))) for row in rows]
+    assert effects == sorted(effects, reverse=True)
+    slider = browser.find_element(By.CSS_SELECTOR, "[data-name='rings.5.float'] [type=range]")
+    slider.send_keys(Keys.ARROW_RIGHT)
+    assert browser.find_elements(By.CSS_SELECTOR, "#mattering tr") == []
+    settled(browser)

@@ -47,6 +47,13 @@ class Crew:
         """
         if self.waiting >= self.count * EXPLORE.waiting:
             raise Unasked(503, "too many studies are waiting; try again in a while")
+        # A task of its own: whoever waits may be cancelled, and the worker is put in order all
+        # the same.
+        lent = asyncio.create_task(self._lent(request, work, item))
+        lent.add_done_callback(lambda task: task.cancelled() or task.exception())
+        return await asyncio.shield(lent)
+
+    async def _lent(self, request: Request, work: Callable[[Item], Found], item: Item) -> Found:
         gone = asyncio.ensure_future(_gone(request))
         self.waiting += 1
         try:
@@ -76,7 +83,7 @@ class Crew:
         finally:
             if not finished:
                 # At work for nobody, or never begun.
-                await asyncio.shield(asyncio.to_thread(worker.end))
+                await asyncio.to_thread(worker.end)
             self.free.append(worker)
 
     def end(self) -> None:

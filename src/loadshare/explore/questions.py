@@ -1,21 +1,83 @@
-"""What a page asks workers, read and bounded."""
+"""What a page asks workers: read, bounded, and cut into parts that are answered one by one."""
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+from typing import Any, NamedTuple
 
+from loadshare.case import Case
 from loadshare.explore.answer import setting_of
 from loadshare.explore.asked import Unasked, number, setting, text
 from loadshare.explore.inputs import Inputs
-from loadshare.explore.studies import Asked, Piece
-from loadshare.settings import ALLOWED, EXPLORE, JOB
+from loadshare.settings import ALLOWED, EXPLORE
 
 
-def question_of(inputs: Inputs, body: Mapping[str, Any]) -> Asked:
-    """Return a question about a setting: of one input over a range, or of several at the setting.
+class Along(NamedTuple):
+    """A stretch of an input, at a setting.
+
+    Attributes
+    ----------
+    case : Case
+    keys : tuple of str
+        Inputs that take one value.
+    low, high : float
+        In `unit`.
+    unit : str
+    points : int
+        Of a sweep.
+    position : int
+        1-based.
+    """
+
+    case: Case
+    keys: tuple[str, ...]
+    low: float
+    high: float
+    unit: str
+    points: int
+    position: int
+
+    def text(self, number: float) -> str | float:
+        """Return a value as a case file has it."""
+        return f"{number!r} {self.unit}" if self.unit else number
+
+    def stretches(self, at: float) -> list[Along]:
+        """Return its parts, those about a value first: what happens there is asked most."""
+        count = EXPLORE.stretches
+        ends = [self.low + (self.high - self.low) * k / count for k in range(count)] + [self.high]
+        parts = [self._replace(low=a, high=b) for a, b in pairwise(ends)]
+        return sorted(parts, key=lambda part: abs(0.5 * (part.low + part.high) - at))
+
+
+class Slopes(NamedTuple):
+    """Inputs by which a setting is differentiated.
+
+    Attributes
+    ----------
+    case : Case
+    keys : tuple of str
+    reaches : tuple of float
+        By which they move in a comparison, in their own units.
+    position : int
+        1-based.
+    """
+
+    case: Case
+    keys: tuple[str, ...]
+    reaches: tuple[float, ...]
+    position: int
+
+    def batches(self) -> Iterator[Slopes]:
+        """Yield its parts, in the order in which the page asks."""
+        for first in range(0, len(self.keys), EXPLORE.batch):
+            part = slice(first, first + EXPLORE.batch)
+            yield self._replace(keys=self.keys[part], reaches=self.reaches[part])
+
+
+def along(inputs: Inputs, body: Mapping[str, Any]) -> Along:
+    """Return the stretch of an input that a page asks for.
 
     Raises
     ------
@@ -24,69 +86,48 @@ def question_of(inputs: Inputs, body: Mapping[str, Any]) -> Asked:
     CaseError
         If a key or the setting cannot be used.
     """
-    name = text(body, "name")
-    keys = inputs.keys(name)
-    low, high = (_finite(body, end) for end in ("low", "high"))
-    # An error that the case lacks must be there for its parts to be varied.
-    given = {key: inputs.every[key].text for key in keys} | setting(body)
-    wanted = body.get("keys")
-    if wanted is not None:
-        if not isinstance(wanted, list) or not 0 < len(wanted) <= EXPLORE.keys:
-            raise Unasked(400, f"keys is no list of 1 to {EXPLORE.keys} inputs")
-        chosen = [str(key) for key in wanted if str(key) in inputs.every]
-        given = {key: inputs.every[key].text for key in chosen} | setting(body)
-        reaches = tuple(0.1 * (inputs.every[k].high - inputs.every[k].low) for k in chosen)
-        keys = tuple(chosen)
-    else:
-        reaches = ()
-    return Asked(
-        setting_of(inputs, given),
+    keys = inputs.keys(text(body, "name"))
+    low, high = (finite(body, end) for end in ("low", "high"))
+    if not low < high:
+        raise Unasked(400, f"low {low:g} is not below high {high:g}")
+    return Along(
+        by_parts(inputs, keys, setting(body)),
         keys,
         low,
         high,
         inputs.every[keys[0]].unit,
         number(body, "points", EXPLORE.points, 2, EXPLORE.most_points),
-        number(body, "position", 1, 1, ALLOWED.positions),
-        reaches,
+        place(body),
     )
 
 
-def piece_of(inputs: Inputs, body: Mapping[str, Any]) -> Piece:
-    """Return a piece of a tolerance study in which inputs scatter evenly within ranges.
+def slopes(inputs: Inputs, body: Mapping[str, Any]) -> Slopes:
+    """Return the inputs by which a page wants to differentiate; raises as `along` does."""
+    wanted = body.get("keys")
+    if not isinstance(wanted, list) or not 0 < len(wanted) <= EXPLORE.keys:
+        raise Unasked(400, f"keys is no list of 1 to {EXPLORE.keys} inputs")
+    keys = tuple(dict.fromkeys(key for name in wanted for key in inputs.keys(str(name))))
+    reaches = tuple(0.1 * (inputs.every[key].high - inputs.every[key].low) for key in keys)
+    return Slopes(by_parts(inputs, keys, setting(body)), keys, reaches, place(body))
 
-    Raises
-    ------
-    Unasked
-        If it is none.
-    CaseError
-        If a key or the setting cannot be used.
+
+def by_parts(inputs: Inputs, keys: Sequence[str], given: Mapping[str, object]) -> Case:
+    """Return the case of a setting in which keys are there, so that they can be varied.
+
+    An error that the case lacks, or has by components, has no size and no direction until it is
+    written so.
     """
-    ranges = body.get("ranges")
-    if not isinstance(ranges, dict) or not ranges:
-        raise Unasked(400, "ranges is no object of [low, high] by input")
-    spreads: dict[str, Any] = {}
-    given: dict[str, object] = {}
-    for name, ends in ranges.items():
-        keys = inputs.keys(name)
-        if not isinstance(ends, list) or len(ends) != 2:
-            raise Unasked(400, f"the range of {name} is no [low, high]")
-        unit = inputs.every[keys[0]].unit
-        low, high = (_finite({"end": end}, "end") for end in ends)
-        ends = [f"{end!r} {unit}" if unit else end for end in (low, high)]
-        spreads["=".join(keys)] = {"distribution": "uniform", "low": ends[0], "high": ends[1]}
-        given |= {key: inputs.every[key].text for key in keys}
-    count = number(body, "samples", 4096, 1, EXPLORE.samples)
-    first = number(body, "first", 0, 0, count - 1)
-    case = setting_of(inputs, given | setting(body))
-    # Within one block of the study, and a second's work at most.
-    room = min(JOB.block - first % JOB.block, count - first)
-    piece = min(room, max(EXPLORE.piece // max(case.operating.positions, 1), 16))
-    seed = number(body, "seed", 0, 0, 2**31)
-    return Piece(case, json.dumps(spreads), count, seed, first, piece)
+    return setting_of(inputs, {key: inputs.every[key].text for key in keys} | {**given})
 
 
-def _finite(body: Mapping[str, Any], name: str) -> float:
-    given = body.get(name, 0.0)
+def place(body: Mapping[str, Any]) -> int:
+    """Return the position of a request."""
+    return number(body, "position", 1, 1, ALLOWED.positions)
+
+
+def finite(body: Mapping[str, Any], name: str, default: float = math.nan) -> float:
+    """Return a number of a request."""
+    given = body.get(name, default)
     if isinstance(given, bool) or not isinstance(given, int | float) or not math.isfinite(given):
         raise Unasked(400, f"{name} is no number")
     return float(given)

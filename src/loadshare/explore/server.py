@@ -3,32 +3,33 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import logging
 import os
-from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
+from collections.abc import AsyncIterator, Awaitable, Callable, Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import asynccontextmanager
 from functools import cache, partial
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import JSONResponse, Response
+from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
 from loadshare.case import Case
 from loadshare.errors import CaseError
 from loadshare.explore.answer import answer_of, case_of, invalid, whole_of
-from loadshare.explore.asked import Unasked, asked, number, setting, text
+from loadshare.explore.asked import Unasked, asked, setting, text
 from loadshare.explore.crew import Crew
 from loadshare.explore.files import case_file
 from loadshare.explore.guard import Guard
 from loadshare.explore.inputs import Inputs
-from loadshare.explore.questions import piece_of, question_of
-from loadshare.explore.studies import criticals, safely, samples, slopes, trace
-from loadshare.settings import ALLOWED
+from loadshare.explore.questions import along, finite, place, slopes
+from loadshare.explore.samples import Growing, Part, begun, samples, scatter
+from loadshare.explore.studies import criticals, rates, trace
 
 log = logging.getLogger("loadshare")
 
@@ -39,7 +40,9 @@ TYPES = {
     ".svg": "image/svg+xml",
 }
 INDEX = "index.html"
-STUDIES = {"critical": criticals, "sweep": trace, "slopes": slopes}
+Body = dict[str, Any]
+Parts = AsyncIterator[dict[str, Any]]
+Found = TypeVar("Found")
 Handler = Callable[[Request], Awaitable[Response]]
 
 
@@ -71,8 +74,14 @@ class Explorer:
         # One after another: each answer is there sooner than if they took turns.
         self.solver = ThreadPoolExecutor(1, "solver")
         self.crew = Crew(max(1, (os.cpu_count() or 2) - 1))
+        self.studies: Mapping[str, Callable[[Request, Body], Parts]] = {
+            "critical": self.critical,
+            "sweep": self.sweep,
+            "slopes": self.slopes,
+            "tolerance": self.tolerance,
+        }
 
-    async def solved(self, work: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+    async def solved(self, work: Callable[[], Found]) -> Found:
         """Do work in the solver's thread."""
         return await asyncio.get_running_loop().run_in_executor(self.solver, work)
 
@@ -95,8 +104,7 @@ class Explorer:
     async def answer(self, request: Request) -> Response:
         """A setting, solved."""
         body = await asked(request)
-        position = number(body, "position", 1, 1, ALLOWED.positions)
-        work = partial(answer_of, self.inputs, setting(body), position)
+        work = partial(answer_of, self.inputs, setting(body), place(body))
         return JSONResponse(await self.solved(work))
 
     async def whole(self, request: Request) -> Response:
@@ -106,43 +114,72 @@ class Explorer:
 
     async def keys(self, request: Request) -> Response:
         """The inputs that a name means: one with a star, or several joined."""
-        name = text(await asked(request), "name")
-        try:
-            return JSONResponse({"keys": self.inputs.keys(name)})
-        except CaseError as error:
-            return JSONResponse(invalid(error))
+        return JSONResponse({"keys": self.inputs.keys(text(await asked(request), "name"))})
 
     async def study(self, request: Request) -> Response:
-        """A sweep, critical values or sensitivities, by the name of the path."""
-        body = await asked(request)
-        try:
-            question = question_of(self.inputs, body)
-        except CaseError as error:
-            return JSONResponse(invalid(error))
-        name = request.path_params["name"]
-        if name not in STUDIES:
+        """A study by the name of the path: a line of JSON after every part of it."""
+        parts = self.studies.get(request.path_params["name"])
+        if parts is None:
             raise Unasked(404, "there is no such study")
-        work = partial(safely, STUDIES[name])
-        return JSONResponse(await self.crew.done(request, work, question))
+        lines = parts(request, await asked(request))
+        # What is asked wrongly is told before anything is sent.
+        first = await anext(lines)
+        return StreamingResponse(_lines(first, lines), media_type="application/x-ndjson")
 
-    async def samples(self, request: Request) -> Response:
-        """A piece of a tolerance study."""
-        body = await asked(request)
-        try:
-            piece = piece_of(self.inputs, body)
-        except CaseError as error:
-            return JSONResponse(invalid(error))
-        return JSONResponse(await self.crew.done(request, samples, piece))
+    async def critical(self, request: Request, body: Body) -> Parts:
+        """Critical values along an input, those about its present value first."""
+        question = await self.solved(partial(along, self.inputs, body))
+        stretches = question.stretches(finite(body, "at", question.low))
+        for done, stretch in enumerate(stretches, start=1):
+            found = await self.crew.done(request, criticals, stretch)
+            if "events" not in found:
+                gap = [stretch.low, stretch.high, " ".join(found["messages"])]
+                found = {"events": [], "gaps": [gap], "confirmed": True}
+            yield found | {"done": done, "of": len(stretches)}
+
+    async def sweep(self, request: Request, body: Body) -> Parts:
+        """Ω and the places of floats along an input."""
+        question = await self.solved(partial(along, self.inputs, body))
+        yield await self.crew.done(request, trace, question)
+
+    async def slopes(self, request: Request, body: Body) -> Parts:
+        """How Ω moves with inputs."""
+        question = await self.solved(partial(slopes, self.inputs, body))
+        done = 0
+        for batch in question.batches():
+            found = await self.crew.done(request, rates, batch)
+            done += len(batch.keys)
+            yield found | {"done": done, "of": len(question.keys)}
+
+    async def tolerance(self, request: Request, body: Body) -> Parts:
+        """A tolerance study: what it is, then its statistics after every part."""
+        question = await self.solved(partial(scatter, self.inputs, body))
+        study = await self.crew.done(request, begun, question)
+        if "job" not in study:
+            yield study
+            return
+        yield {"begun": study["told"]}
+        growing = Growing(study)
+        while growing.done < study["samples"]:
+            part = Part(study["job"], growing.done, study["rows"])
+            found = await self.crew.done(request, samples, part)
+            growing.take(found)
+            yield await asyncio.to_thread(growing.told)
 
     async def toml(self, request: Request) -> Response:
         """A setting as a case file."""
         given = setting(await asked(request))
-        try:
-            return JSONResponse(
-                await self.solved(partial(case_file, self.inputs, given, self.file))
-            )
-        except CaseError as error:
-            return JSONResponse(invalid(error))
+        return JSONResponse(await self.solved(partial(case_file, self.inputs, given, self.file)))
+
+
+async def _lines(first: dict[str, Any], others: Parts) -> AsyncIterator[str]:
+    """Yield the parts of a study as lines; what goes wrong on the way is the last one."""
+    yield f"{json.dumps(first)}\n"
+    try:
+        async for one in others:
+            yield f"{json.dumps(one)}\n"
+    except Exception as error:  # noqa: BLE001 -- told, as everything is
+        yield f"{json.dumps(_told(error, 'a study')[0])}\n"
 
 
 def _safely(handler: Handler) -> Handler:
@@ -151,17 +188,21 @@ def _safely(handler: Handler) -> Handler:
     async def answered(request: Request) -> Response:
         try:
             return await handler(request)
-        except Unasked as error:
-            return _failed(str(error), error.status)
-        except Exception as error:
-            log.exception("%s failed", request.url.path)
-            return _failed(f"the server failed: {type(error).__name__}; its log says more", 500)
+        except Exception as error:  # noqa: BLE001 -- told, as everything is
+            return JSONResponse(*_told(error, request.url.path))
 
     return answered
 
 
-def _failed(told: str, status: int) -> Response:
-    return JSONResponse({"status": "failed", "messages": [told]}, status)
+def _told(error: Exception, what: str) -> tuple[dict[str, Any], int]:
+    """Return what is said of an error, and its status."""
+    if isinstance(error, CaseError):
+        return invalid(error), 200
+    if isinstance(error, Unasked):
+        return {"status": "failed", "messages": [str(error)]}, error.status
+    log.error("%s failed", what, exc_info=error)
+    told = f"the server failed: {type(error).__name__}; its log says more"
+    return {"status": "failed", "messages": [told]}, 500
 
 
 def application(case: Case, hosts: Iterable[str], file: Path | None = None) -> Guard:
@@ -189,7 +230,6 @@ def application(case: Case, hosts: Iterable[str], file: Path | None = None) -> G
         "/whole": explorer.whole,
         "/keys": explorer.keys,
         "/toml": explorer.toml,
-        "/samples": explorer.samples,
         "/study/{name}": explorer.study,
     }
     routes = [

@@ -1,92 +1,57 @@
-"""What workers do for a page: sweeps, critical values, slopes, pieces of tolerance studies."""
+"""What workers do for a page: sweeps, critical values, slopes."""
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Callable, Sequence
-from functools import lru_cache
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, TypeVar
 
-from loadshare.case import Case
 from loadshare.errors import CaseError, LoadshareError
+from loadshare.explore.questions import Along, Slopes
 from loadshare.report.numbers import omega, significant
 from loadshare.report.units import MICROMETRE
 from loadshare.report.words import boundary_name
-from loadshare.settings import CERTIFY, JOB
 from loadshare.study.event import Event
 
 Plain = dict[str, Any]
-STUDY = "explorer"
-"""Name of a tolerance study that a page asks for."""
+Item = TypeVar("Item")
 
 
-class Asked(NamedTuple):
-    """A question about a setting.
+def told(work: Callable[[Item], Plain]) -> Callable[[Item], Plain]:
+    """Return what was found, or as messages why nothing was."""
 
-    Attributes
-    ----------
-    case : Case
-    keys : tuple of str
-        Inputs that take one value; or by which is differentiated.
-    low, high : float
-        Ends of the range, in `unit`.
-    unit : str
-    points : int
-        Of a sweep.
-    position : int
-        1-based.
-    reaches : tuple of float
-        By which inputs move in a comparison of sensitivities, in their own units.
-    """
+    @wraps(work)
+    def answered(item: Item) -> Plain:
+        try:
+            return work(item)
+        except CaseError as error:
+            return {"messages": [str(problem) for problem in error.problems]}
+        except LoadshareError as error:
+            return {"messages": str(error).splitlines()}
+        except ValueError as error:
+            return {"messages": [str(error)]}
 
-    case: Case
-    keys: tuple[str, ...]
-    low: float = 0.0
-    high: float = 0.0
-    unit: str = ""
-    points: int = 2
-    position: int = 1
-    reaches: tuple[float, ...] = ()
-
-    def text(self, number: float) -> str | float:
-        """Return a value as a case file has it."""
-        return f"{number!r} {self.unit}" if self.unit else number
+    return answered
 
 
-def safely(work: Callable[[Asked], Plain], asked: Asked) -> Plain:
-    """Return what was found, or why nothing was."""
-    try:
-        return work(asked)
-    except CaseError as error:
-        return {"messages": [str(problem) for problem in error.problems]}
-    except LoadshareError as error:
-        return {"messages": str(error).splitlines()}
-    except ValueError as error:
-        return {"messages": [str(error)]}
-
-
-def criticals(asked: Asked) -> Plain:
+@told
+def criticals(asked: Along) -> Plain:
     """Every change of the active set along an input, with its exact value."""
     from loadshare.study.critical import critical
 
-    found = critical(
-        asked.case,
-        asked.keys,
-        asked.text(asked.low),
-        asked.text(asked.high),
-        positions=[asked.position],
-    )
-    told: dict[float, dict[str, None]] = {}
+    ends = asked.text(asked.low), asked.text(asked.high)
+    found = critical(asked.case, asked.keys, *ends, positions=[asked.position])
+    happens: dict[float, dict[str, None]] = {}
     for event in found.events:
-        told.setdefault(event.value, {})[event_told(event)] = None
+        happens.setdefault(event.value, {})[event_told(event)] = None
     events = [
         {
             "value": value,
             "text": asked.text(value),
             "told": f"{'; '.join(words)} at {significant(value, 4)} {asked.unit}".strip(),
         }
-        for value, words in told.items()
+        for value, words in happens.items()
     ]
     gaps = [[gap.start, gap.stop, gap.why] for gap in found.unproved]
     return {"events": events, "gaps": gaps, "confirmed": all(e.confirmed for e in found.events)}
@@ -101,12 +66,12 @@ def event_told(event: Event) -> str:
     return f"{f'gear {event.gear}' if event.gear else event.element}: {event.kind}"
 
 
-def trace(asked: Asked) -> Plain:
+@told
+def trace(asked: Along) -> Plain:
     """Ω of every stage and the places of all floats along an input; gaps where there is none."""
     from loadshare.study.sweep import sweep
 
-    low, high, count = asked.low, asked.high, asked.points
-    values = f"{asked.text(low)}:{asked.text(high)}:{count}"
+    values = f"{asked.text(asked.low)}:{asked.text(asked.high)}:{asked.points}"
     found = sweep(asked.case, {asked.keys: values}, positions=[asked.position])
     lines: dict[str, list[float | None]] = {}
     places: dict[str, list[list[float]]] = {}
@@ -127,89 +92,23 @@ def trace(asked: Asked) -> Plain:
     }
 
 
-def slopes(asked: Asked) -> Plain:
-    """How the largest Ω of the system moves with inputs, the most telling first."""
+@told
+def rates(asked: Slopes) -> Plain:
+    """How the largest Ω of the system moves with inputs: rows, with the effect that ranks them."""
     from loadshare.study.sensitivity import sensitivity
 
     found = sensitivity(asked.case, list(asked.keys), positions=[asked.position])
     reach = dict(zip(asked.keys, asked.reaches, strict=True))
-    rows: list[tuple[str, str, float]] = []
+    rows = []
     for item in found.inputs:
         cells = {}
         for side in found.sides:
             rate = found.omega[item.key, side]["system"] * item.value.factor
             error = found.omega_error[item.key, side]["system"] * item.value.factor
             cells[side] = rate if math.isfinite(rate) and abs(rate) > error else 0.0
-        effect = max(cells.values(), key=abs) * reach.get(item.key, 0.0)
+        effect = max(cells.values(), key=abs) * reach[item.key]
         texts = list(dict.fromkeys(f"{rate:+.3g}" if rate else "0" for rate in cells.values()))
         per = f"per {item.value.unit}" if item.value.unit else "per 1"
-        rows.append((item.key, f"{' | '.join(texts)} {per}", effect))
-    rows.sort(key=lambda row: -abs(row[2]))
-    columns = [["input", False], ["Ω rises by", True], ["over a tenth of its slider", True]]
-    return {
-        "columns": columns,
-        "rows": [[key, told, omega(effect) if effect else "0"] for key, told, effect in rows],
-        "notes": [r.message for r in found.remarks][:3],
-    }
-
-
-class Piece(NamedTuple):
-    """A piece of a tolerance study.
-
-    Attributes
-    ----------
-    case : Case
-    spreads : str
-        Distribution of every input by its key, as JSON.
-    samples, seed : int
-    first, rows : int
-        Samples of this piece, from 0.
-    """
-
-    case: Case
-    spreads: str
-    samples: int
-    seed: int
-    first: int
-    rows: int
-
-
-def samples(piece: Piece) -> Plain:
-    """Largest Ω of some samples, those of `loadshare.tolerance` with the same seed."""
-    import numpy as np
-
-    try:
-        solver, design = _study(piece.case.to_toml(), piece.spreads, piece.samples, piece.seed)
-    except CaseError as error:
-        return {"messages": [str(problem) for problem in error.problems]}
-    block, at = divmod(piece.first, JOB.block)
-    values = design.values(block)[at : at + piece.rows]
-    found = solver.solve(values)
-    largest = found.columns["omega.system"]
-    known = largest[~np.isnan(found.residual)]
-    return {
-        "values": known.tolist(),
-        "done": len(values),
-        "refused": len(values) - len(known),
-        "messages": list(found.message.values())[:1],
-    }
-
-
-@lru_cache(maxsize=2)
-def _study(text: str, spreads: str, count: int, seed: int) -> Any:
-    """Return what solves the samples of a study, and their design."""
-    import tomllib
-
-    from loadshare.job.positions import wanted_positions
-    from loadshare.study.tolerance.design import Drawn
-    from loadshare.study.tolerance.figures import Solver
-    from loadshare.study.tolerance.inputs import read_inputs
-    from loadshare.train import build_train
-
-    whole = {"kind": "tolerance", "inputs": json.loads(spreads), "samples": count, "seed": seed}
-    case = Case(tomllib.loads(text)).replace({f"study.{STUDY}": whole})
-    inputs, train = read_inputs(case, STUDY), build_train(case)
-    positions: Sequence[int] = wanted_positions(train, None)
-    engine = "vectorised"
-    solver = Solver(case, train, inputs, tuple(positions), CERTIFY.tolerance, engine)
-    return solver, Drawn(inputs, count, seed, "random")
+        slope = f"{' | '.join(texts)} {per}"
+        rows.append([[item.key, slope, omega(effect) if effect else "0"], abs(effect)])
+    return {"rows": rows, "notes": [remark.message for remark in found.remarks][:3]}

@@ -5,6 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from itertools import groupby
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from loadshare.study.tolerance.statistics import Estimate
 
 NONE = "–"
 """Shown where there is no figure."""
@@ -38,6 +42,12 @@ def omega(value: float | None) -> str:
 def micrometres(value: float | None) -> str:
     """Return a length [m] in µm."""
     return fixed(None if value is None else value * 1e6, 3)
+
+
+def interval(found: Estimate, form: str = ".4g") -> str:
+    """Return an estimate with its confidence interval; an end that is not known is left open."""
+    low, high = (f"{end:{form}}" if math.isfinite(end) else "" for end in (found.low, found.high))
+    return f"{found.value:{form}} ({low} … {high})"
 
 
 def small(value: float) -> str:

@@ -22,12 +22,18 @@ class Explore(NamedTuple):
     """Points of a sweep behind a slider, whose ends and steps are then round."""
     most_points: int = 401
     """Points of a sweep that a page may ask for."""
+    stretches: int = 6
+    """Into which a slider is cut for its critical values: the nearest are known first."""
     keys: int = 2000
     """Keys that a page may ask to differentiate by."""
+    batch: int = 2
+    """Inputs that a worker differentiates by before the page hears of it."""
     samples: int = 1_000_000
     """Samples of a tolerance study that a page may ask for; its figures are kept in memory."""
-    piece: int = 8000
-    """Equilibria that a worker solves before the page hears of it: a second's work at most."""
+    part: int = 1000
+    """Equilibria that NumPy solves before the page hears of it: a second's work."""
+    least: int = 16
+    """Samples in a part, at least."""
     waiting: int = 16
     """Requests that may wait for each worker; more are told to come back later."""
 

@@ -29,11 +29,11 @@ from loadshare.cli.stop import Stop
 from loadshare.cli.study.common import asked, end
 from loadshare.cli.tables.table import show, table
 from loadshare.output import netcdf_of
-from loadshare.report.numbers import NONE, counted
+from loadshare.report.numbers import NONE, counted, interval
 
 if TYPE_CHECKING:
     from loadshare.study.tolerance.result import Tolerance
-    from loadshare.study.tolerance.statistics import Estimate, Summary
+    from loadshare.study.tolerance.statistics import Summary
 
 FORMS = (FOLDER, "csv", "nc", "parquet", "xlsx", "json", *FIGURES)
 SHOWN = 20
@@ -207,7 +207,7 @@ def _show_omega(found: Tolerance) -> None:
             continue
         s = one.summary
         label = f"{one.stage}, group" if one.over == "group" else one.stage
-        above = [_interval(one.exceedance)] if one.exceedance is not None else []
+        above = [interval(one.exceedance)] if one.exceedance is not None else []
         mean, spread, highest = f"{s.mean.value:.5f}", f"{s.spread:.2g}", f"{s.highest:.5f}"
         figures.append((label, mean, spread, highest, *above))
         quantiles.append((label, *(f"{q.value:.5f}" for q in s.quantiles.values())))
@@ -219,16 +219,12 @@ def _show_omega(found: Tolerance) -> None:
         say("Intervals in brackets: 95 %.")
 
 
-def _interval(found: Estimate, form: str = ".4g") -> str:
-    return f"{found.value:{form}} ({found.low:{form}} … {found.high:{form}})"
-
-
 def _show_shares(found: Tolerance) -> None:
     for one in found.omega:
         if one.stage != "system" or one.over not in found.overs or not one.shares:
             continue
         rows = [
-            (share.unit, *(_interval(e, ".3f") for e in (share.first, share.total)))
+            (share.unit, *(interval(e, ".3f") for e in (share.first, share.total)))
             for share in sorted(one.shares, key=lambda s: -s.total.value)
         ]
         mean = "group" if one.over == "group" else "stage"

@@ -1,9 +1,8 @@
 // Questions to the server: one under way, at most one waiting, and that is the latest.
-export async function post(name, body, signal) {
-  const reply = await fetch(`/${name}`, { method: "POST", signal, body: JSON.stringify(body),
-    headers: { "content-type": "application/json" } });
-  return reply.json();
-}
+const send = (name, body, signal) => fetch(`/${name}`, { method: "POST", signal, body: JSON.stringify(body),
+  headers: { "content-type": "application/json" } });
+
+export const post = async (name, body) => (await send(name, body)).json();
 
 export function failed(error) {
   return { status: "failed", messages: [`No answer: ${error.message || error}. Is the server still running?`] };
@@ -26,20 +25,31 @@ export class Latest {
   }
 }
 
-// A question that the next one, or a change of the setting, breaks off.
-export class Single {
+// A question that is answered line by line, and that the next one, or a change of the setting, breaks off.
+export class Lines {
   constructor(name) { this.name = name; this.control = null; }
   stop() { if (this.control) this.control.abort(); this.control = null; }
-  async ask(body) {
+  // Hands every line to `take`; whether all of them came.
+  async ask(body, take) {
     this.stop();
-    const control = this.control = new AbortController();
+    const control = this.control = new AbortController(), { signal } = control;
     try {
-      const found = await post(this.name, body, control.signal);
-      return control.signal.aborted ? null : found;
+      const reply = await send(this.name, body, signal), reader = reply.body.pipeThrough(new TextDecoderStream()).getReader();
+      let held = "", ended = false;
+      while (!ended) {
+        const { done, value } = await reader.read();
+        if (signal.aborted) return false;
+        ended = done;
+        const lines = `${held}${value || ""}${done ? "\n" : ""}`.split("\n");
+        held = lines.pop();
+        for (const line of lines) if (line) take(JSON.parse(line));
+      }
     } catch (error) {
-      return control.signal.aborted ? null : failed(error);
+      if (signal.aborted) return false;
+      take(failed(error));
     } finally {
       if (this.control === control) this.control = null;
     }
+    return true;
   }
 }

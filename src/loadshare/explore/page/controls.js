@@ -1,5 +1,5 @@
 // Inputs by search: a field, a slider, and a dial for what goes round.
-import { INK, SOFT, byId, element, path, shape } from "./dom.js";
+import { SOFT, byId, element, path, shape } from "./dom.js";
 
 const NUMBER = /^\s*([+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-−]?\d+)?)\s*(.*?)\s*$/;
 const SHOWN = 30;
@@ -32,6 +32,9 @@ export function numberOf(input, value) {
   return Number(match[1].replace("−", "-"));
 }
 
+// A key may be broken after its dots.
+const broken = (name) => name.split(/(?<=[.=])/).flatMap((part) => [element("wbr"), part]);
+
 export class Control {
   // `keys` are the inputs that take the value; the first one lends its unit and range.
   constructor(name, inputs, now, actions) {
@@ -61,7 +64,7 @@ export class Control {
     this.sweep = button("Trace", "trace of a sweep over", () => this.actions.sweep(this));
     const bar = element("div", {}, this.slider, this.ticks);
     this.place = element("div", { class: "control", "data-name": this.name, role: "group", "aria-label": this.name },
-      element("div", { class: "head" }, element("label", { class: "key", for: id }, this.name), this.field),
+      element("div", { class: "head" }, element("label", { class: "key", for: id }, ...broken(this.name)), this.field),
       input.turning ? element("div", { class: "with-dial" }, bar, this.dial()) : bar,
       element("div", { class: "row" }, this.critical, this.sweep,
         button("Case", "value of the case for", () => this.actions.back(this)),
@@ -72,7 +75,7 @@ export class Control {
   }
 
   dial() {
-    this.needle = path([[28, 28], [50, 28]], { stroke: INK, "stroke-width": 2.5, "stroke-linecap": "round" });
+    this.needle = path([[28, 28], [50, 28]], { stroke: "currentColor", "stroke-width": 2.5, "stroke-linecap": "round" });
     const face = shape("svg", { width: 56, height: 56, viewBox: "0 0 56 56", class: "dial", "aria-hidden": "true" },
       shape("circle", { cx: 28, cy: 28, r: 25, fill: "none", stroke: SOFT }), path([[28, 28], [53, 28]], { stroke: SOFT, "stroke-dasharray": "2 3" }), this.needle);
     const turn = (event) => {

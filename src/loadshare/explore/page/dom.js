@@ -50,6 +50,8 @@ export function table(found) {
 
 export const card = (found) => element("div", { class: "card" }, element("h3", {}, found.title), ...table(found));
 
+const HALO = { stroke: "#fff", "stroke-width": 3, "stroke-linejoin": "round", "paint-order": "stroke" };
+
 // Words that find a place of their own, or none: what does not fit is left to the pointer.
 export class Labels {
   constructor(width, height) { this.width = width; this.height = height; this.boxes = []; }
@@ -62,7 +64,7 @@ export class Labels {
       if (box[0] < 1 || box[1] < 1 || box[0] + w > this.width - 1 || box[1] + h > this.height - 1) continue;
       if (this.boxes.some(([a, b, c, d]) => a < box[0] + w && box[0] < a + c && b < box[1] + h && box[1] < b + d)) continue;
       this.boxes.push(box);
-      return shape("text", { x, y: y + size * 0.36, "text-anchor": "middle", ...attributes }, text);
+      return shape("text", { x, y: y + size * 0.36, "text-anchor": "middle", ...HALO, ...attributes }, text);
     }
     return null;
   }
@@ -88,4 +90,12 @@ export function arrow([x, y], [u, v], head) {
   const size = Math.hypot(u - x, v - y) || 1, a = (u - x) / size, b = (v - y) / size;
   return [[x, y], [u, v], [u - head * (a - 0.5 * b), v - head * (b + 0.5 * a)], [u, v],
     [u - head * (a + 0.5 * b), v - head * (b - 0.5 * a)]];
+}
+
+// An arrow as an outline, as wide as asked; its head is wider than any shaft.
+export function broadArrow([x, y], [u, v], width) {
+  const size = Math.hypot(u - x, v - y) || 1, a = (u - x) / size, b = (v - y) / size;
+  const half = width / 2, wing = half + 4, neck = Math.max(size - 1.6 * wing, 0);
+  const at = (along, across) => [x + along * a - across * b, y + along * b + across * a];
+  return [at(0, half), at(neck, half), at(neck, wing), [u, v], at(neck, -wing), at(neck, -half), at(0, -half)];
 }

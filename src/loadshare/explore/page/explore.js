@@ -1,11 +1,12 @@
 // The page: what is set, what was asked, what is shown; they are told apart by a number.
 import { byId, card, element, table } from "./dom.js";
-import { Latest, Single, post } from "./ask.js";
+import { Latest, Lines, post } from "./ask.js";
 import { Control, listFound, read } from "./controls.js";
 import { drawFloats } from "./floats.js";
 import { drawForces, drawTrain } from "./train.js";
 import { drawBars, drawLines } from "./bars.js";
 import { comparison, pinnedBars } from "./pins.js";
+import * as samples from "./samples.js";
 import * as studies from "./studies.js";
 import { copyLink, linked, savePicture, saveText } from "./save.js";
 
@@ -14,7 +15,7 @@ const FIRST = 6; // controls at the beginning
 const MOVES = /^(gears|meshes|errors)\./;
 
 const page = { case: null, inputs: new Map(), setting: new Map(), controls: [], position: 1, asked: 0, shown: null, pins: [] };
-const latest = new Latest("answer", show), whole = new Single("whole");
+const latest = new Latest("answer", show), whole = new Lines("whole");
 let resting = 0, ofCase = null;
 
 // --- What is set
@@ -77,6 +78,7 @@ const actions = {
 function ask(keys = null) {
   page.asked += 1;
   studies.forget(keys, page.controls);
+  samples.forget(view());
   const { body } = document;
   body.dataset.asked = page.asked;
   body.dataset.state = "asking";
@@ -93,9 +95,9 @@ function forget() {
   byId("cycle").hidden = true;
 }
 
-async function rest(asked) {
-  const found = await whole.ask({ changes: Object.fromEntries(page.setting) });
-  if (!found || asked !== page.asked) return;
+const rest = (asked) => whole.ask({ changes: Object.fromEntries(page.setting) }, (found) => { if (asked === page.asked) trusted(found); });
+
+function trusted(found) {
   if (found.trust) {
     byId("trust").replaceChildren(element("dl", {}, ...Object.entries(found.trust).flatMap(([name, told]) =>
       [element("dt", {}, name), element("dd", {}, told)])));
@@ -129,6 +131,7 @@ function show(asked, answer) {
   page.shown = { ...asked, answer };
   byId("answer").dataset.of = asked.asked;
   byId("of").textContent = settingTold(asked);
+  byId("summary").textContent = summary(answer.bars);
   byId("tables").replaceChildren(...answer.tables.map(card));
   byId("states").replaceChildren(...(answer.states ? table(answer.states) : []));
   draw();
@@ -138,6 +141,13 @@ function show(asked, answer) {
   say(answer.messages);
   place(answer.count);
   resting = setTimeout(() => rest(asked.asked), IDLE);
+}
+
+// K_γ of every stage: what stays in sight while sliders move.
+function summary(bars) {
+  const most = new Map();
+  for (const bar of bars) if (bar.most !== null && !(most.get(bar.stage)?.most >= bar.most)) most.set(bar.stage, bar);
+  return [...most].map(([stage, bar]) => `Kγ ${stage} = ${bar.text}`).join(", ");
 }
 
 function draw() {
@@ -161,7 +171,7 @@ function draw() {
 function empty() {
   page.shown = null;
   delete byId("answer").dataset.of;
-  byId("of").textContent = "";
+  for (const id of ["of", "summary"]) byId(id).textContent = "";
   for (const id of ["tables", "states", "floats"]) byId(id).replaceChildren();
   drawBars(byId("bars"), [], []);
   drawForces({});
@@ -241,6 +251,7 @@ async function begin() {
   byId("title").textContent = page.case.title;
   byId("name").textContent = page.case.name;
   place(page.case.positions);
+  samples.offer(page.case.studies);
   const link = linked(page.inputs);
   for (const [key, value] of Object.entries(link.changes)) page.setting.set(key, value);
   if (link.position <= page.case.positions) page.position = link.position;
@@ -263,8 +274,7 @@ search.addEventListener("keydown", (event) => {
 });
 const view = () => ({ changes: Object.fromEntries(page.setting), names: page.controls.map((one) => one.name), position: page.position });
 byId("slopes").addEventListener("click", () => studies.slopes({ ...view(), keys: [...new Set([...page.controls.flatMap((one) => one.keys), ...mattering()])] }));
-byId("tolerance").addEventListener("click", () => studies.tolerance(view(), page.controls));
-byId("stop").addEventListener("click", () => { studies.stop(); byId("study").textContent = `stopped: ${byId("study").textContent}`; });
+byId("tolerance").addEventListener("click", () => samples.begin(view(), page.controls, settingTold));
 byId("reset").addEventListener("click", reset);
 byId("pin").addEventListener("click", pin);
 byId("link").addEventListener("click", () => copyLink(view()));

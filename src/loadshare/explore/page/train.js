@@ -1,5 +1,5 @@
 // The train to scale, drawn once for a geometry; the forces of its flanks, drawn for every answer.
-import { INK, SOFT, WARNING, Labels, around, arrow, path, picture, shape } from "./dom.js";
+import { INK, SOFT, WARNING, Labels, around, broadArrow, path, picture, shape } from "./dom.js";
 
 const ROOM = 520, EDGE = 14, HEAD = 24;
 const DASH = "4 3", CENTRE = "10 3 2 3", WIDEST = 9;
@@ -73,9 +73,9 @@ export function drawForces(forces) {
       }
       const [u, v] = [way * mesh.push[0], -way * mesh.push[1]];
       const length = 0.11 * one.size, tip = [x + length * u, y + length * v], back = [x - 0.35 * length * u, y - 0.35 * length * v];
-      const made = path([back, tip], { stroke: WARNING, "stroke-width": stroke.toFixed(2), opacity: 0.85, "data-mesh": mesh.name });
+      const made = path(broadArrow(back, tip, Math.max(stroke, 0.5)), { fill: WARNING, opacity: 0.85, "data-mesh": mesh.name }, true);
       made.append(told);
-      arrows.push(made, path(arrow(back, tip, 9).slice(1), { stroke: WARNING, "stroke-width": 1.5 }));
+      arrows.push(made);
     }
     one.forces.replaceChildren(...arrows);
   }

@@ -5,8 +5,7 @@ from __future__ import annotations
 import weakref
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import asdict
-from itertools import product
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +25,7 @@ from loadshare.study.tolerance.folder import Folder
 from loadshare.study.tolerance.indices import Share, shares
 from loadshare.study.tolerance.inputs import read_inputs
 from loadshare.study.tolerance.job import CHUNK, INDICES, Job, Part, equilibria
+from loadshare.study.tolerance.omegas import apart_kinds, column_of, omega_statistics
 from loadshare.study.tolerance.result import (
     FloatStatistics,
     OmegaStatistics,
@@ -33,7 +33,7 @@ from loadshare.study.tolerance.result import (
     counted,
 )
 from loadshare.study.tolerance.resume import check_part
-from loadshare.study.tolerance.statistics import Summary, exceedance, summary
+from loadshare.study.tolerance.statistics import Summary, summary
 from loadshare.study.tolerance.temporary import TemporaryFolder
 from loadshare.study.tolerance.worst import WorstCase, check_worst, worst_case
 from loadshare.train import build_train
@@ -117,10 +117,41 @@ def tolerance(
     given: dict[str, Any] = {"inputs": inputs, "groups": groups, "quantiles": quantiles}
     given |= {"samples": samples, "seed": seed, "sampling": sampling}
     given |= {"limit": limit, "indices": indices, "positions": positions}
-    case, name = _asked(loaded(case), study, given)
-    with _folder(out, _job(case, name, chunk, engine)) as folder:
+    job, block = asked_job(loaded(case), study, given, chunk=chunk, engine=engine)
+    with _folder(out, job) as folder:
         _solve(folder, scheduler, workers, progress)
-        return _Reader(folder, case.study[name]).found(worst)
+        return _Reader(folder, block).found(worst)
+
+
+def asked_job(
+    case: Case,
+    study: str | None,
+    given: Mapping[str, Any],
+    *,
+    chunk: int = CHUNK,
+    engine: str = "auto",
+) -> tuple[Job, Study]:
+    """Return a study as it is asked, checked: what its samples depend on, and its settings.
+
+    Parameters
+    ----------
+    case : Case
+    study : str or None
+        Study of the case that gives whatever is not given here.
+    given : mapping of str to object
+        As the keys of ``[study.NAME]``; None where something is not given.
+    chunk, engine
+        As for `tolerance`.
+
+    Raises
+    ------
+    CaseError
+        If the study, an input or its distribution cannot be used; all problems are listed.
+    ValueError
+        If a position or an engine does not exist.
+    """
+    case, name = _asked(case, study, given)
+    return _job(case, name, chunk, engine), case.study[name]
 
 
 @contextmanager
@@ -261,7 +292,7 @@ class _Reader:
         if self.settings["indices"]:
             gone = int((~folder.column("certified", INDICES)).sum())
         torque = {mesh: self._summary(f"torque.{mesh} [N*m]") for mesh in self.train.meshes}
-        apart = _apart(folder)
+        apart = apart_kinds(folder.column)
         return Tolerance(
             case=job.name,
             inputs=job.inputs,
@@ -284,15 +315,9 @@ class _Reader:
         return summary(self.folder.column(column), self.levels, self.replicated)
 
     def _omega(self) -> Iterator[OmegaStatistics]:
-        stages = [*(s.name for s in self.train.stages), SYSTEM]
-        for (kind, over), stage in product(KINDS.items(), stages):
-            column = f"{kind}.{stage}"
-            found, above = self._summary(column), None
-            if found is None:
-                continue
-            if self.limit is not None:
-                above = exceedance(self.folder.column(column), self.limit, self.replicated)
-            yield OmegaStatistics(over, stage, found, above, self._shares(column))
+        column, stages = self.folder.column, [*(s.name for s in self.train.stages), SYSTEM]
+        for one in omega_statistics(column, stages, self.levels, self.limit, self.replicated):
+            yield replace(one, shares=self._shares(column_of(one)))
 
     def _shares(self, column: str) -> tuple[Share, ...]:
         rows = self.settings["indices"]
@@ -339,13 +364,6 @@ def sought(folder: Folder, kinds: Sequence[str]) -> Iterator[WorstCase]:
         found = worst_case(solver, kind, known, seed)
         if found is not None:
             yield found
-
-
-def _apart(folder: Folder) -> list[str]:
-    """Kinds of Ω that differ: where groups share alike, as without groups, both are one."""
-    one, other = (folder.column(f"{kind}.{SYSTEM}") for kind in KINDS)
-    same = np.allclose(one, other, rtol=TOLERANCE.same, atol=0.0, equal_nan=True)
-    return list(KINDS)[:1] if same else list(KINDS)
 
 
 def _inputs_of(folder: Folder, rows: Iterable[int]) -> list[np.ndarray[Any, Any]]:

@@ -1,0 +1,258 @@
+"""A tolerance study part by part, so that a page sees it grow and can stop it.
+
+Its samples, its answers and its statistics are those of `loadshare.tolerance` with the same seed.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from loadshare.case import Case
+from loadshare.case.keys import dotted
+from loadshare.case.writer import toml_text
+from loadshare.explore.answer import plain
+from loadshare.explore.asked import Unasked, number, setting, text
+from loadshare.explore.inputs import Input, Inputs
+from loadshare.explore.questions import by_parts, finite, place
+from loadshare.explore.studies import Plain, told
+from loadshare.job.engines import at_hand
+from loadshare.job.positions import prepared
+from loadshare.report.numbers import interval
+from loadshare.report.records import Cell, Column, Table
+from loadshare.scene.scene import Array
+from loadshare.settings import EXPLORE, JOB, TOLERANCE
+from loadshare.study.parameter import Value, read_value
+from loadshare.study.tolerance.figures import KINDS, SYSTEM
+from loadshare.study.tolerance.job import SAMPLES, known_job
+from loadshare.study.tolerance.omegas import apart_kinds, omega_statistics
+from loadshare.study.tolerance.result import OmegaStatistics
+from loadshare.study.tolerance.study import asked_job
+
+SHOWN = "explorer"
+"""Name of a study in which what the page shows scatters."""
+EVENLY = ("m", "rad", "")
+"""SI units of clearances, errors and friction, which scatter over their sliders."""
+DEVIATION, CUT = 0.02, 3.0
+"""Of all else: standard deviation over the value, and where the distribution is cut off."""
+PROBLEMS = 3
+"""Reasons for refusals that are told."""
+
+
+class Scatter(NamedTuple):
+    """A tolerance study that a page asks for.
+
+    Attributes
+    ----------
+    case : Case
+    name : str
+    table : dict
+        As ``[study.NAME]`` has it.
+    """
+
+    case: Case
+    name: str
+    table: dict[str, Any]
+
+
+def scatter(inputs: Inputs, body: Mapping[str, Any]) -> Scatter:
+    """Return the study of the case that a page names, or one of the inputs that it shows.
+
+    Raises
+    ------
+    Unasked
+        If it is none.
+    CaseError
+        If a key or the setting cannot be used.
+    """
+    given = setting(body)
+    if body.get("study") is None:
+        name, case, table = SHOWN, *_of_shown(inputs, body, given)
+    else:
+        name, case = text(body, "study"), by_parts(inputs, (), given)
+        table = case.to_dict().get("study", {}).get(name, {})
+        if table.get("kind") != "tolerance":
+            raise Unasked(400, "there is no such tolerance study")
+    table["samples"] = number(body, "samples", TOLERANCE.samples, 1, EXPLORE.samples)
+    table["seed"] = number(body, "seed", 0, 0, 2**53)
+    if body.get("limit") is not None:
+        table["limit"] = finite(body, "limit")
+    return Scatter(case, name, table)
+
+
+def _of_shown(
+    inputs: Inputs, body: Mapping[str, Any], given: Mapping[str, object]
+) -> tuple[Case, dict[str, Any]]:
+    ranges = body.get("ranges")
+    if not isinstance(ranges, dict) or not ranges:
+        raise Unasked(400, "ranges is no object of [low, high] by input")
+    spreads: dict[str, Any] = {}
+    every: list[str] = []
+    for name, ends in ranges.items():
+        keys = inputs.keys(name)
+        if not isinstance(ends, list) or len(ends) != 2:
+            raise Unasked(400, f"the range of {name} is no [low, high]")
+        low, high = (finite({name: end}, name) for end in ends)
+        spreads["=".join(keys)] = _spread(inputs.every[keys[0]], given, low, high)
+        every += keys
+    case = by_parts(inputs, every, given)
+    table: dict[str, Any] = {"kind": "tolerance", "inputs": spreads}
+    if prepared(case)[1].train.count > EXPLORE.together:
+        table["positions"] = [place(body)]
+    return case, table
+
+
+def _spread(one: Input, given: Mapping[str, object], low: float, high: float) -> dict[str, Any]:
+    """Return how an input scatters of which the case does not say it."""
+    now = read_value(given.get(one.key, one.text))
+    if Value(1.0, one.unit).si_unit in EVENLY or now is None or now.number == 0.0:
+        numbers = {"distribution": "uniform", "low": low, "high": high}
+    else:
+        mean, deviation = (
+            now.in_unit(one.unit).number,
+            DEVIATION * abs(now.in_unit(one.unit).number),
+        )
+        ends = {"low": mean - CUT * deviation, "high": mean + CUT * deviation}
+        numbers = {"distribution": "truncated normal", "mean": mean, "deviation": deviation, **ends}
+    return {
+        key: f"{value!r} {one.unit}" if one.unit and not isinstance(value, str) else value
+        for key, value in numbers.items()
+    }
+
+
+@told
+def begun(asked: Scatter) -> Plain:
+    """Check a study, and return what each of its parts needs and what the page says of it."""
+    # Nobody in front of a page waits for a compiler.
+    engine = "compiled" if at_hand() else "vectorised"
+    case = asked.case.replace({dotted(("study", asked.name)): asked.table})
+    job, block = asked_job(case, asked.name, {}, engine=engine)
+    settings = job.settings
+    # The compiled engine solves a whole block in a moment; NumPy would keep the page waiting.
+    rows = JOB.block if engine == "compiled" else EXPLORE.part // len(settings["positions"])
+    return {
+        "job": job.to_json(),
+        "rows": max(rows, EXPLORE.least),
+        "stages": [*(stage.name for stage in job.solver.train.stages), SYSTEM],
+        "levels": list(block.quantiles or TOLERANCE.levels),
+        "limit": block.limit,
+        "samples": settings["samples"],
+        "replicated": settings["sampling"] == "sobol",
+        "told": {
+            "name": asked.name,
+            "samples": settings["samples"],
+            "seed": settings["seed"],
+            "sampling": settings["sampling"],
+            "positions": list(settings["positions"]),
+            "limit": block.limit,
+            "engine": engine,
+            "inputs": [[one.name, str(one.distribution)] for one in job.inputs.every],
+            "toml": toml_text({"study": {asked.name: asked.table}}),
+        },
+    }
+
+
+class Part(NamedTuple):
+    """Some samples of a study: its job as text, the first of them from 0, how many at most."""
+
+    job: str
+    first: int
+    rows: int
+
+
+@told
+def samples(part: Part) -> Plain:
+    """Draw and solve some samples; those of one block at most."""
+    job = known_job(part.job)
+    block, at = divmod(part.first, JOB.block)
+    values = job.designs[SAMPLES].values(block)[at : at + part.rows]
+    found = job.solver.solve(values)
+    kept = tuple(f"{kind}." for kind in KINDS)
+    return {
+        "columns": {name: v for name, v in found.columns.items() if name.startswith(kept)},
+        "residual": found.residual,
+        "refused": [text.splitlines()[0] for text in found.message.values()],
+    }
+
+
+@dataclass
+class Growing:
+    """Figures of all samples so far.
+
+    Attributes
+    ----------
+    study : mapping
+        What `begun` returned.
+    """
+
+    study: Mapping[str, Any]
+    done: int = 0
+    residual: float = 0.0
+    refused: Counter[str] = field(default_factory=Counter)
+    columns: dict[str, list[Array]] = field(default_factory=dict)
+
+    def take(self, found: Mapping[str, Any]) -> None:
+        """Add a part."""
+        self.done += len(found["residual"])
+        self.residual = max(self.residual, np.nanmax(found["residual"], initial=0.0))
+        self.refused.update(found["refused"])
+        for name, values in found["columns"].items():
+            self.columns.setdefault(name, []).append(values)
+
+    def column(self, name: str) -> Array:
+        """Return a figure by sample, NaN where there is no answer."""
+        return np.concatenate(self.columns[name])
+
+    def told(self) -> Plain:
+        """Return the statistics so far."""
+        study, refused = self.study, self.refused.total()
+        every = list(
+            omega_statistics(
+                self.column, study["stages"], study["levels"], study["limit"], study["replicated"]
+            )
+        )
+        overs = [KINDS[kind] for kind in apart_kinds(self.column)]
+        found: Plain = {"done": self.done, "refused": refused, "residual": f"{self.residual:.1e}"}
+        found["reasons"] = [f"{n} × {text}" for text, n in self.refused.most_common(PROBLEMS)]
+        shown = [one for one in every if one.over in overs]
+        if shown:
+            found["table"] = plain(omega_table(shown, study["limit"]))
+            found["histogram"] = _histogram(next(one for one in shown if one.stage == SYSTEM))
+        return found
+
+
+def omega_table(every: Sequence[OmegaStatistics], limit: float | None) -> Table:
+    """One column for each Ω, as `loadshare tolerance` prints its figures."""
+    form = ".5f"
+    rows = [
+        ["mean", *(interval(one.summary.mean, form) for one in every)],
+        ["standard deviation", *(f"{one.summary.spread:.2g}" for one in every)],
+        *(
+            [
+                f"{100.0 * level:g} % at or below",
+                *(interval(one.summary.quantiles[level], form) for one in every),
+            ]
+            for level in every[0].summary.quantiles
+        ),
+        ["largest", *(f"{one.summary.highest:{form}}" for one in every)],
+    ]
+    if limit is not None:
+        above = (interval(one.exceedance) if one.exceedance else "" for one in every)
+        rows.append([f"P(Ω > {limit:g})", *above])
+    names = [f"{one.stage}, group" if one.over == "group" else one.stage for one in every]
+    columns = [Column("Ω"), *(Column(name, figures=True) for name in names)]
+    notes = [f"Intervals in brackets: {100.0 * TOLERANCE.confidence:g} %."]
+    return Table("", columns, [[Cell(text) for text in row] for row in rows], notes)
+
+
+def _histogram(one: OmegaStatistics) -> Plain:
+    found = one.summary
+    return {
+        "edges": found.edges.tolist(),
+        "counts": found.counts.tolist(),
+        "marks": [[f"{100.0 * level:g} %", q.value] for level, q in found.quantiles.items()],
+    }
