@@ -1,7 +1,8 @@
 """Cases: what a user writes about a transmission, read, checked, and kept as it was written."""
 
 from loadshare.case.content import Content
-from loadshare.case.gears import STEEL_EXPANSION, Eccentricity, Errors, Gear, Offset, Pin, Polar
+from loadshare.case.gear_errors import Eccentricity, Errors, Offset, Pin
+from loadshare.case.gears import STEEL_EXPANSION, Gear, Polar
 from loadshare.case.links import Backlashes, Bearing, Range, Ring, Shaft, Spline
 from loadshare.case.mass import mass_of
 from loadshare.case.measured import Measurement

@@ -9,7 +9,8 @@ from typing import Any
 from pydantic import Field, PrivateAttr
 
 from loadshare.case.element import Element
-from loadshare.case.gears import Errors, Gear
+from loadshare.case.gear_errors import Errors
+from loadshare.case.gears import Gear
 from loadshare.case.keys import Path, look_up, parse
 from loadshare.case.links import Bearing, Ring, Shaft, Spline
 from loadshare.case.measured import Measurement

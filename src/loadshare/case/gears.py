@@ -1,4 +1,4 @@
-"""Gears, where they stand and what is wrong with where they stand."""
+"""Gears and carriers: teeth, bodies, and where they stand."""
 
 from __future__ import annotations
 
@@ -55,9 +55,6 @@ OF_TEETH = (
     "bore",
     "density",
     "tip_radius",
-    "web",
-    "rim",
-    "bore",
     "outside_diameter",
     "ovalisation",
 )
@@ -427,61 +424,3 @@ class Gear(Element):
         if self.inner_radius is None or self.outer_radius is None:
             raise ValueError("a gear without radii")
         return (self.inner_radius.si + self.outer_radius.si) / 2
-
-
-class Offset(Element):
-    """An installation error given by size and direction."""
-
-    amount: Distance
-    """Size of the offset [length]."""
-
-    direction: Angle
-    """Direction of the offset, counter-clockwise from the x axis against the axis [angle]."""
-
-
-class Eccentricity(Element):
-    """A manufacturing error: the offset of the base circle, which turns with the gear."""
-
-    amount: Distance
-    """Size of the offset [length]."""
-
-    direction: Angle = Quantity("0 deg", 0.0)
-    """Direction of the offset on the gear [angle]."""
-
-    phase: Angle = Quantity("0 deg", 0.0)
-    """Further angle of the eccentricity at the first position, beside its direction [angle]."""
-
-
-class Pin(Element):
-    """The position error of a planet's pin, seen from the carrier's axis."""
-
-    radial: Length = Quantity("0 um", 0.0)
-    """Outwards [length]."""
-
-    tangential: Length = Quantity("0 um", 0.0)
-    """Counter-clockwise about the carrier's axis [length]."""
-
-    angular: Angle = Quantity("0 rad", 0.0)
-    """Further angle about the carrier's axis, counter-clockwise [angle]."""
-
-
-class Errors(Element):
-    """The errors of one gear; each moves its centre without costing energy."""
-
-    installation: (
-        Annotated[
-            Components | Annotated[Offset, Tag(TABLE)],
-            shaped("a list of 2 or 3 lengths, or a table of amount and direction"),
-        ]
-        | None
-    ) = None
-    """Fixed offset of the centre: components, or size and direction [length].
-
-    Fixed in the housing; that of a planet is fixed on its carrier.
-    """
-
-    pin: Pin | None = None
-    """Position error of a planet's pin: radial, tangential [length] or angular [angle]."""
-
-    eccentricity: Eccentricity | None = None
-    """Offset that turns with the gear: amount [length], direction and phase [angle]."""
