@@ -2,11 +2,12 @@
 position.
 """
 
-from collections.abc import Mapping
+from collections.abc import Container, Iterable, Mapping
 from functools import cache
 from pathlib import Path
 
 import numpy as np
+import pytest
 from tests.certify.oracle import ClaimedState
 
 import loadshare as ls
@@ -26,6 +27,18 @@ SHIPPED = tuple(
     )
 )
 """Every shipped case, as "folder/name"."""
+
+
+def mostly_slow(values: Iterable[object], quick: Container[object]) -> list[object]:
+    """Parameters of a test, of which some run every time and the others with the slow ones.
+
+    For tests that take seconds and find the same faults in many cases: `quick` holds one of each
+    kind of element.
+    """
+    slow = pytest.mark.slow
+    several = [v if isinstance(v, tuple) else (v,) for v in values]
+    return [pytest.param(*v, marks=[] if v in quick or v[0] in quick else slow) for v in several]
+
 
 BACKLASHES = ("1-2", "1-3", "4-6", "4-7", "5-8", "5-9", "6-10", "7-10", "8-10", "9-10")
 """Meshes of the seed's transmission."""

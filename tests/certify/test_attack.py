@@ -62,13 +62,13 @@ def test_the_right_answers_pass(some):
 
 @pytest.fixture(scope="module")
 def found():
-    return list(attacks(SEED, 400, each=20))
+    return list(attacks(SEED, 150, each=8))
 
 
 def test_every_way_is_tried_and_most_are_wrong(found):
     assert {a.way for a in found} == set(WAYS)
-    assert sum(a.error > ALLOWED for a in found) > 100
-    assert len({a.train for a in found}) == 20
+    assert sum(a.error > ALLOWED for a in found) > 50
+    assert len({a.train for a in found}) == 19
 
 
 def test_no_wrong_torque_passes(found):
@@ -77,41 +77,43 @@ def test_no_wrong_torque_passes(found):
 
 def test_every_bound_holds_of_wrong_answers_too(found):
     bounded = [a for a in found if a.margin < math.inf]
-    assert len(bounded) > 100
+    assert len(bounded) > 50
     assert [a for a in bounded if a.margin < -ROUNDING] == []
 
 
-@pytest.mark.parametrize("number", [43, 147, 153])
+@pytest.mark.parametrize(
+    "number", [43, *(pytest.param(n, marks=pytest.mark.slow) for n in (147, 153))]
+)
 def test_bounds_hold_of_light_flanks_too(number):
     """Hertz contacts and tables yield otherwise at light forces."""
     case = draw(3, number)
     light = victim(case, 1 + number % case.operating.positions)
     tried = ("contact dropped", "self-stress", "wrong flank")
     rng = np.random.default_rng(number)
-    wrong = [a for a in (one(light, tried[k % 3], rng) for k in range(90)) if a is not None]
+    wrong = [a for a in (one(light, tried[k % 3], rng) for k in range(60)) if a is not None]
     bounded = [a for a in wrong if a.margin < math.inf and a.error > ALLOWED]
     assert len(bounded) > 5
     assert [a for a in bounded if a.margin < -ROUNDING or a.passed] == []
 
 
-@pytest.mark.parametrize(("seed", "number"), [(3, 0), (5, 40)])
+@pytest.mark.parametrize(("seed", "number"), [(3, 0), pytest.param(5, 40, marks=pytest.mark.slow)])
 def test_a_contact_that_is_left_out_is_no_rounding(seed, number):
     """What it carried is missing on gears that carry nothing else."""
     case = draw(seed, number)
     whole = victim(case, 1 + number % case.operating.positions)
-    tried = (one(whole, "contact dropped", np.random.default_rng(k)) for k in range(40))
+    tried = (one(whole, "contact dropped", np.random.default_rng(k)) for k in range(20))
     wrong = [a for a in tried if a is not None and a.error > ALLOWED]
     assert len(wrong) > 5
     assert [a for a in wrong if a.margin < -ROUNDING or a.passed] == []
 
 
 def test_attacks_depend_on_their_seed_alone(found):
-    again = list(attacks(SEED, 20, each=20))
+    again = list(attacks(SEED, 8, each=8))
     assert [(a.train, a.way, a.passed) for a in again] == [
-        (a.train, a.way, a.passed) for a in found[:20]
+        (a.train, a.way, a.passed) for a in found[:8]
     ]
     # The compiled kernel, once it is at hand, finds victims that differ by round-off.
-    assert [a.error for a in again] == pytest.approx([a.error for a in found[:20]], abs=1e-13)
+    assert [a.error for a in again] == pytest.approx([a.error for a in found[:8]], abs=1e-13)
 
 
 def test_what_slips_is_told():

@@ -15,7 +15,7 @@ import mpmath
 import numpy as np
 import pytest
 from tests.certify.test_many import CLAIMS, WAYS, claims, positions, scales_of, taken
-from tests.support import shipped
+from tests.support import mostly_slow, shipped
 
 from benchmarks.reference import reference
 from benchmarks.workloads import workloads
@@ -218,7 +218,7 @@ def true_errors(train: Train, found: Equilibria, largest: float) -> np.ndarray:
     return np.array(worst)
 
 
-@pytest.mark.parametrize("number", IDLING)
+@pytest.mark.parametrize("number", mostly_slow(IDLING, (212, 278)))
 def test_an_idling_hertz_flank_is_bounded(number):
     """It is endlessly soft, whatever little it is claimed to carry; others tell of it all the same.
 

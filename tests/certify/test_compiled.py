@@ -12,6 +12,7 @@ from tests.certify.test_independence import modules_after
 from tests.certify.test_many import (
     ABSOLUTE,
     CLAIMS,
+    QUICK,
     WAYS,
     alike,
     claims,
@@ -20,7 +21,7 @@ from tests.certify.test_many import (
     scales_of,
     taken,
 )
-from tests.support import shipped
+from tests.support import mostly_slow, shipped
 
 from loadshare.certify import RESIDUALS, Judge
 from loadshare.certify.bound.kernel import find_all
@@ -32,7 +33,7 @@ SIZES = (1e-12, 1e-9, 1e-6, 1e-3, 1.0, 1e3)
 """Of what is added to every figure of a claim, in loads and deflections of the case."""
 
 
-@pytest.mark.parametrize("name", WAYS)
+@pytest.mark.parametrize("name", mostly_slow(WAYS, QUICK))
 def test_one_wrong_claim(name):
     train = build_train(WAYS[name]())
     situations, found = claims(train, positions(train)[:1])

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from tests.support import coasting, lost_contact, round_ring, shipped
+from tests.support import coasting, lost_contact, mostly_slow, round_ring, shipped
 
 import loadshare as ls
 from benchmarks import families
@@ -222,7 +222,7 @@ FULL = "fgfbstts/full_float"
 ECCENTRICITY = "errors.6.eccentricity.amount"
 
 
-@pytest.mark.parametrize("end", [100.0, 300.0, 600.0])
+@pytest.mark.parametrize("end", mostly_slow((100.0, 300.0, 600.0), (300.0,)))
 def test_events_do_not_depend_on_where_the_range_ends(end):
     """Slip, stick, slip: the gauge dips by 2 % of the range, in a V."""
     found = ls.critical(shipped(FULL), ECCENTRICITY, "0 um", f"{end} um", positions=[1])
@@ -234,7 +234,7 @@ def test_events_do_not_depend_on_where_the_range_ends(end):
     assert found.unproved == ()
 
 
-@pytest.mark.parametrize("end", [230.0, 450.0])
+@pytest.mark.parametrize("end", mostly_slow((230.0, 450.0), (230.0,)))
 def test_a_branch_that_ends_on_the_way_is_left_in_time(end):
     """Ends at which following the branch lost it."""
     case = shipped(FULL).replace(
@@ -323,7 +323,7 @@ def test_a_float_comes_to_its_round_limit_where_the_limit_lets_go_of_it():
     assert search.exit(floating, pressed[1]) == pytest.approx(zero, rel=1e-9)
 
 
-@pytest.mark.parametrize("number", [1, 6, 193])
+@pytest.mark.parametrize("number", mostly_slow((1, 6, 193), (1, 6)))
 def test_random_paths_agree_with_a_scan(number):
     """On path 193 an enclosure neither contracts nor diverges: a matrix is singular."""
     outcome = judged(random_path(number), 400, "vectorised")

@@ -80,8 +80,16 @@ def disagreeing(told: dict[str, Verdict]) -> dict[str, Verdict]:
     ("name", "keys"),
     [
         ("fgfbstts/limit_ring", ["rings.4.float", "rings.5.float", "errors.6.installation[1]"]),
-        ("fgfbstts/both_errors", ["errors.4.*", "gears.6.centre.angle", 'shafts."2-4".stiffness']),
-        ("fgfbstts/full_float", ["splines.4.*", "errors.6.eccentricity.amount"]),
+        pytest.param(
+            "fgfbstts/both_errors",
+            ["errors.4.*", "gears.6.centre.angle", 'shafts."2-4".stiffness'],
+            marks=pytest.mark.slow,
+        ),
+        pytest.param(
+            "fgfbstts/full_float",
+            ["splines.4.*", "errors.6.eccentricity.amount"],
+            marks=pytest.mark.slow,
+        ),
         ("fgfbstts/spline_clearance", ["splines.4.*", "operating.power"]),
         (
             "fgfbstts/all_elements",
@@ -155,10 +163,10 @@ def test_a_gear_that_comes_to_float_has_no_displacement_to_that_side():
 
 
 def test_drawn_and_critical_cases():
-    rows = [{"number": k, **one(7, k)} for k in range(2, 5)]
+    rows = [{"number": k, **one(7, k)} for k in range(2, 4)]
     told = outcomes(rows)
     assert set(told) <= set(FINE)
-    assert told.count("agrees") >= 6
+    assert told.count("agrees") >= 4
     assert f"| one-sided derivatives | {len(told)} |" in text(rows)
     rows[0]["verdicts"][0]["outcome"] = "outside"
     assert "\n- 2: " in text(rows)

@@ -53,6 +53,7 @@ def test_a_cluster_that_loses_a_worker_gives_the_same_bits(reference, tmp_path):
     assert bits(out) == bits(reference)
 
 
+@pytest.mark.slow
 def test_a_cluster_that_is_lost_leaves_what_is_done(reference, tmp_path):
     """First the scheduler goes, then, on another cluster, all workers do."""
     out = tmp_path / "study"

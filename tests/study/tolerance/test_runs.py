@@ -425,7 +425,7 @@ def scatter(tmp_path) -> Path:
     ("sent", "code", "workers"),
     [
         (signal.SIGINT, 130, "1"),
-        (signal.SIGTERM, 143, "2"),
+        pytest.param(signal.SIGTERM, 143, "2", marks=pytest.mark.slow),
         pytest.param(signal.SIGINT, 130, "2", marks=pytest.mark.slow),
         pytest.param(signal.SIGTERM, 143, "1", marks=pytest.mark.slow),
     ],
