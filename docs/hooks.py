@@ -132,7 +132,15 @@ def notebook(page: str) -> str:
 
 
 def on_page_content(content: str, **_: Any) -> str:
-    """Turn formulas into MathML, and what docstrings say in reStructuredText into plain code."""
+    """Turn formulas into MathML, reStructuredText of docstrings into code, pictures into links.
+
+    A picture is drawn as wide as the page; the link shows it in full size.
+    """
+    content = re.sub(
+        r'(?<=<p>)(<img [^>]*src="([^"]+\.svg|[^"/]+\.png)"[^>]*>)(?=</p>)',
+        r'<a class="picture" href="\2">\1</a>',
+        content,
+    )
     content = re.sub(
         r'<span class="arithmatex">\\\((.*?)\\\)</span>', lambda m: _mathml(m[1], False), content
     )

@@ -163,7 +163,7 @@ def _compare(case: Case, train: Train, found: Position | None, told: str, findin
     claimed = found.certificate.bound.torque
     finding.bound = [[claimed[n], error] for n, error in errors.items()]
     # What was proved at first is over the largest torque of all flanks, coast flanks too.
-    radii = {m.flank_name(d): m.told_radius for m in train.meshes.values() for d in m.flanks}
+    radii = {m.flank_name(d): m.first_radius for m in train.meshes.values() for d in m.flanks}
     driving = np.abs(situation_of(train, finding.position).torque).max(initial=0.0)
     every = [abs(f) * radii[flank] for flank, f in found.claim.flank_force.items()]
     finding.bound.append([found.certificate.proved * max(driving, *every), max(errors.values())])

@@ -12,20 +12,20 @@ LONGEST = 400
 
 @dataclass(frozen=True)
 class Problem:
-    """One thing that is wrong with a case, told so that its reader can put it right.
+    """One thing that is wrong with a case, in words by which its author can correct it.
 
     Parameters
     ----------
     file : str
-        The file in which the offending key stands.
+        The file that contains the offending key.
     key : str
         Dotted path of the key, as in ``meshes."4-6".stiffness``; empty for the file as a whole.
     given : str
-        What stands there now, as text; empty when nothing does.
+        The present value, as text; empty if there is none.
     message : str
         What is wrong with it, without a full stop.
     allowed : str
-        What may stand there instead.
+        What is allowed instead.
     hint : str
         A whole sentence that helps, such as a did-you-mean.
     """
@@ -70,7 +70,7 @@ class CaseError(LoadshareError):
 
 
 class Refused(LoadshareError):  # noqa: N818 -- an answer is refused; nothing went wrong in the code
-    """An answer that is not handed out because it could not be certified.
+    """An answer that is not returned because it could not be certified.
 
     Parameters
     ----------

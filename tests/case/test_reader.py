@@ -61,7 +61,7 @@ def test_inheritance_chains_and_problems_name_the_file_of_the_key(tmp_path, driv
     bad = drive_text.replace('"150 mm", "150 mm"', '"150 mm", "15 mm/s"')
     path = write(tmp_path, base=bad, middle=middle, top=top)
     assert said(path, tmp_path).splitlines() == [
-        "top.toml: gears.a.teeth = 2: cannot stand here. Allowed: a number of at least 5.",
+        "top.toml: gears.a.teeth = 2: is not valid here. Allowed: a number of at least 5.",
         'middle.toml: gears.a.support = "3 kg": is a mass, a stiffness is needed. '
         'Allowed: "rigid", "free", or a stiffness such as "1.78e7 N/m".',
         'base.toml: gears.d.centre[1] = "15 mm/s": is a speed, a length is needed. '
@@ -107,7 +107,7 @@ def test_later_rooms_can_name_a_key_with_its_file(tmp_path, drive_text):
         ),
         (
             'extends = "base.toml"\nremove = "gears.a"\n',
-            'bad.toml: remove = "gears.a": cannot stand here. '
+            'bad.toml: remove = "gears.a": is not valid here. '
             'Allowed: a list such as ["errors.6"].',
         ),
         (

@@ -28,8 +28,8 @@ IN_A_CASE = {
     '[gears.2]\nbase_radius = "8 inches"': 'Write "8 in".',
     '[gears.2]\nbase_radius = "222 MM"': "Did you mean mm?",
     # Keys in a wrong place, or under another name.
-    MESH + 'module = "5 mm"': "Teeth stand with the gears, or in a pair file",
-    MESH + "teeth = 20": "Teeth stand with the gears, or in a pair file",
+    MESH + 'module = "5 mm"': "Teeth belong to the gears, or in a pair file",
+    MESH + "teeth = 20": "Teeth belong to the gears, or in a pair file",
     GEAR + 'module = "5 mm"': "gears.4.teeth: is missing. It goes with module.",
     GEAR + "z = 20": "Did you mean teeth?",
     GEAR + 'radius = "20 mm"': "base_radius, inner_radius, outer_radius or tip_radius?",

@@ -128,5 +128,5 @@ def test_new_writes_a_shipped_case_that_stands_alone(command, tmp_path, monkeypa
     assert "star/floating_sun_4" in unknown.stderr
     bound = command("new", "other", "--example", "fgfbstts/from_geometry")
     assert bound.exit_code == 2
-    assert "cannot stand alone" in bound.stderr
+    assert "cannot be copied alone" in bound.stderr
     assert not (tmp_path / "other.toml").exists()

@@ -46,7 +46,7 @@ class Sections(Element):
     """Anything else a reader should know."""
 
     assumed: tuple[str, ...] = ()
-    """Key paths of inputs that are assumptions; a star stands for any name."""
+    """Key paths of inputs that are assumptions; a star matches any name."""
 
     operating: Operating | None = None
     """The operating point: where the power enters and leaves, and how much of it."""
@@ -89,7 +89,7 @@ class Sections(Element):
         return any(gear in getattr(self, section) for section in FLOATS)
 
     def centres(self) -> dict[str, Vector]:
-        """Return the centres of the gears [m], of those for which they are told or follow."""
+        """Return the centres of the gears [m], of those for which they are given or follow."""
         return centres_of(self.gears, self.meshes)
 
     def outside_problem(self, key: str, named: FilePath) -> Problem | None:

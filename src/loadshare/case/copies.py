@@ -1,6 +1,6 @@
 """Branches that are written once: a gear's `copies`, and with it all that names the gear.
 
-A gear p with three copies stands for p1, p2 and p3; a mesh s-p for s-p1, s-p2 and s-p3; its
+A gear p with three copies is short for p1, p2 and p3; a mesh s-p for s-p1, s-p2 and s-p3; its
 bearing, ring, spline and errors for theirs. What is written of a single copy, such as errors.p2,
 counts before what is written of all, be it in another way: a stiffness before a law.
 """
@@ -43,7 +43,7 @@ class _Pattern:
 def with_copies(data: Data, origin: Origin) -> tuple[Data, Origin]:
     """Return a case's plain data with all copies written out, and where each was written.
 
-    What is wrong with `copies` stays as it is, to be told when the gear is read.
+    What is wrong with `copies` stays as it is, to be reported when the gear is read.
     """
     gears = data.get("gears")
     turns = dict(_turns(gears)) if isinstance(gears, Mapping) else {}
@@ -117,7 +117,7 @@ def _angle(given: object) -> float | None:
 
 
 def _ends(name: str, element: Any, keys: tuple[str, ...], gears: list[str]) -> tuple[str, ...]:
-    """The two gears of a mesh or shaft, as far as they can be told."""
+    """The two gears of a mesh or shaft, as far as they are known."""
     told = [element.get(key) for key in keys] if isinstance(element, Mapping) else [None]
     if len(keys) == 1 and isinstance(told[0], list):
         told = told[0]
@@ -155,7 +155,7 @@ def _copied(section: str, element: Any, pattern: _Pattern, ends: tuple[str, ...]
 
 
 def _lay(table: Data, section: str, name: str, element: Any, *, under: bool = False) -> None:
-    """Put an element in a table; where one of its name stands, key by key, over it or under it."""
+    """Put an element in a table; where one has its name, key by key, over it or under it."""
     there = table.get(name)
     if isinstance(there, dict) and isinstance(element, Mapping):
         low, high = (element, there) if under else (there, element)

@@ -1,6 +1,6 @@
 """What the texts below the fields of elements say: for the schema, and for what is missing.
 
-They are read from the source when they are first asked for. Few cases need them, and reading them
+They are read from the source when they are first needed. Few cases need them, and reading them
 when the elements are defined would take a quarter of the time in which a command starts.
 """
 

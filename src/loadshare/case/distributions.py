@@ -62,7 +62,7 @@ class Group(Element):
     """Inputs that are correlated, by a Gaussian copula."""
 
     inputs: Annotated[tuple[str, ...], Field(min_length=1)]
-    """Keys of the inputs, as given under `inputs`; a star stands for any name."""
+    """Keys of the inputs, as given under `inputs`; a star matches any name."""
 
     correlation: Annotated[
         Annotated[Coefficient, Tag(VALUE)]

@@ -63,7 +63,7 @@ class Draft(Sections):
         return found
 
     def centres(self) -> dict[str, Vector]:
-        """Return the centres of the gears [m], of those for which they are told or follow."""
+        """Return the centres of the gears [m], of those for which they are given or follow."""
         return self.once("centres", super().centres)
 
     def names(self, section: str) -> list[str]:
@@ -187,7 +187,7 @@ def _read_section(
         draft.tell((name,), f"has {len(value)} entries", f"at most {most}")
         return
     if model is not None and not isinstance(value, Mapping):
-        draft.tell((name,), "cannot stand here", "a table")
+        draft.tell((name,), "is not valid here", "a table")
     elif model is None or get_origin(about.annotation) is not dict:
         element = _read(draft, (name,), value, model or about.annotation)
         if element is not None:

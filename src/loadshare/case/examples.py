@@ -13,7 +13,7 @@ from loadshare.errors import CaseError, Problem
 
 _PACKAGE = Path(__file__).parents[1]
 FOLDERS = (_PACKAGE / "cases", _PACKAGE.parents[1] / "cases")
-"""Where they stand in an installation, and in a clone."""
+"""Where they are in an installation, and in a clone."""
 NO_CASES = ("pairs",)
 """Folders of files that cases read."""
 
@@ -38,7 +38,7 @@ def examples(name: str | None = None) -> tuple[str, ...] | Case:
     Raises
     ------
     CaseError
-        If there is no such case; near names are told.
+        If there is no such case; the message has similar names.
 
     Examples
     --------
@@ -74,7 +74,7 @@ def example_file(name: str) -> Path:
 
 
 def example_text(name: str) -> str:
-    """Return a shipped case as a case file that stands alone.
+    """Return a shipped case as a case file that needs no other.
 
     What extends no other case and reads no other file is the file itself, comments included.
 
@@ -90,7 +90,7 @@ def example_text(name: str) -> str:
     for mesh, law in case.meshes.items():
         for key in ("law_file", "geometry"):
             if getattr(law, key) is not None:
-                message = "reads another file, and cannot stand alone"
+                message = "reads another file, so it cannot be copied alone"
                 told = "Copy its folder from the source, or open it with ls.examples()."
                 at = f'meshes."{mesh}".{key}'
                 raise CaseError([Problem(name, at, "", message, hint=told)])

@@ -1,4 +1,4 @@
-"""Gears and carriers: teeth, bodies, and where they stand."""
+"""Gears and carriers: teeth, bodies, and where they are."""
 
 from __future__ import annotations
 
@@ -148,9 +148,9 @@ class Gear(Element):
         ]
         | None
     ) = None
-    """Gears that this one stands for: their number, or the angles by which each is turned [angle].
+    """Gears that this one is short for: their number, or the angles of their rotation [angle].
 
-    The gear p stands for p1, p2 and so on, turned about its pole; a mesh s-p for s-p1, s-p2, and
+    The gear p is short for p1, p2 and so on, rotated about its pole; a mesh s-p for s-p1, s-p2, and
     likewise shafts, splines, rings, bearings, errors and what stages name. What is written of
     single copies counts first.
     """

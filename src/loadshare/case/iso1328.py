@@ -46,7 +46,7 @@ class FlankTolerances:
 
 
 def tolerances_of(gear: Gear) -> FlankTolerances | None:
-    """Return the tolerances of a gear's teeth; None where no class or no teeth are told.
+    """Return the tolerances of a gear's teeth; None if no class or no teeth are given.
 
     The formulas of section 5.3, lengths in mm and tolerances in µm for class 5; each class is
     wider than the one before by √2.

@@ -1,4 +1,4 @@
-"""Key paths: where in a case something stands, as a tuple of names and as dotted text."""
+"""Key paths: where in a case something is, as a tuple of names and as dotted text."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def parse(text: str) -> Path:
     Parameters
     ----------
     text : str
-        Such as ``meshes."4-6".stiffness[0]``; a name without dots or quotes may stand bare.
+        Such as ``meshes."4-6".stiffness[0]``; a name without dots or quotes may be bare.
 
     Returns
     -------
@@ -72,7 +72,7 @@ def parse(text: str) -> Path:
 
 
 def look_up(data: Any, path: Path) -> Any:
-    """Return what stands at a path, or None where nothing does.
+    """Return what is at a path, or None if nothing is.
 
     Parameters
     ----------
@@ -133,7 +133,7 @@ def covers(pattern: Path, path: Path) -> bool:
     Parameters
     ----------
     pattern : tuple of str or int
-        A key path in which a star stands for any part of one name.
+        A key path in which a star matches any part of one name.
     path : tuple of str or int
         The key.
 

@@ -1,4 +1,4 @@
-"""Lines of action: what meshes say of them, and what follows from where their gears stand."""
+"""Lines of action: what meshes say of them, and what follows from where their gears are."""
 
 from __future__ import annotations
 
@@ -78,7 +78,7 @@ def line_of_action(
 def backlash_of_teeth(
     mesh: Mesh, gears: Mapping[str, Gear], centres: Mapping[str, Vector]
 ) -> float | None:
-    """Return the backlash that teeth leave along the line of action [m]; None where none are told.
+    """Return the backlash that teeth leave along the line of action [m]; None if none are given.
 
     Parameters
     ----------

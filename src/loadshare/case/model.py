@@ -27,7 +27,7 @@ class Case(Content):
     """A transmission, how it is loaded, and what is known about these inputs.
 
     Physical values may be texts with a unit, pint quantities or `Quantity`; elements may be tables
-    or models. Two cases are equal when they say the same, whatever their names and files.
+    or models. Two cases are equal if their contents are, even if their names or files differ.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class Case(Content):
 
     @property
     def hash(self) -> str:
-        """SHA-256 of what bears on the mechanics: the values in SI units, no titles and notes."""
+        """SHA-256 of what affects the mechanics: the values in SI units, no titles and notes."""
         if self._hash is None:
             content = {n: _in_si(getattr(self, n)) for n in Content.model_fields if n not in ABOUT}
             text = json.dumps(content, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
@@ -114,7 +114,7 @@ class Case(Content):
         return copy.deepcopy(dict(self._data))
 
     def to_toml(self, path: str | FilePath | None = None) -> str:
-        """Return the case as a case file that stands alone, and write it where a path is given.
+        """Return the case as a case file that needs no other, and write it if a path is given.
 
         Parameters
         ----------
@@ -158,7 +158,7 @@ class Case(Content):
         return changed
 
     def differences(self, before: Case) -> Iterator[tuple[Path, Any, Any]]:
-        """Yield where the case differs from another: the key, and what stands there in both.
+        """Yield where the case differs from another: the key, and its value in both.
 
         None where nothing does. Where one was made from the other by `replace`, this takes no time.
         """

@@ -62,12 +62,12 @@ class Origin:
         return Problem(file, key, given, message, allowed, hint)
 
     def of(self, path: Path) -> str:
-        """Return the file in which a key stands.
+        """Return the file that contains a key.
 
         Parameters
         ----------
         path : tuple of str or int
-            Its path; of a key that stands nowhere, the table that would hold it counts.
+            Its path; of a key that does not exist, the table that would hold it counts.
 
         Returns
         -------

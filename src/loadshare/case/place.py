@@ -1,4 +1,4 @@
-"""Where gears stand: centres and axes as vectors."""
+"""Where gears are: centres and axes as vectors."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from loadshare.involute import distance_without_backlash
 Vector: TypeAlias = tuple[float, float, float]
 
 COAXIAL = 1e-6
-"""How far centres on one axis may be apart, as a part of the size of what stands there [-]."""
+"""How far centres on one axis may be apart, as a part of the size of what is there [-]."""
 
 _AXES: dict[str, Vector] = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 
@@ -68,7 +68,7 @@ def centres_of(gears: Mapping[str, Gear], meshes: Mapping[str, Mesh]) -> dict[st
     while True:
         placed |= ready
         waiting = {n: g for n, g in gears.items() if n not in placed and _has_pole(g, placed)}
-        # What is given comes first: only when it stands is it known what is on an axis.
+        # What is given comes first: only then is it known what is on an axis.
         for way in (_given, _from_pole, _from_axis):
             ready = {
                 name: centre

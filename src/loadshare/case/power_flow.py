@@ -60,7 +60,7 @@ def from_the_other_end(
     meshes: Mapping[str, Mesh],
     shafts: Mapping[str, Shaft],
 ) -> bool:
-    """Tell whether the input stands where the meshes' names put the output."""
+    """Tell whether the input is where the meshes' names put the output."""
     forward = steps(gears, meshes, shafts)
     ahead, behind = reach([operating.input], forward), reach([operating.input], backwards(forward))
     return operating.output not in ahead and operating.output in behind
@@ -74,7 +74,7 @@ def against_the_names(
 ) -> tuple[bool, ...]:
     """Tell for every input torque whether it presses the flanks that the meshes' names do not.
 
-    It does where the torque is negative (the input brakes), and where the input stands at the other
+    It does where the torque is negative (the input brakes), and where the input is at the other
     end; both together press the usual flanks.
     """
     turned = from_the_other_end(operating, gears, meshes, shafts)

@@ -60,7 +60,7 @@ class Dimension:
     at_most : Quantity or None
         Upper bound.
     words : tuple of str
-        Words that may stand in its place.
+        Words that are allowed instead.
     """
 
     unit: str
@@ -82,7 +82,7 @@ class Dimension:
         return replace(self, at_least=at_least, above=above, at_most=at_most)
 
     def or_words(self, *words: str) -> Dimension:
-        """Return this dimension with words that may stand in its place."""
+        """Return this dimension with words that are allowed instead."""
         return replace(self, words=words)
 
     def read(self, given: object) -> Quantity | str:

@@ -126,7 +126,7 @@ def _read(
     if not isinstance(removals, list):
         allowed = 'a list such as ["errors.6"]'
         problems.append(
-            Problem(str(path), "remove", as_given(removals), "cannot stand here", allowed)
+            Problem(str(path), "remove", as_given(removals), "is not valid here", allowed)
         )
         removals = []
     for number, key in enumerate(removals):
@@ -178,7 +178,7 @@ def _base_of(path: FilePath, base: object, chain: tuple[FilePath, ...], origin: 
     try:
         there = target.is_file()
     except OSError:
-        return target  # to be told when it is read
+        return target  # to be reported when it is read
     if not there:
         raise CaseError([Problem(str(path), "extends", given, "there is no such file")])
     return target

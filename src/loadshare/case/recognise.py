@@ -1,4 +1,4 @@
-"""What a file is that was given in place of another: told from its beginning, not from its name."""
+"""What a file is that was given in place of another, by its beginning and not by its name."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ BY_GEAR = (("operating", "external"), ("operating", "forces"))
 def revise(
     data: Mapping[str, Any], origin: Origin, changes: Mapping[str, Any]
 ) -> tuple[dict[str, Any], Origin]:
-    """Return plain data with some keys changed, and where they stand now.
+    """Return plain data with some keys changed, and the file of each.
 
     Parameters
     ----------
@@ -125,7 +125,7 @@ def change(data: dict[str, Any], path: Path, value: Any) -> str | None:
 
 
 def differing(before: Any, after: Any, above: Path = ()) -> Iterator[tuple[Path, Any, Any]]:
-    """Yield where plain data differ: the key, and what stands there; None for nothing."""
+    """Yield where plain data differ: the key, and both values; None for nothing."""
     if before is after:
         return
     if isinstance(before, Mapping) and isinstance(after, Mapping):

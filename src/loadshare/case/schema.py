@@ -9,7 +9,7 @@ from loadshare.case.described import schema_of
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
-# What a file may say besides: it is gone once the file is read.
+# What else a file may say: it is gone once the file is read.
 FILE_KEYS: dict[str, Any] = {
     "extends": {
         "type": "string",

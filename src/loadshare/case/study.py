@@ -10,7 +10,7 @@ from pydantic import Field, Strict
 from loadshare.case.distributions import Given, Group, Spread
 from loadshare.case.element import Count, Element, Positive, Rule, Steps, Turns
 
-# What each kind of study needs, and what it may have besides.
+# What each kind of study needs, and what else it may have.
 KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     "sweep": (("over",), ()),
     "critical": (("keys", "start", "stop"), ()),
@@ -38,7 +38,7 @@ class Study(Element):
     """Sweep: values by key, as "0 um:12 um:61" (first, last, how many) or as a list."""
 
     keys: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
-    """Critical: keys that take the value. Sensitivity: inputs. A star stands for any name."""
+    """Critical: keys that take the value. Sensitivity: inputs. A star matches any name."""
 
     start: Given | None = None
     """Critical: where the keys' value starts."""

@@ -50,22 +50,22 @@ SYMBOLS = {
 }
 """What formulas and other programs call the keys of a case."""
 TEETH = ("teeth", "module", "face_width", "profile_shift", "addendum", "dedendum", "tip_relief")
-"""Keys that one may expect of a mesh, and that stand elsewhere."""
+"""Keys that one may expect of a mesh, and that belong elsewhere."""
 OF_TEETH = (
-    'Teeth stand with the gears, or in a pair file that the mesh names: geometry = "pair.toml".'
+    'Teeth belong to the gears, or in a pair file that the mesh names: geometry = "pair.toml".'
 )
 
 
 def hint_at(key: object, model: type[Element] | None, known: Iterable[str]) -> str:
-    """Return a sentence on a key that is not known where it stands.
+    """Return a sentence on a key that is not known where it is.
 
     Parameters
     ----------
     key : str or int
     model : type or None
-        The element in which it stands; None for the case as a whole.
+        The element that contains it; None for the case as a whole.
     known : iterable of str
-        Keys that may stand there.
+        Keys that are allowed there.
 
     Returns
     -------
@@ -123,7 +123,7 @@ def translate(error: ValidationError, model: type[Element]) -> list[Rule]:
     list of Rule
         The same, for the user.
     """
-    # How many there are of one element is told by none of them; each looks at all others.
+    # No element knows how many there are of its kind; each looks at all others.
     found = error.errors(include_url=False)[: ALLOWED.problems]
     return [_told(one, model) for one in found if not _follows(one, found)]
 
@@ -161,14 +161,14 @@ def _told(error: ErrorDetails, model: type[Element]) -> Rule:
     if kind == "literal_error":
         words = context["expected"].replace(" or ", ", ").replace("'", "").split(", ")
         hint = did_you_mean(error["input"], words)
-        return Rule("is not one of the words that can stand here", path, choices(words), hint)
+        return Rule("is not one of the allowed words", path, choices(words), hint)
     if kind == "shape":
-        return Rule("is not of a form that can stand here", path, error["msg"])
+        return Rule("does not have an allowed form", path, error["msg"])
     wanted = WANTED.get(kind, "another value").format_map(context)
     inner = _fields(model, path) if wanted == "a table" else {}
     if inner:
         wanted += f" of {choices(map(str, inner))}"
-    return Rule("cannot stand here", path, wanted)
+    return Rule("is not valid here", path, wanted)
 
 
 def _fields(model: type[Element], path: Path) -> dict[str | int, FieldInfo]:

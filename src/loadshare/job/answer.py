@@ -22,8 +22,8 @@ from loadshare.train.train import Train
 class Answer:
     """An equilibrium that is certified.
 
-    Its forces are at hand. Its place, where forces leave that open, the figures of its certificate
-    and how it was found are worked out when they are first asked for.
+    Its forces are known. Its place, where forces leave that open, the figures of its certificate
+    and how it was found are computed when they are first read.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ class Answer:
 
     @property
     def scene(self) -> Scene:
-        """The contact problem, assembled anew."""
+        """The contact problem, assembled again."""
         return assemble(self.train, self.index)
 
     @cached_property

@@ -141,7 +141,7 @@ def formulate(
 ) -> Formulation:
     """Write the programme whose answer is the equilibrium of a case.
 
-    The case is solved first. The programme is convex: arcs of limit rings stand in it as their
+    The case is solved first. The programme is convex: arcs of limit rings are replaced by their
     tangent faces at the equilibrium, nonlinear laws as their tangents, friction that follows a
     torque as the bound at that torque. So its answer is the equilibrium itself.
 

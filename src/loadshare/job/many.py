@@ -119,8 +119,8 @@ def solve_many(
     case : Case or path
         Gives whatever the samples do not.
     samples : mapping of str to array_like
-        Values by dotted key, all of one length. The unit stands in brackets after the key, as in
-        ``{"rings.4.float [um]": [0, 4, 8]}``; texts with units may stand instead.
+        Values by dotted key, all of one length. The unit is in brackets after the key, as in
+        ``{"rings.4.float [um]": [0, 4, 8]}``; texts with units are allowed as well.
     positions : iterable of int, optional
         1-based positions to solve; all by default.
     keep : iterable of str
@@ -130,7 +130,7 @@ def solve_many(
     engine : {"auto", "compiled", "vectorised"}
         Numba or NumPy; both give the same answers. "auto" is Numba from a few thousand equilibria
         on where its code is on disk, else from 200 000 on: compiling takes one to three minutes of
-        processor time, once in an installation. Where that fails, NumPy answers, as the log tells.
+        processor time, once in an installation. If that fails, NumPy is used, and the log says so.
     workers : int
         Threads.
     least_norm : bool

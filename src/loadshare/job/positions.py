@@ -150,8 +150,8 @@ def explain(
     -------
     Answer
         Scene, equilibrium, certificate, and the record of plans, passes and what was left out. An
-        answer that :func:`solve` refuses for its displacements is handed out here all the same;
-        its ``validity`` tells.
+        answer that :func:`solve` refuses for its displacements is returned here nevertheless;
+        see its ``validity``.
 
     Raises
     ------
@@ -281,7 +281,7 @@ def result_of(
     options : Options
     tolerance : float
     wanted : sequence of int
-        1-based positions that were asked for.
+        1-based positions that were requested.
     """
     found = [position_of(a.train, a.index, a.flank_force, a) for a in answers]
     return result_from(case, train, found, partial(_stamp, case, options, tolerance, wanted))

@@ -83,7 +83,7 @@ class Figure:
     Notes
     -----
     Pictures compose as Altair charts do: ``a | b`` side by side, ``a & b`` one above the other,
-    ``a + b`` in one panel. Either may be an Altair chart of one's own, on the right; the outcome is
+    ``a + b`` in one panel. The right-hand one may be an Altair chart of your own; the outcome is
     a `Figure`, with the same look and ``save``.
     """
 
@@ -196,7 +196,7 @@ class Figure:
         Parameters
         ----------
         prefix : str
-            Put before the names within it, for pictures that stand in one document.
+            Put before the names within it, for several pictures in one document.
         """
         # The names of clipping paths go on from picture to picture of a process.
         numbers: dict[str, int] = {}

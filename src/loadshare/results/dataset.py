@@ -187,7 +187,7 @@ def with_units(table: pd.DataFrame, arrays: xr.Dataset) -> pd.DataFrame:
 def frames(result: Result) -> dict[str, pd.DataFrame]:
     """Tabulate everything by what it belongs to: train, meshes, gears, shafts, floats.
 
-    A row for every position and element; heads tell the unit.
+    A row for every position and element; heads have the unit.
     """
     arrays, found = result.dataset, {}
     for dim in ("side", "mesh", "gear", "shaft", "float"):

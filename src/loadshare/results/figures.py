@@ -212,7 +212,7 @@ class Figures:
     @cached_property
     def mesh_torsional_stiffness(self) -> Array:
         """The same as torque by angle at the gear that the mesh names first [N·m/rad]."""
-        radii = np.array([mesh.told_radius for mesh in self.train.meshes.values()])
+        radii = np.array([mesh.first_radius for mesh in self.train.meshes.values()])
         return np.asarray(self.mesh_stiffness * radii**2)
 
     @property

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def load_result(path: str | Path) -> Result:
     """Load a result written by ``to_json`` or ``to_netcdf``, and certify it again.
 
-    The case that the file holds is built anew, every position's claimed displacements and forces
+    The case in the file is built again, every position's claimed displacements and forces
     are certified against it, and all other figures are computed from them. The file must agree with
     what was computed but for round-off.
 

@@ -51,7 +51,7 @@ class Stamp:
     stop : float
         Of the outer loop.
     positions : tuple of int
-        1-based positions that were asked for.
+        1-based positions that were requested.
     """
 
     version: str
@@ -108,7 +108,7 @@ class Answered(Protocol):
 class Position:
     """What was found at one position.
 
-    What few look at is worked out when it is first asked for. Two positions are equal if their
+    Rarely used figures are computed when they are first read. Two positions are equal if their
     claims, certificates and efforts are.
 
     Attributes
@@ -290,7 +290,7 @@ class Result:
 
     @property
     def passed(self) -> bool:
-        """Whether every position asked for is there and certified; `solve` returns no other."""
+        """Whether every requested position is there and certified, as all that `solve` returns."""
         there = [p.position for p in self.positions]
         whole = bool(there) and sorted(there) == sorted(self.stamp.positions)
         return whole and all(p.certificate.passed for p in self.positions)

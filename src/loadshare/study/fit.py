@@ -77,7 +77,7 @@ class Fit(Viewed):
     singular_values : ndarray, shape (min(m, n),)
         Of the sensitivities, measured in standard deviations over the range of each unknown.
     warnings : tuple of str
-        Which inputs the data cannot tell apart, and which stand at a bound.
+        Which inputs the data cannot determine separately, and which are at a bound.
     comparison : Comparison
         Measured against computed at the fitted values, certified.
     starts : tuple of float

@@ -159,7 +159,7 @@ def read_parameter(case: Case, key: str | Sequence[str], unit: str) -> Parameter
     ----------
     case : Case
     key : str or sequence of str
-        A dotted key path, a pattern in which a star stands for any name, keys joined by ``=``, or
+        A dotted key path, a pattern in which a star matches any name, keys joined by ``=``, or
         several of these: all the keys take the same value.
     unit : str
         Unit of the values.

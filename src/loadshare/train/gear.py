@@ -60,7 +60,7 @@ class Gear:
     axis : ndarray, shape (3,)
         Unit vector.
     frame : ndarray, shape (2, 3)
-        Unit vectors of the transverse plane, along which a support's stiffness is told: those of
+        Unit vectors of the transverse plane, along which a support's stiffness is given: those of
         `plane`, or turned to where it is largest and smallest.
     base_radius : float
         r_b [m]; the acting radius of a face gear, the distance of a carrier's outermost pin.

@@ -42,7 +42,7 @@ class Pair:
         See `Mesh`.
     line : LineOfAction
     phase : float
-        Part of its cycle at which it stands at the first position, where teeth tell it [-].
+        Part of its cycle that has passed at the first position, where teeth tell it [-].
     backlash : float
         Along the line of action, where the mesh has it follow from its teeth [m].
     counted : (int, int)

@@ -134,7 +134,7 @@ class Mesh:
         Whether the case names the driven gear first: torque runs against the name of a mesh that
         has one flank only, and that flank is the one it presses.
     phase : float
-        Part of its cycle at which it stands at the first position [-].
+        Part of its cycle that has passed at the first position [-].
     counted : (int, int)
         1 where a rotation of driver and of driven gear is counted in the sense in which the drive
         flank goes with the driver and pushes the driven gear, −1 where against it: in planetary
@@ -155,13 +155,13 @@ class Mesh:
     counted: tuple[int, int] = (1, 1)
 
     @property
-    def told_radius(self) -> float:
-        """Base radius [m] of the gear that the name puts first: laws and torques are told at it."""
+    def first_radius(self) -> float:
+        """Base radius [m] of the gear that the name puts first, at which torques are given."""
         return self.radii[1] if self.turned else self.radii[0]
 
     def lever(self, drive: bool) -> float:
         """Torque per flank force [m] on the gear named first, positive where it drives."""
-        return self.told_radius if drive != self.turned else -self.told_radius
+        return self.first_radius if drive != self.turned else -self.first_radius
 
     def closer(self, by: float) -> Mesh:
         """Return the mesh with both flanks closer along the line of action [m]."""

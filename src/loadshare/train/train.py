@@ -232,7 +232,7 @@ class Train:
 
     @cached_property
     def cycle(self) -> str | None:
-        """Gear one tooth of which is a mesh cycle; None where gears stand still over the cycle.
+        """Gear one tooth of which is a mesh cycle; None if gears do not rotate over the cycle.
 
         The input gear, or else the first on the way from it whose teeth are known. In a march it
         decides nothing.
@@ -330,8 +330,8 @@ class Train:
     def slip_seen_next(self, gear: str, slip: Vector, index: int) -> Vector:
         """Slip (3,) [m] at the end of position `index` (1-based) as the next one sees it.
 
-        From a carrier, what stands in the housing turns back; as the housing sees it, in a train
-        whose positions are placed, what stands on a carrier goes round.
+        Seen from a carrier, what is fixed in the housing rotates back; as the housing sees it, in
+        a train whose positions are placed, what is fixed to a carrier goes round.
         """
         here = self.gears[gear]
         if (here.carrier is not None) != self.uneven or index == self.count:

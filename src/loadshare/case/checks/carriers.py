@@ -1,4 +1,4 @@
-"""Planets must fit their carriers, and what the housing holds must not be asked to turn."""
+"""Planets must fit their carriers, and what the housing holds must not have to turn."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def check_planet_meshes(draft: Draft) -> Iterator[Problem]:
 
 
 def check_held(draft: Draft) -> Iterator[Problem]:
-    """Yield held gears that are asked to turn, or that rigid shafts hold a second time."""
+    """Yield held gears that would have to turn, or that rigid shafts hold a second time."""
     held = {name for name, gear in draft.gears.items() if gear.held}
     operating, march = draft.operating, draft.march
     turning = {operating.input: "the input", operating.output: "the output"} if operating else {}

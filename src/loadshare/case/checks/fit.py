@@ -1,4 +1,4 @@
-"""Gears that mesh must be able to: where they stand, and what their teeth are."""
+"""Gears that mesh must be able to: where they are, and what their teeth are."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def check_tooth_kinds(draft: Draft) -> Iterator[Problem]:
 
 
 def check_fit(draft: Draft) -> Iterator[Problem]:
-    """Yield pairs whose axes, base radii and pressure angle do not fit where they stand."""
+    """Yield pairs whose axes, base radii and pressure angle do not fit where they are."""
     centres = draft.centres()
     for name, mesh, driver, driven in _pairs(draft):
         kinds = {driver.type, driven.type}
@@ -56,7 +56,7 @@ def _parallel_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterat
         return
     distance = centre_distance(driver, offset)
     if distance <= SQUARE * max(driver.acting_radius, driven.acting_radius):
-        yield draft.problem(("meshes", name), "the two gears stand on the same axis")
+        yield draft.problem(("meshes", name), "the two gears are on the same axis")
         return
     radius = tangent_distance(driver, driven)
     if "internal" in (driver.type, driven.type):
@@ -113,7 +113,7 @@ def toothed_pairs(
 ) -> Iterator[tuple[str, tuple[str, str], tuple[Tooth, Tooth], float]]:
     """Yield meshes whose gears both tell their teeth, with ends, teeth and centre distance [m].
 
-    Gears that could not mesh at any distance are left out, as that is told already.
+    Gears that could not mesh at any distance are left out, as that is reported already.
     """
     centres = draft.centres()
     for name, mesh, driver, driven in _pairs(draft):

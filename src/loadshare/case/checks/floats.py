@@ -73,7 +73,7 @@ def check_float_backlashes(draft: Draft) -> Iterator[Problem]:
 
 
 def check_idle_inputs(draft: Draft) -> Iterator[Problem]:
-    """Yield what was given and bears on nothing for want of something else."""
+    """Yield what was given and has no effect because something else is missing."""
     for name, mesh in draft.meshes.items():
         if mesh.helix_angle is not None and mesh.helix_angle.si and mesh.backlash is None:
             message = "turns a circumferential backlash into one along the line of action, but"

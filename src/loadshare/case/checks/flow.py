@@ -71,7 +71,7 @@ def check_pressed_flanks(draft: Draft) -> Iterator[Problem]:
     """Yield meshes whose backlash must tell when the flank that takes the torque is reached.
 
     Torque that runs against a mesh's name presses its coast flank. A mesh without a backlash has
-    one flank only, and its play is not known: then all or none of them must be told.
+    one flank only, and its play is not known: then all or none of them must be given.
     """
     if not _known(draft) or draft.operating is None:
         return
@@ -102,7 +102,7 @@ def _steps(draft: Draft) -> Steps:
 
 
 def _turned(draft: Draft) -> bool:
-    """Whether the input stands where the meshes' names put the output."""
+    """Whether the input is where the meshes' names put the output."""
     operating = draft.operating
     if operating is None:
         return False

@@ -1,4 +1,4 @@
-"""Where gears stand: what must be told of it, and teeth that need room."""
+"""Where gears are: what must be given of it, and teeth that need room."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def check_tips(draft: Draft) -> Iterator[Problem]:
     for name, ends, teeth, distance in toothed_pairs(draft):
         overlap = OVERLAP * teeth[0].module
         if base_distance(*teeth) >= distance or normal_backlash(*teeth, distance) < -overlap:
-            continue  # told of already
+            continue  # reported already
         for (one, two), (gear, other) in (
             (ends, teeth),
             (ends[::-1], teeth[::-1]),
@@ -124,7 +124,7 @@ def _passing(pinion: Tooth, ring: Tooth, distance: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class _Clash:
-    """Two gears whose tip circles overlap, by how much, and how far apart they stand [m]."""
+    """Two gears whose tip circles overlap, by how much, and how far apart they are [m]."""
 
     one: str
     two: str
@@ -179,7 +179,7 @@ def _clash(draft: Draft, one: str, two: str, centres: Mapping[str, Vector]) -> _
 def _in_the_way(draft: Draft, middle: str, clash: _Clash, centres: Mapping[str, Vector]) -> Problem:
     """Say how two gears overlap, and how many would fit."""
     path = ("gears", clash.two, "centre")
-    aside = "give them places along the axis if they stand side by side there"
+    aside = "give them places along the axis if they are side by side there"
     if not clash.apart:
         what = f"is where gear {clash.one} is, and both mesh with {middle}"
         hint = f"Join them by a shaft if they are one body, or {aside}."

@@ -1,4 +1,4 @@
-"""What changes over the mesh cycle, or as gears turn, must be told for all of it."""
+"""What changes over the mesh cycle, or as gears turn, must be given for all of it."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def check_turning(draft: Draft) -> Iterator[Problem]:
             )
             hint = (
                 f"Give gears.{operating.input}.teeth, or the teeth of any other gear; "
-                'operating.rotation = "neglected" if gears shall stand still; or a march.'
+                'operating.rotation = "neglected" if gears should not rotate; or a march.'
             )
             yield draft.problem(("errors", name, "eccentricity"), message, hint=hint)
 

@@ -80,13 +80,13 @@ def _gears_named(draft: Draft) -> Iterator[tuple[Path, str]]:
                     told = getattr(valid[name], key)
                     given = look_up(draft.data, path) is not None
                     for gear in (told,) if isinstance(told, str) else told:
-                        # A name that tells no gears was told of already.
+                        # A name that names no gears was reported already.
                         if gear or given:
                             yield path if given else path[:-1], gear
                 else:
                     yield from _texts_at(draft, path)
     for section in (*FLOATS, "errors"):
-        # A name that is none was told of already.
+        # A name that is none was reported already.
         yield from (((section, name), name) for name in draft.names(section) if name.strip())
     yield from _texts(draft, "rings", "neighbours")
     yield from _texts_at(draft, ("operating", "input"))

@@ -221,7 +221,7 @@ class Columns:
     @cached_property
     def arms(self) -> Array:
         """Base radius at which the torque of every flank is given [m]."""
-        return np.array([m.told_radius for m, _ in self.all_flanks])
+        return np.array([m.first_radius for m, _ in self.all_flanks])
 
     def over_meshes(self, torques: Array) -> Array:
         """Sums of what belongs to the flanks, (…, flanks), of both flanks of every mesh."""

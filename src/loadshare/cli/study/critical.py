@@ -34,7 +34,7 @@ def critical(
         over(
             "FROM:TO",
             "Input to vary and its ends, as in rings.4.float='0 um:12 um'; KEY=KEY=FROM:TO ties "
-            "keys; a star stands for any name.",
+            "keys; a star matches any name.",
         ),
     ] = None,
     start: Annotated[str | None, typer.Option("--from", metavar="VALUE", hidden=True)] = None,

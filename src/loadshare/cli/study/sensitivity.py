@@ -38,7 +38,7 @@ ROUND_OFF = 1e-13
 def sensitivity(
     case: CaseFile,
     key: Annotated[
-        list[str] | None, keys("Inputs; a star stands for any name. All by default.")
+        list[str] | None, keys("Inputs; a star matches any name. All by default.")
     ] = None,
     file: Annotated[list[Output] | None, outputs(*TABLES, *FIGURES)] = None,
     position: Positions = None,

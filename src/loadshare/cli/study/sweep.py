@@ -27,7 +27,7 @@ def sweep(
         over(
             "GRID",
             "Input and its values, as in rings.4.float='0 um:12 um:61' (first, last, how many) or "
-            "'a, b, c'; KEY=KEY=GRID ties keys; a star stands for any name. One or two.",
+            "'a, b, c'; KEY=KEY=GRID ties keys; a star matches any name. One or two.",
         ),
     ],
     file: Annotated[list[Output] | None, outputs(*SWEPT)] = None,

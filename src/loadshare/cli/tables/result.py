@@ -155,7 +155,7 @@ def print_heading(
     say(f"{records.load_told(case)}; {solved}")
     turning = any(errors.eccentricity is not None for errors in case.errors.values())
     if turning and case.march is None and count > 1 and case.operating.rotation == "neglected":
-        say("Gears stand still over the mesh cycle: eccentricities keep their first direction")
+        say("Gears do not rotate over the mesh cycle: eccentricities keep their first direction")
 
 
 def print_sharing(result: Result) -> None:

@@ -54,7 +54,7 @@ class _Importer:
         """Return the case."""
         self.assumed += self.of.model.notes
         if any(self.of.is_referred(body) for body in (*self.of.gears, *self.of.carriers)):
-            self.assumed.append("places told from other components are turned like these")
+            self.assumed.append("places taken from other components are rotated like these")
         if not self.of.stages:
             self._lacks("", "has no cylindrical stage that joins two gears")
         gears = {self.of.names[g.id]: self._gear(g) for g in self.of.gears}

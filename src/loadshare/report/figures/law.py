@@ -80,7 +80,7 @@ def _curves(train: Train, meshes: Sequence[str], reach: float) -> Iterator[Row]:
     for name in meshes:
         mesh = train.meshes[name]
         for position in range(max(len(mesh.laws), len(mesh.gaps))):
-            key = (mesh.law(position), mesh.gap(position, True), mesh.told_radius)
+            key = (mesh.law(position), mesh.gap(position, True), mesh.first_radius)
             if key in seen:
                 continue
             curve = seen[key] = len(seen)
@@ -93,7 +93,7 @@ def _curves(train: Train, meshes: Sequence[str], reach: float) -> Iterator[Row]:
 
 def _deformation(mesh: Mesh, position: int, torque: float) -> float:
     """Δφ(T) = a + bT + cT^(2/3) [rad at the driver], a being the gap."""
-    radius = mesh.told_radius
+    radius = mesh.first_radius
     compression = mesh.law(position).compression(torque / radius)
     return (mesh.gap(position, True) + compression) / radius
 

@@ -141,7 +141,7 @@ class Sensitivity(Viewed):
     def to_dataframe(self) -> pd.DataFrame:
         """Derivatives of torques and shares with their stated errors, per SI unit of the input.
 
-        One row per position, input, side and mesh; ``attrs["units"]`` tells the units.
+        One row per position, input, side and mesh; ``attrs["units"]`` has the units.
         """
         from loadshare.results.dataset import with_units
 

@@ -44,7 +44,7 @@ def sensitivity(
     ----------
     case : Case or path
     inputs : str or sequence of str, optional
-        Dotted key paths, or patterns in which a star stands for any name; a table or list means all
+        Dotted key paths, or patterns in which a star matches any name; a table or list means all
         numbers in it. All numbers of the case by default.
     positions : iterable of int, optional
         1-based positions; all by default.
@@ -54,7 +54,7 @@ def sensitivity(
     Returns
     -------
     Sensitivity
-        One-sided derivatives, which agree where the equilibrium stands on no verge. Where it does,
+        One-sided derivatives, which agree unless the equilibrium is on a verge. Where it does,
         `Sensitivity.kinks` says so.
 
     Raises

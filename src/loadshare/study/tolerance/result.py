@@ -40,7 +40,7 @@ class OmegaStatistics:
     exceedance : Estimate or None
         P(Ω > limit); None without a limit.
     shares : tuple of Share
-        Shares of variance; empty where none were asked or Ω does not vary.
+        Shares of variance; empty if none were requested or Ω does not vary.
     """
 
     over: str
@@ -148,7 +148,7 @@ class Tolerance(Viewed):
         return self.folder.frame(columns)
 
     def to_dataframe(self, columns: Sequence[str] | None = None) -> pd.DataFrame:
-        """Read the samples, as `to_frame` does; heads tell the unit."""
+        """Read the samples, as `to_frame` does; heads have the unit."""
         return self.to_frame(columns)
 
     def to_xarray(self) -> xr.Dataset:

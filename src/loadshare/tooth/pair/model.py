@@ -263,7 +263,7 @@ class PairContent(Element):
     """Anything else a reader should know."""
 
     assumed: tuple[str, ...] = ()
-    """Key paths of inputs that are assumptions; a star stands for any name."""
+    """Key paths of inputs that are assumptions; a star matches any name."""
 
     torque: Load
     """Rated torque T on the driver [torque]; the law is fitted at 0.1, 0.5 and 0.9 of it."""
