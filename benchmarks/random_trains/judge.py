@@ -231,7 +231,7 @@ def misplaced(
     moved = max((abs(float(v)) for d in exact.displacement.values() for v in d), default=0.0)
     scale = max(moved, machine.length)
     for gear, along in exact.displacement.items():
-        place = train.gears[gear].told(np.array([float(v) for v in along]))
+        place = train.gears[gear].in_plane(np.array([float(v) for v in along]))
         for axis, k in ("x", 0), ("y", 1):
             name = f"gear {gear} {axis}"
             error = abs(found.displacement[gear][k] - float(place[k]))

@@ -1,4 +1,4 @@
-"""What a solve was asked to do, and how it went."""
+"""What a solve had to do, and how it went."""
 
 from __future__ import annotations
 

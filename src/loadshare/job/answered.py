@@ -92,7 +92,7 @@ class Answered:
     Attributes
     ----------
     positions : tuple of int
-        1-based, as they were asked for.
+        1-based, as requested.
     parts : tuple of Part
     """
 

@@ -31,7 +31,7 @@ RUNGS = np.array([HOT, SEARCHED], dtype=object)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Block:
-    """Answers of up to `BLOCK` samples at all positions asked for.
+    """Answers of up to `BLOCK` samples at all requested positions.
 
     Attributes
     ----------

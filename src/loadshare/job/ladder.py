@@ -46,7 +46,7 @@ class _Part(NamedTuple):
 
 
 def rungs(options: Options) -> Iterator[tuple[str, Options]]:
-    """Yield what was asked for, then the whole scene, then the other forms of the loop."""
+    """Yield what was requested, then the whole scene, then the other forms of the loop."""
     yield f"{options.solver} + exact", options
     if options.reduce:
         yield "whole scene", replace(options, reduce=False)
@@ -230,6 +230,6 @@ def uncertified(index: int, certificate: Certificate) -> Refused:
     return Refused(
         f"position {index}: forces and laws are in balance to {certificate.worst:.1e}, but the "
         f"torques are {proved} (of the largest torque; allowed {allowed:.0e}): parts of very "
-        "unlike stiffness share the load, or contacts stand on the verge",
+        "very different stiffness share the load, or contacts are on the verge",
         {"torque_bound": error},
     )

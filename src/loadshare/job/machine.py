@@ -134,7 +134,7 @@ class Machine:
         self.__dict__["measuring"] = other.measuring
 
     def at(self, index: int) -> Machine:
-        """Return the machine of a position (1-based): itself, unless its train is placed anew."""
+        """Return the machine of a position (1-based): itself, unless its train is placed again."""
         if index not in self._placed:
             train = standing(self.train, index)
             if train is self.train:

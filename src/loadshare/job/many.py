@@ -117,7 +117,7 @@ def solve_many(
     Parameters
     ----------
     case : Case or path
-        Gives whatever the samples do not.
+        Gives what the samples do not.
     samples : mapping of str to array_like
         Values by dotted key, all of one length. The unit is in brackets after the key, as in
         ``{"rings.4.float [um]": [0, 4, 8]}``; texts with units are allowed as well.

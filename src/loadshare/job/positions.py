@@ -176,7 +176,7 @@ def _options(
 ) -> tuple[Options, str | None]:
     """Options of the rungs, and the engine of the hot path; None if that does not come first.
 
-    What only a back-end can do, another form of the loop or the whole scene, is not asked of it.
+    What only a back-end can do, another form of the loop or the whole scene, is not its task.
     """
     if solver != AUTO:
         return Options(solver=solver, method=method, reduce=reduce), None

@@ -29,7 +29,7 @@ class Recent(Generic[Made]):
         ----------
         case : Case or None
         what : object
-            To be told apart from what else was made of it.
+            To distinguish it from what else was made of it.
         """
         return next((m for c, w, m in self._made if c is case and w == what), None)
 

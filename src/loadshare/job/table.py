@@ -32,7 +32,7 @@ KEPT: dict[str, Variable] = {
     **{name: VARIABLES[name] for name in ("torque", "share", "pair_share", "displacement")},
     "contact_force": Variable(("contact",), "N", "force of a contact of a ring"),
 }
-"""Of each sample at each position, if it is asked for."""
+"""Of each sample at each position, if it is requested."""
 
 
 def checked(names: Iterable[str]) -> tuple[str, ...]:
@@ -59,7 +59,7 @@ class Each:
     field : str
         Of a block.
     none : object
-        What stands where there is no answer.
+        The value where there is no answer.
     long_name, units : str
     type_ : str
         As NumPy names it.

@@ -149,7 +149,7 @@ class Figures:
                 continue
             own = pushed[k].T @ gear.plane.T
             if gear.support is not None:
-                own = gear.told(state.claim.support_force[k].T)
+                own = gear.in_plane(state.claim.support_force[k].T)
             bearing = self.train.bearings.get(name)
             if bearing is not None:
                 own = own - state.reaction[of.pulls.index(bearing.name)].T @ gear.plane.T

@@ -47,7 +47,7 @@ def train_alike(case: Case, base: tuple[Case, Geometry, Train]) -> Train | None:
 
 
 def _number(value: object) -> float | None:
-    """Return the number of a value as a case file has it, whatever its unit; None of a word."""
+    """Return the number of a value as a case file has it, in any unit; None for a word."""
     if isinstance(value, int | float) and not isinstance(value, bool):
         return float(value)
     match = _NUMBER.match(value.strip()) if isinstance(value, str) else None

@@ -57,7 +57,7 @@ def array_unit(case: spec.Case, column: Column) -> str | None:
         case ("errors", _, "installation", int()) | ("errors", _, "pin", _):
             return _LENGTH
         case ("errors", _, "eccentricity", "amount"):
-            # Where it is not told how far gears turn, only an eccentricity of 0 has an answer.
+            # Where it is not known how far gears turn, only an eccentricity of 0 has an answer.
             return _LENGTH if turning_told(case.operating, case.march, case.gears) else None
         case ("errors", _, "eccentricity", "direction" | "phase"):
             return "rad"

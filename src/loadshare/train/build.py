@@ -1,6 +1,6 @@
 """From a case to a train: everything in SI.
 
-A number may be an array of S values, one per sample (see `samples`): what stands here is written so
+A number may be an array of S values, one per sample (see `samples`): what is here is written so
 that it does for both.
 """
 
@@ -80,7 +80,7 @@ def train_of(
     def elements(
         section: str, convert: Callable[[str, Any], Element], known: str = ""
     ) -> dict[str, Element]:
-        """Elements of a section, those anew that the base does not have."""
+        """Elements of a section; those that the base does not have are built."""
         now = getattr(case, section)
         if base is None:
             return {name: convert(name, item) for name, item in now.items()}

@@ -87,7 +87,7 @@ def columns_of(samples: Mapping[str, ArrayLike]) -> list[Column]:
     ----------
     samples : mapping of str to array_like
         Values by key path, all of one length. The unit is in brackets after the key, as in
-        ``"rings.4.float [um]"``; texts with their units, as in a case file, may stand instead.
+        ``"rings.4.float [um]"``; texts with their units, as in a case file, are allowed as well.
 
     Raises
     ------

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Names:
-    """Order in which a train's gears, contacts and radial elements stand in arrays.
+    """Order of a train's gears, contacts and radial elements in arrays.
 
     Attributes
     ----------

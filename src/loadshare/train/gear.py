@@ -90,8 +90,8 @@ class Gear:
     harmonic : int
         n.
     seen_at : float
-        Angle by which `plane` has turned [rad], where the gear stands as the housing sees it and
-        its components are told as seen from a carrier that turns (see `placed.py`).
+        Angle by which `plane` has turned [rad], where the gear is placed as the housing sees it and
+        its components are given as seen from a carrier that turns (see `placed.py`).
     """
 
     name: str
@@ -115,7 +115,7 @@ class Gear:
 
     @property
     def plane(self) -> NDArray[np.float64]:
-        """Unit vectors of the transverse plane, shape (2, 3), along which components are told."""
+        """Unit vectors of the transverse plane, shape (2, 3), along which components are given."""
         return transverse_frame(self.axis, self.seen_at)
 
     @property
@@ -123,7 +123,7 @@ class Gear:
         """Whether its frame is not that of its plane."""
         return self.frame is not self.plane
 
-    def told(self, components: Vector) -> Vector:
+    def in_plane(self, components: Vector) -> Vector:
         """Components (2,) along `plane` of those along `frame`."""
         return components @ self.frame @ self.plane.T if self.is_tilted else components
 

@@ -1,4 +1,4 @@
-"""The geometry of a case: where gears stand, how they turn, which way their teeth push.
+"""The geometry of a case: where gears are, how they turn, which way their teeth push.
 
 It is settled once for all samples that share a machine.
 """
@@ -155,7 +155,7 @@ def _in_phase(case: spec.Case, pairs: Mapping[str, Pair]) -> dict[str, Pair]:
     Raises
     ------
     CaseError
-        If teeth that are told whole do not meet.
+        If teeth that are given completely do not meet.
     """
 
     def half(gear: Gear, pair: Pair) -> float:
@@ -189,7 +189,7 @@ def _phases_against(case: spec.Case, found: Mapping[str, float]) -> Iterator[Pro
         if given is not None and abs((given - layout + 0.5) % 1.0 - 0.5) > MEETS:
             path, allowed = ("meshes", name, "phase"), f"{layout:.4g}, or left out"
             hint = 'With operating.phases = "together" any phases may be given.'
-            yield case.problem(path, "contradicts the teeth and where they stand", allowed, hint)
+            yield case.problem(path, "contradicts the teeth and their places", allowed, hint)
 
 
 def _misfit_told(case: spec.Case, pairs: Mapping[str, Pair], misfit: Misfit) -> Problem:
@@ -231,7 +231,7 @@ def _spacing_told(case: spec.Case, pairs: Mapping[str, Pair], pair: Pair) -> str
         whole = abs(teeth[0] - teeth[1]) if alike else sum(teeth)
         if whole:
             return (
-                f"Gears that stand about the same axis fit at angles {360.0 / whole:.6g} deg "
+                f"Gears about the same axis fit at angles {360.0 / whole:.6g} deg "
                 f"apart, and evenly spaced if their number divides {whole}."
             )
     return ""

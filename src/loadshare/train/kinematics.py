@@ -1,7 +1,7 @@
 """Running senses and speed ratios, found by walking from the input gear over meshes and shafts.
 
 Planets and what meshes with them are walked as seen from their carrier; where no mesh or shaft
-leads, the walk begins anew, and the senses that it found are turned to those of the true speeds.
+leads, the walk begins again, and the senses that it found are turned to those of the true speeds.
 """
 
 from __future__ import annotations

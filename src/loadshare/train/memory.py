@@ -53,7 +53,7 @@ class SlipFriction(_Part):
     __slots__ = ()
 
     def law(self, torque: float) -> RadialLaw:
-        """Law about the slip of the position before: F_m in whatever direction it slips.
+        """Law about the slip of the position before: F_m in any direction of slip.
 
         Raises
         ------

@@ -88,7 +88,7 @@ def face_contact(
     """Contact of a pinion with a face gear.
 
     The push lies in the pinion's transverse plane with its radial part along the face gear's axis.
-    The pitch point stands at the acting radius of the face gear, on the side where the pinion lies.
+    The pitch point is at the acting radius of the face gear, on the side of the pinion.
 
     Raises
     ------

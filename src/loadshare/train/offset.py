@@ -41,7 +41,7 @@ class Offset:
             By which it has turned in its sense [rad].
         frame : float or ndarray
             By which the carrier from which it is seen has turned about the gear's axis [rad]: what
-            is fixed in the housing turns backwards, what is fixed on the carrier stands.
+            is fixed in the housing turns backwards, what is fixed on the carrier does not turn.
         """
         fixed = self.installation
         if gear.carrier is None and np.any(frame):

@@ -1,4 +1,4 @@
-r"""Where every mesh stands in its cycle, from tooth counts and where gears stand.
+r"""Where every mesh is in its cycle, from tooth counts and the places of gears.
 
 The phase of a mesh is what has passed of its cycle since the last pair of teeth touched at the
 pitch point. Seen from gear i with z teeth, one of them at the angle τ with half the angle h at the

@@ -3,7 +3,7 @@ r"""Thin rims of internal gears: how they bend, as harmonics.
 A rim that bends without becoming longer moves at the angle ψ outwards by :math:`a \cos n\psi +
 b \sin n\psi` and round by :math:`(-a \sin n\psi + b \cos n\psi)/n`. Its meshes feel what that
 is along their line of action, and its energy is :math:`\tfrac12 k_n (a^2 + b^2)`. A harmonic
-stands in a train as a body that does not turn, on a support of stiffness k_n.
+is a body of the train that does not turn, on a support of stiffness k_n.
 
 Source: formulation, section 12; Timoshenko, Strength of Materials II, for the thin ring.
 """

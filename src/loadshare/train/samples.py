@@ -36,7 +36,7 @@ class Samples:
     Attributes
     ----------
     case : Case
-        The case with the first sample's values; gives whatever no column gives.
+        The case with the first sample's values; it gives what no column gives.
     geometry : Geometry
     train : Train
         Built from it.

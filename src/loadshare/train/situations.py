@@ -1,7 +1,7 @@
 """What a position brings, for many samples at once.
 
 A tolerance study, a sweep or a march solves one machine again and again with other errors,
-clearances, loads and compliances. Here these numbers stand in arrays whose leading axis runs over
+clearances, loads and compliances. Here these numbers are in arrays whose leading axis runs over
 the samples; an array with a single row holds for all of them. What the arrays leave out (centres,
 lines of action, which elements there are) is the same in every sample.
 """
@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 class Situations:
     """Situations of one train: S samples, or one row for all.
 
-    Gears, meshes, shafts, splines and rings stand in the order of the train; drums and round rings
+    Gears, meshes, shafts, splines and rings are in the order of the train; drums and round rings
     are counted apart.
 
     Attributes

@@ -352,10 +352,10 @@ class Train:
     def mesh_positions(
         self, index: int | Indices, rotation: Mapping[str, Any] | None = None
     ) -> dict[str, int] | dict[str, Indices]:
-        """Position in its cycle (0-based) at which every mesh stands at position `index` (1-based).
+        """Position in its cycle (0-based) at which every mesh is at position `index` (1-based).
 
         In a mesh cycle all meshes go through theirs together, each from its own phase; over their
-        common period each goes through its own. In a march a mesh whose teeth are known stands at
+        common period each goes through its own. In a march a mesh whose teeth are known is at
         the position that its rotation reaches; others have one law for all positions.
         """
         rotation = rotation or self.rotations(index)

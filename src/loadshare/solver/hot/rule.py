@@ -1,6 +1,6 @@
 """A linear rule that names, from a sample's numbers, the set of contacts that it will end on.
 
-It is learnt from samples that were solved: whether a contact acts is told by the sign of a linear
+It is learnt from samples that were solved: whether a contact acts follows from the sign of a linear
 function of what varies, by least squares on ±1, and of the sets that were met the one is taken that
 fits these signs best. A wrong name costs a visit or two, and never an answer.
 """

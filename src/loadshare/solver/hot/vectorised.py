@@ -396,7 +396,7 @@ class _Passes:
         self.gross_to[these] = moved[these]
 
     def wrong(self, sign: float) -> tuple[Flags, States]:
-        """Which elements have the wrong sign, and where they should stand instead."""
+        """Which elements have the wrong sign, and where they should be instead."""
         structure, loading = self.structure, self.loading
         wrong = np.zeros((len(self.rows), structure.switches), dtype=bool)
         moved = np.repeat(self.states[None, :], len(self.rows), axis=0)

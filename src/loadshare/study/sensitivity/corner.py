@@ -174,7 +174,7 @@ class Corner:
             error[gear] = np.where(loose[gear], np.nan, (motion.bound(pick) + apart) * length)
             body = self.train.gears[gear]
             if body.is_tilted:
-                moved[gear] = body.told(moved[gear])
+                moved[gear] = body.in_plane(moved[gear])
                 error[gear] = error[gear] @ np.abs(body.frame @ body.plane.T)
         return Motions(torque, bound(np.eye(len(torque))), bound, moved, error)
 
