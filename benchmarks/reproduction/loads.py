@@ -180,7 +180,8 @@ def chapter(found: Loads) -> Chapter:
     )
     return Chapter(
         "Table 2 and Fig. 18: load",
-        "trend agrees: Ω − 1 is proportional to 1/T; the printed size belongs to other, smaller errors",
+        "trend agrees: Ω − 1 is proportional to 1/T; the printed size belongs to other, smaller "
+        "errors",
         "predicted",
         blocks,
         {"load": _picture(found)},
