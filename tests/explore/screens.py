@@ -20,16 +20,14 @@ from loadshare.case import load_case
 
 FOLDER = CASES.parent / "docs" / "pictures" / "screens"
 SCREENS = ((390, 844), (1280, 900), (1920, 1080))
-NAMES = (
-    "rings.5.float",
-    "rings.4.float",
-    "errors.6.installation.amount",
-    "errors.6.installation.direction",
-    "operating.power",
-)
+PLACE = ("errors.6.installation.amount", "errors.6.installation.direction")
+NAMES = ("rings.5.float", "rings.4.float", *PLACE, "operating.power")
+SETTING = {"rings.5.float": "2.2 um"}
+SCATTER = ("rings.*.float", *PLACE, "operating.power")
+SAMPLES = 400
 
 
-def taken(folder: Path, full: bool = False) -> None:
+def main(folder: Path) -> None:
     """Write the screens into a folder."""
     with (
         tempfile.TemporaryDirectory() as profile,
@@ -39,19 +37,47 @@ def taken(folder: Path, full: bool = False) -> None:
         for width, height in SCREENS:
             for dark in (False, True):
                 on_screen(browser, width, height, dark)
-                opened(browser, address, names=NAMES)
+                opened(browser, address, names=NAMES, changes=SETTING)
+                if width > 900:
+                    _along(browser)
                 _rested(browser)
                 name = f"explorer_{width}{'_dark' if dark else ''}.png"
-                if full:
-                    high = browser.execute_script("return document.documentElement.scrollHeight")
-                    on_screen(browser, width, high, dark)
                 (folder / name).write_bytes(browser.get_screenshot_as_png())
+        on_screen(browser, 1280, 3500)
+        opened(browser, address, names=SCATTER)
+        _studied(browser)
+        part = browser.find_element(By.ID, "studies")
+        (folder / "explorer_studies.png").write_bytes(part.screenshot_as_png)
+
+
+def _along(browser) -> None:
+    """Critical values and trace of the first input."""
+    for button in browser.find_elements(By.CSS_SELECTOR, ".control[data-name] .row button")[:2]:
+        button.click()
+    _waits(browser, "#trace svg")
+    told = "return document.querySelector('.control[data-name] [role=status]').textContent"
+    WebDriverWait(browser, 300).until(lambda b: "on the slider" in b.execute_script(told))
+
+
+def _studied(browser) -> None:
+    """What matters, and a tolerance study."""
+    browser.find_element(By.ID, "slopes").click()
+    for field, text in (("samples", SAMPLES), ("limit", 1.05)):
+        browser.find_element(By.ID, field).clear()
+        browser.find_element(By.ID, field).send_keys(str(text))
+    browser.find_element(By.ID, "tolerance").click()
+    _waits(browser, "#mattering table")
+    WebDriverWait(browser, 900).until(lambda b: not b.find_element(By.ID, "stop").is_enabled())
 
 
 def _rested(browser) -> None:
     settled(browser)
-    WebDriverWait(browser, 60).until(lambda b: b.find_elements(By.CSS_SELECTOR, "#trust dl"))
+    _waits(browser, "#trust dl")
+
+
+def _waits(browser, selector) -> None:
+    WebDriverWait(browser, 300).until(lambda b: b.find_elements(By.CSS_SELECTOR, selector))
 
 
 if __name__ == "__main__":
-    taken(Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER, full="--full" in sys.argv)
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else FOLDER)

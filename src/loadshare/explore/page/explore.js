@@ -65,8 +65,8 @@ const actions = {
     for (const one of page.controls) one.show(valueOf(one.keys[0]));
     ask(control.keys);
   },
-  critical: (control) => studies.critical(control, view()),
-  sweep: (control) => studies.sweep(control, view(), () => page.shown && draw()),
+  critical: (control) => studies.critical(control, view(), redraw),
+  sweep: (control) => studies.sweep(control, view(), redraw),
   remove(control) {
     page.controls = page.controls.filter((one) => one !== control);
     control.place.remove();
@@ -168,6 +168,8 @@ function draw() {
   byId("compared").replaceChildren(...comparison(page.pins, page.shown, settingTold, unpin));
 }
 
+const redraw = () => page.shown && draw();
+
 function empty() {
   page.shown = null;
   delete byId("answer").dataset.of;
@@ -183,12 +185,13 @@ function say(messages) {
   byId("messages").replaceChildren(...(messages || []).map((message) => element("li", {}, message)));
 }
 
-function settingTold({ changes, position }) {
+function changesTold({ changes }) {
   const told = Object.entries(changes).map(([key, value]) => `${key} = ${value}`);
   const more = told.length > 5 ? `, and ${told.length - 5} more` : "";
-  const where = page.case.positions > 1 ? `Pictures at position ${position}. ` : "";
-  return `${where}${told.length ? `Setting: ${told.slice(0, 5).join(", ")}${more}` : "As the case has it"}.`;
+  return `${told.length ? `Setting: ${told.slice(0, 5).join(", ")}${more}` : "As the case has it"}.`;
 }
+
+const settingTold = (one) => `${page.case.positions > 1 ? `Pictures at position ${one.position}. ` : ""}${changesTold(one)}`;
 
 // --- Position
 
@@ -274,7 +277,7 @@ search.addEventListener("keydown", (event) => {
 });
 const view = () => ({ changes: Object.fromEntries(page.setting), names: page.controls.map((one) => one.name), position: page.position });
 byId("slopes").addEventListener("click", () => studies.slopes({ ...view(), keys: [...new Set([...page.controls.flatMap((one) => one.keys), ...mattering()])] }));
-byId("tolerance").addEventListener("click", () => samples.begin(view(), page.controls, settingTold));
+byId("tolerance").addEventListener("click", () => samples.begin(view(), page.controls, changesTold));
 byId("reset").addEventListener("click", reset);
 byId("pin").addEventListener("click", pin);
 byId("link").addEventListener("click", () => copyLink(view()));

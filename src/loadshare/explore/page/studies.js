@@ -12,7 +12,7 @@ export const why = (found) => (found.messages || ["no answer"]).slice(0, 2).join
 const range = (control, view) => ({ name: control.name, low: control.input.low, high: control.input.high, changes: view.changes, position: view.position });
 
 // Along an input these hold until anything else changes.
-export async function critical(control, view) {
+export async function critical(control, view, redraw) {
   if (searched) searched.marks([]), searched.told.textContent = "";
   searched = control;
   control.marks([]);
@@ -26,6 +26,7 @@ export async function critical(control, view) {
     gaps.push(...found.gaps);
     confirmed &&= found.confirmed;
     control.marks([...known.values()].sort((a, b) => a.value - b.value), gaps);
+    redraw();
     const count = `${known.size || "no"} critical value${known.size === 1 ? "" : "s"}`;
     const doubt = gaps.length ? `not proved in ${gaps.length} grey stretch${gaps.length === 1 ? "" : "es"}` : confirmed ? "proved, there are no others" : "not all confirmed";
     control.told.textContent = found.done < found.of ? `${count} so far, in ${found.done} of ${found.of} stretches of the slider …` : `${count} on the slider; ${doubt}`;
