@@ -24,7 +24,7 @@ PLACE = ("errors.6.installation.amount", "errors.6.installation.direction")
 NAMES = ("rings.5.float", "rings.4.float", *PLACE, "operating.power")
 SETTING = {"rings.5.float": "2.2 um"}
 SCATTER = ("rings.*.float", *PLACE, "operating.power")
-SAMPLES = 400
+SAMPLES = 1000
 
 
 def main(folder: Path) -> None:

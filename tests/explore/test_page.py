@@ -287,6 +287,44 @@ def test_the_page_fits_every_screen(browser, served, name, width):
     on_screen(browser, 1280)
 
 
+IN_SIGHT = """
+const inside = (element) => {
+  const box = element.getBoundingClientRect(), [x, y] = [box.left + 30, box.top + box.height / 2];
+  return element.contains(document.elementFromPoint(x, y));
+};
+return [document.getElementById("verdict"), document.querySelector("#bars svg"),
+  document.querySelector("[data-name='rings.5.float'] [type=range]")].map(inside);
+"""
+
+
+def test_on_a_phone_the_answer_is_in_sight_of_the_slider(browser, seed):
+    """The verdict with K_γ, the shares of the branches, and the slider, all on one screen."""
+    on_screen(browser, 390, 844)
+    opened(browser, seed, names=["rings.5.float", "operating.power"])
+    assert browser.execute_script(IN_SIGHT) == [True, True, True]
+    says = types(browser, "rings.5.float", "2.2 um")
+    kept = browser.find_element(By.ID, "summary").text
+    assert kept == f"Kγ I = {says['tables'][0][0][2]}, Kγ II = {says['tables'][0][1][2]}"
+    browser.execute_script("document.querySelector('#floats').scrollIntoView()")
+    assert browser.execute_script(IN_SIGHT)[::2] == [True, True]
+    on_screen(browser, 1280)
+
+
+def test_flank_forces_have_heads(browser, seed):
+    """Each an outline: wider at its head than along its shaft, however large the force."""
+    opened(browser, seed, names=[])
+    widths = browser.execute_script(
+        """return [...document.querySelectorAll("#train .forces [data-mesh]")].map((arrow) => {
+          const [a, , wing, , other, , b] = arrow.getAttribute("d").match(/-?[\\d.]+ -?[\\d.]+/g)
+            .map((point) => point.split(" ").map(Number));
+          const wide = ([x, y], [u, v]) => Math.hypot(u - x, v - y);
+          return [wide(a, b), wide(wing, other)];
+        });"""
+    )
+    assert len(widths) > 3
+    assert all(head > shaft + 5.0 for shaft, head in widths)
+
+
 def test_contrast_of_an_answer_that_is_not_there_yet(browser, seed):
     for dark in (False, True):
         on_screen(browser, 1280, dark=dark)

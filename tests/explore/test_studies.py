@@ -103,6 +103,7 @@ RANGES = {"rings.*.float": [0.0, 12.0], "errors.6.installation.direction": [-180
 def figures(found, limit):
     """The table of a page, from what `loadshare tolerance` finds."""
     shown = [one for one in found.omega if one.over in found.overs]
+    shown.sort(key=lambda one: one != found.of("system", "stage"))
     return plain(omega_table(shown, limit))["rows"]
 
 
@@ -249,6 +250,8 @@ def test_ticks_trace_and_a_study_on_the_page(browser, seed):
     says = settled(browser)
     assert says["fields"]["rings.*.float"].startswith("2.976")
     assert browser.find_elements(By.CSS_SELECTOR, "#trace svg .here")
+    for picture in browser.find_elements(By.CSS_SELECTOR, "figure:not([hidden]) > svg"):
+        assert badly_set(browser, picture) == []
     assert browser.get_log("browser") == []
 
 

@@ -108,20 +108,16 @@ def _of_shown(
 
 def _spread(one: Input, given: Mapping[str, object], low: float, high: float) -> dict[str, Any]:
     """Return how an input scatters of which the case does not say it."""
-    now = read_value(given.get(one.key, one.text))
-    if Value(1.0, one.unit).si_unit in EVENLY or now is None or now.number == 0.0:
-        numbers = {"distribution": "uniform", "low": low, "high": high}
+    now, unit = read_value(given.get(one.key, one.text)), one.unit
+    if Value(1.0, unit).si_unit in EVENLY or now is None or now.number == 0.0:
+        kind, numbers = "uniform", {"low": low, "high": high}
     else:
-        mean, deviation = (
-            now.in_unit(one.unit).number,
-            DEVIATION * abs(now.in_unit(one.unit).number),
-        )
+        mean = now.in_unit(unit).number
+        deviation = DEVIATION * abs(mean)
         ends = {"low": mean - CUT * deviation, "high": mean + CUT * deviation}
-        numbers = {"distribution": "truncated normal", "mean": mean, "deviation": deviation, **ends}
-    return {
-        key: f"{value!r} {one.unit}" if one.unit and not isinstance(value, str) else value
-        for key, value in numbers.items()
-    }
+        kind, numbers = "truncated normal", {"mean": mean, "deviation": deviation, **ends}
+    given_numbers = {name: Value(number, unit).text for name, number in numbers.items()}
+    return {"distribution": kind, **given_numbers}
 
 
 @told
@@ -164,7 +160,6 @@ class Part(NamedTuple):
     rows: int
 
 
-@told
 def samples(part: Part) -> Plain:
     """Draw and solve some samples; those of one block at most."""
     job = known_job(part.job)
@@ -219,6 +214,7 @@ class Growing:
         found: Plain = {"done": self.done, "refused": refused, "residual": f"{self.residual:.1e}"}
         found["reasons"] = [f"{n} × {text}" for text, n in self.refused.most_common(PROBLEMS)]
         shown = [one for one in every if one.over in overs]
+        shown.sort(key=lambda one: (one.over, one.stage) != ("stage", SYSTEM))
         if shown:
             found["table"] = plain(omega_table(shown, study["limit"]))
             found["histogram"] = _histogram(next(one for one in shown if one.stage == SYSTEM))
@@ -233,7 +229,7 @@ def omega_table(every: Sequence[OmegaStatistics], limit: float | None) -> Table:
         ["standard deviation", *(f"{one.summary.spread:.2g}" for one in every)],
         *(
             [
-                f"{100.0 * level:g} % at or below",
+                f"{100.0 * level:g} % quantile",
                 *(interval(one.summary.quantiles[level], form) for one in every),
             ]
             for level in every[0].summary.quantiles

@@ -47,7 +47,7 @@ def micrometres(value: float | None) -> str:
 def interval(found: Estimate, form: str = ".4g") -> str:
     """Return an estimate with its confidence interval; an end that is not known is left open."""
     low, high = (f"{end:{form}}" if math.isfinite(end) else "" for end in (found.low, found.high))
-    return f"{found.value:{form}} ({low} … {high})"
+    return f"{found.value:{form}} ({f'{low} … {high}'.strip()})"
 
 
 def small(value: float) -> str:

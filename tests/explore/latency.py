@@ -1,0 +1,73 @@
+"""How soon the explorer answers: `nice -n 5 python -m tests.explore.latency [REPEATS]`.
+
+From the change of a slider to the frame that shows its answer, and from an address to a page with
+its first answer. The state of the machine is told beside it, on which these times hang.
+"""
+
+from __future__ import annotations
+
+import os
+import statistics
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from tests.chromium import chromium
+from tests.explore.conftest import SEED, serving
+from tests.explore.walks import NAMES, opened
+
+from loadshare.case import load_case
+from loadshare.cli.console import say
+
+LOADS = 5
+SLIDE = """
+const [value, done] = arguments;
+const slider = document.querySelector("[data-name='rings.5.float'] input[type=range]");
+const begun = performance.now();
+slider.value = value;
+slider.dispatchEvent(new Event("input", { bubbles: true }));
+const look = () => {
+  const { asked, state } = document.body.dataset;
+  if (state === "present" && document.getElementById("answer").dataset.of === asked)
+    requestAnimationFrame(() => setTimeout(() => done(performance.now() - begun)));
+  else setTimeout(look, 1);
+};
+look();
+"""
+"""Time until the frame after the answer is on the screen [ms]."""
+
+
+def main(repeats: int) -> None:
+    """Measure, and print."""
+    before = os.getloadavg()
+    with (
+        tempfile.TemporaryDirectory() as profile,
+        chromium(Path(profile), offline=False) as browser,
+        serving(load_case(SEED), SEED) as address,
+    ):
+        loads = []
+        for _ in range(LOADS):
+            browser.get("about:blank")
+            begun = time.perf_counter()
+            opened(browser, address)
+            loads.append(time.perf_counter() - begun)
+        browser.set_script_timeout(60)
+        slides = []
+        for k in range(repeats):
+            # Some 2 µm to and fro, never where it was.
+            slides.append(browser.execute_async_script(SLIDE, 1.0 + 0.04 * ((17 * k) % repeats)))
+            time.sleep(0.02)
+    told = ", ".join(f"{load:.1f}" for load in (before[0], os.getloadavg()[0]))
+    say(f"load of the machine before and after: {told}; {os.cpu_count()} processors")
+    say(f"page with its first answer: {_spread(loads, 's', 2)}, {LOADS} times")
+    say(f"slider to screen: {_spread(slides, 'ms', 0)}, {repeats} times, {len(NAMES)} sliders")
+
+
+def _spread(values: list[float], unit: str, places: int) -> str:
+    low, middle, high = min(values), statistics.median(values), max(values)
+    return f"median {middle:.{places}f} {unit}, {low:.{places}f} to {high:.{places}f}"
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else 50)
