@@ -40,6 +40,33 @@ def test_every_row_has_a_form_and_a_description():
         assert all(cells)
 
 
+def _numbers(schema, field):
+    """Whether a value, or what a list or table of it holds, is a number or has a unit."""
+    options = field.get("oneOf") or field.get("anyOf")
+    if options:
+        return any(_numbers(schema, option) for option in options)
+    inner = field.get("items") or field.get("additionalProperties") or field.get("prefixItems")
+    if inner and inner is not True:
+        return any(_numbers(schema, i) for i in (inner if isinstance(inner, list) else [inner]))
+    return "pattern" in field or field.get("type") in ("number", "integer")
+
+
+def test_every_number_states_its_unit():
+    """In brackets, such as [length], or [-] without one; every kind of value has its unit."""
+    schema = case_schema()
+    missing = [
+        f"{name}.{key}"
+        for name, table in schema["$defs"].items()
+        for key, field in table["properties"].items()
+        if _numbers(schema, field) and not re.search(r"\[[\w/^() -]+\]", field["description"])
+    ]
+    assert missing == []
+    page = hooks.case_reference(schema)
+    kinds = page.partition("## Physical values")[2].partition("\n## ")[0]
+    rows = re.findall(r"^\| ([\w' ]+) \| `.*` \| (\S+) \|$", kinds, re.MULTILINE)
+    assert len(rows) == len(hooks._kinds()) > 10
+
+
 def test_a_new_definition_is_not_forgotten():
     schema = case_schema()
     schema["$defs"]["Novelty"] = {"description": "New.", "properties": {}}

@@ -102,6 +102,13 @@ def test_no_words_overlap_in_a_picture_of_the_docs(browser, tmp_path, file):
     assert badly_set_file(browser, file.read_text(encoding="utf-8"), tmp_path) == []
 
 
+def test_every_committed_picture_is_judged():
+    """A bitmap is the twin of a drawing that is judged, or the screen of a page that is."""
+    bitmaps = [f for f in (CASES.parent / "docs").rglob("*.png") if f.parent.name != "screens"]
+    assert bitmaps
+    assert [f.name for f in bitmaps if not f.with_suffix(".svg").exists()] == []
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("file", CASE_FILES, ids=lambda p: p.stem)
 def test_no_words_overlap_in_a_picture_of_a_case(browser, tmp_path, file):

@@ -84,7 +84,7 @@ def test_what_is_as_near_to_a_change_as_round_off_is_given_up_at_once(shipped_ri
     to the change there is none to tell. 1500 solves went into cutting that in vain.
     """
     assert [gap.why for gap in shipped_rings.unproved] == [
-        "all of it is as near to a change as round-off"
+        "all of it is too close to a change for double precision"
     ] * 2
     for gap in shipped_rings.unproved:
         assert 0.0 < gap.stop - gap.start < 1e-5

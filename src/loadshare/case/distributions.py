@@ -31,20 +31,20 @@ class Spread(Element):
     """Kind: a Rayleigh amount goes with a uniform phase, which is an angle over a whole turn."""
 
     mean: Given | None = None
-    """Normal: mean; truncated normal: mean before it is cut off."""
+    """Normal: mean; truncated normal: mean before it is cut off [unit of the input]."""
 
     deviation: Given | None = None
-    """Normal: standard deviation; truncated normal: the one before it is cut off."""
+    """Normal: standard deviation; truncated normal: before it is cut off [unit of the input]."""
 
     low: Given | None = None
-    """Uniform, truncated normal: lowest value."""
+    """Uniform, truncated normal: lowest value [unit of the input]."""
 
     high: Given | None = None
-    """Uniform, truncated normal: highest value; "class" for the eccentricity that the runout of the
-    gear's `tolerance_class` allows, half of it [length]."""
+    """Uniform, truncated normal: highest value [unit of the input]; "class" for the eccentricity
+    that the gear's `tolerance_class` allows, half of the runout."""
 
     scale: Given | None = None
-    """Rayleigh: scale σ, the most frequent value; the mean is 1.2533 σ."""
+    """Rayleigh: scale σ, the most frequent value [unit of the input]; the mean is 1.2533 σ."""
 
     def rules(self) -> Iterator[Rule]:
         """Yield numbers that the distribution lacks, or does not know."""
@@ -55,7 +55,7 @@ class Spread(Element):
         for key in self.given("mean", "deviation", "low", "high", "scale"):
             if key not in needed:
                 allowed = ", ".join(("distribution", *needed))
-                yield Rule(f"says nothing to a {self.distribution} input", (key,), allowed)
+                yield Rule(f"does not apply to a {self.distribution} input", (key,), allowed)
 
 
 class Group(Element):

@@ -35,16 +35,16 @@ class Study(Element):
     """Kind of study."""
 
     over: dict[str, str | Annotated[tuple[Given, ...], Field(min_length=1)]] | None = None
-    """Sweep: values by key, as "0 um:12 um:61" (first, last, how many) or as a list."""
+    """Sweep: values by key [unit of the key]: a list, or first:last:how many, "0 um:12 um:61"."""
 
     keys: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     """Critical: keys that take the value. Sensitivity: inputs. A star matches any name."""
 
     start: Given | None = None
-    """Critical: where the keys' value starts."""
+    """Critical: where the keys' value starts [unit of the keys]."""
 
     stop: Given | None = None
-    """Critical: where it stops."""
+    """Critical: where it stops [unit of the keys]."""
 
     gear: str | None = None
     """March: gear whose revolutions are counted; that of `march` when left out."""
@@ -56,7 +56,7 @@ class Study(Element):
     """March: number of steps [-]."""
 
     unknowns: dict[str, tuple[Given, Given]] | None = None
-    """Fit: lowest and highest value by key."""
+    """Fit: lowest and highest value by key [unit of the key]."""
 
     starts: Count = 1
     """Fit: number of starting points [-]."""
@@ -86,7 +86,7 @@ class Study(Element):
     """Tolerance: levels of the quantiles [-]."""
 
     positions: Annotated[tuple[Count, ...], Field(min_length=1)] | None = None
-    """Positions to solve; all when left out."""
+    """Positions to solve, from 1 [-]; all when left out."""
 
     def rules(self) -> Iterator[Rule]:
         """Yield keys that the kind lacks, or does not know."""
@@ -98,4 +98,4 @@ class Study(Element):
         for key in OWN:
             if key in self.model_fields_set and key not in known:
                 allowed = ", ".join((*known, "positions"))
-                yield Rule(f"says nothing to a {self.kind}", (key,), allowed)
+                yield Rule(f"does not apply to a {self.kind}", (key,), allowed)

@@ -35,7 +35,7 @@ def _(found: Critical) -> list[str]:
     named = sorted({(u.start, u.stop, u.why) for u in found.unproved})
     unit = f" {found.parameter.unit}" if found.parameter.unit else ""
     lines += [
-        f"Not proved free of other events: {start:.12g} to {stop:.12g}{unit} ({why})."
+        f"Not proved to be free of other events: {start:.12g} to {stop:.12g}{unit} ({why})."
         for start, stop, why in named[:SHOWN]
     ]
     if len(named) > SHOWN:

@@ -79,7 +79,7 @@ def test_the_page_tells_versions_and_no_dates():
 
 def test_without_pair_files_the_page_says_so(seed):
     chapter = stiffness.chapter(seed, None)
-    assert "not there" in chapter.verdict
+    assert "missing" in chapter.verdict
     assert chapter.pictures == {}
 
 

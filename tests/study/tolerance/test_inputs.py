@@ -218,7 +218,7 @@ def test_what_the_case_reader_finds_is_told_at_once():
     for said in (
         "Did you mean normal",
         "is missing",
-        "says nothing to a uniform",
+        "does not apply to a uniform",
         "at most 1",
         "above 0",
     ):

@@ -248,7 +248,7 @@ def _show_others(found: Tolerance) -> None:
             for f in found.floats
         ]
         made = table(("float", *heads, "on its boundary"), rows, words=("float",))
-        show("Largest way of floats over positions [µm]", made)
+        show("Largest displacement of floats over positions [µm]", made)
 
 
 def _show_worst(found: Tolerance) -> None:

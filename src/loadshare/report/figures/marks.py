@@ -296,7 +296,7 @@ BESIDE = {
 """Styles of words that run along a rule, by their side of it."""
 BREADTH = 15.0
 """Room that words along a rule need beside it [px]."""
-LETTER = 4.6
+LETTER = 4.5
 """Length of a letter of these words, on average [px]."""
 TOP = 4.0
 """Where they begin below the upper end of their rule [px]."""

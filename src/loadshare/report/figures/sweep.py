@@ -239,7 +239,8 @@ def _lines(data: xr.Dataset, shown: _Shown, name: str, events: Sequence[Event]) 
 def _clear(shown: _Shown, grid: np.ndarray, at: float, text: str, pixels: float) -> float:
     """Where an event's words begin below the upper end of its rule, clear of the lines [px]."""
     low, high = shown.domain(0.08)
-    near = at + np.linspace(-BREADTH, BREADTH, 5) / pixels
+    # Most words are on the left of their rule.
+    near = at + np.linspace(-BREADTH, 0.2 * BREADTH, 5) / pixels
     rising = np.argsort(grid)
     lines = [np.interp(near, grid[rising], line[rising]) for line in shown.values]
     places = (high - np.concatenate(lines)) / (high - low) * HEIGHT

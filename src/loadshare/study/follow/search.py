@@ -272,7 +272,7 @@ class Search:
         middle, z = 0.5 * (first.value + last.value), 0.5 * (first.z + last.z)
         if self._prove(self._equations[active], [(middle, middle, z, z)]).holds[0]:
             return False
-        self.gaps.append(Gap(*stretch, "all of it is as near to a change as round-off"))
+        self.gaps.append(Gap(*stretch, "all of it is too close to a change for double precision"))
         return True
 
     def _look_at_ends(self, active: WorkingSet, stretches: list[tuple[Point, Point]]) -> None:
