@@ -9,7 +9,7 @@ import pytest
 from hypothesis import settings
 from tests.reproducible import SAME
 
-from loadshare.job import hot
+from loadshare.job import engines, hot
 from loadshare.job.engines import engine_named
 from loadshare.outside import OUTSIDE
 
@@ -48,4 +48,5 @@ def numpy_alone() -> Iterator[None]:
     """Which kernel is at hand depends on what ran before: who asks for none here has NumPy's."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(hot, "engine_at_hand", engine_named)
+        patch.setattr(engines, "loaded", lambda: False)
         yield

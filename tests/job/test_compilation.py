@@ -336,9 +336,7 @@ def test_case_by_case_nothing_is_loaded_before_it_is_worth_while_nor_compiled(mo
     needed: list[int] = []
     monkeypatch.setattr(engines, "tally", engines.Tally())
     monkeypatch.setattr(compilation, "at_hand", lambda *functions: needed.append(len(functions)))
-    with monkeypatch.context() as new:
-        new.delitem(sys.modules, engines.COMPILED[0])
-        assert engine_at_hand("auto", JOB.loading) is vectorised.settle
+    assert engine_at_hand("auto", JOB.few) is vectorised.settle
     assert not needed
     assert engine_at_hand("auto", 1) is vectorised.settle
     assert needed == [len(engines.KERNELS)]
@@ -361,6 +359,20 @@ def test_a_batch_takes_the_engine_that_is_done_first(monkeypatch, count, kept, e
     assert engines.chosen(count) == engine
 
 
+def test_what_is_loaded_is_used_for_the_smallest_batch():
+    script = f"""
+import loadshare as ls
+from loadshare.job import engines
+from loadshare.solver.hot import compiled, vectorised
+told = [engines.loaded(), engines.engine_named("auto", 1) is vectorised.settle]
+ls.solve({str(CASE)!r}, engine="compiled", positions=[1])
+for engine in (engines.engine_named, engines.engine_at_hand):
+    told.append(engine("auto", 1) is compiled.settle)
+print([*told, engines.loaded(), engines.chosen(1) == "vectorised"])
+"""
+    assert run(script)[0] == [False, True, True, True, True, True]
+
+
 def test_what_is_warm_is_at_hand():
     """The kernels of one case are those of all."""
     assert warm() is None
@@ -376,7 +388,7 @@ import loadshare as ls
 from loadshare.job import engines
 from loadshare.solver.hot import compiled as engine
 from numba.core import event
-engines.tally.equilibria = {JOB.loading}
+engines.tally.equilibria = {JOB.few}
 assert engines.engine_at_hand("auto", 1) is engine.settle
 with event.install_recorder("numba:compile") as compiled:
     for name in {KINDS!r}:

@@ -32,27 +32,37 @@ def engine_named(name: str, count: int) -> Engine:
     Parameters
     ----------
     name : {"auto", "compiled", "vectorised"}
-        "auto" is the one that `chosen` names. Where nothing can be compiled, or kept, the
+        "auto" is the compiled one where it was used in this process, else the one that `chosen`
+        names. Where nothing can be compiled, or kept, the
         vectorised one comes in place of the compiled one.
     count : int
         Equilibria to solve.
     """
     if name not in ENGINES:
         raise ValueError(f"unknown engine {name!r}; allowed: {', '.join(ENGINES)}")
-    if (chosen(count) if name == "auto" else name) == "vectorised":
-        return vectorised.settle
-    return _compiled() or vectorised.settle
+    if name == "auto":
+        name = "compiled" if loaded() else chosen(count)
+    return vectorised.settle if name == "vectorised" else _compiled() or vectorised.settle
 
 
 def chosen(count: int) -> str:
-    """Name the engine that is done first with so many equilibria.
+    """Name the engine that is done first with so many equilibria in a new process.
 
-    Up to a few thousand it is the vectorised one. Above, it is the compiled one where that is kept
+    Up to a few hundred it is the vectorised one. Above, it is the compiled one where that is kept
     on disk, and where there are so many that compiling takes less time than it saves.
     """
     if count <= JOB.few:
         return "vectorised"
     return "compiled" if count > JOB.compiling or at_hand() else "vectorised"
+
+
+def loaded() -> bool:
+    """Whether the compiled engine was used, or loaded, in this process: then it is always ahead."""
+    modules = [sys.modules.get(module) for module, _ in KERNELS]
+    return compilation.why_not() is None and all(
+        module is not None and getattr(module, name).overloads
+        for module, (_, name) in zip(modules, KERNELS, strict=True)
+    )
 
 
 def at_hand() -> bool:
@@ -86,16 +96,14 @@ def engine_at_hand(name: str, count: int) -> Engine:
     ----------
     name : {"auto", "compiled", "vectorised"}
         "auto" is the compiled one where that takes no compiling: once it was used in this process,
-        or once so many equilibria were solved that loading it from disk is worth while.
+        or once so many equilibria were solved that reading it from disk is worth while.
     count : int
         Equilibria to solve.
     """
     if name != "auto":
         return engine_named(name, count)
     tally.equilibria += count
-    if COMPILED[0] not in sys.modules and tally.equilibria <= JOB.loading:
-        return vectorised.settle
-    if not at_hand():
+    if not loaded() and (tally.equilibria <= JOB.few or not at_hand()):
         return vectorised.settle
     from loadshare.solver.hot import compiled
 

@@ -69,7 +69,7 @@ def solve(
         1-based positions to solve; all by default.
     engine : {"auto", "vectorised", "compiled"}
         Of the hot path: NumPy, or Numba, which takes a minute to compile the first time. "auto" is
-        Numba once it was used in this process, or a hundred positions were solved and it is kept on
+        Numba once it was used in this process, or 300 positions were solved and it is kept on
         disk. Answers are the same but for round-off.
     progress : Progress, optional
         Called after every position.

@@ -15,13 +15,12 @@ class Job(NamedTuple):
     steps: int = 20_000
     """Newton steps in which the rungs after the hot path answer or give up: some ten seconds, and
     twice what ever led to an answer that neither exchange nor search had found."""
-    few: int = 2000
-    """Equilibria up to which reading what was compiled costs more than it saves."""
+    few: int = 300
+    """Equilibria up to which reading what was compiled costs more than it saves: between the seed's
+    limit rings, where that is so up to 200, and its splines, up to 4000."""
     compiling: int = 200_000
     """Equilibria up to which compiling, where nothing is on disk, costs more than it saves: NumPy
     takes as long for so many, of trains between the seed's and those of all elements."""
-    loading: int = 100
-    """Equilibria, solved case by case, from which on reading what was compiled is worth while."""
     trial_samples: int = 16
     """Samples that show the others where to begin."""
     worth: int = 32
