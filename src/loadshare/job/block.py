@@ -12,7 +12,7 @@ from loadshare.certify.nonconvex import arc_curvature, is_convex
 from loadshare.errors import CaseError, Refused
 from loadshare.job.answer import Answer
 from loadshare.job.hot import HOT, SEARCHED
-from loadshare.job.ladder import climb
+from loadshare.job.ladder import climb, rungs
 from loadshare.job.least import least_places
 from loadshare.job.machine import Answers, Machine
 from loadshare.settings import JOB
@@ -25,8 +25,9 @@ from loadshare.train.situations import Situations, stack
 
 Array = NDArray[np.float64]
 
-RUNGS = np.array([HOT, SEARCHED], dtype=object)
-"""Without and with the proximal search."""
+RUNGS = ("none", HOT, SEARCHED, *(name for name, _ in rungs(Options())))
+"""What answers samples, by number: nothing, the hot path without and with the proximal search, what
+the ladder has below."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,8 +54,8 @@ class Block:
         Whether nothing that is not convex carries, so that the answer is the only one.
     arc_curvature : ndarray, shape (S, positions)
         Stiffness that arcs take across them [N/m]; NaN where there is no answer.
-    rung : ndarray of object, shape (S, positions)
-        Rung of the ladder that answered; empty where none did.
+    rung : ndarray of int8, shape (S, positions)
+        Number in `RUNGS` of what answered.
     message : mapping of (row, position) to str
         Why there is no answer.
     """
@@ -69,7 +70,7 @@ class Block:
     displaced: Array
     convex: NDArray[np.bool_]
     arc_curvature: Array
-    rung: NDArray[np.object_]
+    rung: NDArray[np.int8]
     message: Mapping[tuple[int, int], str]
 
 
@@ -82,8 +83,7 @@ class _Open:
         self.certified, self.determined = np.zeros((2, *shape), dtype=bool)
         self.residual, self.bound, self.displaced = np.full((3, *shape), np.nan)
         self.deflection, self.load = np.full((2, *shape), np.nan)
-        # Objects, so that a million answers share a few texts.
-        self.rung = np.full(shape, "", dtype=object)
+        self.rung = np.zeros(shape, dtype=np.int8)
         self.equilibria: list[Equilibria] = []
         self.situations: list[Situations] = []
 
@@ -93,7 +93,7 @@ class _Open:
         for there, values in (
             (self.certified, found.passed),
             (self.determined, found.determined),
-            (self.rung, RUNGS[found.searched.astype(np.intp)]),
+            (self.rung, np.where(found.searched, RUNGS.index(SEARCHED), RUNGS.index(HOT))),
             (self.residual, verdicts.worst),
             (self.bound, verdicts.bounds.relative),
             (self.displaced, verdicts.displaced),
@@ -108,7 +108,7 @@ class _Open:
         """Write what the ladder found for a sample at a position."""
         certificate = found.certificate
         self.equilibria[p].put(row, found.equilibrium)
-        self.certified[row, p], self.rung[row, p] = True, found.rung
+        self.certified[row, p], self.rung[row, p] = True, RUNGS.index(found.rung)
         self.determined[row, p] = not found.equilibrium.undetermined
         self.residual[row, p], self.bound[row, p] = certificate.worst, certificate.proved
         self.deflection[row, p], self.load[row, p] = certificate.deflection, certificate.load
@@ -116,7 +116,7 @@ class _Open:
 
     def refuse(self, row: int, p: int) -> None:
         """Leave a sample without an answer at a position."""
-        self.certified[row, p], self.rung[row, p] = False, ""
+        self.certified[row, p], self.rung[row, p] = False, 0
         self.residual[row, p] = self.bound[row, p] = self.displaced[row, p] = np.nan
         self.equilibria[p].forget(row)
 

@@ -152,8 +152,9 @@ def solve_many(
         distance of a torque from the exact one, over the largest), ``certified``, ``determined``,
         ``displaced`` (displacements over what their geometry allows without a warning; ``warned``
         counts those above 1), ``convex`` (nothing that is not convex carries), ``arc_curvature``
-        [N/m] that arcs take from the stiffness across them, ``rung``. What is refused is NaN; the
-        attribute ``refused`` says why.
+        [N/m] that arcs take from the stiffness across them, ``rung`` (a number,
+        which its attribute ``flag_meanings`` names in order; 0 where nothing answered). What is
+        refused is NaN; the attribute ``refused`` says why.
 
     Raises
     ------

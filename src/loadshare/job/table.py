@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from loadshare._version import __version__
 from loadshare.case import Case
+from loadshare.job.block import RUNGS, Block
 from loadshare.results.dataset import VARIABLES, Variable
 from loadshare.results.figures import COMPONENTS
 from loadshare.results.share import mesh_torques, shares
@@ -21,7 +22,6 @@ from loadshare.train.train import Train
 if TYPE_CHECKING:
     import xarray as xr
 
-    from loadshare.job.block import Block
     from loadshare.job.positions import Progress
 
 Array = NDArray[np.float64]
@@ -82,7 +82,7 @@ EACH = {
     "displaced": Each("displaced", np.nan, "displacements over the bound of a warning"),
     "convex": Each("convex", False, "whether nothing that is not convex carries"),
     "arc_curvature": Each("arc_curvature", np.nan, "stiffness that arcs take across them", "N/m"),
-    "rung": Each("rung", "", "rung of the ladder that answered", type_="object"),
+    "rung": Each("rung", 0, "rung of the ladder that answered", type_="int8"),
 }
 
 
@@ -170,12 +170,14 @@ class Table:
             (name, *KEPT[name].labelled(values, *EVERY)) for name, values in self.variables.items()
         ]
         for name, each in EACH.items():
-            attributes = {"units": each.units, "long_name": each.long_name}
+            attributes: dict[str, object] = {"units": each.units, "long_name": each.long_name}
+            if name == "rung":
+                # As the climate and forecast conventions name numbers.
+                attributes["flag_values"] = np.arange(len(RUNGS), dtype=np.int8)
+                attributes["flag_meanings"] = " ".join(r.replace(" ", "_") for r in RUNGS)
             found.append((name, EVERY, self.each[name], attributes))
-        # As they are: words of objects would be looked through for dates.
         data = {
-            name: xr.Variable(dims, values, attributes, fastpath=True)
-            for name, dims, values, attributes in found
+            name: xr.Variable(dims, values, attributes) for name, dims, values, attributes in found
         }
         used = {dim for variable in data.values() for dim in variable.dims}
         return xr.Dataset(
