@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from tests.support import mostly_slow
 
 ROOT = Path(__file__).parents[2]
 GALLERY = ROOT / "docs" / "gallery"
@@ -27,7 +28,7 @@ gallery = _load("gallery", Path(__file__).parent)
 hooks = _load("hooks", ROOT / "docs")
 
 
-@pytest.mark.parametrize("page", PAGES)
+@pytest.mark.parametrize("page", mostly_slow(PAGES, set(PAGES) - {"boundary.md"}))
 def test_a_page_shows_what_its_blocks_print_and_draw(page):
     text = (GALLERY / page).read_text(encoding="utf-8")
     drawn = 0

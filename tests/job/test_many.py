@@ -395,7 +395,7 @@ def test_memory_does_not_grow_with_the_blocks(monkeypatch):
         samples = floats(count)
         tracemalloc.start()
         try:
-            for _ in solve_blocks(case, samples, positions=[1], workers=1, engine="vectorised"):
+            for _ in solve_blocks(case, samples, positions=[1], workers=1, engine="compiled"):
                 pass
             return tracemalloc.get_traced_memory()[1]
         finally:

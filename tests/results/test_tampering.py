@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray as xr
-from tests.support import answer, coasting, round_ring, shipped
+from tests.support import answer, coasting, mostly_slow, round_ring, shipped
 
 import loadshare as ls
 from benchmarks.limit import limited
@@ -47,7 +47,9 @@ CASES = {
 }
 
 
-@pytest.fixture(scope="module", params=CASES)
+@pytest.fixture(
+    scope="module", params=mostly_slow(CASES, ("rings", "splines", "coasting", "round ring"))
+)
 def result(request):
     return CASES[request.param]()
 
