@@ -20,9 +20,10 @@ $(VENV)/.run: pyproject.toml constraints.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e .
 	@touch $@
 
-$(VENV)/.dev: $(VENV)/.run
+$(VENV)/.dev: pyproject.toml constraints.txt
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev]'
-	@touch $@
+	@touch $(VENV)/.run $@
 
 run: $(VENV)/.run ## run the main job (CASE=cases/… for another case)
 	$(BIN)/loadshare run $(CASE)
@@ -33,14 +34,16 @@ $(VENV)/.bench: $(VENV)/.run
 
 # All that a test runs against, side by side; the tests find the kernels on disk.
 CHECKED := $(MAKE) --no-print-directory --output-sync -j $(WORKERS) kernels types docs lint layers
+# Neighbours stay together, so that a file's fixtures are made once.
+TESTED := $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
 test: $(VENV)/.dev ## check and test everything that is not slow
 	$(CHECKED)
-	$(BIN)/python -m pytest -n $(WORKERS) -m "not slow"
+	$(TESTED) -m "not slow"
 
 test-all: $(VENV)/.dev ## the same with the slow tests
 	$(CHECKED)
-	$(BIN)/python -m pytest -n $(WORKERS)
+	$(TESTED)
 
 LOWEST := .venv-lowest
 $(LOWEST)/.test: pyproject.toml constraints-lowest.txt
