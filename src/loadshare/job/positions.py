@@ -141,10 +141,13 @@ def explain(
 
     Parameters
     ----------
-    case, solver, method, reduce, tolerance
-        As for :func:`solve`.
+    case : Case or path
     position : int
         1-based.
+    solver, method : str
+        As for :func:`solve`, like the following.
+    reduce : bool
+    tolerance : float
 
     Returns
     -------

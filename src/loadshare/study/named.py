@@ -52,8 +52,8 @@ def run_study(case: Case | str | Path, name: str, *, progress: Progress | None =
     --------
     >>> import loadshare as ls
     >>> case = ls.load_case("cases/fgfbstts/limit_ring.toml")
-    >>> asked = {"kind": "sweep", "over": {"rings.4.float": "0 um:8 um:2"}, "positions": [1]}
-    >>> found = ls.run_study(case.replace({"study.floats": asked}), "floats")
+    >>> study = {"kind": "sweep", "over": {"rings.4.float": "0 um:8 um:2"}, "positions": [1]}
+    >>> found = ls.run_study(case.replace({"study.floats": study}), "floats")
     >>> found.dataset["pair_omega"].sel(stage="II").values.round(4).tolist()
     [1.0471, 1.002]
     """
