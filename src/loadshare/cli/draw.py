@@ -29,7 +29,7 @@ def draw(
     ] = None,
     change: Changes = None,
 ) -> None:
-    """Draw the train of a case to scale, with what does not fit marked.
+    """Draw the train of a case to scale, and mark what does not fit.
 
     A case that cannot be used is drawn as far as it can be read.
     """

@@ -7,9 +7,9 @@ from loadshare.cli.waiting import echo, speak
 
 
 def warm() -> None:
-    """Compile what answers many samples, ahead of the first use: for images, once per version.
+    """Compile the code for many samples ahead of time, once per version: for images.
 
-    Without it, small jobs are answered by NumPy, and the first large one compiles.
+    Without this, small jobs use NumPy, and the first large one compiles.
     """
     from loadshare.job.warm import warm as compiled
 

@@ -37,7 +37,7 @@ def march(
     file: Annotated[list[Output] | None, outputs(*TABLES, *FIGURES)] = None,
     change: Changes = None,
 ) -> None:
-    """March through revolutions with spline friction that remembers its slip."""
+    """March through revolutions; spline friction depends on the slip before."""
     from loadshare.study.march import march as marched
 
     with asked(case, change, "steps") as (loaded, tick):
