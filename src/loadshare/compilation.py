@@ -119,6 +119,8 @@ def within(**how: Any) -> Callable[[Callable[..., Any]], Any]:
         try:
             from numba import njit
 
+            from loadshare import reference_type  # noqa: F401 -- tells Numba of references
+
             watch.attach()
             return njit(**how)(function)
         except Exception as error:  # noqa: BLE001 -- also an interpreter that Numba does not know

@@ -45,11 +45,10 @@ def by_numpy(monkeypatch):
     monkeypatch.setattr(hot, "engine_at_hand", lambda _name, _count: vectorised.settle)
 
 
-def failing(structure, loading, basis, states, rows, state, one_only):
+def failing(structure, loading, sets, parts, state, one_only):
     """An engine that finds no answer on any set."""
-    return np.full(len(rows), contact_states.FAILED, np.int8), np.repeat(
-        states[None, :], len(rows), 0
-    )
+    each = np.repeat(sets, [len(part) for part in parts], axis=0)
+    return np.full(len(each), contact_states.FAILED, np.int8), each
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -95,11 +94,11 @@ def test_an_answer_that_was_searched_for_says_so(monkeypatch):
     """And is of least norm, like any other."""
     settle, visits = vectorised.settle, []
 
-    def slow(structure, loading, basis, states, rows, state, one_only):
+    def slow(structure, loading, sets, parts, state, one_only):
         visits.append(bool(state.stays.any()))
         if not visits[-1]:
-            return failing(structure, loading, basis, states, rows, state, one_only)
-        return settle(structure, loading, basis, states, rows, state, one_only)
+            return failing(structure, loading, sets, parts, state, one_only)
+        return settle(structure, loading, sets, parts, state, one_only)
 
     monkeypatch.setattr(vectorised, "settle", slow)
     case = shipped("fgfbstts/limit_ring")
@@ -128,11 +127,10 @@ def test_a_wrong_set_is_not_handed_out(monkeypatch):
         sets = first_sets(structure, loading)
         return at_rest(structure, loading), Found(nothing, sets, np.zeros(1, int), nothing)
 
-    def content(structure, loading, basis, states, rows, state, one_only):
-        settle(structure, loading, basis, states, rows, state, one_only)
-        return np.full(len(rows), contact_states.DONE, np.int8), np.repeat(
-            states[None, :], len(rows), 0
-        )
+    def content(structure, loading, sets, parts, state, one_only):
+        settle(structure, loading, sets, parts, state, one_only)
+        each = np.repeat(sets, [len(part) for part in parts], axis=0)
+        return np.full(len(each), contact_states.DONE, np.int8), each
 
     monkeypatch.setattr(vectorised, "settle", content)
     monkeypatch.setattr("loadshare.job.machine.search", lost)

@@ -258,8 +258,9 @@ def test_what_the_hot_path_leaves_climbs_and_says_so(monkeypatch):
 
     settle = vectorised.settle
 
-    def moody(structure, loading, basis, code, rows, state, one_only):
-        verdict, proposal = settle(structure, loading, basis, code, rows, state, one_only)
+    def moody(structure, loading, sets, parts, state, one_only):
+        verdict, proposal = settle(structure, loading, sets, parts, state, one_only)
+        rows = np.concatenate(parts)
         return np.where(
             (rows % 2 == 1) & (loading.count > 1), contact_states.FAILED, verdict
         ), proposal

@@ -79,8 +79,8 @@ class HotPath(NamedTuple):
 class Abreast(NamedTuple):
     """Samples of a set side by side; what is out of the ordinary is left undecided."""
 
-    widths: tuple[int, ...] = (8, 16, 32, 64, 128, 256)
-    """How many at a time: the first number that is enough, or the last."""
+    widest: int = 256
+    """How many at a time."""
     rounds: int = 4
     """Times that samples begin again beside those that took as long."""
     few: float = 0.125

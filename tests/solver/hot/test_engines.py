@@ -69,16 +69,15 @@ def contact_forces(machine: Machine, found: Answers) -> np.ndarray:
 def few_abreast(*given):
     """Eight at a time, so that samples wait, and the slow ones begin again beside one another."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(compiled, "ABREAST", ABREAST._replace(widths=(8,)))
+        patch.setattr(compiled, "ABREAST", ABREAST._replace(widest=8))
         return compiled.settle(*given)
 
 
 def alone(*given):
     """Every sample by itself."""
-    *before, rows, state, one_only = given
-    found = [compiled.settle(*before, rows[k : k + 1], state, one_only) for k in range(len(rows))]
-    verdicts, proposals = zip(*found, strict=True)
-    return np.concatenate(verdicts), np.concatenate(proposals)
+    structure, loading, sets, parts, *state = given
+    each = np.repeat(sets, [len(part) for part in parts], axis=0)
+    return compiled.settle(structure, loading, each, np.concatenate(parts)[:, None], *state)
 
 
 def agree(machine: Machine, situations: Situations) -> Answers:

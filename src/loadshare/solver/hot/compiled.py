@@ -9,21 +9,23 @@ holds no lock of the interpreter: threads share the samples.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.by_reference import by_reference, set_apart
 from loadshare.scene.loading import Loading
-from loadshare.scene.statics import Basis
 from loadshare.scene.structure import Structure
 from loadshare.settings import ABREAST
 from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.iterate import Iterate
 from loadshare.solver.hot.kernel.conclude import conclude
 from loadshare.solver.hot.kernel.fill import fill
-from loadshare.solver.hot.kernel.options import cached
+from loadshare.solver.hot.kernel.options import bare, cached
 from loadshare.solver.hot.kernel.passes import give_up, run
-from loadshare.solver.hot.kernel.set_arrays import Rows, States, packed_set, unpacked
-from loadshare.solver.hot.kernel.work import work_for
+from loadshare.solver.hot.kernel.set_arrays import Rows, Samples, States, packed_sets, unpacked
+from loadshare.solver.hot.kernel.work import Given, work_for
 
 UNDECIDED = -1
 """Verdict on a sample that is left to `vectorised`."""
@@ -32,60 +34,69 @@ UNDECIDED = -1
 def settle(
     structure: Structure,
     loading: Loading,
-    basis: Basis,
-    states: States,
-    rows: Rows,
+    sets: States,
+    parts: Sequence[Rows],
     iterate: Iterate,
     one_only: NDArray[np.bool_],
 ) -> tuple[States, States]:
-    """Solve samples on one set and say what has the wrong sign.
+    """Solve samples, each on its set, and say what has the wrong sign.
 
     Parameters and return values are those of :func:`loadshare.solver.hot.vectorised.settle`, which
     solves what is left undecided here. A proposal is written where the verdict asks for one.
     """
-    verdict = np.empty(len(rows), dtype=np.int8)
-    proposal = np.empty((len(rows), len(states)), dtype=np.int8)
+    rows = np.concatenate(parts)
+    ends = np.cumsum([len(part) for part in parts])
+    verdict = np.full(len(rows), UNDECIDED, dtype=np.int8)
+    proposal = np.empty((len(rows), sets.shape[1]), dtype=np.int8)
+    state = iterate.x, iterate.force, iterate.root, iterate.floor
     _settle_all(
-        packed_set(structure, loading, basis, states),
-        rows,
-        iterate.x,
-        iterate.force,
-        iterate.root,
-        iterate.floor,
-        one_only,
-        verdict,
-        proposal,
-        next((width for width in ABREAST.widths if width >= len(rows)), ABREAST.widths[-1]),
+        *packed_sets(structure, loading, sets),
+        sets,
+        Samples._make(getattr(loading, name) for name in Samples._fields),
+        Given(rows, *state, one_only, verdict, proposal),
+        ends,
+        ABREAST.widest,
     )
     left = (verdict == UNDECIDED).nonzero()[0]
     if len(left):
+        which = np.searchsorted(ends, left, side="right")
+        met = np.unique(which)
+        some = [rows[left[which == g]] for g in met.tolist()]
         verdict[left], proposal[left] = vectorised.settle(
-            structure, loading, basis, states, rows[left], iterate, one_only
+            structure, loading, sets[met], some, iterate, one_only
         )
     return verdict, proposal
 
 
 @cached
-def _settle_all(  # type: ignore[no-untyped-def]
-    packed, rows, xs, forces, roots, floors, one_only, verdict, proposal, widest
-):
-    """Settle every sample of `rows`, at most `widest` side by side."""
-    s = unpacked(packed)
-    work = work_for(s, xs.shape[1], widest)
-    verdict[:] = UNDECIDED
-    waiting = np.arange(rows.shape[0])
-    total = rows.shape[0]
+def _settle_all(floats, numbers, begins, sets, samples, given, ends, widest):  # type: ignore[no-untyped-def]
+    """Settle every sample of every set, at most `widest` side by side."""
+    first, waiting = 0, np.arange(given.rows.shape[0])
+    for g in range(ends.shape[0]):
+        place, some = begins[g], waiting[first : ends[g]]
+        s = unpacked(floats[place[0] :], numbers[place[1] :], sets[g], samples)
+        width = min(widest, (some.shape[0] + 7) // 8 * 8)
+        work = work_for(s, given.xs.shape[1], width)
+        _settle_set(by_reference(s), by_reference(work), by_reference(given), some, width)
+        first = ends[g]
+
+
+@bare
+def _settle_set(s, work, given, waiting, widest):  # type: ignore[no-untyped-def]
+    """Settle samples of one set; those that take long wait, and begin again beside one another."""
+    set_apart()
+    total = waiting.shape[0]
     for number in range(ABREAST.rounds):
         slow = 0
         last = number == ABREAST.rounds - 1 or total <= widest
         for first in range(0, total, widest):
             count = min(widest, total - first)
             width = count if count <= ABREAST.fewest else min(widest, (count + 7) // 8 * 8)
-            fill(s, work, rows, waiting, first, count, width, xs, forces, roots, floors, one_only)
-            run(s, work, one_only, 0 if last else int(ABREAST.few * count), width)
+            fill(s, work, given, waiting, first, count, width)
+            run(s, work, given.one_only, 0 if last else int(ABREAST.few * count), width)
             if last:
                 give_up(work, count)
-            conclude(s, work, count, width, xs, forces, roots, one_only, verdict, proposal)
+            conclude(s, work, given, count, width)
             for m in range(count):
                 if work.live[m] > 0.0:
                     waiting[slow] = work.at_row[m]

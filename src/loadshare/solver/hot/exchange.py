@@ -1,14 +1,12 @@
 """From set to set until every sample is consistent.
 
-Samples on the same set are solved together. Of all sets the one with most samples goes
-first, so that few visits serve many.
+All samples take a turn together, those on the same set side by side.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from heapq import heappop, heappush
 from itertools import pairwise, permutations
 
 import numpy as np
@@ -16,7 +14,6 @@ from numpy.typing import NDArray
 
 from loadshare.scene.loading import Loading
 from loadshare.scene.scene import Array
-from loadshare.scene.statics import Basis
 from loadshare.scene.structure import Structure
 from loadshare.settings import EXCHANGE
 from loadshare.solver.hot import contact_states as at
@@ -25,7 +22,7 @@ from loadshare.solver.hot.iterate import Iterate
 
 States = NDArray[np.int8]
 Engine = Callable[
-    [Structure, Loading, Basis, States, NDArray[np.intp], Iterate, NDArray[np.bool_]],
+    [Structure, Loading, States, Sequence[NDArray[np.intp]], Iterate, NDArray[np.bool_]],
     tuple[States, States],
 ]
 
@@ -163,41 +160,47 @@ def exchange(
     one_only = np.full(count, singly)
     limit = limit or EXCHANGE.turns
     rounds = _Rounds(structure)
-    waiting = _Waiting()
     rows = np.arange(count) if only is None else np.flatnonzero(only)
-    waiting.add(states[rows], rows, 1)
-    while waiting:
-        here, rows, turn = waiting.most()
+    turn = 0
+    while len(rows):
+        turn += 1
+        order, starts = _alike(states[rows])
+        rows = rows[order]
+        sets = np.ascontiguousarray(states[rows[starts[:-1]], :switches])
+        parts = [rows[a:b] for a, b in pairwise(starts)]
+        verdict, proposal = engine(structure, loading, sets, parts, iterate, one_only)
         turns[rows] += 1
-        basis = structure.basis(here[:switches])
-        verdict, proposal = engine(
-            structure, loading, basis, here[:switches], rows, iterate, one_only
-        )
         onward = verdict == at.OTHER
-        if singly or turn >= min(limit, EXCHANGE.together + 1):
-            visited = turns[rows]
-            onward &= visited < limit
-            judged = onward if singly else onward & (visited > EXCHANGE.together)
-            for k in judged.nonzero()[0].tolist():
-                force = iterate.force[rows[k]]
-                verdict[k] = rounds.judged(int(rows[k]), here[:switches], proposal[k], force)
+        if turn >= limit:
+            onward[:] = False
+        if singly or turn > EXCHANGE.together:
+            for k in onward.nonzero()[0].tolist():
+                here, force = states[rows[k], :switches], iterate.force[rows[k]]
+                verdict[k] = rounds.judged(int(rows[k]), here, proposal[k], force)
                 onward[k] = verdict[k] == at.OTHER
-        goes = onward.nonzero()[0]
-        if len(goes) < len(rows):
-            stays = ~onward
-            stay = rows[stays]
-            done = verdict[stays] == at.DONE
-            states[stay], solved[stay] = here, done
-            if not basis.loose.shape[1]:
-                held[stay] = done
-        if len(goes):
-            rows = rows[goes]
-            if turn >= EXCHANGE.together:
-                one_only[rows] |= turns[rows] >= EXCHANGE.together
-            other = np.zeros((len(rows), states.shape[1]), dtype=np.int8)
-            other[:, :switches] = proposal[goes]
-            waiting.add(_without_wedges(structure, loading, here, other), rows, turn + 1)
+        done = verdict == at.DONE
+        solved[rows[done]] = True
+        tight = [not structure.basis(one).loose.shape[1] for one in sets]
+        held[rows] = done & np.repeat(tight, np.diff(starts))
+        rows, here, other = rows[onward], states[rows[onward], :switches], proposal[onward]
+        if turn >= EXCHANGE.together:
+            one_only[rows] = True
+        _without_wedges(structure, loading, here, other)
+        states[rows, :switches] = other
     return Found(solved, states[:, :switches], turns, held)
+
+
+def _alike(states: States) -> tuple[NDArray[np.intp], list[int]]:
+    """Order in which equal sets, given in whole words, stand together, and where each begins.
+
+    Should two sets have one key, a sample is solved on the other one: what it finds there is
+    judged there.
+    """
+    keys = states.view(np.int64) @ _KEYS[: states.shape[1] // WORD]
+    order = keys.argsort(kind="stable")
+    keys = keys[order]
+    ends = (keys[1:] != keys[:-1]).nonzero()[0] + 1
+    return order, [0, *ends.tolist(), len(keys)]
 
 
 class _Rounds:
@@ -237,69 +240,12 @@ class _Rounds:
         return bool((found <= EXCHANGE.nothing * size.max()).all())
 
 
-class _Waiting:
-    """Samples that wait to be solved, by the set that they go to."""
-
-    def __init__(self) -> None:
-        self.sets: dict[int, States] = {}
-        self.parts: dict[int, list[NDArray[np.intp]]] = {}
-        self.sizes: dict[int, int] = {}
-        # The turn that this will be for a sample of them, at most.
-        self.turns: dict[int, int] = {}
-        # Sizes once more, the largest first; one that is out of date is passed over.
-        self.largest: list[tuple[int, int]] = []
-
-    def __bool__(self) -> bool:
-        return bool(self.sizes)
-
-    def most(self) -> tuple[States, NDArray[np.intp], int]:
-        """Take the set to which most samples go, them, and the most turns of any of them."""
-        size, key = heappop(self.largest)
-        while self.sizes.get(key) != -size:
-            size, key = heappop(self.largest)
-        del self.sizes[key]
-        parts, turn = self.parts.pop(key), self.turns.pop(key)
-        return self.sets[key], parts[0] if len(parts) == 1 else np.concatenate(parts), turn
-
-    def add(self, states: States, rows: NDArray[np.intp], turn: int) -> None:
-        """Let samples wait for the sets in `states`, shape (len(rows), whole words).
-
-        There they have at most so many turns.
-        """
-        if not len(rows):
-            return
-        # Should two sets have one key, a sample is solved on the other one: what it finds there
-        # is judged there.
-        keys = states.view(np.int64) @ _KEYS[: states.shape[1] // WORD]
-        if len(rows) == 1 or (keys == keys[0]).all():
-            self._put(int(keys[0]), states[0], rows, turn)
-            return
-        order = keys.argsort()
-        keys, rows = keys[order], rows[order]
-        ends = (keys[1:] != keys[:-1]).nonzero()[0] + 1
-        for first, end in pairwise([0, *ends.tolist(), len(rows)]):
-            self._put(int(keys[first]), states[order[first]], rows[first:end], turn)
-
-    def _put(self, key: int, states: States, rows: NDArray[np.intp], turn: int) -> None:
-        self.sets.setdefault(key, states)
-        self.parts.setdefault(key, []).append(rows)
-        self.turns[key] = max(turn, self.turns.get(key, 0))
-        size = self.sizes[key] = self.sizes.get(key, 0) + len(rows)
-        heappush(self.largest, (-size, key))
-
-
-def _without_wedges(
-    structure: Structure, loading: Loading, here: States, proposal: States
-) -> States:
+def _without_wedges(structure: Structure, loading: Loading, here: States, proposal: States) -> None:
     """Let only one of two opposed rigid arcs act, the one that is new, unless both act here."""
     for one, other in structure.opposed:
-        if not (proposal[:, one] & proposal[:, other]).any():
+        if loading.bending[:, structure.springs + np.array([one, other])].any():
             continue
-        if here[one] != at.OPEN and here[other] != at.OPEN:
-            continue
-        columns = structure.springs + np.array([one, other])
-        both = (proposal[:, one] != at.OPEN) & (proposal[:, other] != at.OPEN)
-        if both.any() and not loading.bending[:, columns].any():
-            leaves = one if here[one] != at.OPEN else other
-            proposal[both, leaves] = at.OPEN
-    return proposal
+        acts = here[:, [one, other]] != at.OPEN
+        both = (proposal[:, [one, other]] != at.OPEN).all(axis=1) & ~acts.all(axis=1)
+        proposal[both & acts[:, 0], one] = at.OPEN
+        proposal[both & ~acts[:, 0], other] = at.OPEN

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -25,24 +27,20 @@ States = NDArray[np.int8]
 def settle(
     structure: Structure,
     loading: Loading,
-    basis: Basis,
-    states: States,
-    rows: Rows,
+    sets: States,
+    parts: Sequence[Rows],
     iterate: Iterate,
     one_only: Flags,
 ) -> tuple[States, States]:
-    """Solve samples on one set and say what has the wrong sign.
+    """Solve samples, each on its set, and say what has the wrong sign.
 
     Parameters
     ----------
     structure : Structure
     loading : Loading
-    basis : Basis
-        Of the set.
-    states : ndarray of int8, shape (switches,)
-        The set.
-    rows : ndarray of int, shape (k,)
-        Samples to solve.
+    sets : ndarray of int8, shape (G, switches)
+    parts : sequence of ndarray of int
+        Samples to solve on each of them, k in all.
     iterate : Iterate
         Where each sample is; renewed in place.
     one_only : ndarray of bool, shape (S,)
@@ -55,6 +53,24 @@ def settle(
     proposal : ndarray of int8, shape (k, switches)
         Set to try next.
     """
+    found = [
+        _settle_set(structure, loading, structure.basis(states), states, rows, iterate, one_only)
+        for states, rows in zip(sets, parts, strict=True)
+    ]
+    verdicts, proposals = zip(*found, strict=True)
+    return np.concatenate(verdicts), np.concatenate(proposals)
+
+
+def _settle_set(
+    structure: Structure,
+    loading: Loading,
+    basis: Basis,
+    states: States,
+    rows: Rows,
+    iterate: Iterate,
+    one_only: Flags,
+) -> tuple[States, States]:
+    """Solve samples on one set and say what has the wrong sign."""
     with np.errstate(all="ignore"):
         passes = _Passes(structure, loading, basis, states, rows, iterate)
         drift = passes.drift()

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from loadshare.by_reference import by_reference, set_apart
 from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.kernel.laws import flank_law
-from loadshare.certify.bound.kernel.options import compiled, inlined
+from loadshare.certify.bound.kernel.options import compiled, within
 from loadshare.certify.bound.laws import CLOSED, ENDLESS, LIGHT
 from loadshare.settings import BOUND
 
@@ -17,6 +18,19 @@ FORCE, WAY, TORQUE, ARC, ARC_WAY = range(5)
 @compiled
 def bound_all(of, here, claim, found, group, errors):  # type: ignore[no-untyped-def]
     """Largest error of a torque [N·m] of every claim; infinite where it is not shown."""
+    _bound_all(
+        by_reference(of),
+        by_reference(here),
+        by_reference(claim),
+        by_reference(found),
+        by_reference(group),
+        errors,
+    )
+
+
+@within
+def _bound_all(of, here, claim, found, group, errors):  # type: ignore[no-untyped-def]
+    set_apart()
     for s in range(len(errors)):
         errors[s], g = np.inf, found.number[s]
         if g < 0 or not group.known[g]:
@@ -58,7 +72,7 @@ def bound_all(of, here, claim, found, group, errors):  # type: ignore[no-untyped
             errors[s] = min(errors[s], _proved(of, found, group, g, s, residual, closely))
 
 
-@inlined
+@within
 def _proved(of, found, group, g, s, residual, carried):  # type: ignore[no-untyped-def]
     """Error of a torque [N·m] if all holds that was assumed; else infinite."""
     largest, moved, torque = _answered(of, found, group, g, s, residual, carried)
@@ -68,7 +82,7 @@ def _proved(of, found, group, g, s, residual, carried):  # type: ignore[no-untyp
     return np.inf
 
 
-@inlined
+@within
 def _passed(of, here, claim, found, group, g, s, rest):  # type: ignore[no-untyped-def]
     """Largest torque [N·m] and energy [√J] of what carries the load that is left over.
 
@@ -97,7 +111,7 @@ def _passed(of, here, claim, found, group, g, s, rest):  # type: ignore[no-untyp
     return torque, energy
 
 
-@inlined
+@within
 def _answered(of, found, group, g, s, residual, carried):  # type: ignore[no-untyped-def]
     """Largest error of a force [N], way of an element [m] and error of a torque [N·m].
 
@@ -158,21 +172,21 @@ def _answered(of, found, group, g, s, residual, carried):  # type: ignore[no-unt
     return largest, moved, torque if proved else np.inf
 
 
-@inlined
+@within
 def _by(group, g, what, load, push, energy, gap):  # type: ignore[no-untyped-def]
     """One of the largest figures by load [N], push on arcs [N], energy [√J] and gap [m]."""
     by = group.by[g, what]
     return by[0] * load + by[1] * push + by[2] * energy + by[3] * gap
 
 
-@inlined
+@within
 def _pulled(group, g, q, load, push, energy):  # type: ignore[no-untyped-def]
     """Error of the force of a radial element that takes part in carrying [N]; of others 0."""
     by = group.pull_by[g, q]
     return by[0] * load + by[1] * push + by[2] * energy if by[0] > 0.0 else 0.0
 
 
-@inlined
+@within
 def _pulled_way(found, group, g, s, load, push, energy):  # type: ignore[no-untyped-def]
     """Way of an element by what radial elements yield that take part in carrying [m]."""
     moved = 0.0
@@ -183,7 +197,7 @@ def _pulled_way(found, group, g, s, load, push, energy):  # type: ignore[no-unty
     return moved
 
 
-@inlined
+@within
 def _carried(of, found, group, g, s):  # type: ignore[no-untyped-def]
     """What carrying a load by radial elements adds.
 
@@ -205,7 +219,7 @@ def _carried(of, found, group, g, s):  # type: ignore[no-untyped-def]
     return more, back, blind * group.widest[g]
 
 
-@inlined
+@within
 def _followed(of, found, group, g, s, residual, push, tilt, due):  # type: ignore[no-untyped-def]
     """Load left over and energy, with what friction that follows the torque adds to them."""
     spent, into, width = due

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from loadshare.by_reference import by_reference, set_apart
 from loadshare.certify.bound.claim import EPS
 from loadshare.certify.bound.kernel.forces import (
     put_balance,
@@ -15,7 +16,7 @@ from loadshare.certify.bound.kernel.forces import (
 )
 from loadshare.certify.bound.kernel.laws import contact_force, row_of
 from loadshare.certify.bound.kernel.lengths import put_gaps, put_lengths, put_limits, put_places
-from loadshare.certify.bound.kernel.options import compiled, inlined
+from loadshare.certify.bound.kernel.options import compiled, inlined, within
 from loadshare.certify.bound.kernel.residuals import displaced, worst_residual
 from loadshare.certify.bound.laws import CLOSED, ENDLESS, LIGHT, OPEN
 from loadshare.settings import BOUND, CERTIFY
@@ -23,11 +24,24 @@ from loadshare.settings import BOUND, CERTIFY
 
 @compiled
 def find_all(of, here, claim, work, found, sets):  # type: ignore[no-untyped-def]
-    """Put all claims into figures; returns how many sets of elements act in them.
+    """Put all claims into figures; returns how many sets of elements act in them."""
+    return _find_all(
+        by_reference(of),
+        by_reference(here),
+        by_reference(claim),
+        by_reference(work),
+        by_reference(found),
+        by_reference(sets),
+    )
 
-    Products with A and its transpose are those of some claims side by side; the rest goes claim by
-    claim.
+
+@within
+def _find_all(of, here, claim, work, found, sets):  # type: ignore[no-untyped-def]
+    """Products with A and its transpose are those of some claims side by side.
+
+    The rest goes claim by claim.
     """
+    set_apart()
     count, last, claims = 0, 0, len(claim.rotation)
     for first in range(0, claims, BOUND.abreast):
         width = min(BOUND.abreast, claims - first)

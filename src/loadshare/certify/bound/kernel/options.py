@@ -7,8 +7,7 @@ from typing import Any
 from loadshare import compilation
 
 # Nothing is allocated in here, so Numba need not count who holds an array: counting would take
-# twice as long as judging. A call would hand over every array of the tuples, and cost more than
-# what it does, so functions that take them are inlined.
+# twice as long as judging.
 _how: dict[str, Any] = {
     "nogil": True,
     "error_model": "numpy",
@@ -16,4 +15,6 @@ _how: dict[str, Any] = {
     "_nrt": False,
 }
 compiled = compilation.jit(**_how)
+within = compilation.within(**_how)
+# Claim by claim they read the same arrays, whose places would be read anew by each of them.
 inlined = compilation.within(forceinline=True, **_how)

@@ -13,9 +13,11 @@ from loadshare.solver.hot.kernel.work import BAND, DRIFTS, GIVEN_UP, MOVED, STAT
 
 
 @bare
-def conclude(s, work, count, width, xs, forces, roots, one_only, verdict, proposal):  # type: ignore[no-untyped-def]
+def conclude(s, work, given, count, width):  # type: ignore[no-untyped-def]
     """Judge the signs of samples that have settled, and store where every sample stands."""
     springs, force = s.springs.shape[0], work.force
+    xs, forces, roots = given.xs, given.forces, given.roots
+    verdict, proposal = given.verdict, given.proposal
     _refine(s, work, width)
     look_at_rows(s, work, width)
     look_at_radials(s, work, width)
@@ -48,7 +50,7 @@ def conclude(s, work, count, width, xs, forces, roots, one_only, verdict, propos
             for p in range(s.powers):
                 if force[s.first_row + p, m] <= 0.0:
                     work.wrong[s.switches[p], m] = True
-        propose(s.states, work.wrong, work.better, m, one_only[i], proposal[row])
+        propose(s.states, work.wrong, work.better, m, given.one_only[i], proposal[row])
         if work.each[DRIFTS, m] > 0.0:
             # Only what stops the drift is of interest.
             verdict[row] = stopped(s, work, m, width, proposal[row], xs[i])

@@ -27,23 +27,23 @@ from loadshare.solver.hot.kernel.work import (
 
 
 @bare
-def fill(s, work, rows, waiting, first, count, width, xs, forces, roots, floors, one_only):  # type: ignore[no-untyped-def]
+def fill(s, work, given, waiting, first, count, width):  # type: ignore[no-untyped-def]
     """Take samples up, side by side; what is left of the width repeats the last of them."""
     samples = work.samples
     for m in range(width):
         row = waiting[first + min(m, count - 1)]
-        work.at_row[m], samples[m] = row, rows[row]
+        work.at_row[m], samples[m] = row, given.rows[row]
     for m in range(width):
         i = samples[m]
-        work.floor[m] = floors[i]
-        work.each[PATIENT, m] = HOT.patience if one_only[i] else ABREAST.patience
+        work.floor[m] = given.floors[i]
+        work.each[PATIENT, m] = HOT.patience if given.one_only[i] else ABREAST.patience
         work.live[m], work.go[m] = 1.0 if m < count else 0.0, 1.0
         work.each[BAND, m], work.each[DRIFTS, m], work.singular[m] = 0.0, 0.0, 0.0
         work.each[PREVIOUS, m], work.each[TURN, m], work.each[GIVEN_UP, m] = np.inf, 0.0, 0.0
     _load(s, work, width)
     _statics(s, work, width)
-    _laws(s, work, width, xs, forces, roots)
-    _radials(s, work, width, xs, forces)
+    _laws(s, work, width, given.xs, given.forces, given.roots)
+    _radials(s, work, width, given.xs, given.forces)
     _linear(s, work, width)
 
 

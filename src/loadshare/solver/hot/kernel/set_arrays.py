@@ -1,4 +1,6 @@
-"""What the compiled kernel reads of a set of acting elements and of the samples.
+"""What the compiled kernel reads of sets of acting elements and of the samples.
+
+Every array that is handed over costs a tenth of a microsecond, so all sets of a call stand in two.
 
 Springs that are the same in all samples never change from pass to pass: what they add to the
 redundants' matrix is written down once. All other columns, `contacts` here, stand in the order in
@@ -25,16 +27,9 @@ Rows = NDArray[np.intp]
 States = NDArray[np.int8]
 
 
-class Packed(NamedTuple):
-    """A set and samples as they are handed over: every array more costs a tenth of a microsecond.
+class Samples(NamedTuple):
+    """What differs from sample to sample, as in `Loading`."""
 
-    The tables of a set stand in `floats`, its lists and numbers in `rows`, one after another; where
-    each begins stands at the front of `rows`.
-    """
-
-    floats: Array
-    rows: Rows
-    states: States
     follows: NDArray[np.bool_]
     loaded: Rows
     load: Array
@@ -120,40 +115,36 @@ _TABLES = SetArrays._fields.index("springs")
 _LISTS = SetArrays._fields.index("powers") - _TABLES
 _NUMBERS = SetArrays._fields.index("states") - _TABLES - _LISTS
 _FRONT = 3 * (_TABLES + _LISTS)
-"""Where the numbers stand in `Packed.rows`; before them three numbers of every table and list."""
+"""Where the numbers of a set stand; before them three numbers of every table and list."""
 
 
-def packed_set(structure: Structure, loading: Loading, basis: Basis, states: States) -> Packed:
-    """Pack a set and samples; what does not vary from sample to sample is kept for next time."""
-    key = ("compiled", states.tobytes(), loading.laws)
-    known = structure.cache.get(key)
-    if known is None:
-        known = structure.remember(
-            key, _pack(*_structure(structure, loading, basis, states), states)
-        )
-    return Packed._make(
-        (
-            *known,
-            loading.follows,
-            loading.loaded,
-            loading.load,
-            loading.gap,
-            loading.bending,
-            loading.hertz,
-            loading.tables,
-            loading.nominal,
-            loading.shift,
-            loading.clearance,
-            loading.relative,
-            loading.radial,
-        )
-    )
+def packed_sets(structure: Structure, loading: Loading, sets: States) -> tuple[Array, Rows, Rows]:
+    """Pack sets one after another; what is known of each is kept for next time.
+
+    Returns
+    -------
+    floats, numbers : ndarray
+        Tables of the sets; their lists and numbers, with where each begins at the front.
+    begins : ndarray of int, shape (sets, 2)
+        Where each set begins in both.
+    """
+    found = []
+    for states in sets:
+        key = ("compiled", states.tobytes(), loading.laws)
+        known = structure.cache.get(key)
+        if known is None:
+            known = _pack(*_structure(structure, loading, structure.basis(states), states))
+            structure.remember(key, known)
+        found.append(known)
+    floats, numbers = zip(*found, strict=True)
+    begins = np.zeros((len(sets), 2), dtype=np.intp)
+    for k, every in enumerate((floats, numbers)):
+        np.cumsum([len(one) for one in every[:-1]], out=begins[1:, k])
+    return np.concatenate(floats), np.concatenate(numbers), begins
 
 
-def _pack(
-    tables: list[Array], lists: list[Rows], numbers: list[int], states: States
-) -> tuple[Array, Rows, States]:
-    """The first fields of `Packed`."""
+def _pack(tables: list[Array], lists: list[Rows], numbers: list[int]) -> tuple[Array, Rows]:
+    """One array of all tables, one of all lists and numbers."""
     front, start = [], 0
     for table in tables:
         front += [start, *table.shape]
@@ -163,7 +154,7 @@ def _pack(
         front += [start, len(one), 1]
         start += len(one)
     rows = np.concatenate([np.array(front + numbers, dtype=np.intp), *lists])
-    return np.concatenate([np.ravel(table) for table in tables]), rows, np.array(states)
+    return np.concatenate([np.ravel(table) for table in tables]), rows
 
 
 @allocating
@@ -179,9 +170,8 @@ def _list(rows, place):  # type: ignore[no-untyped-def]
 
 
 @allocating
-def unpacked(p):  # type: ignore[no-untyped-def]
-    """Arrays of a packed set, in the order of `SetArrays`."""
-    floats, rows = p.floats, p.rows
+def unpacked(floats, rows, states, samples):  # type: ignore[no-untyped-def]
+    """Arrays of a packed set and of samples, in the order of `SetArrays`."""
     return SetArrays(
         _table(floats, rows[0:]),
         _table(floats, rows[3:]),
@@ -227,19 +217,19 @@ def unpacked(p):  # type: ignore[no-untyped-def]
         rows[117],
         rows[118],
         rows[119],
-        p.states,
-        p.follows,
-        p.loaded,
-        p.load,
-        p.gap,
-        p.bending,
-        p.hertz,
-        p.tables,
-        p.nominal,
-        p.shift,
-        p.clearance,
-        p.relative,
-        p.radial,
+        states,
+        samples.follows,
+        samples.loaded,
+        samples.load,
+        samples.gap,
+        samples.bending,
+        samples.hertz,
+        samples.tables,
+        samples.nominal,
+        samples.shift,
+        samples.clearance,
+        samples.relative,
+        samples.radial,
     )
 
 

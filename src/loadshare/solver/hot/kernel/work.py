@@ -12,6 +12,19 @@ from loadshare.solver.hot.kernel.options import allocating
 from loadshare.solver.hot.kernel.set_arrays import Rows, States
 
 
+class Given(NamedTuple):
+    """Samples to settle, where they stand, and what is told of them."""
+
+    rows: Rows  # (k,): their numbers
+    xs: Array  # (S, n)
+    forces: Array  # (S, m), as is the following
+    roots: Array
+    floors: Array  # (S,), as is the following
+    one_only: NDArray[np.bool_]
+    verdict: States  # (k,)
+    proposal: States  # (k, switches)
+
+
 class Work(NamedTuple):
     """Samples side by side."""
 
