@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import linprog
-from scipy.sparse import block_diag
 
 from loadshare.scene.scene import Array
 from loadshare.settings import FOLLOW
@@ -87,6 +85,9 @@ def _widest(blocks: Sequence[tuple[Array, Array]], most: Array) -> list[Array]:
     """
     if not blocks:
         return []
+    from scipy.optimize import linprog
+    from scipy.sparse import block_diag
+
     widths = [rows.shape[1] for rows, _ in blocks]
     last = np.cumsum(widths) - 1
     cost = np.zeros(sum(widths))

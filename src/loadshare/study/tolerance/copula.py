@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy import special
 
 from loadshare.scene.scene import Array
 from loadshare.settings import TOLERANCE
@@ -38,6 +37,8 @@ class Copula:
 
     def applied(self, uniforms: Array) -> Array:
         """Return uniforms, shape (S, inputs), with those of the members correlated."""
+        from scipy import special
+
         columns = list(self.members)
         scores = special.ndtri(uniforms[:, columns])
         # Term by term: a product of matrices could round differently for another number of rows.

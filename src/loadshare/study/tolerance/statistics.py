@@ -8,7 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import special
 
 from loadshare.scene.scene import Array
 from loadshare.settings import TOLERANCE
@@ -112,6 +111,8 @@ def _replicates(values: Array) -> list[Array]:
 
 def _from_replicates(value: float, found: Sequence[float]) -> Estimate:
     """Student's interval from independent estimates of one figure."""
+    from scipy import special
+
     count = len(found)
     if count < 2:
         return Estimate(value, math.nan, math.nan)
@@ -121,6 +122,8 @@ def _from_replicates(value: float, found: Sequence[float]) -> Estimate:
 
 
 def _mean(known: Array, deviation: float, replicates: list[Array] | None) -> Estimate:
+    from scipy import special
+
     value = float(known.mean())
     if replicates is not None:
         return _from_replicates(value, [float(part.mean()) for part in replicates])
@@ -173,6 +176,8 @@ def wilson(hits: int, count: int, confidence: float = TOLERANCE.confidence) -> E
     E. B. Wilson, Probable inference, the law of succession, and statistical inference, Journal of
     the American Statistical Association 22 (1927).
     """
+    from scipy import special
+
     z = float(special.ndtri(0.5 + confidence / 2.0))
     share = hits / count
     middle = (share + z * z / (2.0 * count)) / (1.0 + z * z / count)

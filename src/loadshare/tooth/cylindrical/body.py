@@ -10,7 +10,6 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import PchipInterpolator
 
 from loadshare.settings import TEETH
 from loadshare.tooth.cylindrical.gear import HelicoidGear
@@ -161,6 +160,8 @@ def _filleted(gear: HelicoidGear) -> Curve:
 
 def _by_length(curve: Curve) -> Curve:
     """Change a curve's parameter from −1 ≤ t ≤ 1 to the share of its length."""
+    from scipy.interpolate import PchipInterpolator
+
     grid = np.concatenate([[-1.0], np.linspace(0.0, 1.0, 65)])
     chord = np.abs(np.diff(curve(grid)))
     chord[0] = abs(curve(np.zeros(1))[0]) * abs(np.angle(curve(grid[:1]) / curve(grid[1:2]))[0])

@@ -12,7 +12,6 @@ from functools import cached_property
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
-from scipy.optimize import brentq
 
 from loadshare.settings import TEETH
 from loadshare.tooth.face.gear import FaceGear
@@ -210,4 +209,6 @@ def root_of(function: Callable[[float], float], low: float, high: float) -> floa
     ends = function(low), function(high)
     if not min(ends) <= 0.0 <= max(ends):
         raise NoLimitError
+    from scipy.optimize import brentq
+
     return float(brentq(function, low, high, xtol=TEETH.zero, rtol=TEETH.zero))
