@@ -3,6 +3,7 @@
 import pytest
 from tests.kills.cluster import await_workers, cluster
 from tests.kills.trial import KINDS, TARGETS, Bench, differences, trial
+from tests.support import mostly_slow
 
 
 @pytest.fixture
@@ -11,12 +12,12 @@ def patient(monkeypatch):
     monkeypatch.setattr("tests.kills.trial.GONE", 60.0)
 
 
-def test_what_is_killed_leaves_nothing_and_goes_on(tmp_path, patient):
-    """A batch, whose parent, group and worker are killed in turn."""
+@pytest.mark.parametrize("number", mostly_slow(range(len(TARGETS)), (0,)))
+def test_what_is_killed_leaves_nothing_and_goes_on(tmp_path, patient, number):
+    """A batch, whose parent, group or worker is killed."""
     bench = Bench.of(tmp_path, ("batch",))
-    for number in range(len(TARGETS)):
-        found = trial(bench, 1, number, ("batch",))
-        assert (found.orphans, found.faults) == ((), ()), found
+    found = trial(bench, 1, number, ("batch",))
+    assert (found.orphans, found.faults) == ((), ()), found
 
 
 @pytest.mark.slow

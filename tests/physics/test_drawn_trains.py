@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from types import SimpleNamespace
 
 import pytest
+from tests.support import mostly_slow
 
 import loadshare as ls
 from benchmarks.kept import known
@@ -83,7 +84,7 @@ def test_drawn_loops_over_sets_are_solved_as_the_reference_has_them(numbers):
     assert not [f"{row['name']}: {line}" for row in found for line in failures(row)]
 
 
-@pytest.mark.parametrize("number", [2752, 2924])
+@pytest.mark.parametrize("number", mostly_slow((2752, 2924), (2924,)))
 def test_a_rigid_ring_that_would_have_to_pull_lets_go(number):
     """These were refused, after seconds: exchange ended with a ring that held a gear inward, or, of
     the second train, nowhere as long as it changed several elements at a time.
@@ -112,7 +113,7 @@ def test_a_search_that_goes_to_and_fro_is_told():
     assert ls.solve(draw(1, 4849)).positions[0].effort.rung in {HOT, SEARCHED}
 
 
-@pytest.mark.parametrize("number", [586, 902, 2529, 2914])
+@pytest.mark.parametrize("number", mostly_slow((586, 902, 2529, 2914), (902, 2914)))
 def test_gears_without_load_are_put_where_there_is_room(number):
     """Back-ends were asked for seconds, and one position was refused. Either a few of the contacts
     without load closed in the way of others, or a gear rolled off the arc that it rested on.
