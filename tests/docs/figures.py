@@ -497,6 +497,7 @@ GIVEN: dict[str, tuple[str, ...]] = {
         r"at least 4096 samples, its first 512\b",
         r"about 1e-12 of the value|round-off, 1e-12 of the largest",
         r"After 120 passes",
+        r"is used from 300 equilibria on",
     ),
     "defaults and settings of a pair file, and where laws are fitted": (
         r"^\| `(?:torque|helices|analysis|profile_shift|addendum|rim|youngs_modulus)`.*$",
