@@ -10,6 +10,7 @@ from tests.support import shipped
 
 import loadshare as ls
 from loadshare.job import positions
+from loadshare.job.recent import Recent
 from loadshare.train import build_train
 from loadshare.train.shape import shape_of
 
@@ -61,3 +62,18 @@ def test_only_the_last_shapes_are_kept(monkeypatch: Any) -> None:
         except (ls.CaseError, ls.Refused):
             continue
     assert len(positions._shapes) <= positions.JOB.recent
+
+
+def test_what_was_made_may_be_looked_at_while_more_is_made() -> None:
+    """As two threads do that solve side by side."""
+    case = shipped("fgfbstts/base")
+    recent: Recent[int] = Recent()
+    for k in range(2):
+        recent.keep(case, k, k)
+    looked = iter(recent)
+    assert next(looked) == 1
+    for k in range(2, 3 * positions.JOB.recent):
+        recent.keep(case, k, k)
+    assert list(looked) == [0]
+    assert len(list(recent)) == positions.JOB.recent
+    assert next(iter(recent)) == 3 * positions.JOB.recent - 1

@@ -50,7 +50,7 @@ class Crew:
         # A task of its own: whoever waits may be cancelled, and the worker is put in order all
         # the same.
         lent = asyncio.create_task(self._lent(request, work, item))
-        lent.add_done_callback(lambda task: task.cancelled() or task.exception())
+        lent.add_done_callback(_looked_at)
         return await asyncio.shield(lent)
 
     async def _lent(self, request: Request, work: Callable[[Item], Found], item: Item) -> Found:
@@ -77,7 +77,8 @@ class Crew:
             await asyncio.wait(either, return_when=asyncio.FIRST_COMPLETED)
             finished = found.done()
             if not finished:
-                found.cancel()
+                # Not cancelled: its process is killed, and that is its answer.
+                found.add_done_callback(_looked_at)
                 raise Unasked(499, "nobody waits for this any more")
             return found.result()
         finally:
@@ -90,6 +91,12 @@ class Crew:
         """Kill all of them."""
         for worker in self.free:
             worker.end()
+
+
+def _looked_at(done: asyncio.Future[Any]) -> None:
+    """Take an exception that nobody waits for any more."""
+    if not done.cancelled():
+        done.exception()
 
 
 async def _gone(request: Request) -> None:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import partial
 from numbers import Integral
 from pathlib import Path
+from threading import Lock
 from typing import Protocol
 
 from loadshare._version import __version__
@@ -188,6 +189,7 @@ def _options(
 
 
 _recent: Recent[tuple[Case, Machine, Geometry]] = Recent()
+_sharing = Lock()
 _shapes: OrderedDict[Hashable, dict[tuple[float, float], Machine]] = OrderedDict()
 """Machines by the shape of their trains, the last ones used at the end, and by their units."""
 
@@ -228,14 +230,15 @@ def share(machine: Machine) -> None:
     if machine.train.is_placed_anew:
         return
     shape = shape_of(machine.train)
-    known = _shapes.setdefault(shape, {})
-    _shapes.move_to_end(shape)
-    first = next(iter(known.values()), machine).structure
-    like = known.setdefault(units_of(first, situation_of(machine.train, 1)), machine)
-    if like is not machine:
-        machine.share(like)
-    while len(_shapes) > JOB.recent:
-        _shapes.popitem(last=False)
+    with _sharing:
+        known = _shapes.setdefault(shape, {})
+        _shapes.move_to_end(shape)
+        first = next(iter(known.values()), machine).structure
+        like = known.setdefault(units_of(first, situation_of(machine.train, 1)), machine)
+        if like is not machine:
+            machine.share(like)
+        while len(_shapes) > JOB.recent:
+            _shapes.popitem(last=False)
 
 
 def wanted_positions(train: Train, positions: Iterable[int] | None) -> list[int]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterator
 from typing import Generic, TypeVar
 
@@ -16,11 +15,12 @@ class Recent(Generic[Made]):
     """What was made of the last few cases: of a case itself, not of one that says the same."""
 
     def __init__(self) -> None:
-        self._made: deque[tuple[Case, object, Made]] = deque(maxlen=JOB.recent)
+        # Replaced as a whole: other threads may be looking.
+        self._made: tuple[tuple[Case, object, Made], ...] = ()
 
     def __iter__(self) -> Iterator[Made]:
         """What was made, the last first."""
-        return (made for _, _, made in reversed(self._made))
+        return (made for _, _, made in self._made)
 
     def of(self, case: Case | None, what: object = None) -> Made | None:
         """Return what was made of a case; None where it is not known.
@@ -35,5 +35,5 @@ class Recent(Generic[Made]):
 
     def keep(self, case: Case, made: Made, what: object = None) -> Made:
         """Keep what was made of a case, and return it."""
-        self._made.append((case, what, made))
+        self._made = ((case, what, made), *self._made)[: JOB.recent]
         return made
