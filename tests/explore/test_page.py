@@ -337,7 +337,7 @@ def test_contrast_of_an_answer_that_is_not_there_yet(browser, seed):
 def test_every_control_is_reached_by_the_keyboard(browser, seed):
     opened(browser, seed, names=["rings.5.float", "errors.6.installation.direction"])
     wanted = browser.execute_script(
-        """return [...document.querySelectorAll("a[href], button, input, summary")]
+        """return [...document.querySelectorAll("a[href], button, input, select, summary")]
         .filter((c) => c.checkVisibility() && !c.disabled).length;"""
     )
     seen = set()

@@ -13,7 +13,7 @@ from loadshare.case import Case
 from loadshare.errors import CaseError
 from loadshare.report.figures.layout import Body, Layout, layout_of
 from loadshare.report.figures.marks import Point, circle
-from loadshare.report.figures.region import Journey, Region
+from loadshare.report.figures.region import Journey
 from loadshare.report.numbers import significant
 from loadshare.report.palette import Palette, palette_of
 from loadshare.report.units import MICROMETRE, MILLIMETRE, engineering
@@ -58,11 +58,6 @@ def float_shapes(result: Result, shown: Position) -> Iterator[Plain]:
             "force": f"{significant(force.of(size))} {force.name}" if size > 0.0 else "",
             "told": journey.told[:-1],
         }
-
-
-def _edges(region: Region | None) -> list[Any]:
-    """Boundaries of a region: name, path, and the way out of it."""
-    return [[b.name, _path(b.path), [*b.outward]] for b in (region.boundaries if region else ())]
 
 
 def train_forces(shown: Position) -> dict[str, float]:

@@ -10,8 +10,6 @@ class Explore(NamedTuple):
 
     body: int = 256 * 1024
     """Bytes of a request: some thousand changed inputs."""
-    depth: int = 8
-    """Lists and tables within one another in a request."""
     text: int = 200
     """Characters of a value."""
     steps: int = 1000
