@@ -211,7 +211,7 @@ def test_places_told_from_other_components_are_told_of(written) -> None:
     ]
     found = import_rexs(written(xml(moved, relations)))
     assert found.data["gears"]["gear_22"]["centre"][1] == "120 mm"
-    assert any("told from other components" in line for line in found.assumed)
+    assert any("taken from other components" in line for line in found.assumed)
 
 
 @pytest.mark.parametrize("packed", [zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])

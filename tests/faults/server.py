@@ -150,7 +150,7 @@ def _keep_answers() -> None:
     import loadshare.job
     from loadshare.report.figure import Figure
     from loadshare.results import files, writing
-    from loadshare.study.tolerance import design, figures, study, worst
+    from loadshare.study.tolerance import design, figures, omegas, study, worst
 
     def case_key(case: Any, **how: Any) -> str:
         told = {name: value for name, value in how.items() if name != "progress"}
@@ -179,8 +179,9 @@ def _keep_answers() -> None:
     design.uniforms = _keeping(design.uniforms, lambda *given: repr(given))
     study.read_inputs = _keeping(study.read_inputs, inputs_key)
     # Statistics resample a thousand times.
-    for name in ("summary", "exceedance", "shares"):
-        setattr(study, name, _keeping(getattr(study, name), array_key))
+    for module, names in ((study, ("summary", "shares")), (omegas, ("summary", "exceedance"))):
+        for name in names:
+            setattr(module, name, _keeping(getattr(module, name), array_key))
 
 
 def _solve_here(here: bool) -> None:

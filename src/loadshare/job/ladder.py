@@ -230,6 +230,6 @@ def uncertified(index: int, certificate: Certificate) -> Refused:
     return Refused(
         f"position {index}: forces and laws are in balance to {certificate.worst:.1e}, but the "
         f"torques are {proved} (of the largest torque; allowed {allowed:.0e}): parts of very "
-        "very different stiffness share the load, or contacts are on the verge",
+        "different stiffness share the load, or contacts are on the verge",
         {"torque_bound": error},
     )
