@@ -80,7 +80,7 @@ function show(found, limit) {
   if (found.histogram) drawHistogram(found.histogram, limit);
 }
 
-const WIDTH = 460, FOOT = 200, TOP = 34, LEFT = 46, RIGHT = 14;
+const WIDTH = 460, FOOT = 204, TOP = 40, LEFT = 46, RIGHT = 14;
 
 function drawHistogram({ edges, counts, marks }, limit) {
   const low = edges[0], high = edges.at(-1), most = Math.max(...counts), right = WIDTH - RIGHT;
