@@ -70,7 +70,10 @@ class Judge:
         """
         if compiled and is_covered(self.columns) and not situations.push.any():
             return self._compiled(situations, answers, tolerance, bounded)
-        limits = bounds(self.columns, situations, answers) if bounded else None
+        limits = None
+        if bounded:
+            # What is certified is close enough, as in `completed`.
+            limits = bounds(self.columns, situations, answers, enough=tolerance)
         return self._by_numpy(situations, answers, tolerance, limits)
 
     def _compiled(

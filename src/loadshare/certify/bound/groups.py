@@ -102,6 +102,10 @@ class Plan:
         """Rows of L."""
         return len(self.contacts) + len(self.springs) + 2 * len(self.pulls)
 
+    def _force_at_end(self, moves: Array) -> float:
+        """Force of what may end one of some moves, per load along it; at least 1."""
+        return force_at_end(moves, self.contacts, self.pulls)
+
     def work(self) -> Workspace:
         """Return an empty workspace."""
         of, m, n = self.layout, len(self.layout.start) - 1, self.contacts.shape[1]
@@ -152,7 +156,8 @@ class Plan:
         carrying = whole if lasting.all() else Statics.of(whole.directions[lasting])
         # What is light may open, and then move by any length: it carries no load, but may hold what
         # nothing else does, where balance alone tells its force.
-        borne, is_covered = held_moves(carrying.moves, whole.directions[~lasting])
+        others = whole.directions[~lasting]
+        borne, is_covered = held_moves(carrying.moves, others, self._force_at_end)
         particular = np.zeros(whole.particular.shape)
         particular[lasting] = carrying.particular
         if len(some):
@@ -167,7 +172,7 @@ class Plan:
         if len(self._statics) >= BOUND.sets:
             self._statics.clear()
         moves = whole.moves
-        ended = force_at_end(moves, self.contacts, self.pulls) if moves.size else 0.0
+        ended = self._force_at_end(moves) if moves.size else 0.0
         found = Operators(particular, whole.redundant, moves, ended, borne, is_covered)
         self._statics[acts.tobytes()] = found
         return found

@@ -74,6 +74,7 @@ def bounds(
     situations: Situations,
     answers: Equilibria,
     rigorous: bool = False,
+    enough: float = BOUND.enough,
 ) -> Bounds:
     """Bound the errors of S claimed equilibria, from the claims and the train alone.
 
@@ -84,11 +85,13 @@ def bounds(
     answers : Equilibria
     rigorous : bool
         Find all residuals in twice the working precision; otherwise only where that is needed.
+    enough : float
+        Error of a torque over the largest torque that is looked at no closer.
     """
     if not len(answers.rotation):
         return Bounds(columns, np.zeros(0), None, None, None)
     with np.errstate(all="ignore"):
-        return _boxes(Claim(columns, situations, answers, fine=False), rigorous)
+        return _boxes(Claim(columns, situations, answers, fine=False), rigorous, enough)
 
 
 def completed(
@@ -156,17 +159,18 @@ def _scales(claim: Claim) -> tuple[Array, Array]:
     return np.where(scale > 0.0, scale, 1.0), np.where(largest > 0.0, largest, 1.0)
 
 
-def _boxes(claim: Claim, rigorous: bool) -> Bounds:
+def _boxes(claim: Claim, rigorous: bool, enough: float) -> Bounds:
     """Bound all forces and coordinates."""
     columns, flanks = claim.columns, np.abs(claim.answers.flank_force)
     scale, largest = _scales(claim)
     first, *others = BOUND.still if columns.train.slip is not None else BOUND.still[:1]
-    box, relative = _proved(with_held_slips(claim, scale, first), scale, largest, rigorous)
+    held = with_held_slips(claim, scale, first)
+    box, relative = _proved(held, scale, largest, rigorous, enough)
     for still in others:
-        rows = np.flatnonzero(~(relative <= BOUND.enough))
+        rows = np.flatnonzero(~(relative <= enough))
         if len(rows):
             held = with_held_slips(claim.take(rows), scale[rows], still)
-            other, found = _proved(held, scale[rows], largest[rows], rigorous)
+            other, found = _proved(held, scale[rows], largest[rows], rigorous, enough)
             better = found < relative[rows]
             relative[rows[better]] = found[better]
             box.force[rows[better]] = other.force[better]
@@ -176,7 +180,9 @@ def _boxes(claim: Claim, rigorous: bool) -> Bounds:
     return Bounds(columns, relative, torques, box.force, box.coordinate)
 
 
-def _proved(held: Held, scale: Array, largest: Array, rigorous: bool) -> tuple[Box, Array]:
+def _proved(
+    held: Held, scale: Array, largest: Array, rigorous: bool, enough: float
+) -> tuple[Box, Array]:
     """Errors of S claims, and the largest of a torque over the largest torque (S,) [N·m]."""
     claim, columns, answers = held.claim, held.claim.columns, held.claim.answers
     flanks = np.abs(answers.flank_force)
@@ -191,7 +197,7 @@ def _proved(held: Held, scale: Array, largest: Array, rigorous: bool) -> tuple[B
         box = quick_boxes(claim, act, scale)
 
     relative = _largest(columns, box.force, flanks) / largest
-    left = np.flatnonzero(~(relative <= BOUND.enough) & finite)
+    left = np.flatnonzero(~(relative <= enough) & finite)
     for at in range(0, len(left), BOUND.together):
         rows = left[at : at + BOUND.together]
         fine = replace(claim.take(rows), fine=True)

@@ -29,7 +29,7 @@ from loadshare.certify.bound.bound import Box, aside, put_aside, rounding_of
 from loadshare.certify.bound.claim import EPS, Claim
 from loadshare.certify.bound.laws import Act, Acts, Elements, elements
 from loadshare.certify.bound.signs import doubts
-from loadshare.certify.bound.statics import Statics, held_moves
+from loadshare.certify.bound.statics import Statics, free_moves, held_moves
 from loadshare.settings import BOUND
 
 
@@ -268,10 +268,13 @@ class _Group:
             # What may open, or yields without end, carries a load only where nothing else does.
             self.is_left = left
             known = Statics.of(self.directions[~left]) if left.any() else self.statics
-            self.is_covered = self._is_idle(known.moves)
-            if np.any(self.may_open & left):
+            opening = self.directions[self.may_open & left]
+            self.is_covered = self._is_idle(free_moves(known.moves, opening))
+            if len(opening):
                 # What may open bears what nothing else does, as balance alone determines.
-                self.held, is_told = held_moves(known.moves, self.directions[left])
+                self.held, is_told = held_moves(
+                    known.moves, self.directions[left], self.claim.columns.force_at_end
+                )
                 self.is_covered &= is_told or self._bears_none(self.held)
             if self.is_covered:
                 self.particular = np.zeros(self.particular.shape)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -98,8 +99,20 @@ def force_at_end(moves: Array, contacts: Array, pairs: Array) -> float:
     return float(np.sqrt(moves.shape[1]) / least)
 
 
-def held_moves(moves: Array, directions: Array) -> tuple[Array, bool]:
+def free_moves(moves: Array, directions: Array) -> Array:
+    """Moves (n, k), orthonormal, along none of some directions (q, n), of moves (n, l)."""
+    if not (moves.size and directions.size):
+        return moves
+    _, sizes, turn = np.linalg.svd(directions @ moves)
+    return np.asarray(moves @ turn[int((sizes > BOUND.rank).sum()) :].T)
+
+
+def held_moves(
+    moves: Array, directions: Array, at_end: Callable[[Array], float]
+) -> tuple[Array, bool]:
     """Moves (n, k) that others hold, as long as forces of all of these at most per load.
+
+    The others may also let go, and the moves end elsewhere.
 
     Parameters
     ----------
@@ -107,6 +120,8 @@ def held_moves(moves: Array, directions: Array) -> tuple[Array, bool]:
         Orthonormal; of what carries.
     directions : ndarray, shape (k, n)
         Of others.
+    at_end : callable
+        Returns the force of what may end one of some moves, per load along it.
 
     Returns
     -------
@@ -120,4 +135,6 @@ def held_moves(moves: Array, directions: Array) -> tuple[Array, bool]:
     along = along[np.abs(along).max(axis=1) > BOUND.rank]
     _, sizes, turn = np.linalg.svd(along, full_matrices=False)
     count = int((sizes > BOUND.rank).sum())
-    return np.asarray(moves @ (turn[:count].T * count**1.5 / sizes[:count])), count == len(along)
+    held = moves @ turn[:count].T
+    most = np.maximum(count**1.5 / sizes[:count], at_end(held))
+    return np.asarray(held * most), count == len(along)
