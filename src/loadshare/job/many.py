@@ -130,8 +130,7 @@ def solve_many(
     engine : {"auto", "compiled", "vectorised"}
         Numba or NumPy; both give the same answers. "auto" is Numba once it was used in this
         process, from 300 equilibria on where its code is on disk, else from 200 000 on: compiling
-        takes one to three minutes of processor time, once in an installation. If that fails, NumPy
-        is used, and the log says so.
+        takes a minute or two, once in an installation. If that fails, the log says so.
     workers : int
         Threads.
     least_norm : bool

@@ -176,8 +176,10 @@ class Table:
                 attributes["flag_values"] = np.arange(len(RUNGS), dtype=np.int8)
                 attributes["flag_meanings"] = " ".join(r.replace(" ", "_") for r in RUNGS)
             found.append((name, EVERY, self.each[name], attributes))
+        # As they are: what looks at them more closely imports dask first.
         data = {
-            name: xr.Variable(dims, values, attributes) for name, dims, values, attributes in found
+            name: xr.Variable(dims, values, attributes, fastpath=True)
+            for name, dims, values, attributes in found
         }
         used = {dim for variable in data.values() for dim in variable.dims}
         return xr.Dataset(

@@ -16,8 +16,8 @@ class Job(NamedTuple):
     """Newton steps in which the rungs after the hot path answer or give up: some ten seconds, and
     twice what ever led to an answer that neither exchange nor search had found."""
     few: int = 300
-    """Equilibria up to which reading what was compiled costs more than it saves: between the seed's
-    limit rings, where that is so up to 200, and its splines, up to 4000."""
+    """Equilibria up to which reading what was compiled costs more than it saves: between trains of
+    all elements, where that is so up to 150, and the seed's rings and splines, up to 4000."""
     compiling: int = 200_000
     """Equilibria up to which compiling, where nothing is on disk, costs more than it saves: NumPy
     takes as long for so many, of trains between the seed's and those of all elements."""
