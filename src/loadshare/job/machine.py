@@ -26,7 +26,7 @@ from loadshare.solver.hot.rule import rule_of
 from loadshare.train import Train
 from loadshare.train.equilibria import Equilibria
 from loadshare.train.placed import standing
-from loadshare.train.situations import Situations, situation_of, situations_of
+from loadshare.train.situations import Situations, situations_of
 
 
 def _parts(count: int, parts: int) -> list[slice]:
@@ -190,8 +190,7 @@ class Machine:
             self._begin(slice(None), beside, loading, iterate, states)
         parts = _parts(loading.count, len(starts))
         many = bool(parts) and parts[0].stop >= JOB.worth * JOB.trial_samples
-        for part, index in zip(parts, starts, strict=True):
-            begin = self._start(index, engine)
+        for part, begin in zip(parts, self._at_starts(starts, engine), strict=True):
             if begin is not None:
                 first = slice(part.start, part.start + JOB.trial_samples) if many else part
                 self._begin(first, begin, loading, iterate, states)
@@ -339,15 +338,18 @@ class Machine:
                 iterate.begin(others, rule.share, loading, named)
         return found
 
-    def _start(self, index: int, engine: Engine) -> _Start | None:
-        """What the train itself does at a position; None if the hot path does not know."""
-        if index not in self._starts:
-            loading = loading_of(self.structure, situation_of(self.train, index))
+    def _at_starts(self, indices: Sequence[int], engine: Engine) -> list[_Start | None]:
+        """What the train itself does at some positions; None if the hot path does not know."""
+        new = [index for index in indices if index not in self._starts]
+        if new:
+            loading = loading_of(self.structure, self.situations(new))
             iterate = at_rest(self.structure, loading)
             found = exchange(self.structure, loading, iterate, engine)
-            start = self._as_start(loading, iterate, found)
-            self._starts[index] = start if found.solved[0] else None
-        return self._starts[index]
+            every = self._as_start(loading, iterate, found)
+            for k, index in enumerate(new):
+                start = _Start(every.states[k], every.share[k])
+                self._starts[index] = start if found.solved[k] else None
+        return [self._starts[index] for index in indices]
 
     def _beside(self, count: int) -> _Start | None:
         """What a machine near by did in as many samples; None if nothing is known."""

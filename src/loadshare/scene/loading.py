@@ -92,9 +92,15 @@ class Loading:
         return np.asarray(self.hertz.any(axis=0))
 
     @cached_property
-    def has_curves(self) -> bool:
-        """Whether any element's law is a power or a table."""
-        return bool(self.curved.any() or (self.tabulated >= 0).any())
+    def bent(self) -> slice:
+        """Columns from the first to the last element whose law is a power or a table."""
+        at = np.flatnonzero(self.curved | (self.tabulated >= 0))
+        return slice(at[0], at[-1] + 1) if len(at) else slice(0)
+
+    @cached_property
+    def root(self) -> Array:
+        """Cube root of the largest load of every sample, shape (S or 1,); 1 where there is none."""
+        return np.cbrt(np.where(self.push > 0.0, self.push, 1.0))
 
     @cached_property
     def laws(self) -> bytes:

@@ -9,7 +9,7 @@ lines of action, which elements there are) is the same in every sample.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import lru_cache
 from typing import Any
@@ -163,16 +163,13 @@ def situations_of(train: Train, index: int | Sequence[int]) -> Situations:
     position = train.mesh_positions(where, rotation)
     meshes = train.meshes
     laws = {n: _laws(m, position[n]) for n, m in meshes.items()}
-    offset = _table([train.offset(n, rotation) for n in train.gears], 3)
     arrays = {
-        "offset": offset,
         "torque": _table([_torque(train, g, where) for g in train.gears]),
-        "push": _table([train.push(n, rotation) for n in train.gears], 3),
         "gap": _table([_at(m.gaps, position[n]) for n, m in meshes.items()]),
         "bending": _table([b for b, _, _ in laws.values()]),
         "hertz": _table([c for _, c, _ in laws.values()]),
         "table": _tables([tables for _, _, tables in laws.values()]),
-        "arc_shift": arcs_from(train, offset),
+        **_turned(train, rotation),
         **_lasting(train),
     }
     count = max(map(len, arrays.values()))
@@ -182,6 +179,27 @@ def situations_of(train: Train, index: int | Sequence[int]) -> Situations:
 
 
 _known: WeakKeyDictionary[Train, dict[str, Array]] = WeakKeyDictionary()
+_last_turned: WeakKeyDictionary[Train, tuple[tuple[Any, ...], dict[str, Array]]] = (
+    WeakKeyDictionary()
+)
+
+
+def _turned(train: Train, rotation: Mapping[str, Any]) -> dict[str, Array]:
+    """What turns with the gears, worked out once for positions at which they stand alike."""
+    angles = tuple(rotation.values())
+    alone = not any(isinstance(angle, np.ndarray) for angle in angles)
+    last = _last_turned.get(train)
+    if alone and last is not None and last[0] == angles:
+        return last[1]
+    offset = _table([train.offset(n, rotation) for n in train.gears], 3)
+    found = {
+        "offset": offset,
+        "push": _table([train.push(n, rotation) for n in train.gears], 3),
+        "arc_shift": arcs_from(train, offset),
+    }
+    if alone:
+        _last_turned[train] = angles, found
+    return found
 
 
 def _lasting(train: Train) -> dict[str, Array]:

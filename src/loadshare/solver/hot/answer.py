@@ -19,7 +19,7 @@ from loadshare.solver.hot.iterate import Iterate
 from loadshare.train.equilibria import Equilibria, Names
 
 if TYPE_CHECKING:
-    from scipy.sparse import csr_array
+    from loadshare.solver.hot.products import Rows
 
 
 def equilibria(structure: Structure, iterate: Iterate, compiled: bool = False) -> Equilibria:
@@ -31,8 +31,9 @@ def equilibria(structure: Structure, iterate: Iterate, compiled: bool = False) -
     to = _map(structure, names)
     force, tables = iterate.force, (*[iterate.x] * 2, *[iterate.force] * 3)
     if compiled:
-        pairs = zip(tables, to.sparse, strict=True)
-        found = [np.ascontiguousarray((matrix @ table.T).T) for table, matrix in pairs]
+        from loadshare.solver.hot.products import products
+
+        found = [products(*each) for each in zip(tables, to.rows, strict=True)]
     else:
         found = [table @ matrix for table, matrix in zip(tables, to.matrices, strict=True)]
     rotation, displacement, reaction, torque, support = found
@@ -103,11 +104,11 @@ class _Map:
     turned: Array
 
     @cached_property
-    def sparse(self) -> list[csr_array]:
+    def rows(self) -> list[Rows]:
         """The matrices transposed: a coordinate belongs to one gear or two, a force to one."""
-        from scipy.sparse import csr_array
+        from loadshare.solver.hot.products import rows_of
 
-        return [csr_array(matrix.T) for matrix in self.matrices]
+        return [rows_of(matrix.T) for matrix in self.matrices]
 
 
 def _map(structure: Structure, names: Names) -> _Map:

@@ -24,7 +24,8 @@ class Iterate:
     force : ndarray, shape (S, m)
         Forces of all elements, 0 for those that do not act.
     root : ndarray, shape (S, m)
-        Cube root of the force at which a nonlinear law is replaced by its tangent next.
+        Cube root of the force at which a nonlinear law is replaced by its tangent next; 0 where
+        there is none.
     floor : ndarray, shape (S,)
         Smallest root that a tangent is taken at.
     stays : ndarray of bool, shape (S,)
@@ -66,24 +67,22 @@ class Iterate:
         loading : Loading
         which : ndarray of int, shape (S,), optional
         """
-        if not loading.has_curves:
-            return
-        roots, of_load = np.cbrt(np.maximum(share, HOT.least_share)), np.cbrt(pushes(loading))
+        roots = np.cbrt(np.maximum(share[..., loading.bent], HOT.least_share))
         roots = roots if which is None else roots[which]
-        np.multiply(of_load[samples, None], roots, out=self.root[samples])
+        of_load = loading.root[samples] if len(loading.root) > 1 else loading.root
+        np.multiply(of_load[:, None], roots, out=self.root[samples, loading.bent])
 
 
 def at_rest(structure: Structure, loading: Loading) -> Iterate:
     """Return the state before anything has moved; laws are first taken at half the load."""
-    push = pushes(loading)
     count, width = loading.count, len(structure.kinds)
-    root = np.empty((count, width))
-    root[:] = np.cbrt(0.5 * push)[:, None]
+    root = np.zeros((count, width))
+    root[:, loading.bent] = np.cbrt(0.5) * loading.root[:, None]
     return Iterate(
         x=np.zeros((count, structure.size)),
         force=np.zeros((count, width)),
         root=root,
-        floor=HOT.floor * np.cbrt(push),
+        floor=np.array(np.broadcast_to(HOT.floor * loading.root, (count,))),
         stays=np.zeros(count, dtype=bool),
     )
 

@@ -15,19 +15,12 @@ from loadshare.scene.structure import Structure
 from loadshare.settings import PLACES
 from loadshare.solver.hot.contact_states import FREE, HELD, LEVEL
 from loadshare.solver.hot.iterate import Iterate
+from loadshare.solver.hot.products import Rows, rows_of
 
 States = NDArray[np.int8]
 _how = {"nogil": True, "error_model": "numpy", "_nrt": False}
 compiled = compilation.jit(**_how)
 inlined = compilation.within(forceinline=True, **_how)
-
-
-class Rows(NamedTuple):
-    """Entries of a matrix that are not zero, row by row."""
-
-    start: NDArray[np.intp]
-    at: NDArray[np.intp]
-    value: Array
 
 
 class Figures(NamedTuple):
@@ -85,9 +78,9 @@ class Touching:
         self._of = structure.cache.get(("touching",)) or structure.remember(
             ("touching",),
             Layout(
-                _rows(structure.vectors),
-                _rows(loading.relative.reshape(-1, structure.size)),
-                _rows(loading.carried),
+                rows_of(structure.vectors),
+                rows_of(loading.relative.reshape(-1, structure.size)),
+                rows_of(loading.carried),
                 loading.nominal,
                 structure.springs,
                 structure.flat,
@@ -123,11 +116,6 @@ class Touching:
         found = np.zeros(len(self.number), dtype=np.intp)
         _touch_all(self._of, self._here, self.number, self._carries, start, structure, found)
         return found
-
-
-def _rows(matrix: Array) -> Rows:
-    rows, at = np.nonzero(matrix)
-    return Rows(np.searchsorted(rows, np.arange(len(matrix) + 1)), at, matrix[rows, at])
 
 
 @compiled

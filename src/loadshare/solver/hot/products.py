@@ -1,0 +1,44 @@
+"""Products of many samples with one matrix that is all but empty, compiled with Numba."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from loadshare import compilation
+from loadshare.scene.scene import Array
+
+compiled = compilation.jit(nogil=True, error_model="numpy", _nrt=False)
+
+
+class Rows(NamedTuple):
+    """Entries of a matrix that are not zero, row by row."""
+
+    start: NDArray[np.intp]
+    at: NDArray[np.intp]
+    value: Array
+
+
+def rows_of(matrix: Array) -> Rows:
+    """Return the entries of a matrix that are not zero."""
+    rows, at = np.nonzero(matrix)
+    return Rows(np.searchsorted(rows, np.arange(len(matrix) + 1)), at, matrix[rows, at])
+
+
+def products(table: Array, rows: Rows) -> Array:
+    """Return every row of a table (S, n) times every row of a matrix (k, n), shape (S, k)."""
+    found = np.empty((len(table), len(rows.start) - 1))
+    _multiply(table, rows, found)
+    return found
+
+
+@compiled
+def _multiply(table, rows, found):  # type: ignore[no-untyped-def]
+    for s in range(found.shape[0]):
+        for k in range(found.shape[1]):
+            total = 0.0
+            for i in range(rows.start[k], rows.start[k + 1]):
+                total += rows.value[i] * table[s, rows.at[i]]
+            found[s, k] = total
