@@ -101,8 +101,9 @@ class Touching:
         self.number, first = np.empty((2, count), dtype=np.intp)
         self._carries = np.empty((count, structure.rows + len(structure.radials)), dtype=np.int8)
         keys = np.empty(count, dtype=np.uint64)
+        acts = np.ascontiguousarray(states)
         sets = _number_all(
-            self._of, self._here, states, held, self.number, self._carries, first, keys
+            self._of, self._here, acts, held, self.number, self._carries, first, keys
         )
         self.sets = self._carries[first[:sets]]
 
