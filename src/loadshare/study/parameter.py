@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
+from functools import cache
 from typing import Any
 
 from loadshare.case import Case
@@ -105,6 +106,7 @@ def read_value(given: object) -> Value | None:
         return None
 
 
+@cache
 def _si_unit(unit: str) -> str:
     """SI unit of the kind that `unit` measures; empty where no input of a case is of that kind."""
     from loadshare.case import quantity
