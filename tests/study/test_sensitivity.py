@@ -292,11 +292,13 @@ def test_an_axis_that_cannot_be_turned_alone_is_left_out_or_refused():
         ("rings.4.flot", "is not in the case"),
         ("gears.1.support", "is no number"),
         ("rings.*.flot", "is not in the case"),
+        ("title", "describes the case"),
     ],
 )
 def test_what_is_no_input_is_told(key, said):
+    case = shipped("fgfbstts/limit_ring").replace({"title": "5 GPa"})
     with pytest.raises(ls.CaseError, match=said):
-        ls.sensitivity(shipped("fgfbstts/limit_ring"), key)
+        ls.sensitivity(case, key)
 
 
 LAW = {"a": "0 rad", "b": "1e-6 rad/(N*m)", "c": "3e-6 rad/(N*m)^(2/3)"}

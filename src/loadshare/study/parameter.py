@@ -193,6 +193,10 @@ def matches(case: Case, pattern: str) -> tuple[str, ...]:
         wanted = parse(pattern.strip())
     except ValueError:
         raise _unusable(pattern, "is not a key path", "a text such as rings.4.float") from None
+    if wanted[0] in ABOUT:
+        raise _unusable(
+            pattern, "describes the case and is no input", "a text such as rings.4.float"
+        )
     if not any("*" in str(step) for step in wanted):
         return (dotted(wanted),)
     data = case.to_dict()
