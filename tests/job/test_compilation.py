@@ -380,6 +380,22 @@ def test_what_is_warm_is_at_hand():
     assert engines.at_hand()
 
 
+def test_what_is_warm_is_all_that_batches_call():
+    """In a process that finds it on disk nothing else is compiled, whatever elements there are."""
+    assert warm() is None
+    script = f"""
+import loadshare as ls
+from numba.core import event
+with event.install_recorder("numba:compile") as compiled:
+    for name in {KINDS!r}:
+        case = ls.load_case({str(CASES)!r} + f"/fgfbstts/{{name}}.toml")
+        key = "torque [N*m]" if case.operating.power is None else "power [W]"
+        ls.solve_many(case, {{"operating." + key: [2e4, 1e4, 5e3]}}, engine="compiled")
+print([str(e.data["dispatcher"]) for _, e in compiled.buffer])
+"""
+    assert run(script)[0] == []
+
+
 def test_what_is_at_hand_is_all_that_cases_call():
     """In a process that finds on disk what this one has compiled, nothing else is compiled."""
     for name in KINDS:

@@ -9,7 +9,8 @@ from loadshare.cli.waiting import echo, speak
 def warm() -> None:
     """Compile the code for many samples ahead of time, once per version: for images.
 
-    Without this, small jobs use NumPy, and the first large one compiles.
+    Without this, small jobs use NumPy, and the first large one compiles. The code for teeth is not
+    part of it: the first ltca compiles that, in half a minute.
     """
     from loadshare.job.warm import warm as compiled
 

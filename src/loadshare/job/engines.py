@@ -12,15 +12,19 @@ from loadshare.solver.hot import vectorised
 from loadshare.solver.hot.exchange import Engine
 
 ENGINES = ("auto", "compiled", "vectorised")
+COMPILED = (
+    "loadshare.solver.hot.compiled",
+    "loadshare.solver.hot.products",
+    "loadshare.solver.hot.touching",
+    "loadshare.certify.bound.kernel",
+)
+"""What a quick answer calls, all of which must be there."""
 KERNELS = (
     ("loadshare.solver.hot.compiled", "_settle_all"),
-    ("loadshare.solver.hot.products", "_multiply"),
-    ("loadshare.solver.hot.touching", "_number_all"),
-    ("loadshare.solver.hot.touching", "_touch_all"),
     ("loadshare.certify.bound.kernel", "find_all"),
     ("loadshare.certify.bound.kernel", "bound_all"),
 )
-"""What a quick answer calls, all of which must be there: the same code for all cases."""
+"""What takes long to compile of all that answers a case; the rest takes a moment."""
 
 
 def engine_named(name: str, count: int) -> Engine:
@@ -110,7 +114,7 @@ def engine_at_hand(name: str, count: int) -> Engine:
 def _compiled() -> Engine | None:
     """Return the compiled engine; None, with a word in the log, where it cannot be used."""
     try:
-        for name, _ in KERNELS:
+        for name in COMPILED:
             import_module(name)
     except Exception as error:  # noqa: BLE001 -- whatever it is, there is another engine
         compilation.give_up(compilation.words_of(error))

@@ -7,7 +7,6 @@ import tomllib
 from loadshare import compilation
 from loadshare.case import Case
 from loadshare.case.starter import starter_case
-from loadshare.job.engines import at_hand
 from loadshare.job.many import solve_many
 
 
@@ -19,9 +18,10 @@ def warm() -> str | None:
     str or None
         Why nothing could be compiled or kept; None where all is there.
     """
-    if not at_hand():
-        case = Case(tomllib.loads(starter_case("warm", "split-path")))
-        assert case.operating is not None
-        torque = case.operating.input_torque[0]
-        solve_many(case, {"operating.torque [N*m]": [torque, 0.5 * torque]}, engine="compiled")
+    # Nothing is asked beforehand: what is there is read in a moment, and all that a batch calls has
+    # to be there.
+    case = Case(tomllib.loads(starter_case("warm", "split-path")))
+    assert case.operating is not None
+    torque = case.operating.input_torque[0]
+    solve_many(case, {"operating.torque [N*m]": [torque, 0.5 * torque]}, engine="compiled")
     return compilation.why_not()

@@ -121,6 +121,8 @@ class Statics(NamedTuple):
     """Trains of which the elements are kept, for those who ask for one position after another."""
     rank: float = 1e-10
     """Singular values of directions below this, relative to the largest, count as zero."""
+    nothing: float = 1e-14
+    """Force of an element, over that of the one which names a redundant, that is round-off."""
 
 
 class Exchange(NamedTuple):

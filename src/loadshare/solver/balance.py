@@ -9,10 +9,10 @@ import numpy as np
 
 from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
-from loadshare.settings import CERTIFY, PLACES
+from loadshare.settings import PLACES
 
 
-def is_unbalanced(structure: Structure, load: Array, tolerance: float = CERTIFY.tolerance) -> bool:
+def is_unbalanced(structure: Structure, load: Array) -> bool:
     r"""Whether the load drives a move that nothing resists.
 
     The forces nearest to balance, :math:`\min_\mu \lVert f - A^T\mu\rVert` with contacts that push
@@ -24,8 +24,6 @@ def is_unbalanced(structure: Structure, load: Array, tolerance: float = CERTIFY.
     ----------
     structure : Structure
     load : ndarray, shape (n,)
-    tolerance : float
-        Largest scaled residual of a certified answer: a residual of that size is none.
     """
     from scipy.optimize import nnls
 
@@ -39,13 +37,9 @@ def is_unbalanced(structure: Structure, load: Array, tolerance: float = CERTIFY.
         forces, _ = nnls(np.vstack([held, -held, pushing]).T, load / size)
     except RuntimeError:
         return False
-    # What is left is known to the digits of the load; along what acts, to those of its own.
-    acting = np.vstack([held, pushing[forces[2 * len(held) :] > 0.0]])
     left = load / size - np.concatenate([held, -held, pushing]).T @ forces
-    left -= np.linalg.lstsq(acting, acting @ left)[0]
     length = float(np.linalg.norm(left))
-    work = float(left @ load) / size
-    if work <= PLACES.work * tolerance * length:
+    if left @ load <= PLACES.work * size * length:
         return False
-    resists = np.append(np.abs(held @ left), pushing @ left).max(initial=0.0)
-    return bool(resists <= PLACES.yields * work)
+    gives = float(np.abs(held @ left).max(initial=0.0)) <= PLACES.yields * length
+    return gives and bool((pushing @ left <= PLACES.yields * length).all())

@@ -1,8 +1,6 @@
-"""Certified equilibria of single trains, for studies that follow them."""
+"""Certified equilibria, one position at a time: the only way in which a study solves."""
 
 from __future__ import annotations
-
-from collections.abc import Iterable, Sequence
 
 from loadshare.errors import Refused
 from loadshare.job.answer import Answer
@@ -24,27 +22,13 @@ def certified(train: Train, position: int) -> Answer:
     Refused
         If it has no certified equilibrium, or one with displacements that are too large.
     """
-    return each_certified(train, [position])[0]
-
-
-def each_certified(train: Train, positions: Sequence[int]) -> list[Answer]:
-    """Solve and certify positions of a train, together.
-
-    Raises
-    ------
-    Refused
-        As `certified`, for the first of them that is refused.
-    """
-    found: Iterable[Answer | Refused]
+    found: Answer | Refused
     if train.slip is not None:
-        found = (climb(train, k, BACKEND, CERTIFY.tolerance) for k in positions)
+        found = climb(train, position, BACKEND, CERTIFY.tolerance)
     else:
-        found = climb_all(Machine(train), positions, Options(), CERTIFY.tolerance)
-    answers = []
-    for answer in found:
-        refused = answer if isinstance(answer, Refused) else answer.refused()
-        if refused is not None:
-            raise refused
-        assert isinstance(answer, Answer)
-        answers.append(answer)
-    return answers
+        (found,) = climb_all(Machine(train), [position], Options(), CERTIFY.tolerance)
+    refused = found if isinstance(found, Refused) else found.refused()
+    if refused is not None:
+        raise refused
+    assert isinstance(found, Answer)
+    return found

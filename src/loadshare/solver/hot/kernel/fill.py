@@ -163,7 +163,7 @@ def _radials(s, work, width, xs, forces):  # type: ignore[no-untyped-def]
 @bare
 def _linear(s, work, width):  # type: ignore[no-untyped-def]
     """Redundants of none, and what linear elements add to their matrix and to their gaps."""
-    r, renewed = s.redundant.shape[1], s.products.shape[1]
+    r, renewed = s.redundant.shape[1], s.first_row + s.powers + s.tables_of.shape[0]
     clear(work.z, width)
     clear(work.base, width)
     add_product(work.base, s.across_springs, work.spring[STILL], width)
@@ -175,5 +175,5 @@ def _linear(s, work, width):  # type: ignore[no-untyped-def]
         for d in range(c + 1):
             for m in range(width):
                 work.linear[c, d, m] = s.springs_matrix[c, d]
-        weights = s.products_still[c * r : c * r + c + 1]
+        weights = s.products_still[c * (c + 1) // 2 : (c + 1) * (c + 2) // 2]
         add_product(work.linear[c, : c + 1], weights, work.tangent[renewed:], width)

@@ -30,11 +30,16 @@ from loadshare.solver.hot.kernel.work import (
 def _matrix(s, work, width):  # type: ignore[no-untyped-def]
     """Lower triangle of the redundants' matrix, with a border for every slip."""
     r, matrix, tangent = s.redundant.shape[1], work.matrix, work.tangent
+    entry = 0
     for c in range(r):
         for d in range(c + 1):
             for m in range(width):
                 matrix[c, d, m] = work.linear[c, d, m]
-        add_product(matrix[c, : c + 1], s.products[c * r : c * r + c + 1], tangent, width)
+            for i in range(s.product_starts[entry], s.product_starts[entry + 1]):
+                weight, e = s.products[i], s.product_contacts[i]
+                for m in range(width):
+                    matrix[c, d, m] += weight * tangent[e, m]
+            entry += 1
     for t in range(s.turning_radials.shape[0]):
         law = work.radial[t]
         excess = work.one

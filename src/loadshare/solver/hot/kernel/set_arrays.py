@@ -20,6 +20,7 @@ from loadshare.scene.loading import Loading
 from loadshare.scene.scene import Array
 from loadshare.scene.statics import Basis
 from loadshare.scene.structure import Structure
+from loadshare.settings import STATICS
 from loadshare.solver.hot.contact_states import OPEN, PINNED, SLIP, STICK
 from loadshare.solver.hot.kernel.options import allocating
 
@@ -60,8 +61,8 @@ class SetArrays(NamedTuple):
     across_springs: Array  # (r, s)
     inverse: Array  # (r, r) of the redundants' matrix where it never changes, else (0, 0)
     springs_matrix: Array  # (r, r): what the springs add to the redundants' matrix
-    products: Array  # (r r, q): of the redundants at the contacts
-    products_still: Array  # (r r, c − q)
+    products: Array  # of two redundants at a contact that is renewed, where they are not zero
+    products_still: Array  # (r (r + 1) / 2, c − q): at the others
     turned: Array  # (c, u): forces per turned load
     turned_springs: Array  # (s, u)
     turned_gap: Array  # (r, u): what the springs open per turned load
@@ -90,6 +91,8 @@ class SetArrays(NamedTuple):
     turning_radials: Rows  # (t,): numbers of the radial elements whose direction turns
     borders: Rows  # (t,): number of the border of each that slips, −1 for the others
     tables_of: Rows  # numbers of the tables of the flanks that have one
+    product_starts: Rows  # where the products of each entry of the lower triangle begin
+    product_contacts: Rows  # the contact of each
     powers: int  # flanks with a power law
     first_row: int  # first contact that is a row, 2t
     end_row: int  # first contact after them that is none
@@ -181,7 +184,7 @@ def unpacked(floats, rows, states, samples):  # type: ignore[no-untyped-def]
         _table(floats, rows[15:]),
         _table(floats, rows[18:]),
         _table(floats, rows[21:]),
-        _table(floats, rows[24:]),
+        _table(floats, rows[24:])[0],
         _table(floats, rows[27:]),
         _table(floats, rows[30:]),
         _table(floats, rows[33:]),
@@ -211,12 +214,14 @@ def unpacked(floats, rows, states, samples):  # type: ignore[no-untyped-def]
         _list(rows, rows[105:]),
         _list(rows, rows[108:]),
         _list(rows, rows[111:]),
-        rows[114],
-        rows[115],
-        rows[116],
-        rows[117],
-        rows[118],
-        rows[119],
+        _list(rows, rows[114:]),
+        _list(rows, rows[117:]),
+        rows[120],
+        rows[121],
+        rows[122],
+        rows[123],
+        rows[124],
+        rows[125],
         states,
         samples.follows,
         samples.loaded,
@@ -241,8 +246,11 @@ def _structure(
     first_arc, first_radial = first + flanks, first + structure.rows
     order, (springs, turned, powers, tables, rows) = _order(structure, loading, basis, states)
     columns, particular, n = basis.columns[order], basis.particular[order], basis.redundant[order]
-    contacts = columns[springs:]
     renewed = turned + powers + tables
+    inverse = np.zeros((0, 0)) if renewed else _inverse(structure, loading, columns, n, states)
+    if not len(inverse):
+        n = _local(n)
+    contacts = columns[springs:]
     row_end = renewed + rows
     acting = np.flatnonzero((contacts >= first_arc) & (contacts < first_radial))
     arcs = contacts[acting] - first_arc
@@ -263,9 +271,9 @@ def _structure(
     held, of_springs = particular[:springs], n[:springs]
     yields = held[:, turning].T * compliances
     touching = n[springs:]
-    products = (
-        (touching[:, :, None] * touching[:, None, :]).reshape(len(touching), n.shape[1] ** 2).T
-    )
+    lower = np.tril_indices(n.shape[1])
+    products = (touching[:, lower[0]] * touching[:, lower[1]]).T
+    product_starts, product_contacts, product_values = _sparse(products[:, :renewed])
     arrays = [
         particular[springs:].T,
         held.T,
@@ -273,9 +281,9 @@ def _structure(
         of_springs,
         touching.T,
         of_springs.T,
-        _inverse(structure, loading, columns, n, states) if not renewed else np.zeros((0, 0)),
+        inverse,
         of_springs.T * compliances @ of_springs,
-        products[:, :renewed],
+        product_values[None],
         products[:, renewed:],
         particular[springs:, turning],
         held[:, turning],
@@ -307,6 +315,8 @@ def _structure(
         turning_radials,
         np.where(slips, np.cumsum(slips) - 1, -1),
         loading.tabulated[contacts[turned + powers : renewed]],
+        product_starts,
+        product_contacts,
     ]
     return arrays, lists, [powers, turned, row_end, first, first_radial, flanks]
 
@@ -334,6 +344,22 @@ def _order(
         4,
     )
     return np.argsort(sort, kind="stable"), tuple(int((sort == k).sum()) for k in range(5))
+
+
+def _local(n: Array) -> Array:
+    """The same space as of redundants N (k, r), each of them the force of one element.
+
+    It acts in few others, so that most products of two are zero, however many branches there are;
+    elements are chosen that leave the space as well conditioned as can be had so.
+    """
+    if not n.shape[1]:
+        return n
+    from scipy.linalg import qr
+
+    _, _, order = qr(n.T, mode="economic", pivoting=True)
+    local = np.linalg.solve(n[order[: n.shape[1]]].T, n.T).T
+    local[np.abs(local) < STATICS.nothing] = 0.0
+    return np.ascontiguousarray(local / np.sqrt((local * local).sum(axis=0)))
 
 
 def _inverse(
