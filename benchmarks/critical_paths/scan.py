@@ -132,15 +132,19 @@ class Scan(Machine):
             np.arange(0, loading.count, SPACING), np.zeros(loading.count, dtype=bool)
         )
         found = exchange(self.structure, loading, iterate, engine, states, only=trial_samples)
-        found = self._search(loading, iterate, found, trial_samples & ~found.solved)
+        left = trial_samples & ~found.solved
+        found = self._search(loading, iterate, found, left, CERTIFY.tolerance)
         self._begin_beside(found, iterate, states, np.flatnonzero(~found.solved))
         return found
 
-    def _search(self, loading: Loading, iterate: Iterate, found: Found, rows: Flags) -> Found:
+    def _search(
+        self, loading: Loading, iterate: Iterate, found: Found, rows: Flags, tolerance: float
+    ) -> Found:
         """Search a few at a time, and begin with the others where their neighbours stand."""
         left = np.flatnonzero(rows)
         for _ in range(ROUNDS):
-            found = super()._search(loading, iterate, found, _only(_thinned(left, FEW), rows))
+            few = _only(_thinned(left, FEW), rows)
+            found = super()._search(loading, iterate, found, few, tolerance)
             left = left[~found.solved[left]]
             if not len(left) or not found.solved.any():
                 break

@@ -11,6 +11,7 @@ from benchmarks.random_trains.draw import draw
 from benchmarks.sensitivities import FINE, Verdict, judged, one, problem, text
 from loadshare.cli.study.sensitivity import good
 from loadshare.errors import CaseError
+from loadshare.job import machine
 from loadshare.study.parameter import Value
 from loadshare.study.sensitivity import SIDES, Sensitivity, sensitivity
 from loadshare.study.sensitivity.differences import differentiate
@@ -291,11 +292,13 @@ def test_an_axis_that_cannot_be_turned_alone_is_left_out_or_refused():
         ("rings.4.flot", "is not in the case"),
         ("gears.1.support", "is no number"),
         ("rings.*.flot", "is not in the case"),
+        ("title", "describes the case"),
     ],
 )
 def test_what_is_no_input_is_told(key, said):
+    case = shipped("fgfbstts/limit_ring").replace({"title": "5 GPa"})
     with pytest.raises(ls.CaseError, match=said):
-        ls.sensitivity(shipped("fgfbstts/limit_ring"), key)
+        ls.sensitivity(case, key)
 
 
 LAW = {"a": "0 rad", "b": "1e-6 rad/(N*m)", "c": "3e-6 rad/(N*m)^(2/3)"}
@@ -428,3 +431,14 @@ def test_friction_of_a_torque_that_is_round_off_has_no_sign():
     assert not disagreeing(verdicts(case, found))
     rates = [found.rates[1, "gears.r1.base_radius", side] for side in SIDES]
     assert rates[0].torque == pytest.approx(rates[1].torque, rel=1e-6, abs=1e-3)
+
+
+def test_a_body_that_nothing_holds_is_told_at_once(monkeypatch):
+    """Two flanks hold pinion 1; it drifts as soon as only one of them pushes another way."""
+    monkeypatch.setattr(machine, "search", lambda *_: pytest.fail("a search was made"))
+    key = 'meshes."1-2".pressure_angle'
+    found = sensitivity(shipped("fgfbstts/limit_ring"), key, positions=[1])
+    told = {remark.side: remark.message for remark in found.remarks}
+    assert set(told) == set(SIDES)
+    assert all("nothing balances the load on gear 1 x" in message for message in told.values())
+    assert all(math.isnan(v) for side in SIDES for v in found.rates[1, key, side].torque.values())

@@ -124,7 +124,7 @@ def climb(
     structure = structure_of(train)
     scene = scene_of(structure, situation_of(train, index))
     _refuse_if_contradicted(scene, JOB.plainly)
-    if is_unbalanced(structure, scene.load):
+    if is_unbalanced(structure, scene.load, tolerance):
         _refuse_if_driven(scene)
     lighter = cache(partial(_under_less, train, index, tolerance))
     if math.isfinite(steps):

@@ -225,7 +225,7 @@ class Machine:
             if not (starts or searched.any()) and found.solved.all():
                 self._last = self._as_start(loading, iterate, found)
             left = ~found.solved & ~searched
-            found = self._search(loading, iterate, found, left)
+            found = self._search(loading, iterate, found, left, tolerance)
             searched |= left
             pin(self.structure, loading, iterate, found.states)
             answers, verdicts = self._judged(situations, iterate, tolerance, engine)
@@ -254,12 +254,17 @@ class Machine:
         return answers, self.judge.judge(situations, answers, tolerance, compiled=quick)
 
     def _search(
-        self, loading: Loading, iterate: Iterate, found: Found, rows: NDArray[np.bool_]
+        self,
+        loading: Loading,
+        iterate: Iterate,
+        found: Found,
+        rows: NDArray[np.bool_],
+        tolerance: float,
     ) -> Found:
         """Search an equilibrium of single samples by the proximal method."""
         for row in np.flatnonzero(rows).tolist():
             alone = loading.one(row)
-            if is_unbalanced(self.structure, alone.load[0]):
+            if is_unbalanced(self.structure, alone.load[0], tolerance):
                 continue
             one, more = search(self.structure, alone)
             if more.solved[0]:

@@ -33,11 +33,12 @@ class Places(NamedTuple):
     """Force, over what a gap would cost if it were pressed shut, that counts as round-off."""
     verified: float = 1e-11
     """Violation of a removed inequality that counts as round-off, in deflections and loads."""
-    work: float = 1e-3
-    """Work of the load along a move, over load and move, from which on the load drives it."""
-    yields: float = 1e-10
-    """Part of a move that elements may still seem to resist: forces that balance the load in spite
-    of it would be ten million times as large."""
+    work: float = 10.0
+    """Work of the load along a move, over load and move and in tolerances of the certificate, from
+    which on the load drives it."""
+    yields: float = 1e-7
+    """Part of a move, over that work, that elements may still seem to resist: forces that balance
+    the load in spite of it would be ten million times as large."""
     overlap: float = 1e-12
     """Overlap, over the lengths at hand, that counts as round-off."""
     named: float = 1e-6

@@ -9,10 +9,10 @@ import numpy as np
 
 from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure
-from loadshare.settings import PLACES
+from loadshare.settings import CERTIFY, PLACES
 
 
-def is_unbalanced(structure: Structure, load: Array) -> bool:
+def is_unbalanced(structure: Structure, load: Array, tolerance: float = CERTIFY.tolerance) -> bool:
     r"""Whether the load drives a move that nothing resists.
 
     The forces nearest to balance, :math:`\min_\mu \lVert f - A^T\mu\rVert` with contacts that push
@@ -24,6 +24,8 @@ def is_unbalanced(structure: Structure, load: Array) -> bool:
     ----------
     structure : Structure
     load : ndarray, shape (n,)
+    tolerance : float
+        Largest scaled residual of a certified answer: a residual of that size is none.
     """
     from scipy.optimize import nnls
 
@@ -37,9 +39,13 @@ def is_unbalanced(structure: Structure, load: Array) -> bool:
         forces, _ = nnls(np.vstack([held, -held, pushing]).T, load / size)
     except RuntimeError:
         return False
+    # What is left is known to the digits of the load; along what acts, to those of its own.
+    acting = np.vstack([held, pushing[forces[2 * len(held) :] > 0.0]])
     left = load / size - np.concatenate([held, -held, pushing]).T @ forces
+    left -= np.linalg.lstsq(acting, acting @ left)[0]
     length = float(np.linalg.norm(left))
-    if left @ load <= PLACES.work * size * length:
+    work = float(left @ load) / size
+    if work <= PLACES.work * tolerance * length:
         return False
-    gives = float(np.abs(held @ left).max(initial=0.0)) <= PLACES.yields * length
-    return gives and bool((pushing @ left <= PLACES.yields * length).all())
+    resists = np.append(np.abs(held @ left), pushing @ left).max(initial=0.0)
+    return bool(resists <= PLACES.yields * work)

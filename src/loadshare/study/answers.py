@@ -1,6 +1,8 @@
-"""Certified equilibria, one position at a time: the only way in which a study solves."""
+"""Certified equilibria of single trains, for studies that follow them."""
 
 from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
 
 from loadshare.errors import Refused
 from loadshare.job.answer import Answer
@@ -22,13 +24,27 @@ def certified(train: Train, position: int) -> Answer:
     Refused
         If it has no certified equilibrium, or one with displacements that are too large.
     """
-    found: Answer | Refused
+    return each_certified(train, [position])[0]
+
+
+def each_certified(train: Train, positions: Sequence[int]) -> list[Answer]:
+    """Solve and certify positions of a train, together.
+
+    Raises
+    ------
+    Refused
+        As `certified`, for the first of them that is refused.
+    """
+    found: Iterable[Answer | Refused]
     if train.slip is not None:
-        found = climb(train, position, BACKEND, CERTIFY.tolerance)
+        found = (climb(train, k, BACKEND, CERTIFY.tolerance) for k in positions)
     else:
-        (found,) = climb_all(Machine(train), [position], Options(), CERTIFY.tolerance)
-    refused = found if isinstance(found, Refused) else found.refused()
-    if refused is not None:
-        raise refused
-    assert isinstance(found, Answer)
-    return found
+        found = climb_all(Machine(train), positions, Options(), CERTIFY.tolerance)
+    answers = []
+    for answer in found:
+        refused = answer if isinstance(answer, Refused) else answer.refused()
+        if refused is not None:
+            raise refused
+        assert isinstance(answer, Answer)
+        answers.append(answer)
+    return answers

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
+from functools import cache
 from typing import Any
 
 from loadshare.case import Case
@@ -105,6 +106,7 @@ def read_value(given: object) -> Value | None:
         return None
 
 
+@cache
 def _si_unit(unit: str) -> str:
     """SI unit of the kind that `unit` measures; empty where no input of a case is of that kind."""
     from loadshare.case import quantity
@@ -191,6 +193,10 @@ def matches(case: Case, pattern: str) -> tuple[str, ...]:
         wanted = parse(pattern.strip())
     except ValueError:
         raise _unusable(pattern, "is not a key path", "a text such as rings.4.float") from None
+    if wanted[0] in ABOUT:
+        raise _unusable(
+            pattern, "describes the case and is no input", "a text such as rings.4.float"
+        )
     if not any("*" in str(step) for step in wanted):
         return (dotted(wanted),)
     data = case.to_dict()

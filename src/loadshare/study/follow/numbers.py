@@ -13,6 +13,7 @@ from loadshare.scene.loading import loading_of
 from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure, structure_of
 from loadshare.train import Train
+from loadshare.train.shape import shape_of
 from loadshare.train.situations import Situations
 
 
@@ -74,6 +75,10 @@ class Numbers:
         names = [f.name for f in fields(cls)]
         return cls(**{n: np.concatenate([getattr(p, n) for p in parts]) for n in names})
 
+    def row(self, number: int) -> Numbers:
+        """Return the numbers at one of the values."""
+        return self.take(slice(number, number + 1))
+
     def take(self, rows: NDArray[np.intp] | slice) -> Numbers:
         """Return the numbers at some of the values."""
         every = {f.name: getattr(self, f.name) for f in fields(self)}
@@ -101,6 +106,8 @@ def structure_like(base: Structure, train: Train) -> Structure:
     ValueError
         If it has other elements.
     """
+    if shape_of(train) == shape_of(base.train):
+        return base
     mine = structure_of(train)
     if mine.kinds != base.kinds or mine.coordinates.names != base.coordinates.names:
         raise ValueError("the parameter changes which elements there are")

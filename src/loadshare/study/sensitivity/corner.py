@@ -8,14 +8,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from loadshare.errors import CaseError, Problem, Refused
+from loadshare.job.answer import Answer
 from loadshare.scene.scene import Array
 from loadshare.settings import SENSITIVITY
-from loadshare.study.answers import certified
 from loadshare.study.parameter import Value
 from loadshare.study.sensitivity.branch import Setting
 from loadshare.study.sensitivity.differenced import NoDifference, differenced
+from loadshare.study.sensitivity.differences import Slope
 from loadshare.study.sensitivity.directional import Motion, Neighbourhood
 from loadshare.study.sensitivity.result import SIDES, Rates, Remark
+from loadshare.study.sensitivity.trains import Trains
 from loadshare.study.sensitivity.variation import Variation, torques_of
 from loadshare.train import Train
 from loadshare.train.placed import standing
@@ -48,28 +50,25 @@ class Corner:
     Parameters
     ----------
     train : Train
-    position : int
-        1-based.
+    answer : Answer
+        Of one of its positions, certified.
 
     Attributes
     ----------
+    position : int
+        1-based.
     neighbourhood : Neighbourhood
     torque : dict of mesh to float
         On the driver [N·m].
     remarks : list of Remark
         What was found about the inputs differentiated by so far.
-
-    Raises
-    ------
-    Refused
-        If the position has no certified equilibrium.
     """
 
-    def __init__(self, train: Train, position: int) -> None:
-        train = standing(train, position)
-        self.train, self.position = train, position
-        self._answer = certified(train, position).equilibrium
-        setting = Setting.at(train, position)
+    def __init__(self, train: Train, answer: Answer) -> None:
+        self.position = answer.index
+        self.train = train = standing(train, self.position)
+        self._answer = answer.equilibrium
+        setting = Setting.at(train, self.position)
         self.structure = setting.structure
         self.neighbourhood = Neighbourhood(setting, self._answer)
         self.torque = torques_of(train, self._answer)
@@ -81,7 +80,7 @@ class Corner:
         """Elements for which the derivatives found so far hold to one side only."""
         return tuple(dict.fromkeys((*self.neighbourhood.verge, *self._caught)))
 
-    def rates(self, trains: Callable[[float], Train], value: Value, key: str) -> dict[str, Rates]:
+    def rates(self, trains: Trains, value: Value, key: str) -> dict[str, Rates]:
         """Return the derivatives to both sides.
 
         Raises
@@ -110,6 +109,11 @@ class Corner:
             if isinstance(slope, CaseError):
                 self._remark(key, side, f"cannot be {_word(side)}: {_told(slope)}")
                 return self._nothing(), False
+            if isinstance(slope, Slope) and self.neighbourhood.gives_way(slope, step):
+                try:
+                    varied.answer(sign * SENSITIVITY.shorter[-1] * step)
+                except (CaseError, ValueError, Refused) as why:
+                    return self._without(key, side, why), False
             passing = varied.steps(sign, step)
             if passing:
                 self._remark(
@@ -129,10 +133,14 @@ class Corner:
         try:
             motions = self._differenced(varied, sign, step)
         except NoDifference as why:
-            self._remark(key, side, f"has no derivative when it is {_word(side)}: {why}")
-            return self._nothing(), False
+            return self._without(key, side, why), False
         self._remark(key, side, f"differenced when it is {_word(side)}: no active set was proved")
         return self._rates(motions), False
+
+    def _without(self, key: str, side: str, why: Exception) -> Rates:
+        """Say why there is no derivative to a side."""
+        self._remark(key, side, f"has no derivative when it is {_word(side)}: {why}")
+        return self._nothing()
 
     def _differenced(self, varied: Variation, sign: float, step: float | None) -> Motions:
         """Torques and displacements by differences of certified solves."""

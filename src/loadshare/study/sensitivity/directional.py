@@ -237,6 +237,29 @@ class Neighbourhood:
                 return found
         return None
 
+    def gives_way(self, change: Slope, step: float) -> bool:
+        """Whether an input loads a body along a move that nothing resists, however far it leads."""
+        if self.own is None or not self._unbalanced(self.own, change, step)[0]:
+            return False
+        loose, equations = self.own.tangent.loose, self.own.branch.equations
+        free = [k for k in equations.radials if equations.states[k] == at.OPEN]
+        caught = any(
+            np.abs(equations.matrix(k, self._setting.numbers)[0] @ loose).max(initial=0.0)
+            > SENSITIVITY.loose
+            for k in free
+        )
+        return not caught and all(g.closing(loose) is None for g in self.own.gauges().values())
+
+    @staticmethod
+    def _unbalanced(point: Point, slope: Slope, step: float) -> tuple[bool, Array]:
+        """Whether a set cannot balance what an input changes, and how much it leaves."""
+        branch, unbalanced = point.branch, point.tangent.unbalanced
+        explicit, error = slope.value[: branch.size], slope.error[: branch.size]
+        size = float(np.abs(explicit).max(initial=0.0))
+        left = np.abs(unbalanced.T @ explicit)
+        known = np.abs(unbalanced.T) @ error + SENSITIVITY.follows * size
+        return bool((left > np.maximum(known, SENSITIVITY.round_off / step)).any()), left
+
     def _followed(self, point: Point, sign: float, varied: Varied) -> Motion | None:
         """Return the motion on a set, if the set holds to that side."""
         branch, z, tangent = point.branch, point.z, point.tangent
@@ -248,13 +271,8 @@ class Neighbourhood:
         if not isinstance(slope, Slope):
             return None
         explicit, error = slope.value[: branch.size], slope.error[: branch.size]
-        size = float(np.abs(explicit).max(initial=0.0))
-        left = np.abs(tangent.unbalanced.T @ explicit)
-        known = np.abs(tangent.unbalanced.T) @ error
-        if (
-            left
-            > np.maximum(known + SENSITIVITY.follows * size, SENSITIVITY.round_off / change.step)
-        ).any():
+        cannot, left = self._unbalanced(point, slope, change.step)
+        if cannot:
             return None
         rate = -tangent.solve(explicit)
         terms = np.abs(tangent.matrix) @ np.abs(rate) + np.abs(explicit)

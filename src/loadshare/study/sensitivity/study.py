@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,11 +15,15 @@ from loadshare.job import Progress
 from loadshare.job.positions import wanted_positions
 from loadshare.results.share import coefficients
 from loadshare.settings import SENSITIVITY
+from loadshare.study.answers import each_certified
 from loadshare.study.positions import loaded
 from loadshare.study.sensitivity.corner import Corner
 from loadshare.study.sensitivity.inputs import inputs_of
 from loadshare.study.sensitivity.result import SIDES, Input, Kink, Rates, Sensitivity
-from loadshare.train import Train, build_train
+from loadshare.study.sensitivity.trains import Trains
+from loadshare.train import Train
+from loadshare.train.build import train_of, with_laws
+from loadshare.train.geometry import geometry_of
 
 
 class Slope(NamedTuple):
@@ -72,10 +75,12 @@ def sensitivity(
     >>> f"{rate * 1e-6:.5f} per um"
     '-0.00564 per um'
     """
-    case = loaded(case)
-    train = build_train(case)
+    case = with_laws(loaded(case))
+    geometry = geometry_of(case)
+    train = train_of(case, geometry)
     chosen = wanted_positions(train, positions)
-    corners = [Corner(train, position) for position in chosen]
+    answers = each_certified(train, chosen)
+    corners = [Corner(train, answer) for answer in answers]
     rates: dict[tuple[int, str, str], Rates] = {}
     usable, skipped = [], []
     wanted = inputs_of(case, inputs)
@@ -83,7 +88,7 @@ def sensitivity(
         if progress is not None:
             progress(done, len(wanted))
         try:
-            rates |= _rates(case, corners, item)
+            rates |= _rates(corners, Trains(case, geometry, train, item, chosen), item)
         except CaseError as refusal:
             if inputs is not None:
                 raise
@@ -107,13 +112,10 @@ def sensitivity(
     )
 
 
-def _rates(case: Case, corners: Iterable[Corner], item: Input) -> dict[tuple[int, str, str], Rates]:
+def _rates(
+    corners: Iterable[Corner], trains: Trains, item: Input
+) -> dict[tuple[int, str, str], Rates]:
     """Differentiate all positions by an input."""
-
-    @cache
-    def trains(number: float) -> Train:
-        return build_train(case.replace({item.key: item.value.at(number).text}))
-
     return {
         (corner.position, item.key, side): rates
         for corner in corners

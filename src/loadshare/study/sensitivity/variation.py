@@ -6,7 +6,7 @@ the next place is a step of the answer, no derivative.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import lru_cache
 
@@ -18,6 +18,7 @@ from loadshare.study.follow.active import WorkingSet
 from loadshare.study.parameter import Value
 from loadshare.study.sensitivity.branch import Branch, BranchLost, Setting
 from loadshare.study.sensitivity.differences import Derivative, differentiate
+from loadshare.study.sensitivity.trains import Trains
 from loadshare.train import Train
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.placed import standing
@@ -28,8 +29,7 @@ class Variation:
 
     Parameters
     ----------
-    trains : callable
-        Train with a number, in the input's unit.
+    trains : Trains
     value : Value
     position : int
         1-based.
@@ -37,12 +37,10 @@ class Variation:
         At the value itself.
     """
 
-    def __init__(
-        self, trains: Callable[[float], Train], value: Value, position: int, structure: Structure
-    ) -> None:
+    def __init__(self, trains: Trains, value: Value, position: int, structure: Structure) -> None:
         self._trains, self.value, self.position = trains, value, position
         self._structure = structure
-        self.cycle = trains(value.number).mesh_positions(position)
+        self.cycle = trains.at(value.number).mesh_positions(position)
         self._setting = lru_cache(maxsize=None)(self._at)
         self._changes: dict[tuple[WorkingSet, bytes], Derivative] = {}
 
@@ -50,8 +48,10 @@ class Variation:
         return self.value.number + amount / self.value.factor
 
     def _at(self, number: float) -> Setting:
-        train = held(standing(self._trains(number), self.position), self.cycle)
-        return Setting.at(train, self.position, self._structure)
+        train, structure = standing(self._trains.at(number), self.position), self._structure
+        if train.mesh_positions(self.position) == self.cycle:
+            return Setting(train, structure, self._trains.numbers(train, self.position, structure))
+        return Setting.at(held(train, self.cycle), self.position, structure)
 
     def setting(self, amount: float) -> Setting:
         """Return the train with the input moved by an amount [SI]."""
@@ -93,7 +93,7 @@ class Variation:
         """Meshes that pass to another place of their cycle right beside the value."""
         least = min(step, SENSITIVITY.beside * max(abs(self.value.si), step))
         for amount in (step, least):
-            there = self._trains(self._number(sign * amount)).mesh_positions(self.position)
+            there = self._trains.at(self._number(sign * amount)).mesh_positions(self.position)
             passing = tuple(m for m, k in there.items() if k != self.cycle[m])
             if not passing:
                 return ()
