@@ -377,7 +377,7 @@ class ClaimedState:
 
     @cached_property
     def resolution(self) -> float:
-        """Round-off of a length [m]: four times that of displacements, errors and gaps."""
+        """Round-off of a length [m]: sixteen times that of displacements, errors and gaps."""
         gears, here = self.train.gears, self.situation
         moved = [abs(f) * gears[g].base_radius for g, f in self.answer.rotation.items()]
         moved += [float(np.abs(self.moved(g)).max()) for g in gears]
@@ -390,7 +390,7 @@ class ClaimedState:
         gaps += [limit for ring in self.train.drums for limit in (ring.up, ring.down)]
         errors = float(np.abs(here.offset[0]).max(initial=0.0))
         largest = max(moved, default=0.0) + errors + max(gaps, default=0.0)
-        return 4.0 * float(np.finfo(float).eps) * largest
+        return 16.0 * float(np.finfo(float).eps) * largest
 
 
 ROUNDED = 16.0 * float(np.finfo(float).eps)

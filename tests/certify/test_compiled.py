@@ -23,9 +23,12 @@ from tests.certify.test_many import (
 )
 from tests.support import mostly_slow, shipped
 
+import loadshare as ls
 from loadshare.certify import RESIDUALS, Judge
 from loadshare.certify.bound.kernel import find_all
+from loadshare.job import hot
 from loadshare.settings import CERTIFY
+from loadshare.solver.hot import compiled
 from loadshare.train import build_train
 from loadshare.train.situations import Situations
 
@@ -175,3 +178,14 @@ def test_a_contact_that_pulls():
     compiled = Judge(train).judge(situations, spoilt, compiled=True).worst
     for found in (figures, compiled):
         np.testing.assert_allclose(found, expected, rtol=1e-6, atol=ABSOLUTE)
+
+
+@pytest.mark.parametrize("stiffness", ["200 N*m/rad", "2 N*m/rad", "0.2 N*m/rad", "0.02 N*m/rad"])
+def test_what_turns_by_a_thousand_turns_passes_once_more_by_itself(stiffness, monkeypatch):
+    """Round-off of rotations is no misfit of a law: what a batch passes is read again."""
+    monkeypatch.setattr(hot, "engine_at_hand", lambda name, count: compiled.settle)
+    shafts = {f'shafts."wheel{k}-pinion{k}".stiffness': stiffness for k in (1, 2)}
+    case = shipped("two_path/from_teeth").replace(shafts)
+    for torque in np.linspace(300.0, 400.0, 8):
+        found = ls.solve(case.replace({"operating.torque": f"{torque} N*m"}), positions=[1])
+        assert found.positions[0].certificate.passed

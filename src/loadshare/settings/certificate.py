@@ -19,9 +19,10 @@ class Certify(NamedTuple):
     guessed, and Ω is read to three digits behind the point."""
     rounded: float = 16.0 * EPS
     """Rounding of energies, relative to the sum of their sizes."""
-    resolution: float = 4.0 * EPS
+    resolution: float = 16.0 * EPS
     """Rounding of a length, relative to the largest displacement, error and gap together: some
-    terms, each known to half of EPS."""
+    terms, each known to a few EPS, as displacements are products over coordinates. A train on soft
+    shafts, whose input turns by a thousand turns, misses its laws by up to 6 EPS."""
     together: int = 2048
     """Answers judged together: as many as a processor's own memory holds."""
     least_deflection: float = 1e-6
