@@ -124,7 +124,7 @@ def speed_report(
         "",
         "## Targets",
         "",
-        *_ratios([*measures, *scaling], {m.workload: m.workload for m in scaling} | dict(titles)),
+        *_ratios([*measures, *scaling], {m.workload: _branched(m) for m in scaling} | dict(titles)),
         "",
         *_growth(scaling),
         "",
@@ -229,6 +229,10 @@ def _fastest(measures: Sequence[Measure], wanted: Ratio) -> tuple[Measure, float
     found = [m for p in wanted.peers if (m := best(measures, wanted.workload, p)) is not None]
     timed = [(m, m.inside_cpu if wanted.calls else m.cpu) for m in found]
     return min(timed, key=lambda pair: pair[1], default=None)
+
+
+def _branched(scaling: Measure) -> str:
+    return f"{scaling.workload.removeprefix('branches-')} branches, b + c law"
 
 
 def _ratios(measures: Sequence[Measure], titles: Mapping[str, str]) -> list[str]:
