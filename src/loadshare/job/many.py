@@ -128,14 +128,13 @@ def solve_many(
     tolerance : float
         Largest scaled residual of a certified answer, up to 1e-3.
     engine : {"auto", "compiled", "vectorised"}
-        Numba or NumPy; both give the same answers. "auto" is Numba once it was used in this
-        process, from 300 equilibria on where its code is on disk, else from 200 000 on: compiling
-        takes a minute or two, once in an installation. If that fails, the log says so.
+        Numba or NumPy, with the same answers. "auto" is Numba once it was used in this process,
+        from 300 equilibria on where its code is on disk, else from 200 000 on: compiling takes a
+        minute or two, once in an installation; if that fails, the log says so.
     workers : int
         Threads.
     least_norm : bool
-        Move displacements that an equilibrium leaves undetermined to the least-norm ones, as
-        `solve` does: some milliseconds for every sample with any.
+        Move undetermined displacements to the least-norm ones, as `solve` does: takes some ms each.
     progress : Progress, optional
         Called after every block with samples done and in all.
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from loadshare import compilation
 from loadshare.scene.scene import Array
 
-compiled = compilation.jit(nogil=True, error_model="numpy", _nrt=False)
+compiled = compilation.jit(nogil=True, error_model="numpy")
 
 
 class Rows(NamedTuple):

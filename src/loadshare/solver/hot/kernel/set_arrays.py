@@ -248,10 +248,8 @@ def _structure(
     columns, particular, n = basis.columns[order], basis.particular[order], basis.redundant[order]
     renewed = turned + powers + tables
     inverse = np.zeros((0, 0)) if renewed else _inverse(structure, loading, columns, n, states)
-    if not len(inverse):
-        n = _local(n)
-    contacts = columns[springs:]
-    row_end = renewed + rows
+    n = n if len(inverse) else _local(n)
+    contacts, row_end = columns[springs:], renewed + rows
     acting = np.flatnonzero((contacts >= first_arc) & (contacts < first_radial))
     arcs = contacts[acting] - first_arc
     idle = np.flatnonzero(states[: structure.rows] == OPEN)
