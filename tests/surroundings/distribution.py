@@ -59,6 +59,14 @@ def problems_of_sdist(names: Iterable[str]) -> list[str]:
     return found + [f"holds {name}" for name in sorted(hidden)]
 
 
+def files_in(folder: Path) -> tuple[Path, Path]:
+    """The wheel and the sdist in a folder, to be found from anywhere."""
+    wheels, sdists = (sorted(folder.resolve().glob(end)) for end in ("*.whl", "*.tar.gz"))
+    if (len(wheels), len(sdists)) != (1, 1):
+        raise SystemExit(f"{folder}: holds {len(wheels)} wheels and {len(sdists)} sdists")
+    return wheels[0], sdists[0]
+
+
 def installed_and_run(file: Path) -> None:
     """Install a distribution into an empty environment and solve a case with it, far from here."""
     with tempfile.TemporaryDirectory() as folder:
@@ -103,13 +111,11 @@ def main() -> None:
     asked = parser.parse_args()
     if asked.tag and asked.tag != f"v{version()}":
         raise SystemExit(f"the tag is {asked.tag}, the version {version()}")
-    wheels, sdists = (sorted(asked.folder.glob(end)) for end in ("*.whl", "*.tar.gz"))
-    if (len(wheels), len(sdists)) != (1, 1):
-        raise SystemExit(f"{asked.folder}: holds {len(wheels)} wheels and {len(sdists)} sdists")
-    with zipfile.ZipFile(wheels[0]) as wheel:
-        wrong = {wheels[0]: problems_of_wheel(wheel.namelist())}
-    with tarfile.open(sdists[0]) as sdist:
-        wrong[sdists[0]] = problems_of_sdist(sdist.getnames())
+    wheel_file, sdist_file = files_in(asked.folder)
+    with zipfile.ZipFile(wheel_file) as wheel:
+        wrong = {wheel_file: problems_of_wheel(wheel.namelist())}
+    with tarfile.open(sdist_file) as sdist:
+        wrong[sdist_file] = problems_of_sdist(sdist.getnames())
     told = [f"{file.name} {problem}" for file, found in wrong.items() for problem in found]
     if told:
         raise SystemExit("\n".join(told))

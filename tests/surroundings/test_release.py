@@ -92,3 +92,16 @@ def test_what_an_sdist_must_hold_is_looked_for():
     assert "lacks LICENSE" in distribution.problems_of_sdist(["loadshare-1/README.md"])
     found = distribution.problems_of_sdist(["loadshare-1/site/index.html"])
     assert found[-1] == "holds site/index.html"
+
+
+def test_distributions_are_installed_from_elsewhere(tmp_path, monkeypatch):
+    """`make dist` names their folder as it is seen from the clone."""
+    folder = tmp_path / "dist"
+    folder.mkdir()
+    for name in ("a-1-py3-none-any.whl", "a-1.tar.gz"):
+        (folder / name).touch()
+    monkeypatch.chdir(tmp_path)
+    assert all(file.is_absolute() for file in distribution.files_in(Path("dist")))
+    (folder / "a-2.tar.gz").touch()
+    with pytest.raises(SystemExit, match="1 wheels and 2 sdists"):
+        distribution.files_in(Path("dist"))
