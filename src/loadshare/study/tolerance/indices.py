@@ -56,7 +56,8 @@ def shares(figures: Array, units: tuple[str, ...], seed: int) -> tuple[Share, ..
     if whole.shape[1] < 8:
         return ()
     base = whole[:2]
-    if base.std() <= TOLERANCE.still * max(float(np.abs(base).max()), 1e-300):
+    still = TOLERANCE.still * max(float(np.abs(base).max()), 1e-300)
+    if base.std() <= still:
         return ()
     a, b, mixed = whole[0], whole[1], whole[2:]
     middle = base.mean()
@@ -64,11 +65,11 @@ def shares(figures: Array, units: tuple[str, ...], seed: int) -> tuple[Share, ..
     rows = len(a)
     # Every estimate is a ratio of means over rows: a resample only weighs the rows anew.
     sums = np.concatenate([[a, b, a * a, b * b], b * (mixed - a), 0.5 * (a - mixed) ** 2])
-    first, total = _ratios(sums.mean(axis=1)[:, None], len(units))
+    first, total = _ratios(sums.mean(axis=1)[:, None], len(units), still)
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(0, 2)))
     even = np.full(rows, 1.0 / rows)
     drawn = [sums @ rng.multinomial(rows, even) / rows for _ in range(TOLERANCE.resamples)]
-    again = _ratios(np.stack(drawn, axis=1), len(units))
+    again = _ratios(np.stack(drawn, axis=1), len(units), still)
     tail = (1.0 - TOLERANCE.confidence) / 2.0
     found = []
     for k, unit in enumerate(units):
@@ -80,7 +81,12 @@ def shares(figures: Array, units: tuple[str, ...], seed: int) -> tuple[Share, ..
     return tuple(found)
 
 
-def _ratios(means: Array, units: int) -> tuple[Array, Array]:
-    """First-order and total indices, (units, resamples), from means of the terms."""
+def _ratios(means: Array, units: int, still: float) -> tuple[Array, Array]:
+    """First-order and total indices, (units, resamples), from means of the terms.
+
+    Resamples in which nothing varies, as a few rows may have, are left out.
+    """
     variance = 0.5 * (means[2] + means[3]) - (0.5 * (means[0] + means[1])) ** 2
+    varies = variance > (0.5 * still) ** 2
+    means, variance = means[:, varies], variance[varies]
     return means[4 : 4 + units] / variance, means[4 + units :] / variance
