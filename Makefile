@@ -35,7 +35,7 @@ $(VENV)/.bench: $(VENV)/.run
 # All that a test runs against, side by side; the tests find the kernels on disk.
 CHECKED := $(MAKE) --no-print-directory --output-sync -j $(WORKERS) kernels types docs lint layers
 # Neighbours stay together, so that a file's fixtures are made once; the pages are those just built.
-TESTED := SITE=site $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
+TESTED := LOADSHARE_SITE=site $(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
 test: $(VENV)/.dev ## check and test everything that is not slow
 	$(CHECKED)

@@ -21,7 +21,7 @@ BARE = "evidence/branches.html"
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
     """All pages, built strictly: those of `make docs` if it says where, else made now."""
-    if built := os.environ.get("SITE"):
+    if built := os.environ.get("LOADSHARE_SITE"):
         return ROOT / built
     folder = tmp_path_factory.mktemp("site")
     mkdocs = Path(sys.executable).with_name("mkdocs")
