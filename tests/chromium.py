@@ -27,7 +27,8 @@ FRACTION = 0.25
 holds the room above and below the letters as well."""
 
 TEXTS = """
-const [root, fraction] = arguments;
+const [picture, fraction] = arguments;
+const root = typeof picture === "string" ? document.querySelector(picture) : picture;
 function light(colour) {
   const [r, g, b] = colour.match(/[\\d.]+/g).map((v) => {
     const part = v / 255;
@@ -179,7 +180,10 @@ def too_wide(browser: Any, width: int) -> int:
 
 
 def badly_set(browser: Any, picture: Any) -> list[str]:
-    """What overlaps, is cut or is pale of the words in an SVG element."""
+    """What overlaps, is cut or is pale of the words in an SVG element.
+
+    ``picture`` is the element, or its selector where the page may draw it again meanwhile.
+    """
     return list(browser.execute_script(TEXTS, picture, FRACTION))
 
 

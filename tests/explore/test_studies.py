@@ -281,7 +281,7 @@ def test_a_tolerance_study_grows_is_stopped_and_says_of_what_it_is(browser, seed
     begin(browser, 100_000)
     assert "uniform" in shown(browser, "scattering").get_attribute("textContent")
     assert "[study.explorer]" in shown(browser, "scatter-toml").get_attribute("textContent")
-    assert badly_set(browser, browser.find_element(By.CSS_SELECTOR, "#histogram svg")) == []
+    assert badly_set(browser, "#histogram svg") == []
     before = shown(browser, "sampled").text
     WebDriverWait(browser, 120).until(lambda b: shown(b, "sampled").text != before)
     shown(browser, "stop").click()
