@@ -46,6 +46,8 @@ def browser(tmp_path_factory):
 @pytest.mark.parametrize("page", ["index.html", "evidence/speed.html"])
 def test_the_search_works_from_a_folder(browser, site, page):
     on_screen(browser, 1280)
+    browser.get("about:blank")
+    browser.get_log("browser")  # what pages opened before have left there
     browser.get((site / page).as_uri())
     field = browser.find_element(By.CSS_SELECTOR, "input.md-search__input")
     field.click()

@@ -33,9 +33,9 @@ def page(tmp_path_factory, ring_chapter):
     return folder / "report.html"
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def opened(browser, page):
-    """The page, with all figures drawn."""
+    """The page as it opens, with all figures drawn."""
     from selenium.webdriver.support.ui import WebDriverWait
 
     browser.get(page.as_uri())
