@@ -73,6 +73,7 @@ def test_the_map_of_one_family_is_written_and_drawn_again(run, tmp_path):
     assert "<script src=" not in (tmp_path / "stability.html").read_text()
 
 
+@pytest.mark.slow
 def test_charts_are_drawn_from_figures(tmp_path):
     def one(workload, method, tolerance, us, worst):
         times = (us, us, us / 2, us / 2, us / 3)

@@ -337,6 +337,7 @@ def test_what_a_killed_batch_left_is_removed(command, star, tmp_path):
     assert other.exists()
 
 
+@pytest.mark.slow
 def test_a_process_that_dies_costs_only_its_own_case(star, tmp_path, environment):
     script = tmp_path / "script.py"
     script.write_text(

@@ -53,6 +53,7 @@ def test_a_check_solves_and_draws_nothing(environment, cases):
     assert found == {"numpy"}
 
 
+@pytest.mark.slow
 def test_a_drawing_solves_nothing(environment, cases, tmp_path):
     words = ["draw", cases / "fgfbstts/limit_ring.toml", "-o", tmp_path / "drawing.svg"]
     assert imported(words, environment) == {"numpy", "altair", "vl_convert"}

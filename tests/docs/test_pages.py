@@ -27,9 +27,9 @@ blocks = _load("blocks")
     [
         "docs/index.md",
         "docs/tutorial.md",
-        "docs/gearbox.md",
+        pytest.param("docs/gearbox.md", marks=pytest.mark.slow),
         "docs/spreadsheets.md",
-        "docs/pictures.md",
+        pytest.param("docs/pictures.md", marks=pytest.mark.slow),
         "docs/studies.md",
         "docs/contact.md",
         "docs/results.md",

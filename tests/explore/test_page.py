@@ -15,7 +15,7 @@ from tests.explore.conftest import SEED
 from tests.explore.test_server import told
 from tests.explore.walks import contradicted, opened, settled, walked
 from tests.report.pages import EVIL_CASE
-from tests.support import shipped
+from tests.support import mostly_slow, shipped
 
 from loadshare.case import Case, load_case
 from loadshare.explore.inputs import Inputs
@@ -268,8 +268,12 @@ def test_nothing_is_compiled_and_no_other_script_runs(browser, seed):
 SHOWN = ("fgfbstts/limit_ring", "nrel_5mw/gearbox", "fgfbstts/full_float", "two_path/nasa")
 
 
-@pytest.mark.parametrize("width", [390, 1280, 1920])
-@pytest.mark.parametrize("name", SHOWN)
+SCREENS = [(name, width) for name in SHOWN for width in (390, 1280, 1920)]
+
+
+@pytest.mark.parametrize(
+    ("name", "width"), mostly_slow(SCREENS, [SCREENS[0], SCREENS[4], SCREENS[8]])
+)
 def test_the_page_fits_every_screen(browser, served, name, width):
     """No scrolling sideways, no words that overlap or are cut; contrast and names of controls."""
     on_screen(browser, width, dark=width == 1280)

@@ -187,6 +187,7 @@ def test_further_names():
     assert "localhost" in hosts_of("127.0.0.1", 80)
 
 
+@pytest.mark.slow
 def test_a_hundred_at_once_do_not_mix(served):
     """Everybody gets the answer to their own setting, whoever asks meanwhile."""
     draw, case = random.Random(5), shipped("star/floating_sun_4")

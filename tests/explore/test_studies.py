@@ -131,6 +131,7 @@ def test_a_tolerance_study_of_what_is_shown_is_the_one_of_the_library(seed):
     assert parts[0]["table"]["rows"] == figures(early, 1.003)
 
 
+@pytest.mark.slow
 def test_a_study_of_the_case_is_the_one_that_its_file_describes(served):
     case = shipped("nrel_5mw/gearbox")
     with served(case) as address:

@@ -24,6 +24,7 @@ print(counts[-1])
 
 
 @pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="another C library")
+@pytest.mark.slow
 def test_pages_are_not_fetched_anew():
     """A batch that was solved before finds its memory there."""
 

@@ -297,6 +297,7 @@ def test_at_hand_is_what_was_compiled_or_kept(tmp_path, monkeypatch):
     assert not compilation.at_hand(again)
 
 
+@pytest.mark.slow
 def test_numbers_of_another_file_that_change_are_compiled_anew(tmp_path, monkeypatch):
     """Numba itself looks at the function's own file only."""
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kept"))
@@ -380,6 +381,7 @@ def test_what_is_warm_is_at_hand():
     assert engines.at_hand()
 
 
+@pytest.mark.slow
 def test_what_is_warm_is_all_that_batches_call():
     """In a process that finds it on disk nothing else is compiled, whatever elements there are."""
     assert warm() is None
@@ -396,6 +398,7 @@ print([str(e.data["dispatcher"]) for _, e in compiled.buffer])
     assert run(script)[0] == []
 
 
+@pytest.mark.slow
 def test_what_is_at_hand_is_all_that_cases_call():
     """In a process that finds on disk what this one has compiled, nothing else is compiled."""
     for name in KINDS:

@@ -224,7 +224,7 @@ def is_solved_and_agreed(case: ls.Case) -> None:
 
 @pytest.mark.parametrize("family", [stars, split_torques], ids=["star", "split torque"])
 def test_a_random_train_is_solved(family):
-    @settings(TRAINS, max_examples=60)
+    @settings(TRAINS, max_examples=20)
     @given(family())
     def run(case: ls.Case) -> None:
         is_solved_and_agreed(case)

@@ -6,7 +6,7 @@ import pytest
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import WebDriverWait
 from tests.chromium import CONTRAST, NAMES, badly_set, badly_set_file, on_screen, too_wide
-from tests.support import CASES
+from tests.support import CASES, mostly_slow
 
 from loadshare.report.figures.train import train
 from loadshare.report.page import chapter_of_file, save_report
@@ -34,8 +34,10 @@ def opened(browser, page, width, dark=False):
     WebDriverWait(browser, 60).until(lambda b: b.execute_script(DRAWN))
 
 
-@pytest.mark.parametrize("name", ["one.html", "two.html"])
-@pytest.mark.parametrize("width", [390, 1280, 1920])
+SCREENS = [(name, width) for name in ("one.html", "two.html") for width in (390, 1280, 1920)]
+
+
+@pytest.mark.parametrize(("name", "width"), mostly_slow(SCREENS, [SCREENS[1], SCREENS[3]]))
 def test_a_report_fits_every_screen(browser, pages, name, width):
     """Nothing needs scrolling sideways but within its own box; no words overlap or are cut."""
     opened(browser, pages / name, width, dark=width == 1280)
@@ -69,6 +71,7 @@ def test_letters_on_a_phone_are_large_enough(browser, pages):
     assert min(sizes) >= 8
 
 
+@pytest.mark.slow
 def test_every_control_is_reached_by_the_keyboard(browser, pages):
     from selenium.webdriver.common.action_chains import ActionChains
     from selenium.webdriver.common.keys import Keys

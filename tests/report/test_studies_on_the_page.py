@@ -11,7 +11,7 @@ from selenium.webdriver.support.ui import WebDriverWait
 from tests.chromium import CONTRAST, NAMES, badly_set, on_screen, too_wide
 from tests.report.pages import Reader
 from tests.report.test_looks import DRAWN
-from tests.support import shipped
+from tests.support import mostly_slow, shipped
 from typer.testing import CliRunner
 
 import loadshare as ls
@@ -117,6 +117,7 @@ def test_a_study_without_an_answer_is_part_of_the_page(case):
     assert "rings.77" in Reader(report_page([one])).text
 
 
+@pytest.mark.slow
 def test_from_python(case, scatter, tmp_path):
     (one,) = write_report([case], tmp_path / "report.html", studies={"mine": scatter})
     assert [part.name for part in one.studies] == ["mine"]
@@ -125,7 +126,9 @@ def test_from_python(case, scatter, tmp_path):
     assert not (tmp_path / "no.html").exists()
 
 
-@pytest.mark.parametrize(("width", "dark"), [(390, True), (1280, False), (1920, True)])
+@pytest.mark.parametrize(
+    ("width", "dark"), mostly_slow([(390, True), (1280, False), (1920, True)], {(390, True)})
+)
 def test_their_pictures_fit_every_screen(browser, page, width, dark):
     on_screen(browser, width, dark=dark)
     browser.get(page.as_uri())
@@ -139,6 +142,7 @@ def test_their_pictures_fit_every_screen(browser, page, width, dark):
     assert browser.get_log("browser") == []
 
 
+@pytest.mark.slow
 def test_the_command_runs_what_is_asked_for(case, tmp_path):
     file = tmp_path / "case.toml"
     file.write_text(case.to_toml(), encoding="utf-8")

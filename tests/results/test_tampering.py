@@ -47,9 +47,7 @@ CASES = {
 }
 
 
-@pytest.fixture(
-    scope="module", params=mostly_slow(CASES, ("rings", "splines", "coasting", "round ring"))
-)
+@pytest.fixture(scope="module", params=mostly_slow(CASES, ("rings", "coasting")))
 def result(request):
     return CASES[request.param]()
 

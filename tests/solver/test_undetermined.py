@@ -216,7 +216,7 @@ def same_places(train: Train, one: Equilibrium, other: Equilibrium) -> None:
 def test_engines_agree_on_random_trains_with_lost_branches():
     seen = {"open": 0, "compared": 0}
 
-    @settings(TRAINS, max_examples=40)
+    @settings(TRAINS, max_examples=15)
     @given(with_lost_branches())
     def run(case: ls.Case) -> None:
         train = build_train(case)

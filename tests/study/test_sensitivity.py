@@ -163,6 +163,7 @@ def test_a_gear_that_comes_to_float_has_no_displacement_to_that_side():
     assert np.isnan(found.rates[1, key, "rising"].displacement["5"]).all()
 
 
+@pytest.mark.slow
 def test_drawn_and_critical_cases():
     rows = [{"number": k, **one(7, k)} for k in range(2, 4)]
     told = outcomes(rows)

@@ -22,18 +22,21 @@ from loadshare.job import solve
 # --- Figs. 13 and 14: within 3 % ---
 
 
+@pytest.mark.slow
 def test_figs_13_and_14_within_three_percent(limited):
     entries = [*fig13_entries(limited), *fig14_entries(limited)]
     assert len(entries) == 10
     assert {e.quantity: e.relative for e in entries if abs(e.relative) > 0.03} == {}
 
 
+@pytest.mark.slow
 def test_both_pinions_press_on_rings_of_the_printed_size(limited):
     assert {p: limited.resting.floats[p].state for p in PINIONS} == dict.fromkeys(
         PINIONS, "on boundary"
     )
 
 
+@pytest.mark.slow
 def test_the_threshold_is_the_float_in_an_ample_ring(limited):
     """Two ways to the same figure: the event along the clearance, and the free balance point.
 
@@ -44,6 +47,7 @@ def test_the_threshold_is_the_float_in_an_ample_ring(limited):
         assert threshold == pytest.approx(free, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_no_sign_of_the_error_of_gear_9_gives_branch_and_balance_point(limited):
     assert limited.as_printed.branch == "9-10"
     assert limited.mirrored.branch == "8-10"
@@ -53,6 +57,7 @@ def test_no_sign_of_the_error_of_gear_9_gives_branch_and_balance_point(limited):
     assert here @ printed.POINTS["5"] > 0.0 > there @ printed.POINTS["5"]
 
 
+@pytest.mark.slow
 def test_the_stiffness_fit_knows_what_it_cannot_tell_apart(limited):
     assert not np.isfinite(limited.stiffness.covariance).any()
     four, five = (d.computed for d in limited.stiffness.comparison.deviations)
@@ -146,6 +151,7 @@ def test_the_printed_sizes_of_fig_9_lie_below_the_largest_of_a_revolution(turnin
 # --- Fig. 10: fitted within 0.005 ---
 
 
+@pytest.mark.slow
 def test_the_shares_of_fig_10_are_fitted_within_0_005(both):
     entries = share_entries(both)
     assert len(entries) == 6
@@ -153,6 +159,7 @@ def test_the_shares_of_fig_10_are_fitted_within_0_005(both):
     assert both.fitted.chi_square < 1e-6
 
 
+@pytest.mark.slow
 def test_the_fit_of_fig_10_determines_three_combinations(both):
     sizes = both.fitted.singular_values
     assert (sizes > 1e-6 * sizes.max()).sum() == 3
@@ -161,6 +168,7 @@ def test_the_fit_of_fig_10_determines_three_combinations(both):
     assert np.isfinite(both.conditional.covariance).all()
 
 
+@pytest.mark.slow
 def test_the_conditional_fit_agrees_with_finite_differences(both):
     """Covariance from differences of the shares over 0.01°: curvature leaves a relative 1e-3."""
     keys = [f"errors.{g}.eccentricity.direction" for g in CONDITIONAL]
@@ -180,6 +188,7 @@ def test_the_conditional_fit_agrees_with_finite_differences(both):
     assert both.conditional.covariance == pytest.approx(covariance, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_balanced_torques_cannot_meet_the_printed_ones(both):
     """Within 2 %, and not to the digits printed, which do not balance."""
     entries = torque_entries(both)
@@ -193,6 +202,7 @@ def test_balanced_torques_cannot_meet_the_printed_ones(both):
 # --- Figs. 11, 12, 18, Table 2: trend and order ---
 
 
+@pytest.mark.slow
 def test_full_float_shares_better_and_pinion_4_floats_further(both, full):
     for pinion in PINIONS:
         assert pair_omega(full.position, pinion) - 1 < 0.1 * (pair_omega(both.position, pinion) - 1)
@@ -200,6 +210,7 @@ def test_full_float_shares_better_and_pinion_4_floats_further(both, full):
     assert full.float_of("4") > full.float_of("5")
 
 
+@pytest.mark.slow
 def test_in_full_float_the_pairs_lie_on_one_another(full):
     """As the picture says: within the width of its lines, 2 N·m. Both splines have one friction."""
     torque = full.position.torque
@@ -207,6 +218,7 @@ def test_in_full_float_the_pairs_lie_on_one_another(full):
         assert torque[here] == pytest.approx(torque[there], abs=2.0)
 
 
+@pytest.mark.slow
 def test_the_printed_floats_are_the_unrelieved_estimate(full):
     """Pinion 5: within 2 % of F/K_w. Pinion 4: 356 µm belong to 1.047, the share of Fig. 13, to
     its last digit. Both are more than 20 times the float with relief.
@@ -218,6 +230,7 @@ def test_the_printed_floats_are_the_unrelieved_estimate(full):
         assert printed.FLOATS[pinion] > 20 * full.float_of(pinion)
 
 
+@pytest.mark.slow
 def test_the_force_on_a_pinion_is_what_a_stiff_bearing_carries(both):
     """1e12 N/m against mesh stiffnesses near 2e9 N/m relieves by some per mille."""
     for pinion in PINIONS:
@@ -226,6 +239,7 @@ def test_the_force_on_a_pinion_is_what_a_stiff_bearing_carries(both):
         assert push_on(both.case, both.position, pinion) == pytest.approx(carried, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_the_curve_of_fig_12_falls_and_pinion_5_is_free_first(full, loosened):
     found = loosened
     assert found.free["5"] < found.free["4"]
@@ -243,6 +257,7 @@ def test_the_curve_of_fig_12_falls_and_pinion_5_is_free_first(full, loosened):
     assert all(event.confirmed for event in found.events)
 
 
+@pytest.mark.slow
 def test_omega_falls_with_the_load_and_differences_of_torque_stay(loaded):
     found = loaded
     assert [row.torque for row in found.rows] == sorted([*loads.TORQUES, printed.LIGHT])

@@ -19,6 +19,7 @@ def test_the_layout_is_that_of_the_case_files(seed):
         assert here.base_radius == pytest.approx(there.base_radius, abs=1e-4)
 
 
+@pytest.mark.slow
 def test_the_layout_gives_the_figures_of_the_case_files(seed, limited):
     """The case files round lengths to 0.1 µm and 0.1 mm of half a metre: 1e-3 relative."""
     found = figures(seed.case("limit_ring"), START)
@@ -30,6 +31,7 @@ def test_the_layout_gives_the_figures_of_the_case_files(seed, limited):
     assert found == pytest.approx(expected, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_other_weights_find_other_radii_and_the_same_angle(limited):
     """The idler angle is well determined, radius and pressure angle are not."""
     radii, idlers, _ = zip(*(g.values for g in limited.geometries), strict=True)

@@ -35,6 +35,7 @@ def reference(tmp_path_factory) -> Path:
     return out
 
 
+@pytest.mark.slow
 def test_a_cluster_that_loses_a_worker_gives_the_same_bits(reference, tmp_path):
     out = tmp_path / "study"
     with cluster(tmp_path, 2, "--no-nanny") as started:

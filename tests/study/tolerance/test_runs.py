@@ -345,6 +345,7 @@ def test_a_worker_that_dies_again_ends_the_study(tmp_path, monkeypatch, processe
         run(tmp_path / "study", samples=64, workers=2)
 
 
+@pytest.mark.slow
 def test_what_a_worker_cannot_write_is_told(tmp_path, processes):
     out = tmp_path / "study"
     (part,) = run(out, samples=64).parts
