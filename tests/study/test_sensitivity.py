@@ -92,9 +92,10 @@ def disagreeing(told: dict[str, Verdict]) -> dict[str, Verdict]:
             marks=pytest.mark.slow,
         ),
         ("fgfbstts/spline_clearance", ["splines.4.*", "operating.power"]),
-        (
+        pytest.param(
             "fgfbstts/all_elements",
             ['meshes."4-6".law.c[0]', "splines.5.*", "rings.5.float.*", "errors.9"],
+            marks=pytest.mark.slow,
         ),
         ("star/floating_sun_5", ['meshes."sun-planet1".*', "gears.sun.base_radius"]),
         pytest.param("two_path/clocking_error", None, marks=pytest.mark.slow),

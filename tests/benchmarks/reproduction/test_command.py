@@ -17,6 +17,7 @@ def run():
     return lambda *words: runner.invoke(app, list(map(str, words)))
 
 
+@pytest.mark.slow
 def test_page_and_pictures_are_the_same_bytes_every_time(run, seed, limited, tmp_path, monkeypatch):
     """One chapter in place of all, which the slow test computes."""
     found = Reproduction((point_chapter(seed, limited),), {"fgfbstts/base.toml": "0" * 64})
