@@ -65,7 +65,12 @@ def export_rexs(result: Result, unit: str | Path) -> str:
     if content.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] == b"{":
         return _into_json(json.loads(content.decode("utf-8-sig")), found)
     parser = ElementTree.XMLParser(target=ElementTree.TreeBuilder(insert_comments=True))
-    return _into_xml(ElementTree.fromstring(content, parser), found)
+    try:
+        root = ElementTree.fromstring(content, parser)
+    except ElementTree.ParseError as error:
+        # Prefixes without a namespace are read, as the import asks for none, but cannot be written.
+        raise CaseError([Problem(str(unit), "", "", f"is not valid XML: {error}")]) from None
+    return _into_xml(root, found)
 
 
 def _found(result: Result, gearing: Gearing) -> Values:
