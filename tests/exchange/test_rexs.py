@@ -152,6 +152,19 @@ def test_forces_and_displacements_are_written_back(written) -> None:
     )
 
 
+def test_a_bearing_that_hardly_holds_beside_a_stiff_one_is_not_lost(written) -> None:
+    components, relations = two_stages()
+    stiffness = {61: 1e14, 62: 1e-3}
+    changed = [
+        (i, kind, name, a | {"radial_stiffness": (stiffness[i], "N / m")} if i in stiffness else a)
+        for i, kind, name, a in components
+    ]
+    case = import_rexs(written(xml(changed, relations))).case()
+    for gear, at in (("gear_21", 0.025), ("gear_22", 0.125)):
+        yields = ((0.2 - at) / 0.2) ** 2 / 1e14 + (at / 0.2) ** 2 / 1e-3
+        assert case.gears[gear].support.si == pytest.approx(1.0 / yields)
+
+
 def test_the_pins_of_planets_are_inside_of_their_bearings(written) -> None:
     unit = written(xml(*planetary()))
     result = ls.solve(import_rexs(unit).case())

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.linalg import solve_triangular
 
 from loadshare.exchange.rexs.model import Component, Model
 
@@ -86,9 +88,7 @@ def borne_by(
     if not found:
         return []
     stiffness = np.array([_stiffness(bearing, "", []) for bearing, *_ in found])
-    arms, here = _arms(at, np.array([place for _, place, _ in found]))
-    beam = arms.T @ (stiffness[:, None] * arms)
-    parts = stiffness * (arms @ np.linalg.solve(beam, here))
+    parts, _ = _beam(at, stiffness, np.array([place for _, place, _ in found]))
     return [(b, side, part) for (b, _, side), part in zip(found, parts.tolist(), strict=True)]
 
 
@@ -138,9 +138,26 @@ def _seen_from(at: float, stiffness: np.ndarray, places: np.ndarray) -> float | 
     """Stiffness at a place [N/m]; None where all is rigid."""
     if stiffness.min() >= STIFF:
         return None
+    _, compliance = _beam(at, stiffness, places)
+    return 1.0 / compliance
+
+
+def _beam(at: float, stiffness: np.ndarray, places: np.ndarray) -> tuple[np.ndarray, float]:
+    """What of a unit force at a place each bearing takes (n,), and the compliance there [m/N].
+
+    With √k (1, u) = Q R and y = R⁻ᵀ (1, x)ᵀ they are √k Q y and yᵀ y. S = Rᵀ R itself would lose a
+    bearing that is softer than another by the precision of numbers; with the stiff rows first, R
+    does not.
+    """
     arms, here = _arms(at, places)
-    beam = arms.T @ (stiffness[:, None] * arms)
-    return float(1.0 / (here @ np.linalg.solve(beam, here)))
+    stiff_first = np.argsort(-stiffness, kind="stable")
+    root = np.sqrt(stiffness[stiff_first])
+    q, r = np.linalg.qr(root[:, None] * arms[stiff_first])
+    y = solve_triangular(r.T, here, lower=True)
+    parts = np.empty(len(stiffness))
+    parts[stiff_first] = root * (q @ y)
+    length = math.hypot(*y.tolist())
+    return parts, length * length
 
 
 def _offset(bearings: list[Component]) -> tuple[float, float, float]:
