@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextvars import copy_context
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,10 @@ PREFIX = "Value error, "
 
 class Command(TyperCommand):
     """A command that reports what is wrong with an option in plain words."""
+
+    def main(self, *args: Any, **kwargs: Any) -> Any:
+        """Run a command; what it notes (outputs, ``--quiet``) ends with it."""
+        return copy_context().run(super().main, *args, **kwargs)
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Read the words of the command line.
@@ -85,6 +90,10 @@ class Command(TyperCommand):
 
 class Group(TyperGroup):
     """The commands together; a word that is none leads to the one that was meant."""
+
+    def main(self, *args: Any, **kwargs: Any) -> Any:
+        """Run a command; what it notes (outputs, ``--quiet``) ends with it."""
+        return copy_context().run(super().main, *args, **kwargs)
 
     def resolve_command(self, ctx: Any, args: list[str]) -> Any:
         """Find the command that the first word names.
