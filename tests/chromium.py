@@ -135,6 +135,16 @@ return bad;
 """
 """Controls, pictures and frames without a name; headings out of order; names that stand twice."""
 
+OVER = """
+const [width, done] = arguments, start = performance.now();
+// A page follows its screen some frames later.
+(function look() {
+  const over = document.documentElement.scrollWidth - width;
+  if (over <= 0 || performance.now() - start > 2000) done(over); else requestAnimationFrame(look);
+})();
+"""
+"""By how many pixels a page is too wide, once it has followed its screen."""
+
 
 @contextmanager
 def chromium(profile: Path, offline: bool = True) -> Iterator[Any]:
@@ -175,8 +185,8 @@ def on_screen(browser: Any, width: int, height: int = 900, dark: bool = False) -
 
 
 def too_wide(browser: Any, width: int) -> int:
-    """Pixels by which a page is wider than its screen; a phone's zooms out as far as that."""
-    return int(browser.execute_script("return document.documentElement.scrollWidth")) - width
+    """Pixels by which a page stays wider than its screen; a phone's zooms out as far as that."""
+    return int(browser.execute_async_script(OVER, width))
 
 
 def badly_set(browser: Any, picture: Any) -> list[str]:

@@ -52,6 +52,7 @@ def test_wrong_words_are_told(run, words, told, tmp_path, monkeypatch):
     assert told in done.output
 
 
+@pytest.mark.slow
 def test_the_map_of_one_family_is_written_and_drawn_again(run, tmp_path):
     words = ("stress", "--family", "lost-contact", "--ours", "--quick", "-o", str(tmp_path))
     assert run(*words, "--quiet").exit_code == 0

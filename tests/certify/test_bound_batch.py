@@ -218,7 +218,7 @@ def true_errors(train: Train, found: Equilibria, largest: float) -> np.ndarray:
     return np.array(worst)
 
 
-@pytest.mark.parametrize("number", mostly_slow(IDLING, (212, 278)))
+@pytest.mark.parametrize("number", mostly_slow(IDLING, (278,)))
 def test_an_idling_hertz_flank_is_bounded(number):
     """It is endlessly soft, whatever little it is claimed to carry; others tell of it all the same.
 

@@ -230,7 +230,9 @@ def test_wrong_answers(name):
         )
 
 
-@pytest.mark.parametrize("family", [stars, split_torques], ids=["star", "split torque"])
+@pytest.mark.parametrize(
+    "family", mostly_slow((stars, split_torques), (stars,)), ids=["star", "split torque"]
+)
 def test_answers_of_random_trains(family):
     @settings(TRAINS, max_examples=6)
     @given(family(), st.integers(0, 1000))

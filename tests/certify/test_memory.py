@@ -40,7 +40,7 @@ def second_step(name: str) -> tuple[Train, Equilibrium]:
     return train, stepped(train, 2).equilibrium
 
 
-@pytest.mark.parametrize("name", mostly_slow(MARCHES, ("slips", "ends of clearances")))
+@pytest.mark.parametrize("name", mostly_slow(MARCHES, ("slips",)))
 def test_steps_of_a_march(name):
     """The right answer, and sixteen with one to three figures damaged."""
     train, found = second_step(name)

@@ -249,6 +249,7 @@ def await_first(out, batch):
         time.sleep(0.01)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 def test_an_interrupt_from_the_keyboard_stops_a_batch_in_processes(cases, tmp_path, environment):
     """What is under way is finished, what waits is left: as a terminal interrupts, all at once."""

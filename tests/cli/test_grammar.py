@@ -8,6 +8,7 @@ import sys
 
 import pytest
 from tests.cli.conftest import CASES, START, plain_environment
+from tests.support import mostly_slow
 from typer.main import get_command
 
 import loadshare as ls
@@ -78,7 +79,7 @@ ASKED = {
 }
 
 
-@pytest.mark.parametrize("name", ASKED)
+@pytest.mark.parametrize("name", mostly_slow(ASKED, ASKED.keys() - {"tolerance"}))
 def test_every_result_is_written_in_every_form(command, tmp_path, name):
     words, forms = ASKED[name]
     files = [tmp_path / f"found.{form}" for form in forms]

@@ -44,7 +44,9 @@ def browser(tmp_path_factory):
         yield found
 
 
-@pytest.mark.parametrize("page", ["index.html", "evidence/speed.html"])
+@pytest.mark.parametrize(
+    "page", mostly_slow(("index.html", "evidence/speed.html"), ("index.html",))
+)
 def test_the_search_works_from_a_folder(browser, site, page):
     on_screen(browser, 1280)
     browser.get("about:blank")
@@ -82,8 +84,9 @@ def test_pages_can_be_read(browser, site, every):
                 # The page follows the screen from then on.
                 browser.get(page.as_uri())
             found = [*browser.execute_script(CONTRAST), *browser.execute_script(NAMES)]
-            if too_wide(browser, width) > 0:
-                found.append(f"{too_wide(browser, width)} px too wide")
+            over = too_wide(browser, width)
+            if over > 0:
+                found.append(f"{over} px too wide")
             bad += [f"{name} at {width} px: {one}" for one in found]
     assert bad == []
 
@@ -98,7 +101,7 @@ return [...document.querySelectorAll(controls)]
 """Controls on the screen that were not reached."""
 
 
-@pytest.mark.parametrize("page", ["index.html", "gallery/float.html"])
+@pytest.mark.parametrize("page", mostly_slow(("index.html", "gallery/float.html"), ("index.html",)))
 def test_the_keyboard_reaches_every_control(browser, site, page):
     from selenium.webdriver.common.action_chains import ActionChains
     from selenium.webdriver.common.keys import Keys

@@ -61,7 +61,7 @@ def test_a_slider_moves_the_answer(browser, seed, inputs):
     assert says["fields"]["rings.5.float"] == "5.5 um"
 
 
-@pytest.mark.parametrize("seed_number", [1, 2])
+@pytest.mark.parametrize("seed_number", mostly_slow((1, 2), (1,)))
 def test_a_walk_never_shows_what_is_not_of_the_present_inputs(browser, seed, inputs, seed_number):
     _walk(browser, seed, inputs, steps=25, number=seed_number)
 
@@ -109,13 +109,16 @@ def test_a_lost_server_leaves_no_answer(browser, served):
 
 @pytest.mark.parametrize(
     ("text", "outcome", "why"),
-    [
-        ("3", "invalid", "has no unit"),
-        ("nan um", "invalid", "is not finite"),
-        ("1e308 um", "invalid", "of a size that no machine has"),
-        ("3 kg", "invalid", "a length is needed"),
-        ("0.004 mm", "certified", ""),
-    ],
+    mostly_slow(
+        [
+            ("3", "invalid", "has no unit"),
+            ("nan um", "invalid", "is not finite"),
+            ("1e308 um", "invalid", "of a size that no machine has"),
+            ("3 kg", "invalid", "a length is needed"),
+            ("0.004 mm", "certified", ""),
+        ],
+        ("3", "0.004 mm"),
+    ),
 )
 def test_what_is_typed(browser, seed, inputs, text, outcome, why):
     opened(browser, seed, names=["rings.5.float"])
@@ -166,6 +169,7 @@ def test_a_dial_turns_an_error(browser, seed, inputs):
     assert contradicted(says, inputs, told) == ""
 
 
+@pytest.mark.slow
 def test_pinned_settings_are_compared(browser, seed):
     opened(browser, seed, names=["rings.5.float"])
     browser.find_element(By.ID, "pin").click()

@@ -108,6 +108,7 @@ def figures(found, limit):
     return plain(omega_table(shown, limit))["rows"]
 
 
+@pytest.mark.slow
 def test_a_tolerance_study_of_what_is_shown_is_the_one_of_the_library(seed):
     """The same samples, the same statistics to the last printed digit, at every stage of it."""
     # The compiled engine solves a block at a time.
@@ -214,6 +215,7 @@ def test_a_study_that_is_broken_off_is_stopped(seed):
     assert len(found["x"]) == 3
 
 
+@pytest.mark.slow
 def test_a_tolerance_study_that_is_broken_off_frees_its_worker(seed):
     """In the middle of its lines."""
     parts = urlsplit(seed)
@@ -277,6 +279,7 @@ def begin(browser, samples):
     )
 
 
+@pytest.mark.slow
 def test_a_tolerance_study_grows_is_stopped_and_says_of_what_it_is(browser, seed):
     opened(browser, seed, names=["rings.5.float"])
     begin(browser, 100_000)

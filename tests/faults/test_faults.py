@@ -13,7 +13,7 @@ pytestmark = pytest.mark.skipif(bool(why_not()), reason=why_not())
 SMALL = {scene.name: scene for scene in (*batch_scenes(2), *study_scenes(64, 1, 0), *file_scenes())}
 TRIED = 12
 """Faults of a scene in `make test`."""
-QUICK = ("batch over others", "study", "sweep.csv", "refused.json")
+QUICK = ("batch over others", "sweep.csv", "refused.json")
 
 
 @pytest.fixture(scope="module")

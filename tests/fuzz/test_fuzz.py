@@ -7,6 +7,7 @@ import pytest
 from tests.cli.conftest import on_a_screen_of
 from tests.fuzz.corpus import CORPUS, retried
 from tests.fuzz.trial import compile_first, trial
+from tests.support import mostly_slow
 
 import loadshare as ls
 from loadshare.outside import OUTSIDE
@@ -69,8 +70,17 @@ def test_a_name_that_is_too_long_is_told():
     assert "file name too long" in found.output
 
 
+KEPT = sorted(CORPUS.iterdir())
+LONG = {"case-101-1696"}
+"""Of these, what takes seconds."""
+
+
 @pytest.mark.usefixtures("compiled")
-@pytest.mark.parametrize("kept", sorted(CORPUS.iterdir()), ids=lambda kept: kept.name)
+@pytest.mark.parametrize(
+    "kept",
+    mostly_slow(KEPT, [kept for kept in KEPT if kept.name not in LONG]),
+    ids=lambda kept: kept.name,
+)
 def test_what_was_found_once_is_told_in_words(tmp_path, kept, monkeypatch):
     monkeypatch.delenv(OUTSIDE)
     assert retried(kept, tmp_path) == ""

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numba.core.caching import IndexDataCacheFile
-from tests.support import CASES, shipped
+from tests.support import CASES, mostly_slow, shipped
 
 import loadshare as ls
 from loadshare import compilation
@@ -95,7 +95,9 @@ def read_only(tmp_path: Path):
         folder.chmod(0o755)
 
 
-@pytest.mark.parametrize("named", [False, True], ids=["no folder", "an unwritable NUMBA_CACHE_DIR"])
+@pytest.mark.parametrize(
+    "named", mostly_slow((False, True), (True,)), ids=["no folder", "an unwritable NUMBA_CACHE_DIR"]
+)
 def test_with_nowhere_to_write_the_vectorised_kernel_answers(read_only, torques, named):
     environment = {**read_only, "NUMBA_CACHE_DIR": read_only["HOME"] if named else ""}
     found, said = run(SOLVE, as_a_user(), **environment)

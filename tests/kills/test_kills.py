@@ -3,7 +3,6 @@
 import pytest
 from tests.kills.cluster import await_workers, cluster
 from tests.kills.trial import KINDS, TARGETS, Bench, differences, trial
-from tests.support import mostly_slow
 
 
 @pytest.fixture
@@ -12,7 +11,8 @@ def patient(monkeypatch):
     monkeypatch.setattr("tests.kills.trial.GONE", 60.0)
 
 
-@pytest.mark.parametrize("number", mostly_slow(range(len(TARGETS)), (0,)))
+@pytest.mark.slow
+@pytest.mark.parametrize("number", range(len(TARGETS)))
 def test_what_is_killed_leaves_nothing_and_goes_on(tmp_path, patient, number):
     """A batch, whose parent, group or worker is killed."""
     bench = Bench.of(tmp_path, ("batch",))

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import currently_in_test_context, given, note, reject, settings
 from hypothesis import strategies as st
 from tests.reproducible import TRAINS
-from tests.support import answer, forces, furthest
+from tests.support import answer, forces, furthest, mostly_slow
 
 import loadshare as ls
 from benchmarks import families
@@ -222,7 +222,9 @@ def is_solved_and_agreed(case: ls.Case) -> None:
             assert furthest(one, other) < AGREE, options
 
 
-@pytest.mark.parametrize("family", [stars, split_torques], ids=["star", "split torque"])
+@pytest.mark.parametrize(
+    "family", mostly_slow((stars, split_torques), (stars,)), ids=["star", "split torque"]
+)
 def test_a_random_train_is_solved(family):
     @settings(TRAINS, max_examples=20)
     @given(family())

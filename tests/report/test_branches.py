@@ -117,6 +117,7 @@ def test_curves_are_drawn_once_for_each_law(read, picture):
     assert curves == [{0}, {0}, {0}]
 
 
+@pytest.mark.slow
 def test_a_loaded_result_draws_what_the_solved_one_draws(limit_ring, tmp_path, picture):
     file = tmp_path / "result.json"
     limit_ring.to_json(file)

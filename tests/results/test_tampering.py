@@ -267,10 +267,12 @@ def test_a_result_of_some_positions_is_whole_if_no_more_were_asked_for(small):
     "change",
     [
         lambda a: a.assign(torque=a.torque * 1.5),
-        lambda a: a.assign(torque=a.torque.where(a.position > 1)),
+        pytest.param(
+            lambda a: a.assign(torque=a.torque.where(a.position > 1)), marks=pytest.mark.slow
+        ),
         lambda a: a.drop_vars("share"),
-        lambda a: a.assign(other=a.torque),
-        lambda a: a.isel(position=[0]),
+        pytest.param(lambda a: a.assign(other=a.torque), marks=pytest.mark.slow),
+        pytest.param(lambda a: a.isel(position=[0]), marks=pytest.mark.slow),
         lambda a: a.assign_coords(mesh=a.mesh.values[::-1]),
         lambda a: a.assign_attrs(case_hash="0" * 64),
         lambda a: a.assign_attrs({DOCUMENT: a.attrs[DOCUMENT].replace("on boundary", "inside")}),

@@ -213,6 +213,7 @@ def same_places(train: Train, one: Equilibrium, other: Equilibrium) -> None:
             assert mine == others or abs(mine - others) <= AGREE * play, name
 
 
+@pytest.mark.slow
 def test_engines_agree_on_random_trains_with_lost_branches():
     seen = {"open": 0, "compared": 0}
 

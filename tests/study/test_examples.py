@@ -4,7 +4,7 @@ import doctest
 from importlib import import_module
 
 import pytest
-from tests.support import CASES
+from tests.support import CASES, mostly_slow
 
 ROOMS = (
     "compare",
@@ -18,7 +18,7 @@ ROOMS = (
 )
 
 
-@pytest.mark.parametrize("room", ROOMS)
+@pytest.mark.parametrize("room", mostly_slow(ROOMS, set(ROOMS) - {"critical"}))
 def test_examples(room, monkeypatch):
     monkeypatch.chdir(CASES.parent)
     module = import_module(f"loadshare.study.{room}")

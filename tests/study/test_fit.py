@@ -149,6 +149,7 @@ def test_a_fit_beyond_its_bounds_stands_at_one_and_says_so():
     assert f"{key} is at its bound." in found.warnings
 
 
+@pytest.mark.slow
 def test_several_starts_find_what_one_misses():
     """A direction far off leads into another valley; the best of several starts is taken."""
     base = shipped("fgfbstts/both_errors")

@@ -35,9 +35,7 @@ def test_a_clearance_that_friction_needs_leaves_a_spring(friction):
 ROOMS = [(f, r) for f in (1e-6, 1.0, 500.0) for r in (1e-13, 1e-11, 1e-10, 1e-9)]
 
 
-@pytest.mark.parametrize(
-    ("friction", "room"), mostly_slow(ROOMS, ((1e-6, 1e-11), (1.0, 1e-13), (500.0, 1e-9)))
-)
+@pytest.mark.parametrize(("friction", "room"), mostly_slow(ROOMS, ((1.0, 1e-13),)))
 def test_next_to_no_room_is_next_to_a_spring(friction, room):
     """A slip that has so little room changes a displacement by no more than that."""
     found = ls.march(spline(friction, friction / KW + room))

@@ -95,6 +95,7 @@ def test_the_picture_shows_only_gears_that_can_move():
     assert [panel["title"]["text"] for panel in named] == ["Gear 6"]
 
 
+@pytest.mark.slow
 def test_the_picture_is_that_of_the_arrays(tmp_path):
     case = shipped("fgfbstts/limit_ring")
     found = ls.sweep(case, {"rings.*.float": "0 um:12 um:4"}, positions=[1])

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from tests.cli.conftest import plain_environment
-from tests.support import CASES
+from tests.support import CASES, mostly_slow
 from tests.surroundings.disk import PAGE, files, fill, mounted
 from tests.tooth.use.pairs import SPUR
 
@@ -93,7 +93,7 @@ def test_a_full_disk_is_told_and_nothing_is_left(run, disk, words):
     assert files(disk) == {}
 
 
-@pytest.mark.parametrize("pages", [1, 2, 4])
+@pytest.mark.parametrize("pages", mostly_slow((1, 2, 4), (2,)))
 @pytest.mark.parametrize(
     "words", [w for w in WRITING if Path(str(w[-1])).suffix in {".nc", ".html"}], ids=name_of
 )

@@ -68,6 +68,7 @@ def test_the_stiffness_fit_knows_what_it_cannot_tell_apart(limited):
 # --- Figs. 8 and 9: order of influence ---
 
 
+@pytest.mark.slow
 def test_fig_8_in_order_of_influence(displaced):
     """Gear 1 leads stage I; gear 6 leads stage II, the others far less (under half)."""
     assert order(displaced.omega("I"))[0] == ["1"]

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tests.physics.test_random_trains import split_torques, stars
 from tests.reproducible import TRAINS
 from tests.solver.hot.trains import VARIED, varied
-from tests.support import SHIPPED, shipped
+from tests.support import SHIPPED, mostly_slow, shipped
 
 import loadshare as ls
 from loadshare.job.engines import engine_named
@@ -130,7 +130,9 @@ def test_random_samples(name):
     assert len(sets) > 1 or name in ("errors", "tables"), "nothing opened or closed"
 
 
-@pytest.mark.parametrize("family", [stars, split_torques], ids=["star", "split torque"])
+@pytest.mark.parametrize(
+    "family", mostly_slow((stars, split_torques), (stars,)), ids=["star", "split torque"]
+)
 def test_random_trains(family):
     @settings(TRAINS, max_examples=30)
     @given(family())

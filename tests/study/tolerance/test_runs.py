@@ -336,6 +336,7 @@ def test_a_worker_that_dies_is_replaced(reference, tmp_path, monkeypatch, proces
     assert parquet.read_table(first).equals(parquet.read_table(reference / first.name))
 
 
+@pytest.mark.slow
 def test_a_worker_that_dies_again_ends_the_study(tmp_path, monkeypatch, processes):
     def dying(path, job, part):
         os.kill(os.getpid(), signal.SIGKILL)

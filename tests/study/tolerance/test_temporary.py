@@ -81,7 +81,9 @@ def test_what_killed_processes_left_is_removed_and_nothing_else(place):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="no such signals on this system")
-@pytest.mark.parametrize("words", [("study", "{}", "scatter"), ("tolerance", "{}")])
+@pytest.mark.parametrize(
+    "words", [("study", "{}", "scatter"), pytest.param(("tolerance", "{}"), marks=pytest.mark.slow)]
+)
 def test_sigterm_leaves_nothing(tmp_path, words):
     case = tmp_path / "case.toml"
     ring = (CASES / "fgfbstts" / "limit_ring.toml").as_posix()

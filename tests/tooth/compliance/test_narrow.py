@@ -5,6 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from tests.support import mostly_slow
 from tests.tooth.bodies import SpurTooth
 from tests.tooth.compliance.plane import solve_plane
 
@@ -80,7 +81,7 @@ def test_the_tangent_is_the_slope():
         np.testing.assert_allclose((moved - back)[0] / (2 * step[k]), tangent[:, k], rtol=1e-6)
 
 
-@pytest.mark.parametrize("u", [0.55, 0.75, 0.95])
+@pytest.mark.parametrize("u", mostly_slow((0.55, 0.75, 0.95), (0.75,)))
 def test_a_whole_tooth_softens_as_two_plane_models_say(u):
     """Narrow over wide, against plane stress over plane strain, both resolved: measured +0.2, −0.2
     and −0.7 %. With the half-space alone the narrow face yielded 17 to 38 % less than plane stress.
