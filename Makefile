@@ -6,6 +6,8 @@ CASE   ?= cases/fgfbstts/limit_ring.toml
 WORKERS ?= 2
 # BLAS gains nothing on matrices of this size, and its threads fight with the test workers.
 export OPENBLAS_NUM_THREADS = 1
+# Without bytecode on disk every process would compile all modules again.
+export PYTHONDONTWRITEBYTECODE =
 export NO_MKDOCS_2_WARNING = 1
 
 .DEFAULT_GOAL := help
