@@ -40,6 +40,8 @@ def mostly_slow(values: Iterable[object], quick: Container[object]) -> list[obje
     return [pytest.param(*v, marks=[] if v in quick or v[0] in quick else slow) for v in several]
 
 
+EVERY_SHIPPED = mostly_slow(SHIPPED, {*SHIPPED} - {"fgfbstts/from_geometry"})
+"""The same as parameters: laws from teeth take long to compute, and are laws like others then."""
 BACKLASHES = ("1-2", "1-3", "4-6", "4-7", "5-8", "5-9", "6-10", "7-10", "8-10", "9-10")
 """Meshes of the seed's transmission."""
 

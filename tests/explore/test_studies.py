@@ -65,6 +65,7 @@ def test_stretches_make_the_whole_slider():
     assert all(one[1] == other[0] for one, other in pairwise(ends))
 
 
+@pytest.mark.slow
 def test_a_stretch_whose_end_makes_no_case_is_told(seed):
     """It is no reason to know nothing of the others."""
     asked = {"name": "rings.4.float", "low": -1.0, "high": 2.0, "at": 2.0}
@@ -145,6 +146,7 @@ def test_a_study_of_the_case_is_the_one_that_its_file_describes(served):
     assert begun["begun"]["inputs"] == [[i.name, str(i.distribution)] for i in found.inputs.every]
 
 
+@pytest.mark.slow
 def test_samples_without_an_answer_are_counted(seed):
     """A load that would press teeth together by more than they are high."""
     asked = {"changes": {"operating.power": "2e9 kW"}, "ranges": RANGES, "samples": 20}

@@ -111,7 +111,7 @@ def test_with_nowhere_to_write_the_vectorised_kernel_answers(read_only, torques,
     "spoil",
     [
         "import sys; sys.modules['numba'] = None",
-        "import numba; numba.njit = None",
+        pytest.param("import numba; numba.njit = None", marks=pytest.mark.slow),
     ],
     ids=["no numba", "another numba"],
 )

@@ -11,7 +11,7 @@ from functools import cache
 
 import numpy as np
 import pytest
-from tests.support import SHIPPED, answer, certified, mostly_slow, potential, round_ring, shipped
+from tests.support import EVERY_SHIPPED, answer, certified, potential, round_ring, shipped
 
 import loadshare as ls
 from benchmarks import families
@@ -22,10 +22,7 @@ from loadshare.train.ring import DrumRing
 from loadshare.train.situations import situation_of
 
 SUM = 1e-9
-# Laws from teeth take a while, and are laws like others here.
-every_case = pytest.mark.parametrize(
-    "name", mostly_slow(SHIPPED, set(SHIPPED) - {"fgfbstts/from_geometry"})
-)
+every_case = pytest.mark.parametrize("name", EVERY_SHIPPED)
 
 
 @cache

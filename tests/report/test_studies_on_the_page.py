@@ -107,6 +107,7 @@ def test_studies_come_after_the_inputs(page):
     assert [head for head in heads if head in order] == order
 
 
+@pytest.mark.slow
 def test_a_study_without_an_answer_is_part_of_the_page(case):
     lost = {"kind": "sweep", "over": {"rings.77.float": "0:1:2"}}
     broken = case.replace({"study": {"lost": lost}})

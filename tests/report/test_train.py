@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.support import CASES, SHIPPED, shipped
+from tests.support import CASES, EVERY_SHIPPED, shipped
 
 import loadshare as ls
 from loadshare.case.reader import load_draft
@@ -25,7 +25,7 @@ def moved_idler(tmp_path):
     return file
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", EVERY_SHIPPED)
 def test_pitch_circles_touch_in_every_case(name):
     """The two pitch circles meet at the pitch point, whichever gear it is seen from."""
     case = shipped(name)

@@ -7,7 +7,7 @@ Source: formulation, section 11. The judge of the numbers is the scene of the re
 import numpy as np
 import pytest
 from tests.solver.hot.trains import VARIED, varied
-from tests.support import SHIPPED, shipped
+from tests.support import EVERY_SHIPPED, shipped
 
 from benchmarks import families
 from loadshare.job.machine import Machine
@@ -33,7 +33,7 @@ def sets(structure: Structure, index: int = 1) -> list[np.ndarray]:
     return [first, np.ones_like(first), np.zeros_like(first), *some]
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", EVERY_SHIPPED)
 def test_the_statics_of_a_set(name):
     """P carries every load that the set can carry, N carries none; together they span all forces,
     and what no element resists is loose.
@@ -55,7 +55,7 @@ def test_the_statics_of_a_set(name):
         assert n.shape[1] == len(a) - (size - loose.shape[1])
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", EVERY_SHIPPED)
 def test_the_elements_are_the_scene(name):
     """Rows and radials by name and direction; springs give the scene's stiffness."""
     train = build_train(shipped(name))

@@ -9,7 +9,7 @@ between back-ends and methods and 1e-10 with and without reduction are asked for
 from functools import cache
 
 import pytest
-from tests.support import SHIPPED, answer, disagreement, shipped
+from tests.support import EVERY_SHIPPED, answer, disagreement, shipped
 
 from loadshare.certify import certify
 from loadshare.errors import Refused
@@ -46,7 +46,7 @@ def agrees(case: str, index: int, tolerance: float, **options: object) -> None:
     assert max(disagreement(train, expected, found)) < tolerance, index
 
 
-@pytest.mark.parametrize("case", SHIPPED)
+@pytest.mark.parametrize("case", EVERY_SHIPPED)
 def test_the_reference_itself_is_certified(case):
     for index in ends(case):
         assert certify(train_of(case), reference(case, index)).passed
@@ -55,14 +55,14 @@ def test_the_reference_itself_is_certified(case):
 @pytest.mark.parametrize("reduce", [True, False], ids=["reduced", "whole"])
 @pytest.mark.parametrize("method", ["newton", "picard"])
 @pytest.mark.parametrize("solver", ["clarabel", "cvxpy"])
-@pytest.mark.parametrize("case", SHIPPED)
+@pytest.mark.parametrize("case", EVERY_SHIPPED)
 def test_back_ends_and_methods_agree(case, solver, method, reduce):
     for index in ends(case):
         agrees(case, index, AGREE, solver=solver, method=method, reduce=reduce)
 
 
 @pytest.mark.parametrize("reduce", [True, False], ids=["reduced", "whole"])
-@pytest.mark.parametrize("case", SHIPPED)
+@pytest.mark.parametrize("case", EVERY_SHIPPED)
 def test_the_first_order_method_agrees_or_declines(case, reduce):
     """OSQP solves quadratic programmes; where a cone is in play it must say so, not answer."""
     for index in ends(case):
@@ -74,25 +74,27 @@ def test_the_first_order_method_agrees_or_declines(case, reduce):
             agrees(case, index, AGREE, solver="osqp", reduce=reduce)
 
 
-@pytest.mark.parametrize("case", SHIPPED)
+@pytest.mark.parametrize("case", EVERY_SHIPPED)
 def test_reduction_does_not_change_the_answer(case):
     for index in ends(case):
         agrees(case, index, REDUCED, reduce=False)
 
 
-@pytest.mark.parametrize("case", SHIPPED)
+@pytest.mark.parametrize("case", EVERY_SHIPPED)
 def test_the_polished_power_cone_agrees(case):
     for index in ends(case):
         agrees(case, index, AGREE, method="power")
 
 
-@pytest.mark.parametrize("case", sorted({*SHIPPED} - {"fgfbstts/tolerance"}))
+@pytest.mark.parametrize("case", EVERY_SHIPPED)
 def test_the_bare_power_cone_is_near(case):
     """One programme, no loop, no exact solve: an independent check of laws and assembly.
 
     The tolerance study's nominal case has no errors: its rings stand on the verge of contact, where
     an interior point is known to be good for four digits only.
     """
+    if case == "fgfbstts/tolerance":
+        pytest.skip("on the verge of contact")
     train = train_of(case)
     for index in ends(case):
         bare, record = answer(train, index, method="power", polish=False, reduce=False)

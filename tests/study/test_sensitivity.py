@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from tests.support import SHIPPED, mostly_slow, shipped
+from tests.support import EVERY_SHIPPED, mostly_slow, shipped
 
 import loadshare as ls
 from benchmarks.random_trains.draw import draw
@@ -115,7 +115,7 @@ def test_differences_of_full_solves(name, keys):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", EVERY_SHIPPED)
 def test_differences_on_every_shipped_case(name):
     case = shipped(name)
     known = [i.key for i in sensitivity(case, positions=[1]).inputs]

@@ -82,7 +82,7 @@ def run(disk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     return ran
 
 
-@pytest.mark.parametrize("words", WRITING, ids=name_of)
+@pytest.mark.parametrize("words", mostly_slow([(w,) for w in WRITING], WRITING[:5]), ids=name_of)
 def test_a_full_disk_is_told_and_nothing_is_left(run, disk, words):
     fill(disk, 0)
     code, said = run(*words)

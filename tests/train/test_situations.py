@@ -5,7 +5,7 @@ from dataclasses import fields
 
 import numpy as np
 import pytest
-from tests.support import SHIPPED, round_ring, shipped
+from tests.support import EVERY_SHIPPED, round_ring, shipped
 
 import loadshare as ls
 from benchmarks import families
@@ -28,7 +28,7 @@ def same(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> None:
         np.testing.assert_array_equal(one[name], other[name], err_msg=name)
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", EVERY_SHIPPED)
 def test_a_stack_holds_every_position(name):
     train = build_train(shipped(name))
     single = [situation_of(train, k) for k in range(1, train.count + 1)]

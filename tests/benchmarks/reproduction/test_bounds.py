@@ -78,6 +78,7 @@ def test_fig_8_in_order_of_influence(displaced):
     assert max(displaced.omega("I").values()) < max(two.values())
 
 
+@pytest.mark.slow
 def test_the_printed_sizes_of_fig_8_lie_within_what_the_direction_leaves_open(displaced):
     for stage, gear in (("I", "1"), ("II", "6")):
         low, high = displaced.extremes[stage][gear]

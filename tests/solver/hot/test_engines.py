@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from tests.physics.test_random_trains import split_torques, stars
 from tests.reproducible import TRAINS
 from tests.solver.hot.trains import VARIED, varied
-from tests.support import SHIPPED, mostly_slow, shipped
+from tests.support import EVERY_SHIPPED, mostly_slow, shipped
 
 import loadshare as ls
 from loadshare.job.engines import engine_named
@@ -108,7 +108,7 @@ def same(machine: Machine, one: Answers, other: Answers) -> None:
         assert apart(mine, others) < SAME, figures.__name__
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", EVERY_SHIPPED)
 def test_every_position_of_a_shipped_case(name):
     machine = Machine(build_train(shipped(name)))
     found = agree(machine, machine.situations(range(1, machine.train.count + 1)))

@@ -192,9 +192,11 @@ def test_a_damaged_part_is_solved_again(reference, tmp_path):
     ("column", "change"),
     [
         ("omega.system", lambda v: 1.5 * v),
-        ("torque.pinionA-out [N*m]", lambda v: v + 1e-3 * v.max()),
-        ("omega.I", lambda v: np.full_like(v, np.nan)),
-        ("certified", lambda v: ~v),
+        pytest.param(
+            "torque.pinionA-out [N*m]", lambda v: v + 1e-3 * v.max(), marks=pytest.mark.slow
+        ),
+        pytest.param("omega.I", lambda v: np.full_like(v, np.nan), marks=pytest.mark.slow),
+        pytest.param("certified", lambda v: ~v, marks=pytest.mark.slow),
         ("sample", lambda v: v[::-1].copy()),
         (None, lambda v: np.nextafter(v, 9.0)),
     ],
@@ -357,6 +359,7 @@ def test_what_a_worker_cannot_write_is_told(tmp_path, processes):
         run(out, samples=64)
 
 
+@pytest.mark.slow
 def test_refused_samples_are_counted_and_told():
     """Under little torque the law of a spline with a stick limit drops: no unique equilibrium."""
     case = shipped("fgfbstts/full_float").replace(
@@ -422,6 +425,7 @@ def scatter(tmp_path) -> Path:
     return file
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
 @pytest.mark.parametrize(
     ("sent", "code", "workers"),
