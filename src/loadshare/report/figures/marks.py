@@ -21,11 +21,27 @@ Point = tuple[float, float]
 Told = str | Sequence[str]
 
 
+class _Encoding(alt.FacetedEncoding):
+    """Channels that charts share: Altair copies what it joins over and over, layer by layer."""
+
+    def __deepcopy__(self, _: object) -> _Encoding:
+        return self
+
+
+class _Chart(alt.Chart):
+    """A chart whose channels are not copied."""
+
+    def encode(self, *channels: Any, **named: Any) -> Any:
+        drawn = super().encode(*channels, **named)
+        drawn.encoding = _Encoding(**drawn.encoding._kwds)
+        return drawn
+
+
 def chart(rows: Sequence[Mapping[str, Any]]) -> Drawing:
     """Return a chart on plain rows."""
     # What is checked with the specification need not be checked row by row before.
     with debug_mode(False):
-        return alt.Chart(alt.InlineData(values=tuple(rows)))
+        return _Chart(alt.InlineData(values=tuple(rows)))
 
 
 def channels(field: str, looks: Mapping[str, Look], title: str) -> dict[str, Any]:
