@@ -15,7 +15,8 @@ from loadshare.study.parameter import Value
 from loadshare.study.sensitivity.branch import Setting
 from loadshare.study.sensitivity.differenced import NoDifference, differenced
 from loadshare.study.sensitivity.differences import Slope
-from loadshare.study.sensitivity.directional import Motion, Neighbourhood
+from loadshare.study.sensitivity.directional import Neighbourhood
+from loadshare.study.sensitivity.motion import Motion
 from loadshare.study.sensitivity.result import SIDES, Rates, Remark
 from loadshare.study.sensitivity.trains import Trains
 from loadshare.study.sensitivity.variation import Variation, torques_of

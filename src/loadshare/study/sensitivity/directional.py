@@ -14,8 +14,7 @@ directional derivative of a complementarity problem.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from typing import Protocol
 
 import numpy as np
@@ -25,15 +24,13 @@ from loadshare.scene.scene import Array
 from loadshare.settings import SENSITIVITY
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.active import WorkingSet, read_pieces, switch_names
-from loadshare.study.sensitivity.branch import Branch, BranchLost, Gauge, Setting
+from loadshare.study.sensitivity.branch import Branch, BranchLost, Setting
 from loadshare.study.sensitivity.differences import Derivative, Slope
+from loadshare.study.sensitivity.motion import Gauges, Motion, Point
 from loadshare.train.equilibrium import Equilibrium
 
 _EPS = float(np.finfo(float).eps)
 _NOTHING = (CaseError, ValueError, BranchLost, Refused)
-
-
-Gauges = dict[tuple[int, int], Gauge]
 
 
 class Varied(Protocol):
@@ -47,143 +44,6 @@ class Varied(Protocol):
 
     def change(self, branch: Branch, z: Array) -> Derivative:
         """Return the derivative of a branch's residual, and of what else is asked, at z."""
-
-
-class Tangent:
-    """The linearised equations of a branch at a point, solved in the sense of least squares.
-
-    Parameters
-    ----------
-    branch : Branch
-    z : ndarray, shape (size,)
-
-    Attributes
-    ----------
-    matrix : ndarray, shape (size, size)
-        The Jacobian.
-    inverse : ndarray, shape (size, size)
-        Its pseudo-inverse, of the equilibrated matrix.
-    unbalanced : ndarray, shape (size, d)
-        Orthonormal combinations of equations that no unknown enters.
-    loose : ndarray, shape (n, d)
-        Directions of the coordinates that change no equation.
-    """
-
-    def __init__(self, branch: Branch, z: Array) -> None:
-        self.matrix = branch.jacobians(z[None])[0]
-        size = len(self.matrix)
-        largest = np.abs(self.matrix).max(axis=1, initial=0.0)
-        scale = 1.0 / np.sqrt(np.where(largest > 0.0, largest, 1.0))
-        left, sizes, right = np.linalg.svd(self.matrix * scale[:, None] * scale)
-        rank = int((sizes > SENSITIVITY.rank * sizes.max(initial=0.0)).sum())
-        core = (right[:rank].T / sizes[:rank]) @ left[:, :rank].T
-        self.inverse = np.asarray(scale[:, None] * core * scale)
-        self.unbalanced = _orthonormal(scale[:, None] * left[:, rank:], size)
-        spans = _orthonormal(scale[:, None] * right[rank:].T, size)
-        self.loose = spans[: branch.n]
-        self._branch, self._z = branch, z
-
-    @cached_property
-    def _beside(self) -> Array:
-        """How the Jacobian changes with the round-off of each equation, (k, size, size).
-
-        Unknowns are known up to round-off carried through the solve: what two of them share, as
-        those on either side of a stiff contact do, moves them together.
-        """
-        steps = (self.inverse * self._branch.rounding(self._z)[: self._branch.size]).T
-        return np.asarray(self._branch.jacobians(self._z + steps) - self.matrix)
-
-    def turned(self, rate: Array) -> Array:
-        """Bound on how far the equations' rates are known, as unknowns move at a rate (size,)."""
-        return np.asarray(np.abs(self._beside @ rate).sum(axis=0))
-
-    def solve(self, right: Array) -> Array:
-        """Solve, refined once."""
-        found = self.inverse @ right
-        return np.asarray(found + self.inverse @ (right - self.matrix @ found))
-
-
-def _orthonormal(spans: Array, size: int) -> Array:
-    if not spans.shape[1]:
-        return np.zeros((size, 0))
-    return np.asarray(np.linalg.qr(spans)[0])
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Motion:
-    """How the unknowns move with an input, to one side.
-
-    Attributes
-    ----------
-    branch : Branch
-        On the active set of that side.
-    z : ndarray
-        Its unknowns at the value itself; a body that falls stands where it is caught.
-    tangent : Tangent
-    rate : ndarray, shape (size,)
-        Derivative of z with respect to the input, per SI unit.
-    error : ndarray, shape (size,)
-        Bound on the error of the equations that the rate solves.
-    change : Slope
-        Derivative of the residual and of what else was asked for, at z.
-    elements : tuple of str
-        What is in another state than at the value itself.
-    one_sided : bool
-        Whether anything stands on the verge, or is in another state: then it says nothing of the
-        other side.
-    beside : tuple of Motion
-        On sets that differ in what stands on the verge, in either state for all that is known: any
-        of them may be that of this side.
-    """
-
-    branch: Branch
-    z: Array
-    tangent: Tangent
-    rate: Array
-    error: Array
-    change: Slope
-    elements: tuple[str, ...] = ()
-    one_sided: bool = True
-    beside: tuple[Motion, ...] = ()
-
-    @property
-    def torque(self) -> Array:
-        """Derivatives of the meshes' torques [N·m] per SI unit."""
-        direct = self.change.value[self.branch.size :]
-        return np.asarray(direct + self.branch.torque_gradients(self.z) @ self.rate)
-
-    def bound(self, functionals: Array) -> Array:
-        """Bound on the error of linear functionals (k, size) of the rate."""
-        adjoint = np.abs(functionals @ self.tangent.inverse)
-        terms = np.abs(functionals) @ np.abs(self.rate)
-        return np.asarray(adjoint @ self.error + 4.0 * _EPS * terms)
-
-
-@dataclass(frozen=True, eq=False)
-class Point:
-    """A branch and its unknowns where it meets the value.
-
-    Attributes
-    ----------
-    branch : Branch
-    z : ndarray
-    idle : frozenset of int
-        Open contacts on the verge that may close: under a law that is infinitely soft at first they
-        carry nothing, to first order.
-    """
-
-    branch: Branch
-    z: Array
-    idle: frozenset[int] = frozenset()
-
-    @cached_property
-    def tangent(self) -> Tangent:
-        """Its linearised equations."""
-        return Tangent(self.branch, self.z)
-
-    def gauges(self) -> Gauges:
-        """Return the gauges of all elements there."""
-        return self.branch.gauges(self.z)
 
 
 class Neighbourhood:
