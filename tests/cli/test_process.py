@@ -106,3 +106,24 @@ main(["run", {str(cases / "fgfbstts/base.toml")!r}])
     assert done.returncode == 1
     assert done.stderr.startswith("Traceback")
     assert done.stderr.endswith("ZeroDivisionError: a bug\n")
+
+
+INTERRUPTED = """
+import sys
+from loadshare.cli.stop import Stop
+
+stop = Stop()
+try:
+    with stop:
+        exec("import os, signal, time; os.kill(os.getpid(), signal.SIGTERM); time.sleep(60)")
+except KeyboardInterrupt:
+    sys.exit(stop.code)
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals")
+def test_a_command_that_is_stopped_while_it_loads_ends_with_its_code(tmp_path, environment):
+    """Dataclasses are made by exec(): CPython would end the process by SIGINT after that."""
+    (tmp_path / "interrupted.py").write_text(INTERRUPTED, encoding="utf-8")
+    words = [sys.executable, "-m", "interrupted"]
+    assert subprocess.run(words, cwd=tmp_path, env=environment, check=False).returncode == 143

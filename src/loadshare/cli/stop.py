@@ -45,8 +45,13 @@ class Stop:
         return self
 
     def __exit__(self, *_: object) -> None:
-        # A process that was stopped has nothing left to do but to end.
-        for number, handler in self._before.items() if not self._told else ():
+        if self._told:
+            # A process that was stopped has nothing left to do but to end. Where it was met in a
+            # text that exec() runs, as dataclasses do, CPython under -m would end it by SIGINT in
+            # place of its exit code; the next text makes it forget that.
+            exec("")
+            return
+        for number, handler in self._before.items():
             signal.signal(number, handler)
 
     def over(self) -> None:

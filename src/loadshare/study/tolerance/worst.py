@@ -66,7 +66,11 @@ class Box:
 
     def scaled(self, values: Array) -> Array:
         """Return inputs as parts of their range; what is beyond is at its end."""
-        return np.asarray(np.clip((values - self.low) / (self.high - self.low), 0.0, 1.0))
+        width = self.high - self.low
+        # One that scatters by less than the precision of numbers has no range.
+        return np.asarray(
+            np.clip((values - self.low) / np.where(width > 0.0, width, 1.0), 0.0, 1.0)
+        )
 
     def within(self, scaled: Array) -> Array:
         """Bring points back into the box: angles around, others to the side."""
