@@ -86,15 +86,13 @@ def test_the_polished_power_cone_agrees(case):
         agrees(case, index, AGREE, method="power")
 
 
-@pytest.mark.parametrize("case", EVERY_SHIPPED)
+@pytest.mark.parametrize("case", [p for p in EVERY_SHIPPED if p.values != ("fgfbstts/tolerance",)])
 def test_the_bare_power_cone_is_near(case):
     """One programme, no loop, no exact solve: an independent check of laws and assembly.
 
     The tolerance study's nominal case has no errors: its rings stand on the verge of contact, where
     an interior point is known to be good for four digits only.
     """
-    if case == "fgfbstts/tolerance":
-        pytest.skip("on the verge of contact")
     train = train_of(case)
     for index in ends(case):
         bare, record = answer(train, index, method="power", polish=False, reduce=False)
