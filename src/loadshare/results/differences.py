@@ -21,7 +21,10 @@ are for readers, and those that were computed anew take their place."""
 
 
 def differences(
-    expected: Any, found: Any, names: frozenset[str] = frozenset()
+    expected: Any,
+    found: Any,
+    names: frozenset[str] = frozenset(),
+    least: Mapping[Path, float] | None = None,
 ) -> Iterator[tuple[Path, str, str, str]]:
     """Yield where two documents differ by more than round-off.
 
@@ -31,6 +34,8 @@ def differences(
         Tables, lists, texts, numbers, truth values, None.
     names : frozenset of str
         Keys that name elements: figures under them are of one kind.
+    least : mapping of key path to float, optional
+        Sizes of the figures from which those of a kind are computed, which may all be smaller.
 
     Yields
     ------
@@ -40,7 +45,7 @@ def differences(
     # On the machine that wrote a file every digit agrees, and text is compared at once.
     if json.dumps(expected) == json.dumps(found):
         return
-    sizes: dict[Path, float] = {}
+    sizes = dict(least or {})
     _measure(expected, (), names, sizes)
     yield from _compare(expected, found, (), names, sizes)
 

@@ -30,9 +30,9 @@ from loadshare.results.differences import DIGITS, ROUND_OFF, differences
 from loadshare.results.digest import DIGEST, digest_of
 from loadshare.results.document import FORMAT, OLDER, as_data, to_document
 from loadshare.results.result import Effort, Position, Result, Stamp
-from loadshare.scene import assemble
+from loadshare.scene import Scene, assemble
 from loadshare.settings import ALLOWED
-from loadshare.solver.position import of_least_norm
+from loadshare.solver.position import coordinates_of, of_least_norm
 from loadshare.train import Train, build_train
 from loadshare.train.equilibrium import Equilibrium, Range
 from loadshare.train.memory import slip_of
@@ -316,8 +316,17 @@ def _loosened(positions: Iterable[Position], train: Train) -> Iterator[Wrong]:
     for at, p in enumerate(positions):
         scene = assemble(p.claim.train(train), p.position)
         ranges = of_least_norm(scene, p.equilibrium).undetermined
-        for path, was, wrong, expected in differences(as_data(ranges), as_data(p.undetermined)):
+        given, found, sizes = as_data(p.undetermined), as_data(ranges), _sizes(scene, p.equilibrium)
+        for path, was, wrong, expected in differences(found, given, least=sizes):
             yield ("positions", at, "undetermined", *path), was, wrong, expected
+
+
+def _sizes(scene: Scene, found: Equilibrium) -> dict[Path, float]:
+    """Sizes of what the ends of an open coordinate are differences of: displacements and gaps."""
+    lengths = [*coordinates_of(scene, found), *(row.gap for row in scene.rows)]
+    size = float(np.abs(lengths).max(initial=0.0))
+    rates = {f"gear {gear} rotation": abs(r.rate) for gear, r in scene.rotation.items()}
+    return {(name,): size * rates.get(name, 1.0) for name in found.undetermined}
 
 
 def _elements(given: _File, train: Train) -> frozenset[str]:

@@ -135,3 +135,7 @@ def _unsound(found: Distribution) -> Iterator[Wrong]:
         if nearest > 8.0 * numbers["deviation"]:
             allowed = "limits that leave some of the distribution, within 8 deviations of the mean"
             yield Wrong("", "has its limits too far from its mean", allowed)
+        elif numbers["high"] - numbers["low"] < 1e-9 * numbers["deviation"]:
+            # The share of the normal distribution between them has no digits left.
+            allowed = "at least 1e-9 deviations; a uniform distribution is the same"
+            yield Wrong("", "has its limits too close for its deviation", allowed)
