@@ -161,7 +161,7 @@ def _keep_answers() -> None:
 
     # What was solved once is one object, and says the same.
     Figure._converted = _keeping(  # type: ignore[method-assign]
-        Figure._converted, lambda figure, form, **how: (json.dumps(figure.spec), form, repr(how))
+        _drawn, lambda figure, form, **how: (json.dumps(figure.spec), form, repr(how))
     )
     writing.text_of = _keeping(writing.text_of, id)
     files.read_document = _keeping(files.read_document, lambda text, file: (text, file))
@@ -182,6 +182,17 @@ def _keep_answers() -> None:
     for module, names in ((study, ("summary", "shares")), (omegas, ("summary", "exceedance"))):
         for name in names:
             setattr(module, name, _keeping(getattr(module, name), array_key))
+
+
+def _drawn(figure: Any, form: str, **how: float) -> str | bytes:
+    """Draw in another process: a fork of one that has drawn would wait for threads it lacks."""
+    told = subprocess.run(
+        [sys.executable, "-m", "tests.faults.drawing"],
+        input=json.dumps([figure.spec, form, how]).encode(),
+        stdout=subprocess.PIPE,
+        check=True,
+    ).stdout
+    return told.decode() if form == "svg" else told
 
 
 def _solve_here(here: bool) -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 from tests.fuzz.trial import CASES, tried
 
 CORPUS = Path(__file__).with_name("corpus")
-"""A folder for each, with its files and `command.json`."""
+"""A folder for each, with its files as they lay and `command.json`."""
 COMMAND = "command.json"
 
 
@@ -28,14 +28,19 @@ def keep(name: str, kind: str, words: tuple[str, ...], folder: Path) -> Path:
     """
     kept = CORPUS / name
     kept.mkdir(parents=True, exist_ok=True)
-    for file in folder.iterdir():
+    for file in folder.rglob("*"):
         # What is shipped is laid beside it again.
         if file.is_file() and not _is_shipped(file):
-            shutil.copyfile(file, kept / file.name)
+            _copy(file, kept / file.relative_to(folder))
     marked = [w.replace(str(folder), "{folder}").replace(str(CASES), "{cases}") for w in words]
     told = {"kind": kind, "words": marked}
     (kept / COMMAND).write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
     return kept
+
+
+def _copy(file: Path, to: Path) -> None:
+    to.parent.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(file, to)
 
 
 def _is_shipped(file: Path) -> bool:
@@ -45,8 +50,11 @@ def _is_shipped(file: Path) -> bool:
 
 def retried(kept: Path, folder: Path) -> str:
     """Try a kept input in an empty folder; return what must not happen."""
-    for file in [*CASES.glob("*/*.toml"), *kept.iterdir()]:
-        shutil.copyfile(file, folder / file.name)
+    for file in CASES.glob("*/*.toml"):
+        _copy(file, folder / file.name)
+    for file in kept.rglob("*"):
+        if file.is_file():
+            _copy(file, folder / file.relative_to(kept))
     told = json.loads((folder / COMMAND).read_text(encoding="utf-8"))
     # By hand: words may hold braces of their own.
     words = (

@@ -4,6 +4,7 @@ Source: formulation, sections 4 to 6; the norm and the set are those of the theo
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from scipy.optimize import linprog
 from tests.physics.test_metamorphic import FRAMES, placed
 from tests.physics.test_random_trains import scaled, split_torques, stars
 from tests.reproducible import TRAINS
-from tests.support import answer, coordinates
+from tests.support import answer, coordinates, shipped
 
 import loadshare as ls
 from benchmarks import families
@@ -23,7 +24,7 @@ from loadshare.job.hot import hot_answers
 from loadshare.job.machine import Machine
 from loadshare.scene import assemble
 from loadshare.settings import CERTIFY
-from loadshare.solver.position import coordinates_of
+from loadshare.solver.position import coordinates_of, of_least_norm
 from loadshare.solver.undetermined.norm import norm_of
 from loadshare.solver.undetermined.region import Disc, Region
 from loadshare.train import build_train
@@ -93,6 +94,32 @@ def test_an_unloaded_pinion_in_a_round_ring(offset):
     nearest = centre * away / (np.linalg.norm(centre) or 1.0)
     assert found.displacement["pinionB"] == pytest.approx(nearest, abs=1e-9 * radius * 1e-6)
     assert found.floats["pinionB"].state == "undetermined"
+
+
+def test_an_unloaded_pinion_in_a_slit():
+    """Arcs that touch at rest leave the way across the line to the neighbours, all of the float.
+
+    So it is from wherever it is looked at, up to the last digits.
+    """
+    case = shipped("fgfbstts/limit_ring").replace({"operating.power": "0 kW"})
+    train = build_train(case)
+    scene, found = assemble(train, 1), ls.solve(case, positions=[1]).positions[0].equilibrium
+    digits = np.random.default_rng(1)
+    for _ in range(20):
+        near = replace(
+            found,
+            displacement={
+                g: u * (1.0 + 1e-16 * digits.standard_normal(3))
+                for g, u in found.displacement.items()
+            },
+        )
+        ranges = of_least_norm(scene, near).undetermined
+        for pinion, one, other, furthest in (("4", "7", "6", 8.24e-6), ("5", "9", "8", 2.74e-6)):
+            line = train.gears[one].centre - train.gears[other].centre
+            across = np.array([-line[1], line[0]]) / np.linalg.norm(line[:2])
+            for axis, share in zip("xy", np.abs(across), strict=True):
+                end = share * furthest
+                assert ranges[f"gear {pinion} {axis}"] == pytest.approx((-end, end), rel=1e-4)
 
 
 def test_a_spline_on_its_friction_bound_slips_anywhere_along_its_force():

@@ -9,6 +9,7 @@ from pydantic import Field, Strict
 
 from loadshare.case.distributions import Given, Group, Spread
 from loadshare.case.element import Count, Element, Positive, Rule, Steps, Turns
+from loadshare.settings import ALLOWED
 
 # What each kind of study needs, and what else it may have.
 KEYS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
@@ -79,7 +80,7 @@ class Study(Element):
     limit: Positive | None = None
     """Tolerance: Ω that should not be exceeded [-]."""
 
-    indices: Annotated[int, Strict(), Field(ge=0)] | None = None
+    indices: Annotated[int, Strict(), Field(ge=0, le=ALLOWED.samples)] | None = None
     """Tolerance: rows of the design for the shares of variance [-]; 0 leaves them out."""
 
     quantiles: Annotated[tuple[Level, ...], Field(min_length=1)] | None = None

@@ -58,7 +58,8 @@ def _drawn(file: Path, settings: Sequence[str]) -> tuple[Figure, list[Problem]]:
         case = open_case(file, settings)
     except CaseError as error:
         draft = load_draft(file, read_changes(settings))
-        if not draft.gears:
+        # Without a problem of its own, it was a file that could not be read just then.
+        if not (draft.gears and draft.problems):
             raise
         return train(draft), list(error.problems)
     problems: list[Problem] = []

@@ -181,6 +181,13 @@ def test_all_that_is_wrong_is_told_at_once():
             "low": "20 um",
             "high": "30 um",
         },
+        "errors.6.installation[1]": {
+            "distribution": "truncated normal",
+            "mean": "0 um",
+            "deviation": "1e6 um",
+            "low": "-0.1 nm",
+            "high": "0.1 nm",
+        },
     }
     with pytest.raises(ls.CaseError) as caught:
         ls.tolerance(case, inputs, samples=100, sampling="sobol")
@@ -196,6 +203,7 @@ def test_all_that_is_wrong_is_told_at_once():
         "is drawn by rings.*.float already",
         "is not above low",
         "too far from its mean",
+        "too close for its deviation",
         "does not share out among 16",
     ):
         assert said in told, said

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -102,14 +102,17 @@ def free_set(
         if forces.get(row.name, 0.0) > carries:
             ties.append(row.vector)
         else:
+            # What counts as no force may be far into a soft contact.
+            end = row.gap + row.law.compression(max(forces.get(row.name, 0.0), 0.0))
             vectors.append(row.vector)
-            rooms.append(max(row.gap - float(row.vector @ x), 0.0))
+            rooms.append(max(end - float(row.vector @ x), 0.0))
     for arc in scene.arcs:
         if forces.get(arc.name, 0.0) > carries:
             # Moved along it, it would push another way.
             ties += list(arc.relative)
         else:
-            open_arcs.append(arc)
+            pressed = arc.law.compression(max(forces.get(arc.name, 0.0), 0.0))
+            open_arcs.append(replace(arc, sagitta=arc.sagitta + pressed))
     rounds: list[Round] = []
     for radial in scene.radials:
         pull, law = pulls[radial.name], laws[radial.name]

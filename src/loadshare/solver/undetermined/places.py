@@ -2,18 +2,19 @@
 
 Coordinates that move independently of one another are treated apart: each part is a convex region
 of one or a few unknowns. A part's least and largest values are exact, also in round regions and on
-level pieces; along open arcs, whose outside is not convex, they are those that are reached from the
-least place by renewing the arcs' tangent faces.
+level pieces. The outside of an open arc is not convex: there they are those of a region with a face
+for each arc behind which all of the float lies, and may be too far by the sagitta.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from loadshare.contact.problem import Row
 from loadshare.contact.programme import Array
 from loadshare.later import Later
 from loadshare.scene.scene import Scene
@@ -134,9 +135,7 @@ class _Part:
         self.start = shares / self.unit
         self.bounds = rooms / self.unit + self.limits @ self.start
         self.discs = tuple(self._disc(r) for r in rounds)
-        least = self._renewed(self.start, Region.least)
-        assert least is not None
-        self.least = least
+        self.least = self._least()
 
     @property
     def moves_to_least(self) -> bool:
@@ -145,47 +144,52 @@ class _Part:
 
     def reach(self, direction: Array) -> float:
         """How far along a direction (d,) the part may move from its least place [m]."""
-        end = self._renewed(self.least, lambda region: region.furthest(direction))
-        return np.inf if end is None else float(direction @ (end - self.least)) * self.unit
+        end = self._around.furthest(direction)
+        if end is None:
+            return np.inf
+        # What is pinched up to round-off stays where it is.
+        pinched = self._around.beyond(end) > PLACES.almost
+        return 0.0 if pinched else float(direction @ (end - self.least)) * self.unit
 
     def _disc(self, held: Round) -> Disc:
         radial, matrix = held.radial, held.radial.matrix @ self.across
         offset = (radial.matrix @ self.free.x - radial.centre) / self.unit
         return Disc(matrix, matrix @ self.start - offset, held.radius / self.unit)
 
-    @cached_property
-    def _unchanging(self) -> Region:
-        return Region(self.limits, self.bounds, self.discs)
-
-    def _region(self, u: Array) -> Region:
-        """The region, with the faces of arcs at u."""
-        if not self.arcs:
-            return self._unchanging
-        limits, bounds = [self.limits], [self.bounds]
-        x = self.free.x + self.across @ (u - self.start) * self.unit
-        for arc in self.arcs:
-            row = arc.row(x)
-            limit = row.vector @ self.across
-            size = float(np.linalg.norm(limit))
-            if size > PLACES.loose:
-                room = max(row.gap - float(row.vector @ x), 0.0)
-                limits.append(limit[None] / size)
-                bounds.append(np.array([room / self.unit + float(limit @ u)]) / size)
-        return Region(np.vstack(limits), np.concatenate(bounds), self.discs)
-
-    def _renewed(self, u: Array, find: Callable[[Region], Array | None]) -> Array | None:
-        """Find a point from u on; None if it is infinitely far."""
+    def _least(self) -> Array:
+        """Point of least norm, from the known place on, with the faces of arcs renewed."""
+        u = self.start
         for _ in range(PLACES.renewals):
-            region = self._region(u)
-            found = find(region)
-            if found is None or region.beyond(found) > PLACES.almost:
+            x = self.free.x + self.across @ (u - self.start) * self.unit
+            region = self._region(u, [arc.row(x) for arc in self.arcs])
+            found = region.least()
+            if region.beyond(found) > PLACES.almost:
                 # What is pinched up to round-off stays where it is.
-                return None if found is None else u
+                break
             arrived = float(np.abs(found - u).max()) <= PLACES.inside
             u = found
             if arrived or not self.arcs:
                 break
         return u
+
+    @cached_property
+    def _around(self) -> Region:
+        """The region, with one face for each arc, behind which all of the float lies."""
+        rest = np.zeros(self.free.scene.size)
+        return self._region(self.least, [arc.row(rest, wide=True) for arc in self.arcs])
+
+    def _region(self, u: Array, faces: Sequence[Row]) -> Region:
+        """The region, with faces of its arcs; a point u lies inside of these."""
+        limits, bounds = [self.limits], [self.bounds]
+        x = self.free.x + self.across @ (u - self.start) * self.unit
+        for face in faces:
+            limit = face.vector @ self.across
+            size = float(np.linalg.norm(limit))
+            if size > PLACES.loose and np.isfinite(face.gap):
+                room = max(face.gap - float(face.vector @ x), 0.0)
+                limits.append(limit[None] / size)
+                bounds.append(np.array([room / self.unit + float(limit @ u)]) / size)
+        return Region(np.vstack(limits), np.concatenate(bounds), self.discs)
 
 
 def _independent(free: FreeSet) -> Iterator[Array]:
