@@ -71,7 +71,7 @@ def test_a_name_that_is_too_long_is_told():
 
 
 KEPT = sorted(CORPUS.iterdir())
-LONG = {"case-101-1696", "study-40003-5927"}
+LONG = {"case-101-1696", "study-40003-5927", "study-60005-19145"}
 """Of these, what takes seconds."""
 
 

@@ -181,12 +181,12 @@ def test_all_that_is_wrong_is_told_at_once():
             "low": "20 um",
             "high": "30 um",
         },
-        "errors.6.installation[1]": {
+        "shafts.2-4.stiffness": {
             "distribution": "truncated normal",
-            "mean": "0 um",
-            "deviation": "1e6 um",
-            "low": "-0.1 nm",
-            "high": "0.1 nm",
+            "mean": "5e5 N*m/rad",
+            "deviation": "1e12 N*m/rad",
+            "low": "499900 N*m/rad",
+            "high": "500100 N*m/rad",
         },
     }
     with pytest.raises(ls.CaseError) as caught:

@@ -158,7 +158,7 @@ class _Part:
 
     def _least(self) -> Array:
         """Point of least norm, from the known place on, with the faces of arcs renewed."""
-        u = self.start
+        u: Array = self.start
         for _ in range(PLACES.renewals):
             x = self.free.x + self.across @ (u - self.start) * self.unit
             region = self._region(u, [arc.row(x) for arc in self.arcs])
