@@ -45,6 +45,21 @@ def test_draw_shows_what_does_not_fit(command):
     assert "27.5 mm too far apart" in Path("wrong.svg").read_text(encoding="utf-8")
 
 
+def test_draw_nothing_of_a_case_that_could_not_be_read_just_then(command, monkeypatch):
+    """A file that is there again for the second look would give half a picture, or another."""
+    from loadshare.errors import CaseError, Problem
+
+    def missing(file):
+        raise CaseError([Problem(str(file), "", "", "input/output error")])
+
+    monkeypatch.setattr("loadshare.case.load_case", missing)
+    Path("old.svg").write_text("old", encoding="utf-8")
+    result = command("draw", STAR, "-o", "old.svg")
+    assert result.exit_code == 2
+    assert result.stderr.endswith("input/output error.\n1 problem; nothing was solved.\n")
+    assert Path("old.svg").read_text(encoding="utf-8") == "old"
+
+
 def test_draw_a_train_that_locks(command):
     """A case whose values are right one by one, and whose train cannot turn."""
     mesh = '{pressure_angle = "20 deg", stiffness = "1e6 N*m/rad"}'
