@@ -111,8 +111,8 @@ def free_set(
             # Moved along it, it would push another way.
             ties += list(arc.relative)
         else:
-            pressed = arc.law.compression(max(forces.get(arc.name, 0.0), 0.0))
-            open_arcs.append(replace(arc, sagitta=arc.sagitta + pressed))
+            end = arc.arc.clearance + arc.law.compression(max(forces.get(arc.name, 0.0), 0.0))
+            open_arcs.append(replace(arc, arc=replace(arc.arc, clearance=end)))
     rounds: list[Round] = []
     for radial in scene.radials:
         pull, law = pulls[radial.name], laws[radial.name]

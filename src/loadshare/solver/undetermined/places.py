@@ -3,7 +3,7 @@
 Coordinates that move independently of one another are treated apart: each part is a convex region
 of one or a few unknowns. A part's least and largest values are exact, also in round regions and on
 level pieces. The outside of an open arc is not convex: there they are those of a region with a face
-for each arc behind which all of the float lies, and may be too far by the sagitta.
+for each arc behind which all of the float lies, and may be too far by about the sagitta.
 """
 
 from __future__ import annotations
@@ -160,8 +160,7 @@ class _Part:
         """Point of least norm, from the known place on, with the faces of arcs renewed."""
         u: Array = self.start
         for _ in range(PLACES.renewals):
-            x = self.free.x + self.across @ (u - self.start) * self.unit
-            region = self._region(u, [arc.row(x) for arc in self.arcs])
+            region = self._region(u, [arc.row(self._place(u)) for arc in self.arcs])
             found = region.least()
             if region.beyond(found) > PLACES.almost:
                 # What is pinched up to round-off stays where it is.
@@ -178,10 +177,15 @@ class _Part:
         rest = np.zeros(self.free.scene.size)
         return self._region(self.least, [arc.row(rest, wide=True) for arc in self.arcs])
 
+    def _place(self, u: Array) -> Array:
+        """Coordinates x (n,) [m] of a point u."""
+        moved: Array = self.across @ (u - self.start) * self.unit
+        return self.free.x + moved
+
     def _region(self, u: Array, faces: Sequence[Row]) -> Region:
         """The region, with faces of its arcs; a point u lies inside of these."""
         limits, bounds = [self.limits], [self.bounds]
-        x = self.free.x + self.across @ (u - self.start) * self.unit
+        x = self._place(u)
         for face in faces:
             limit = face.vector @ self.across
             size = float(np.linalg.norm(limit))
