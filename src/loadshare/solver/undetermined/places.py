@@ -157,42 +157,64 @@ class _Part:
         return Disc(matrix, matrix @ self.start - offset, held.radius / self.unit)
 
     def _least(self) -> Array:
-        """Point of least norm, from the known place on, with the faces of arcs renewed."""
-        u: Array = self.start
+        """Point of least norm.
+
+        Faces of arcs are renewed from the least place behind wide ones on, as opposite arcs that
+        all but touch let nothing pass that keeps behind their faces; or else from the known place.
+        """
+        if not self.arcs:
+            return self._region([], self.start).least()
+        u, arrived = self._renewed(self._wide(self.start).least())
+        if arrived and self._region(self._faces(u)).beyond(u) <= PLACES.inside:
+            return u
+        return self._renewed(self.start, self.start)[0]
+
+    def _renewed(self, u: Array, inside: Array | None = None) -> tuple[Array, bool]:
+        """Renew faces of arcs until the least point behind them does not move: it, and whether."""
         for _ in range(PLACES.renewals):
-            region = self._region(u, [arc.row(self._place(u)) for arc in self.arcs])
+            region = self._region(self._faces(u), None if inside is None else u)
             found = region.least()
             if region.beyond(found) > PLACES.almost:
                 # What is pinched up to round-off stays where it is.
                 break
             arrived = float(np.abs(found - u).max()) <= PLACES.inside
             u = found
-            if arrived or not self.arcs:
-                break
-        return u
+            if arrived:
+                return u, True
+        return u, False
 
     @cached_property
     def _around(self) -> Region:
         """The region, with one face for each arc, behind which all of the float lies."""
+        return self._wide(self.least)
+
+    def _wide(self, inside: Array) -> Region:
         rest = np.zeros(self.free.scene.size)
-        return self._region(self.least, [arc.row(rest, wide=True) for arc in self.arcs])
+        return self._region([arc.row(rest, wide=True) for arc in self.arcs], inside)
+
+    def _faces(self, u: Array) -> list[Row]:
+        """Tangent faces of arcs at a point u."""
+        x = self._place(u)
+        return [arc.row(x) for arc in self.arcs]
 
     def _place(self, u: Array) -> Array:
         """Coordinates x (n,) [m] of a point u."""
         moved: Array = self.across @ (u - self.start) * self.unit
         return self.free.x + moved
 
-    def _region(self, u: Array, faces: Sequence[Row]) -> Region:
-        """The region, with faces of its arcs; a point u lies inside of these."""
+    def _region(self, faces: Sequence[Row], inside: Array | None = None) -> Region:
+        """The region, with faces of its arcs; moved, if need be, so that a point lies inside."""
         limits, bounds = [self.limits], [self.bounds]
-        x = self._place(u)
+        at = self.start if inside is None else inside
+        x = self._place(at)
         for face in faces:
             limit = face.vector @ self.across
             size = float(np.linalg.norm(limit))
             if size > PLACES.loose and np.isfinite(face.gap):
-                room = max(face.gap - float(face.vector @ x), 0.0)
+                room = face.gap - float(face.vector @ x)
+                room = room if inside is None else max(room, 0.0)
                 limits.append(limit[None] / size)
-                bounds.append(np.array([room / self.unit + float(limit @ u)]) / size)
+                bounds.append(np.array([room / self.unit + float(limit @ at)]) / size)
         return Region(np.vstack(limits), np.concatenate(bounds), self.discs)
 
 

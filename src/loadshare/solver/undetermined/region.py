@@ -151,15 +151,28 @@ class Region:
         u, limits, discs = found
         slack = self.bounds - self.limits @ u
         gap = np.array([-disc.beyond(u) for disc in self.discs])
+        pushing = np.flatnonzero(limits > slack), np.flatnonzero(discs > gap)
+        close = np.flatnonzero(slack < PLACES.almost), np.flatnonzero(gap < PLACES.almost)
         tries = (
-            (limits > slack, discs > gap),
-            (slack < PLACES.almost, gap < PLACES.almost),
+            lambda: pushing,
+            lambda: self._holding(u, -(curvature * u + slope), *pushing),
+            lambda: close,
         )
-        for rows, rounds in tries:
-            exact = self._settled(u, curvature, slope, np.flatnonzero(rows), np.flatnonzero(rounds))
+        for bounds in tries:
+            exact = self._settled(u, curvature, slope, *bounds())
             if exact is not None:
                 return exact
         return u
+
+    def _holding(
+        self, u: Array, pulled: Array, rows: NDArray[np.intp], rounds: NDArray[np.intp]
+    ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """Of some bounds, those that hold a pull (d,) at u, and no more than it takes."""
+        from scipy.optimize import nnls
+
+        normals = [*self.limits[rows], *(self.discs[j].face(u)[0] for j in rounds.tolist())]
+        push = nnls(stacked(normals, self.size).T, pulled)[0] if normals else np.zeros(0)
+        return rows[push[: len(rows)] > 0.0], rounds[push[len(rows) :] > 0.0]
 
     def _settled(
         self,
@@ -193,7 +206,10 @@ class Region:
         scale = max(1.0, float(np.abs(u).max()))
         pulled = -(curvature * u + slope)
         inside = self.beyond(u) <= PLACES.inside * scale
-        return u if inside and _pushed(reached, pulled) <= PLACES.balanced * scale else None
+        # Bounds that contradict one another are not all reached.
+        missed = [*(self.bounds[rows] - faces @ u), *(disc.beyond(u) for disc in discs)]
+        met = float(np.abs(missed).max(initial=0.0)) <= PLACES.inside * scale
+        return u if inside and met and _pushed(reached, pulled) <= PLACES.balanced * scale else None
 
 
 def _pushed(reached: Array, pulled: Array) -> float:
