@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from functools import cached_property, partial
 
@@ -10,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from loadshare.certify import Certificate
-from loadshare.certify.bound import Bound, bound_of
+from loadshare.certify.bound import bound_of
 from loadshare.certify.certificate import certify_later
 from loadshare.contact.plan import Plan, Role
 from loadshare.job.answer import Answer
@@ -39,12 +38,6 @@ class Solved:
         To them.
     tolerance : float
         Of their certificates.
-
-    Attributes
-    ----------
-    first : dict of int to Equilibria
-        Answers whose place forces leave open, by number, as the hot path found them; the arrays
-        hold their places of least norm.
     """
 
     def __init__(
@@ -52,7 +45,6 @@ class Solved:
     ) -> None:
         self.machine, self.situations, self.found = machine, situations, found
         self.tolerance = tolerance
-        self.first: dict[int, Equilibrium] = {}
         self._least: dict[int, Equilibrium] = {}
 
     @cached_property
@@ -82,8 +74,6 @@ class Solved:
         """Move answers whose place is open to their least ones, and return these by number."""
         loose = [r for r in rows if r not in self._least and not self.found.determined[r]]
         if loose:
-            index = np.broadcast_to(self.situations.index, len(self.found.passed)).tolist()
-            self.first |= {r: self.found.equilibria.one(r, index[r]) for r in loose}
             self._least |= least_places(
                 self.machine, self.situations, self.found, loose, self.tolerance
             )
@@ -92,10 +82,9 @@ class Solved:
     def _placed(self, row: int, index: int, train: Train) -> tuple[Equilibrium, Certificate]:
         """Return an answer at its place of least norm, and its certificate."""
         equilibrium = self.least([row]).get(row) or self.found.equilibria.one(row, index)
-        first = self.first.get(row, equilibrium)
         claimed = self.found.equilibria.part(slice(row, row + 1))
         torques = float(self.found.verdicts.bounds.relative[row])
-        prove = partial(_bound, train, equilibrium, first)
+        prove = partial(bound_of, train, equilibrium)
         return equilibrium, certify_later(
             train, equilibrium, claimed, self.tolerance, torques, prove
         )
@@ -113,15 +102,6 @@ def hot_answers(
     solved = Solved(machine, situations, found, tolerance)
     passed = np.flatnonzero(found.passed).tolist()
     return {indices[r]: solved.answer(r, indices[r], machine.train) for r in passed}
-
-
-def _bound(train: Train, equilibrium: Equilibrium, first: Equilibrium) -> Bound:
-    """Bound an answer; where nothing is proved at its least place, where it was found first.
-
-    The forces, and so the bounds on torques, are the same.
-    """
-    bound = bound_of(train, equilibrium)
-    return bound_of(train, first) if math.isinf(bound.relative) else bound
 
 
 def _record(machine: Machine, found: Answers, row: int) -> Record:

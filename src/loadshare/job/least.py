@@ -24,8 +24,8 @@ def least_places(
     """Move some answers to their least places, in place, and return them with what is open.
 
     An answer whose least place is not certified, because round-off of a move far away shows in a
-    stiff element, stays where it is, and so does one whose least place is refused as too far away
-    for the geometry.
+    stiff element or in the bound, stays where it is, and so does one whose least place is refused
+    as too far away for the geometry.
 
     Parameters
     ----------
@@ -58,11 +58,10 @@ def least_places(
     for k, row in enumerate(moved):
         placed.put(k, least[row])
     here = situations.take(np.array(moved))
-    verdicts = machine.judge.judge(here, placed, tolerance, bounded=False)
-    far = machine.measuring.worst(here, placed, verdicts.deflection, refusal=True) >= 1.0
-    residuals = np.where(far, np.inf, verdicts.worst).tolist()
-    for row, residual in zip(moved, residuals, strict=True):
-        if residual <= tolerance:
+    verdicts = machine.judge.judge(here, placed, tolerance)
+    near = machine.measuring.worst(here, placed, verdicts.deflection, refusal=True) < 1.0
+    for row, passed in zip(moved, (verdicts.passed & near).tolist(), strict=True):
+        if passed:
             found.equilibria.put(row, least[row])
         else:
             least[row] = replace(claimed[row], undetermined=least[row].undetermined)

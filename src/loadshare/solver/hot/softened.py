@@ -92,7 +92,9 @@ class Laws:
         """
         compliance = np.array(self.compliance)
         if len(self.power):
-            root = np.cbrt(np.where(pressed[self.power] > 0.0, force[self.power], 1.0))
+            # A force may be too small for a number where it pushes.
+            pushes = (pressed[self.power] > 0.0) & (force[self.power] > 0.0)
+            root = np.cbrt(np.where(pushes, force[self.power], 1.0))
             compliance[self.power] += 2.0 / 3.0 * self.hertz / root
         if len(self.table):
             k = self._pieces(pressed[: self.scalar])

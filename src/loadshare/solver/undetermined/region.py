@@ -8,7 +8,7 @@ as an equilibrium is (formulation, section 4). One unknown needs no programme.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Any
@@ -19,6 +19,8 @@ from numpy.typing import NDArray
 from loadshare.contact.programme import Array
 from loadshare.scene.statics import unresisted
 from loadshare.settings import PLACES
+
+Indices = NDArray[np.intp]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -118,7 +120,9 @@ class Region:
         along = self._ways_out.T @ direction
         if _pushed(self.limits @ self._ways_out, along) > PLACES.balanced:
             return None
-        return self._optimum(0.0, -direction)
+        end = self._optimum(0.0, -direction)
+        # Bounds that are all but opposite meet so far away that round-off decides where.
+        return None if end is None or float(direction @ end) > PLACES.far else end
 
     @cached_property
     def _ways_out(self) -> Array:
@@ -145,28 +149,33 @@ class Region:
 
     def _optimum(self, curvature: float, slope: Array) -> Array | None:
         """Least ½ curvature ‖u‖² + slope·u in the region; None if it has no bound."""
-        found = _proposed(self, curvature, slope)
-        if found is None:
-            return None
-        u, limits, discs = found
+        near: Array | None = None
+        # Of what is as good some may lie anywhere: at first it is drawn towards rest.
+        for drawn in dict.fromkeys((curvature or PLACES.near, curvature)):
+            found = _proposed(self, drawn, slope)
+            if found is None:
+                return None
+            near, *pushes = found
+            for rows, rounds in self._reached(near, curvature * near + slope, *pushes):
+                exact = self._settled(near, curvature, slope, rows, rounds)
+                if exact is not None:
+                    return exact
+        return near
+
+    def _reached(
+        self, u: Array, slope: Array, limits: Array, discs: Array
+    ) -> Iterator[tuple[Indices, Indices]]:
+        """Yield which bounds an optimum near u may reach, by their pushes, rows and discs."""
         slack = self.bounds - self.limits @ u
         gap = np.array([-disc.beyond(u) for disc in self.discs])
         pushing = np.flatnonzero(limits > slack), np.flatnonzero(discs > gap)
-        close = np.flatnonzero(slack < PLACES.almost), np.flatnonzero(gap < PLACES.almost)
-        tries = (
-            lambda: pushing,
-            lambda: self._holding(u, -(curvature * u + slope), *pushing),
-            lambda: close,
-        )
-        for bounds in tries:
-            exact = self._settled(u, curvature, slope, *bounds())
-            if exact is not None:
-                return exact
-        return u
+        yield pushing
+        yield self._holding(u, -slope, *pushing)
+        yield np.flatnonzero(slack < PLACES.almost), np.flatnonzero(gap < PLACES.almost)
 
     def _holding(
-        self, u: Array, pulled: Array, rows: NDArray[np.intp], rounds: NDArray[np.intp]
-    ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        self, u: Array, pulled: Array, rows: Indices, rounds: Indices
+    ) -> tuple[Indices, Indices]:
         """Of some bounds, those that hold a pull (d,) at u, and no more than it takes."""
         from scipy.optimize import nnls
 
@@ -179,8 +188,8 @@ class Region:
         u: Array,
         curvature: float,
         slope: Array,
-        rows: NDArray[np.intp],
-        rounds: NDArray[np.intp],
+        rows: Indices,
+        rounds: Indices,
     ) -> Array | None:
         """Newton's method on bounds that are reached; None if others are."""
         faces, discs = self.limits[rows], [self.discs[j] for j in rounds.tolist()]
@@ -230,10 +239,10 @@ def _proposed(region: Region, curvature: float, slope: Array) -> tuple[Array, Ar
         return None if slope.any() else (np.zeros(d), np.zeros(0), np.zeros(0))
     bends, cones = _bends(curvature, d), region.cones
     answer = clarabel.DefaultSolver(bends, slope, *cones).solve()
-    if "DualInfeasible" in str(answer.status):
+    u, dual = np.array(answer.x), np.array(answer.z)
+    if "DualInfeasible" in str(answer.status) or not np.isfinite([*u, *dual]).all():
         return None
-    dual = np.array(answer.z)
-    return np.array(answer.x), dual[:k], dual[k::3]
+    return u, dual[:k], dual[k::3]
 
 
 @cache
