@@ -46,7 +46,7 @@ class Scene:
 
 
 SUMMARY = "summary.json"
-MINUTE = re.compile(rb"on \d{4}-\d\d-\d\d \d\d:\d\d UTC")
+MINUTE = re.compile(rb"\d{4}-\d\d-\d\d \d\d:\d\d UTC")
 
 
 def masked(name: str, content: bytes) -> bytes:

@@ -2,12 +2,15 @@
 
 import os
 from collections import Counter
+from datetime import UTC, datetime
 
 import pytest
-from tests.faults.scenes import ENVIRONMENT, batch_scenes, file_scenes, study_scenes
+from tests.faults.scenes import ENVIRONMENT, batch_scenes, file_scenes, masked, study_scenes
 from tests.faults.server import Server
 from tests.faults.shim import FAULTS, Shim, why_not
 from tests.faults.trial import Stage
+
+from loadshare.report.page.report import report_page
 
 pytestmark = pytest.mark.skipif(bool(why_not()), reason=why_not())
 SMALL = {scene.name: scene for scene in (*batch_scenes(2), *study_scenes(64, 1, 0), *file_scenes())}
@@ -47,6 +50,15 @@ def test_no_fault_leaves_anything_wrong_in_a_study(served, tmp_path, name):
     """Its thousands of calls read columns, one like the other: of these some."""
     stage = Stage(SMALL[name], tmp_path, *served)
     assert [str(one) for k, f in stage.plan(5) if (one := stage.trial(k, f)).wrong] == []
+
+
+def test_pages_are_compared_but_for_the_minute():
+    """So it is as long as pages tell it in these words."""
+    pages = [
+        report_page([], datetime(2026, 1, 2, 3, minute, tzinfo=UTC)).encode() for minute in (4, 5)
+    ]
+    assert pages[0] != pages[1]
+    assert masked("page.html", pages[0]) == masked("page.html", pages[1])
 
 
 def test_every_call_is_seen_and_every_fault_met(served, tmp_path):

@@ -186,7 +186,7 @@ class Stage:
         now = _files(self.root)
         for name, content in now.items():
             allowed = [files[name] for files in (self.before, self.after) if name in files]
-            if LEFT.match(name) or _is_summary(name, content) or Path(name).name == LOCK:
+            if LEFT.match(name) or _tells(name, content) or Path(name).name == LOCK:
                 continue
             if not any(_same(name, content, one) for one in allowed):
                 yield Wrong("corrupt", name)
@@ -194,7 +194,7 @@ class Stage:
         if ended.code == self.code == 0:
             yield from (Wrong("lost", f"{n}, and not a word") for n in self.after if n not in now)
             # A summary tells of a result that could not be read, and so was not kept.
-            told = [n for n in now if n in self.after and not _is_summary(n, now[n])]
+            told = [n for n in now if n in self.after and not _tells(n, now[n])]
             old = [n for n in told if not _same(n, now[n], self.after[n])]
             yield from (Wrong("different", f"{name}, and not a word") for name in old)
 
@@ -220,8 +220,10 @@ def _files(folder: Path) -> Files:
     return {file.relative_to(folder).as_posix(): file.read_bytes() for file in found}
 
 
-def _is_summary(name: str, content: bytes) -> bool:
-    """Whether it is the whole summary of a batch, which tells also of what went wrong."""
+def _tells(name: str, content: bytes) -> bool:
+    """Whether it is the whole of what tells also of what went wrong: a batch's summary, a page."""
+    if name.endswith(".html"):
+        return b"cannot be used" in content and content.rstrip().endswith(b"</html>")
     try:
         return Path(name).name == SUMMARY and "cases" in json.loads(content)
     except json.JSONDecodeError:
