@@ -162,22 +162,24 @@ class _Part:
         Faces of arcs are renewed from the least place behind wide ones on, as opposite arcs that
         all but touch let nothing pass that keeps behind their faces; or else from the known place.
         """
-        if not self.arcs:
-            return self._region([], self.start).least()
-        u, arrived = self._renewed(self._wide(self.start).least())
-        if arrived and self._region(self._faces(u)).beyond(u) <= PLACES.inside:
-            return u
-        return self._renewed(self.start, self.start)[0]
+        if self.arcs:
+            u, arrived = self._renewed(self._wide(self.start).least(), inside=False)
+            if arrived and self._region(self._faces(u)).beyond(u) <= PLACES.inside:
+                return u
+        return self._renewed(self.start, inside=True)[0]
 
-    def _renewed(self, u: Array, inside: Array | None = None) -> tuple[Array, bool]:
-        """Renew faces of arcs until the least point behind them does not move: it, and whether."""
+    def _renewed(self, u: Array, *, inside: bool) -> tuple[Array, bool]:
+        """Renew faces of arcs until the least point does not move: it, and whether it came to that.
+
+        With `inside`, faces are moved so that the point at which they are renewed is behind them.
+        """
         for _ in range(PLACES.renewals):
-            region = self._region(self._faces(u), None if inside is None else u)
+            region = self._region(self._faces(u), u if inside else None)
             found = region.least()
             if region.beyond(found) > PLACES.almost:
                 # What is pinched up to round-off stays where it is.
                 break
-            arrived = float(np.abs(found - u).max()) <= PLACES.inside
+            arrived = not self.arcs or float(np.abs(found - u).max()) <= PLACES.inside
             u = found
             if arrived:
                 return u, True

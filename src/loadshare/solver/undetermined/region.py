@@ -120,9 +120,9 @@ class Region:
         along = self._ways_out.T @ direction
         if _pushed(self.limits @ self._ways_out, along) > PLACES.balanced:
             return None
-        end = self._optimum(0.0, -direction)
+        found = self._optimum(0.0, -direction)
         # Bounds that are all but opposite meet so far away that round-off decides where.
-        return None if end is None or float(direction @ end) > PLACES.far else end
+        return None if found is None or float(direction @ found) > PLACES.far else found
 
     @cached_property
     def _ways_out(self) -> Array:
