@@ -112,18 +112,37 @@ INTERRUPTED = """
 import sys
 from loadshare.cli.stop import Stop
 
+MET = "import os, signal, time; os.kill(os.getpid(), signal.SIGTERM); time.sleep(60)"
 stop = Stop()
 try:
     with stop:
-        exec("import os, signal, time; os.kill(os.getpid(), signal.SIGTERM); time.sleep(60)")
+{}
 except KeyboardInterrupt:
     sys.exit(stop.code)
 """
+MODULES = {
+    "dataclasses": """
+        exec(MET)
+""",
+    "a compiled module": """
+        try:
+            exec(MET)
+        except KeyboardInterrupt as met:
+            raise SystemError("a class returned a result with an exception set") from met
+""",
+}
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals")
-def test_a_command_that_is_stopped_while_it_loads_ends_with_its_code(tmp_path, environment):
-    """Dataclasses are made by exec(): CPython would end the process by SIGINT after that."""
-    (tmp_path / "interrupted.py").write_text(INTERRUPTED, encoding="utf-8")
+@pytest.mark.parametrize("loading", MODULES)
+def test_a_command_that_is_stopped_while_it_loads_ends_with_its_code(
+    tmp_path, environment, loading
+):
+    """Dataclasses are made by exec(): CPython would end the process by SIGINT after that.
+
+    Classes of compiled modules that are being made turn an interruption into an error of their own.
+    """
+    text = INTERRUPTED.format(MODULES[loading])
+    (tmp_path / "interrupted.py").write_text(text, encoding="utf-8")
     words = [sys.executable, "-m", "interrupted"]
     assert subprocess.run(words, cwd=tmp_path, env=environment, check=False).returncode == 143

@@ -33,7 +33,7 @@ class Stop:
 
     def __init__(self, gently: Callable[[], None] | None = None) -> None:
         self.gently, self.asked, self.code = gently, False, INTERRUPTED
-        self._told = self._over = False
+        self._told = self._over = self._thrown = False
         self._before: dict[int, Any] = {}
 
     def __enter__(self) -> Stop:
@@ -44,12 +44,15 @@ class Stop:
                     self._before[number] = signal.signal(number, self._take)
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, kind: object, error: object, _: object) -> None:
         if self._told:
             # A process that was stopped has nothing left to do but to end. Where it was met in a
             # text that exec() runs, as dataclasses do, CPython under -m would end it by SIGINT in
             # place of its exit code; the next text makes it forget that.
             exec("")
+            if self._thrown and isinstance(error, SystemError | ImportError):
+                # What a compiled module makes of an interruption that meets it while it loads.
+                raise KeyboardInterrupt
             return
         for number, handler in self._before.items():
             signal.signal(number, handler)
@@ -73,6 +76,6 @@ class Stop:
             self.asked = True
             self.gently()
             return
-        self.asked = self._over = True
+        self.asked = self._over = self._thrown = True
         self.code = TERMINATED if number == signal.SIGTERM else INTERRUPTED
         raise KeyboardInterrupt
