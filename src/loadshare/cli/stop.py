@@ -33,7 +33,7 @@ class Stop:
 
     def __init__(self, gently: Callable[[], None] | None = None) -> None:
         self.gently, self.asked, self.code = gently, False, INTERRUPTED
-        self._told = self._over = self._thrown = False
+        self._over = self._thrown = False
         self._before: dict[int, Any] = {}
 
     def __enter__(self) -> Stop:
@@ -45,7 +45,7 @@ class Stop:
         return self
 
     def __exit__(self, kind: object, error: object, _: object) -> None:
-        if self._told:
+        if self.asked:
             # A process that was stopped has nothing left to do but to end. Where it was met in a
             # text that exec() runs, as dataclasses do, CPython under -m would end it by SIGINT in
             # place of its exit code; the next text makes it forget that.
@@ -71,7 +71,6 @@ class Stop:
         """
         if self._over:
             return
-        self._told = True
         if number == signal.SIGINT and self.gently is not None and not self.asked:
             self.asked = True
             self.gently()

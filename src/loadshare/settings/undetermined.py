@@ -25,8 +25,6 @@ class Places(NamedTuple):
     """Distance to a bound, in sizes of the region, at which an interior-point answer reaches it."""
     far: float = 1e6
     """Distance, in sizes of the region, from which on nothing is said to limit a place."""
-    near: float = 1e-4
-    """Curvature, in slopes per size of the region, that draws an extreme place towards rest."""
     passes: int = 20
     """Newton passes on the bounds that are reached."""
     arrived: float = 1e-14

@@ -100,7 +100,7 @@ class Region:
         return max(*outside, *(disc.beyond(u) for disc in self.discs), 0.0)
 
     def least(self) -> Array:
-        """Point of least norm, shape (d,)."""
+        """Point of least norm, shape (d,); rest, outside, if round-off leaves none."""
         rest = np.zeros(self.size)
         if self.beyond(rest) <= 0.0:
             return rest
@@ -108,8 +108,7 @@ class Region:
             low, high = self._interval()
             return np.array([min(max(0.0, low), high)])
         found = self._optimum(1.0, rest)
-        assert found is not None  # it is bounded: no point is farther away than one that is known
-        return found
+        return rest if found is None else found
 
     def furthest(self, direction: Array) -> Array | None:
         """Point that lies furthest along a direction (d,), or None if nothing limits it."""
@@ -148,18 +147,15 @@ class Region:
         return (low, high) if low <= high else (0.5 * (low + high),) * 2
 
     def _optimum(self, curvature: float, slope: Array) -> Array | None:
-        """Least ½ curvature ‖u‖² + slope·u in the region; None if it has no bound."""
-        near: Array | None = None
-        # Of what is as good some may lie anywhere: at first it is drawn towards rest.
-        for drawn in dict.fromkeys((curvature or PLACES.near, curvature)):
-            found = _proposed(self, drawn, slope)
-            if found is None:
-                return None
-            near, *pushes = found
-            for rows, rounds in self._reached(near, curvature * near + slope, *pushes):
-                exact = self._settled(near, curvature, slope, rows, rounds)
-                if exact is not None:
-                    return exact
+        """Least ½ curvature ‖u‖² + slope·u in the region; None if none is found."""
+        found = _proposed(self, curvature, slope)
+        if found is None:
+            return None
+        near, *pushes = found
+        for rows, rounds in self._reached(near, curvature * near + slope, *pushes):
+            exact = self._settled(near, curvature, slope, rows, rounds)
+            if exact is not None:
+                return exact
         return near
 
     def _reached(
