@@ -21,6 +21,7 @@ from loadshare.contact import (
     residuals,
     solve_contact,
 )
+from loadshare.contact.problem import of_unit_norm
 from loadshare.errors import Refused
 
 METHODS = ("newton", "picard")
@@ -50,6 +51,12 @@ def test_a_block_on_two_rigid_stops(load: float, solver: str) -> None:
     assert found.place["x"] == pytest.approx(x, rel=1e-12)
     assert found.force["right stop"] == pytest.approx(max(load - 1e3, 0.0), abs=1e-9)
     assert found.force["left stop"] == pytest.approx(max(-load - 1e3, 0.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("size", [1e-200, 1.0, 1e200])
+def test_rows_have_unit_norm_whatever_their_size(size: float) -> None:
+    rows = of_unit_norm(size * np.array([[3.0, -4.0], [0.0, 0.0], [0.0, 5.0]]))
+    np.testing.assert_allclose(rows, [[0.6, -0.8], [0.0, 1.0]], rtol=1e-15)
 
 
 @pytest.mark.parametrize("method", METHODS)

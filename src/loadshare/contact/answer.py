@@ -11,7 +11,7 @@ from loadshare.contact.backends.backend import backend
 from loadshare.contact.findings import Unsolved
 from loadshare.contact.outer import Settled, settle
 from loadshare.contact.plan import Plan
-from loadshare.contact.problem import Array, ContactProblem
+from loadshare.contact.problem import Array, ContactProblem, of_unit_norm
 from loadshare.contact.radial import RadialLaw
 from loadshare.contact.record import Options
 from loadshare.errors import Refused
@@ -188,9 +188,7 @@ def _undetermined(
     for radial in problem.radials:
         if pull[radial.name].any():
             acting += list(radial.matrix)
-    resisting = np.array([*problem.stiffness, *acting]).reshape(-1, problem.size)
-    sizes = np.linalg.norm(resisting, axis=1)
-    resisting = resisting[sizes > 0.0] / sizes[sizes > 0.0, None]
+    resisting = of_unit_norm(np.array([*problem.stiffness, *acting]).reshape(-1, problem.size))
     _, values, right = np.linalg.svd(resisting, full_matrices=True)
     rank = int((values > CONTACT.loose * values.max(initial=0.0)).sum())
     moved = np.abs(right[rank:]).max(axis=0, initial=0.0)

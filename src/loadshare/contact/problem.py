@@ -264,3 +264,13 @@ class ContactProblem:
         """Torques over radial elements that follow them, to begin with."""
         force = self.force_unit()
         return {r.name: force * max(map(abs, r.levers.values()), default=0.0) for r in self.radials}
+
+
+def of_unit_norm(rows: Array) -> Array:
+    """Return the rows (k, n) that are not zero, each divided by its norm, whatever its size."""
+    _, exponent = np.frexp(np.abs(rows).max(axis=1, initial=0.0))
+    # Squares of the entries may lie beyond all numbers; a power of two takes no digit.
+    rows = np.ldexp(rows, -exponent[:, None])
+    norm = np.linalg.norm(rows, axis=1, keepdims=True)
+    there = norm[:, 0] > 0.0
+    return np.asarray(rows[there] / norm[there])

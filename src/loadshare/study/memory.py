@@ -56,6 +56,9 @@ def stepped(train: Train, index: int) -> Answer:
     Refused
         If the position has no certified equilibrium.
     """
+    if not train.splines:
+        # There is nothing that remembers.
+        return certified(replace(train, slip=None), index)
     assert train.slip is not None
     # A slip that stood at the end of its clearance mostly stays there.
     ends = [g for g, s in train.splines.items() if _at_end(s, train.slip[g])]

@@ -291,9 +291,9 @@ def _with_light_friction(claim: Claim, scale: Array) -> tuple[Array, Array]:
     """
     act = first_acts(claim, BOUND.light_friction)
     if claim.columns.train.slip is not None:
-        splines = len(claim.columns.train.splines)
-        pressed = act[:, -splines:] == Act.STOP
-        act[:, -2 * splines : -splines][pressed] = Act.OPEN
+        stops = act.shape[1] - len(claim.columns.train.splines)
+        slips = stops - len(claim.columns.train.splines)
+        act[:, slips:stops][act[:, stops:] == Act.STOP] = Act.OPEN
     force, coordinate = _fine(claim, act, scale)
     return force[0], coordinate[0]
 

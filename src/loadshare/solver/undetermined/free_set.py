@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from loadshare.contact.problem import ArcRow
+from loadshare.contact.problem import ArcRow, of_unit_norm
 from loadshare.contact.programme import Array
 from loadshare.contact.radial import RadialLaw
 from loadshare.scene.scene import GearRadial, Scene
@@ -94,7 +94,7 @@ def free_set(
     every = [*(abs(f) for f in forces.values()), *(math.hypot(*p) for p in pulls.values())]
     carries = PLACES.carries * max([scene.force_unit(), *every])
     norm = norm_of(scene)
-    ties = [*scene.springs, *_rows_of(scene.stiffness)]
+    ties = [*scene.springs, *of_unit_norm(scene.stiffness)]
     vectors: list[Array] = []
     rooms: list[float] = []
     open_arcs: list[ArcRow] = []
@@ -143,9 +143,3 @@ def free_set(
         tuple(open_arcs),
         tuple(r for r in rounds if np.isfinite(r.radius)),
     )
-
-
-def _rows_of(stiffness: Array) -> list[Array]:
-    """Rows of a stiffness, each of unit norm: springs that are no shaft and no bearing."""
-    sizes = np.linalg.norm(stiffness, axis=1)
-    return list(stiffness[sizes > 0.0] / sizes[sizes > 0.0, None])
