@@ -270,7 +270,7 @@ def test_gears_that_stand_side_by_side_along_the_axis():
         return Case(
             operating={"input": "a", "output": "c", "torque": "100 N*m"},
             gears={
-                "a": gear(20, centre=["0 mm", "0 mm"]),
+                "a": gear(20, centre=["0 mm", "0 mm"], face_width="80 mm"),
                 "b": gear(60, centre=at),
                 "c": gear(60, centre=at | {"angle": "20 deg", "height": height}),
             },
@@ -278,6 +278,6 @@ def test_gears_that_stand_side_by_side_along_the_axis():
             shafts={"b-c": {"stiffness": "1e5 N*m/rad"}},
         )
 
-    wheels("40 mm")  # both face widths are 40 mm
+    wheels("40 mm")  # the face widths of both wheels are 40 mm
     assert "gears.c.centre: is in the way of gear b" in refusal(wheels, "39 mm")
     assert "At most 3 such gears fit" in refusal(wheels, "0 mm")

@@ -160,6 +160,17 @@ def test_a_refusal_leaves_with_1_and_names_what_nothing_holds(command, unheld):
     assert "PASSED" not in result.stdout
 
 
+def test_a_refusal_names_what_turns_together(command, cases, tmp_path):
+    free = tmp_path / "free.toml"
+    text = (cases / "planetary/four_planets.toml").read_text(encoding="utf-8")
+    free.write_text(text.replace(", held = true", ""), encoding="utf-8")
+    result = command("run", free)
+    assert result.exit_code == 1
+    assert "the load on gear sun rotation: no contact, support or limit holds it; " in result.stderr
+    turning = "sun, planet1, planet2, planet3, planet4, … turn together"
+    assert f"gears {turning}: hold one (held = true) or give it a torque" in result.stderr
+
+
 def test_certified_positions_are_kept_when_others_are_refused(command, half_held, tmp_path):
     target = tmp_path / "partial.json"
     words = ("-o", target, "-o", tmp_path / "t.csv", "--explain")

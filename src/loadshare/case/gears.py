@@ -71,6 +71,9 @@ COPIES = range(2, 33)
 """How many copies a gear may have."""
 RADIUS_TOLERANCE = 1e-3
 """How far a given base radius may be from that of the teeth, as a part of it [-]."""
+SYMMETRIC = 1e-9
+"""How far the two entries off the diagonal of a support may be apart for want of written digits, as
+a part of the largest entry [-]."""
 STEEPEST = Quantity("45 deg", math.radians(45))
 STEEPEST_HELIX = math.radians(60)
 
@@ -230,7 +233,8 @@ class Gear(Element):
         ]
         | None
     ) = None
-    """Stiffness of an internal gear's rim against bending in the harmonics 2, 3, … [force/length].
+    """Stiffness of an internal gear's rim against bending in the harmonics 2, 3, … [force/length];
+    goes with `teeth` and `module`.
 
     rim: that of a thin ring of steel of the `rim` and `face_width`, up to the eighth.
     """
@@ -314,9 +318,10 @@ class Gear(Element):
         if not isinstance(self.support, tuple) or not isinstance(self.support[0], tuple):
             return
         (xx, xy), (yx, yy) = ((k.si for k in row) for row in self.support)
-        if xy != yx:
-            yield Rule("is not symmetric", ("support",))
-        elif xx <= 0.0 or xx * yy - xy * yx <= 0.0:
+        if abs(xy - yx) > SYMMETRIC * max(map(abs, (xx, xy, yx, yy))):
+            off = f"{xy:.10g} N/m and {yx:.10g} N/m are off its diagonal"
+            yield Rule(f"is not symmetric: {off}", ("support",))
+        elif xx <= 0.0 or xx * yy - (0.5 * (xy + yx)) ** 2 <= 0.0:
             yield Rule("is not positive in all directions", ("support",))
 
     def _rim_rules(self) -> Iterator[Rule]:
@@ -325,7 +330,7 @@ class Gear(Element):
         if self.type != "internal":
             yield Rule("is for internal gears only", ("ovalisation",))
         elif isinstance(self.ovalisation, str):
-            for key in ("module", "rim", "face_width"):
+            for key in ("rim", "face_width"):
                 if getattr(self, key) is None:
                     yield Rule("is missing", (key,), LENGTH.allowed, "It goes with ovalisation.")
 

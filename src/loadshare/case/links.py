@@ -137,7 +137,11 @@ class Spline(Element):
     """Displacement at which the clearance is used up, S2 [length]."""
 
     stick_limit: Distance | None = None
-    """Displacement up to which the spline sticks, S1 [length]; F_m / K_w when left out."""
+    """Displacement up to which the spline sticks, S1 [length]; F_m / K_w when left out.
+
+    It is not above the clearance. Left out, a clearance below F_m / K_w closes before friction is
+    overcome: the spline then acts as a spring K_w throughout, and results call it stick.
+    """
 
     friction_force: Load | None = None
     """Friction bound given directly, F_m [force]."""

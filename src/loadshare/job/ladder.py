@@ -34,6 +34,8 @@ from loadshare.train.placed import standing
 from loadshare.train.situations import situation_of
 from loadshare.train.train import Train
 
+_NAMED = 5
+"""How many gears of a free motion are named."""
 AUTO = "auto"
 """Instead of a back-end's name: the hot path, and Clarabel for what it leaves."""
 
@@ -171,6 +173,10 @@ def _refuse_if_driven(scene: Scene) -> None:
     if moves:
         floats = [g for g in scene.displacement if {f"gear {g} x", f"gear {g} y"} & {*moves}]
         also = f"; nothing limits the float of gear {', '.join(floats)}" if floats else ""
+        turning = [g for g in scene.rotation if f"gear {g} rotation" in moves]
+        if len(turning) == len(moves) > 1:
+            named = f"{', '.join(turning[:_NAMED])}{', …' if len(turning) > _NAMED else ''}"
+            also = f"; gears {named} turn together: hold one (held = true) or give it a torque"
         raise Refused(
             f"position {scene.position}: nothing balances the load on {moves[0]}: no contact, "
             f"support or limit holds it{also}"

@@ -188,7 +188,7 @@ def _supported(case: spec.Case, gear: Gear) -> Gear:
     if not isinstance(given, tuple) or not isinstance(given[0], tuple):
         return replace(gear, support=_support(case, gear.name))
     matrix = np.array([[k.si for k in row] for row in given if isinstance(row, tuple)])
-    stiffness, ways = np.linalg.eigh(matrix)
+    stiffness, ways = np.linalg.eigh(0.5 * (matrix + matrix.T))
     # Right-handed, as the plane is.
     ways = ways if np.linalg.det(ways) > 0.0 else ways * [1.0, -1.0]
     return replace(gear, support=stiffness, frame=ways.T @ gear.frame)

@@ -18,6 +18,7 @@ CHECKS = (
     meshing.check_list_lengths,
     layout.check_distances,
     fit.check_tooth_kinds,
+    fit.check_racks,
     fit.check_fit,
     fit.check_formula_laws,
     loads.check_masses,

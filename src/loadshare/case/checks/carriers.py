@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from loadshare.case.checks.fit import SQUARE
+from loadshare.case.checks.fit import SQUARE, parallel
+from loadshare.case.checks.names import allowed_carriers, carriers_in
 from loadshare.case.draft import Draft
 from loadshare.case.gears import Gear
 from loadshare.case.keys import Path
 from loadshare.case.line_of_action import centre_distance
-from loadshare.case.place import Vector, axis_of, dot, minus
+from loadshare.case.place import Vector, minus
 from loadshare.case.power_flow import rides_on
 from loadshare.case.words import choices
 from loadshare.errors import Problem
@@ -24,10 +25,9 @@ def check_carriers(draft: Draft) -> Iterator[Problem]:
             continue
         path: Path = ("gears", name, "carrier")
         if not carrier.is_carrier:
-            known = [n for n, g in draft.gears.items() if g.is_carrier]
-            allowed = choices(known) if known else 'a gear of type = "carrier"'
-            yield draft.problem(path, f'"{gear.carrier}" is not a carrier', allowed)
-        elif not _parallel(gear, carrier):
+            what = f'"{gear.carrier}" is not a carrier'
+            yield draft.problem(path, what, allowed_carriers(carriers_in(draft)))
+        elif not parallel(gear, carrier):
             yield draft.problem(path, "its axis is not parallel to that of the planet")
         elif name in centres and gear.carrier in centres:
             apart = minus(centres[name], centres[gear.carrier])
@@ -122,8 +122,4 @@ def _on_rigid_shafts(draft: Draft, start: str) -> set[str]:
 
 def _coaxial(carrier: Gear, gear: Gear, offset: Vector) -> bool:
     near = centre_distance(carrier, offset) <= SQUARE * gear.acting_radius
-    return near and _parallel(carrier, gear)
-
-
-def _parallel(one: Gear, other: Gear) -> bool:
-    return 1 - abs(dot(axis_of(one), axis_of(other))) <= SQUARE
+    return near and parallel(carrier, gear)

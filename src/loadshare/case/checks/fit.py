@@ -9,13 +9,17 @@ from contextlib import suppress
 from loadshare.case.draft import Draft
 from loadshare.case.gears import STEEPEST, Gear, Tooth
 from loadshare.case.iso1328 import outside
-from loadshare.case.keys import Path
 from loadshare.case.line_of_action import centre_distance, tangent_distance
 from loadshare.case.meshes import Mesh
 from loadshare.case.place import Vector, axis_of, dot, minus
 from loadshare.case.quantity import ANGLE, LENGTH
 from loadshare.errors import Problem
-from loadshare.involute import distance_without_backlash, normal_backlash
+from loadshare.involute import (
+    base_distance,
+    contact_ratio,
+    distance_without_backlash,
+    normal_backlash,
+)
 
 TOLERANCE = 1e-3
 """How far base radii may miss the centre distance, as a part of it [-]."""
@@ -38,6 +42,14 @@ def check_tooth_kinds(draft: Draft) -> Iterator[Problem]:
             yield draft.problem(("meshes", name), "a face gear meshes with an external pinion only")
 
 
+def check_racks(draft: Draft) -> Iterator[Problem]:
+    """Yield pairs whose teeth do not come from the same rack, wherever the gears are."""
+    for name, _, driver, driven in _pairs(draft):
+        if (found := _unlike(driver, driven)) is not None:
+            message, hint = found
+            yield draft.problem(("meshes", name), message, hint=hint)
+
+
 def check_fit(draft: Draft) -> Iterator[Problem]:
     """Yield pairs whose axes, base radii and pressure angle do not fit where they are."""
     centres = draft.centres()
@@ -51,9 +63,10 @@ def check_fit(draft: Draft) -> Iterator[Problem]:
 
 def _parallel_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterator[Problem]:
     driver, driven = draft.gears[mesh.driver], draft.gears[mesh.driven]
-    if 1 - abs(dot(axis_of(driver), axis_of(driven))) > SQUARE:
+    if not parallel(driver, driven):
         yield draft.problem(("meshes", name), "the two axes are not parallel")
         return
+    yield from _faces_meet(draft, name, driver, driven, abs(dot(offset, axis_of(driver))))
     distance = centre_distance(driver, offset)
     if distance <= SQUARE * max(driver.acting_radius, driven.acting_radius):
         yield draft.problem(("meshes", name), "the two gears are on the same axis")
@@ -65,47 +78,97 @@ def _parallel_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterat
     else:
         sum_ = f"{mm(driver.acting_radius)} + {mm(driven.acting_radius)}"
     where = f"the base radii {sum_} = {mm(radius)}"
-    if mesh.pressure_angle is None:
-        if not math.cos(STEEPEST.si) * distance <= radius < distance:
-            what = f"{where} leave no line of action at the centre distance {mm(distance)}"
-            most = radius / math.cos(STEEPEST.si)
-            allowed = f"a centre distance above {mm(radius)} and up to {mm(most)}"
-            yield draft.problem(("meshes", name), what, allowed)
-            return
-    else:
-        yield from _compare(draft, name, mesh, f"{where} do", radius, distance, "centre distance")
-    if driver.tooth is not None and driven.tooth is not None:
-        yield from _teeth_fit(draft, name, driver.tooth, driven.tooth, distance)
+    unlike = _unlike(driver, driven) is not None
+    found: list[Problem] = []
+    if mesh.pressure_angle is not None:
+        found += _compare(draft, name, mesh, f"{where} do", radius, distance, "centre distance")
+    elif not (unlike or math.cos(STEEPEST.si) * distance <= radius < distance):
+        what = f"{where} leave no line of action at the centre distance {mm(distance)}"
+        most = radius / math.cos(STEEPEST.si)
+        allowed = f"a centre distance above {mm(radius)} and up to {mm(most)}"
+        yield draft.problem(("meshes", name), what, allowed)
+        return
+    if driver.tooth is not None and driven.tooth is not None and not unlike:
+        teeth = driver.tooth, driven.tooth
+        found += _too_near(draft, name, *teeth, distance)
+        # A law by formula tells it itself.
+        if not found and not isinstance(mesh.law, str):
+            found += _too_far(draft, name, *teeth, distance)
+    yield from found
 
 
-def _teeth_fit(
+def _too_near(
     draft: Draft, name: str, one: Tooth, two: Tooth, distance: float
 ) -> Iterator[Problem]:
-    """Yield what keeps the teeth of two gears from meshing."""
-    path: Path = ("meshes", name)
-    if not math.isclose(one.module, two.module, rel_tol=TEETH_ALIKE):
-        modules = f"{mm(one.module)} and {mm(two.module)}"
-        yield draft.problem(path, f"the gears have different modules, {modules}")
+    """Yield teeth that have no room for one another at a centre distance [m]."""
+    where = f"at the centre distance {mm(distance)} the teeth"
+    if base_distance(one, two) >= distance:
+        # Given base radii, which may differ a little, can leave a line of action all the same.
+        what = f"{where} have no line of action"
+        yield draft.problem(("meshes", name), what, hint=_without_backlash(one, two))
         return
+    backlash = normal_backlash(one, two, distance)
+    if backlash < -OVERLAP * one.module:
+        what = f"{where} overlap by {mm(-backlash)}"
+        yield draft.problem(("meshes", name), what, hint=_without_backlash(one, two))
+
+
+def _too_far(draft: Draft, name: str, one: Tooth, two: Tooth, distance: float) -> Iterator[Problem]:
+    """Yield teeth whose tips do not get to each other's flanks at a centre distance [m]."""
+    ratio = contact_ratio(one, two, distance)
+    if ratio <= 0.0:
+        what = (
+            f"at the centre distance {mm(distance)} the teeth do not reach each other: with tip "
+            f"radii of {mm(one.tip)} and {mm(two.tip)}, ε_α = {ratio:.2f}"
+        )
+        yield draft.problem(("meshes", name), what, hint=_without_backlash(one, two))
+
+
+def _without_backlash(one: Tooth, two: Tooth) -> str:
+    """Say which centre distance two gears have without backlash, if there is one."""
+    with suppress(ValueError):
+        return f"Without backlash it would be {mm(distance_without_backlash(one, two))}."
+    return ""
+
+
+def _faces_meet(
+    draft: Draft, name: str, driver: Gear, driven: Gear, along: float
+) -> Iterator[Problem]:
+    """Yield gears that are too far apart along their axes [m] for their teeth to touch."""
+    if driver.face_width is None or driven.face_width is None:
+        return
+    widths = driver.face_width.si, driven.face_width.si
+    room = 0.5 * sum(widths)
+    if along >= room:
+        what = (
+            f"the faces do not overlap: the centres are {mm(along)} apart along the axis, "
+            f"the face widths {mm(widths[0])} and {mm(widths[1])}"
+        )
+        yield draft.problem(("meshes", name), what, f"less than {mm(room)} along the axis")
+
+
+def _unlike(driver: Gear, driven: Gear) -> tuple[str, str] | None:
+    """What makes the racks of two gears different, and a hint; None if they are one rack.
+
+    Gears of which one does not tell its teeth, or that could not mesh with any, are left out.
+    """
+    one, two = driver.tooth, driven.tooth
+    if one is None or two is None or not parallel(driver, driven):
+        return None
+    if one.internal and two.internal:
+        return None
+    if not math.isclose(one.module, two.module, rel_tol=TEETH_ALIKE):
+        return f"the gears have different modules, {mm(one.module)} and {mm(two.module)}", ""
     if not math.isclose(one.pressure_angle, two.pressure_angle, rel_tol=TEETH_ALIKE):
         angles = f"{_deg(one.pressure_angle)} and {_deg(two.pressure_angle)}"
-        yield draft.problem(path, f"the gears have different normal pressure angles, {angles}")
-        return
+        return f"the gears have different normal pressure angles, {angles}", ""
     helix = -one.kind * two.kind * one.helix_angle
     if abs(two.helix_angle - helix) > TEETH_ALIKE:
         angles = f"{_deg(one.helix_angle)} and {_deg(two.helix_angle)}"
         hands = "the same" if one.kind * two.kind < 0 else "opposite"
         hint = f"These gears need helices of one size and of {hands} hands."
-        yield draft.problem(path, f"the helix angles {angles} do not mesh", hint=hint)
-        return
-    backlash = normal_backlash(one, two, distance)
-    if backlash < -OVERLAP * one.module:
-        hint = ""
-        with suppress(ValueError):
-            fits = distance_without_backlash(one, two)
-            hint = f"Without backlash it would be {mm(fits)}."
-        what = f"at the centre distance {mm(distance)} the teeth overlap by {mm(-backlash)}"
-        yield draft.problem(path, what, hint=hint)
+        return f"the helix angles {angles} do not mesh", hint
+    return None
 
 
 def toothed_pairs(
@@ -120,18 +183,11 @@ def toothed_pairs(
         one, two = driver.tooth, driven.tooth
         if one is None or two is None or not {mesh.driver, mesh.driven} <= centres.keys():
             continue
-        if (one.internal and two.internal) or not _alike(one, two):
+        if (one.internal and two.internal) or _unlike(driver, driven) is not None:
             continue
-        if 1 - abs(dot(axis_of(driver), axis_of(driven))) <= SQUARE:
+        if parallel(driver, driven):
             offset = minus(centres[mesh.driven], centres[mesh.driver])
             yield name, mesh.ends, (one, two), centre_distance(driver, offset)
-
-
-def _alike(one: Tooth, two: Tooth) -> bool:
-    """Tell whether two gears come from the same rack."""
-    return math.isclose(one.module, two.module, rel_tol=TEETH_ALIKE) and math.isclose(
-        one.pressure_angle, two.pressure_angle, rel_tol=TEETH_ALIKE
-    )
 
 
 def _face_fit(draft: Draft, name: str, mesh: Mesh, offset: Vector) -> Iterator[Problem]:
@@ -216,6 +272,11 @@ def _pairs(draft: Draft) -> Iterator[tuple[str, Mesh, Gear, Gear]]:
             continue
         if not (driver.is_carrier or driven.is_carrier):
             yield name, mesh, driver, driven
+
+
+def parallel(one: Gear, other: Gear) -> bool:
+    """Tell whether the axes of two gears are parallel."""
+    return 1 - abs(dot(axis_of(one), axis_of(other))) <= SQUARE
 
 
 def mm(length: float) -> str:

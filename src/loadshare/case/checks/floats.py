@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import combinations
 
-from loadshare.case.checks.fit import SQUARE
+from loadshare.case.checks.fit import SQUARE, parallel
 from loadshare.case.content import FLOATS
 from loadshare.case.draft import Draft
+from loadshare.case.line_of_action import centre_distance
 from loadshare.case.links import Backlashes
-from loadshare.case.place import axis_of, dot
+from loadshare.case.place import minus
+from loadshare.case.power_flow import rides_on
 from loadshare.errors import Problem
 
 
@@ -54,9 +57,30 @@ def check_ring_neighbours(draft: Draft) -> Iterator[Problem]:
             own, other = draft.gears.get(name), draft.gears.get(neighbour)
             if own is None or other is None:
                 continue
-            if 1 - abs(dot(axis_of(own), axis_of(other))) > SQUARE:
+            if not parallel(own, other):
                 message = f"its axis is not parallel to that of gear {name}"
                 yield draft.problem((*path, number), message)
+        together = next(_on_one_axis(draft, (name, *ring.neighbours)), None)
+        if together is not None:
+            message = f"{' and '.join(together)} are on one axis"
+            hint = "A drum rolls on two others, and each of the three has an axis of its own."
+            yield draft.problem(path, message, hint=hint)
+
+
+def _on_one_axis(draft: Draft, names: tuple[str, ...]) -> Iterator[tuple[str, str]]:
+    """Yield pairs of gears that turn about the same axis, where all centres are known."""
+    centres = draft.centres()
+    if not centres.keys() >= set(names):
+        return
+    first, *others = gears = [draft.gears[name] for name in names]
+    if rides_on(draft.gears, *names) or not all(parallel(first, other) for other in others):
+        return  # Either is reported already.
+    apart = {
+        (one, two): centre_distance(first, minus(centres[two], centres[one]))
+        for one, two in combinations(names, 2)
+    }
+    size = max(*apart.values(), *(gear.acting_radius for gear in gears if not gear.is_carrier))
+    yield from (pair for pair, distance in apart.items() if distance <= SQUARE * size)
 
 
 def check_float_backlashes(draft: Draft) -> Iterator[Problem]:

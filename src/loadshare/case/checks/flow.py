@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import chain
 
+from loadshare.case.checks.names import carriers_in
 from loadshare.case.draft import Draft
 from loadshare.case.power_flow import (
     Steps,
@@ -27,12 +28,15 @@ def check_taken_part(draft: Draft) -> Iterator[Problem]:
     joined |= {gear for shaft in draft.shafts.values() for gear in shaft.ends}
     joined |= {gear.carrier for gear in draft.gears.values() if gear.carrier}
     gears = draft.names("gears")
+    carriers = carriers_in(draft)
+    # Any gear that could not be read may be a planet.
+    unread = set(gears) - set(carriers) - draft.gears.keys()
     # A misspelt name would make two problems of one.
     for name in gears if joined <= set(gears) else ():
-        if name not in joined:
-            carries = name in draft.gears and draft.gears[name].is_carrier
-            alone = " and carries no planet" if carries else ""
-            yield draft.problem(("gears", name), f"is in no mesh and on no shaft{alone}")
+        if name in joined or (unread and name in carriers):
+            continue
+        alone = " and carries no planet" if name in carriers else ""
+        yield draft.problem(("gears", name), f"is in no mesh and on no shaft{alone}")
 
 
 def check_output_reached(draft: Draft) -> Iterator[Problem]:

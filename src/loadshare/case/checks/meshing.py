@@ -28,7 +28,8 @@ def check_list_lengths(draft: Draft) -> Iterator[Problem]:
     for path, value, key, needed in fields:
         if isinstance(value, tuple) and len(value) not in (1, needed):
             message = f"has {count(len(value))}, {key} is {needed}"
-            yield draft.problem(path, message, f"1 value or {needed}")
+            allowed = "1 value" if needed == 1 else f"1 value or {needed}"
+            yield draft.problem(path, message, allowed)
 
 
 def check_teeth_fit(draft: Draft) -> Iterator[Problem]:

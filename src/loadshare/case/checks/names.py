@@ -9,7 +9,7 @@ from functools import lru_cache
 from loadshare.case.content import ABOUT, ENDS, FLOATS
 from loadshare.case.draft import Draft
 from loadshare.case.gears import Polar
-from loadshare.case.keys import Path, covers, dotted, look_up, parse, walk
+from loadshare.case.keys import Path, covers, dotted, ends_of, look_up, parse, walk
 from loadshare.case.measured import COEFFICIENTS
 from loadshare.case.words import choices, did_you_mean
 from loadshare.errors import Problem
@@ -17,11 +17,29 @@ from loadshare.errors import Problem
 
 def check_gear_names(draft: Draft) -> Iterator[Problem]:
     """Yield every mention of a gear that does not exist."""
-    gears = draft.names("gears")
+    gears, carriers = draft.names("gears"), carriers_in(draft)
     for path, name in _gears_named(draft):
         if gears and name not in gears:
-            hint = did_you_mean(name, gears)
-            yield draft.problem(path, f'"{name}" is not a gear', choices(gears), hint)
+            of_planet = path[0] == "gears" and path[-1] == "carrier"
+            known, allowed = (
+                (carriers, allowed_carriers(carriers)) if of_planet else (gears, choices(gears))
+            )
+            hint = did_you_mean(name, known)
+            yield draft.problem(path, f'"{name}" is not a gear', allowed, hint)
+
+
+def carriers_in(draft: Draft) -> list[str]:
+    """Return the names of all carriers, the invalid ones as well."""
+    return [
+        name
+        for name in draft.names("gears")
+        if look_up(draft.data, ("gears", name, "type")) == "carrier"
+    ]
+
+
+def allowed_carriers(carriers: list[str]) -> str:
+    """Say what a planet may name as its carrier."""
+    return choices(carriers) if carriers else 'a gear of type = "carrier"'
 
 
 def check_mesh_names(draft: Draft) -> Iterator[Problem]:
@@ -71,20 +89,25 @@ def check_pairs(draft: Draft) -> Iterator[Problem]:
 def _gears_named(draft: Draft) -> Iterator[tuple[Path, str]]:
     yield from _texts(draft, "gears", "centre", "about")
     yield from _texts(draft, "gears", "carrier")
+    gears = draft.names("gears")
     for section, keys in ENDS.items():
         valid = getattr(draft, section)
         for name in draft.names(section):
-            for key in keys:
+            # A name that tells no gears was reported already.
+            ends = () if name in valid else ends_of(name, gears) or ()
+            for number, key in enumerate(keys):
                 path: Path = (section, name, key)
+                given = look_up(draft.data, path) is not None
                 if name in valid:
                     told = getattr(valid[name], key)
-                    given = look_up(draft.data, path) is not None
                     for gear in (told,) if isinstance(told, str) else told:
-                        # A name that names no gears was reported already.
                         if gear or given:
                             yield path if given else path[:-1], gear
-                else:
+                elif given:
                     yield from _texts_at(draft, path)
+                else:
+                    by_name = ends if len(keys) == 1 else ends[number : number + 1]
+                    yield from ((path[:-1], gear) for gear in by_name)
     for section in (*FLOATS, "errors"):
         # A name that is none was reported already.
         yield from (((section, name), name) for name in draft.names(section) if name.strip())
