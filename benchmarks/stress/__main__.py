@@ -13,7 +13,7 @@ from benchmarks.stress.families import FAMILIES
 from benchmarks.stress.problem import Family
 from benchmarks.stress.truth import truth_of
 from loadshare.cli.exits import REFUSED, UNUSABLE, fail, writing
-from loadshare.cli.files import write_text
+from loadshare.output import write_whole
 from loadshare.train import build_train
 
 
@@ -72,7 +72,7 @@ def _explain(family: Family, number: int, case: Path | None) -> None:
     typer.echo(f"Ours, in {found.seconds:.3f} s: {found.outcome.value}: {found.told}")
     if case is not None:
         with writing(case):
-            write_text(case, problem.case.to_toml())
+            write_whole(case, problem.case.to_toml())
         typer.echo(f"Wrote {case}")
     if not found.as_it_should_be:
         raise typer.Exit(REFUSED)

@@ -131,6 +131,32 @@ def test_replace_leaves_the_case_as_it_is(drive):
     assert changed.name == "drive"
 
 
+def test_numbers_and_arrays_of_numpy_are_plain_data(drive):
+    """As are generators; whatever is given, the case holds what a file would."""
+    plain = {
+        "operating.positions": 3,
+        'meshes."a-b".backlash': "20 um",
+        "errors.a": {"installation": ["1 um", "2 um"]},
+        "study.one": {"kind": "sweep", "over": {"meshes.a-b.stiffness": ["1e6 N*m/rad"]}},
+    }
+    changed = drive.replace(
+        {
+            "operating.positions": np.int64(3),
+            'meshes."a-b".backlash': np.str_("20 um"),
+            "errors.a": {"installation": np.array(["1 um", "2 um"])},
+            "study.one": {
+                "kind": "sweep",
+                "over": {"meshes.a-b.stiffness": (text for text in ["1e6 N*m/rad"])},
+            },
+        }
+    )
+    assert changed.to_dict() == drive.replace(plain).to_dict()
+    assert Case(changed.to_dict() | {"title": np.str_("T")}).to_toml()
+    for number in (np.float32(4.0), np.float64(4.0), np.array(4.0)):
+        with pytest.raises(CaseError, match=r"4\.0 has no unit"):
+            drive.replace({'meshes."a-b".backlash': number})
+
+
 @pytest.mark.parametrize(
     ("key", "message"),
     [

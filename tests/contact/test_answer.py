@@ -124,11 +124,32 @@ def test_what_has_no_equilibrium_is_refused() -> None:
         ("stiffness", np.eye(2), r"shape \(2, 2\), wanted \(1, 1\)"),
         ("load", np.array([np.nan]), "no finite number"),
         ("coordinates", ("right stop",), "two elements or coordinates"),
+        ("coordinates", (), "coordinates: there is none"),
+        ("load", ["one"], "load: holds what is no number"),
+        ("load", None, r"load: shape \(\), wanted \(1,\)"),
+        ("rows", (Row("stop", "stop", [1.0], None, None),), "law of stop: None is no law"),
+        ("rows", (Row("stop", "stop", [1.0], None, RIGID),), "gap of stop: holds what is no"),
+        ("radials", (Radial("drum", [[1.0]], [0.0, 0.0], None),), "source of drum: None is no law"),
     ],
 )
 def test_arrays_that_do_not_belong_together_are_named(part, value, told) -> None:
     with pytest.raises(ValueError, match=told):
         solve_contact(dataclasses.replace(block(1.0), **{part: value}))
+
+
+def test_lists_and_whole_numbers_will_do() -> None:
+    stops = [Row(name, "stop", [sign], 0, RIGID) for name, sign in (("right", 1), ("left", -1))]
+    problem = ContactProblem(["x"], [[1000000]], [-3000], stops)
+    found = solve_contact(problem)
+    assert found.force == pytest.approx({"right": 0.0, "left": 3000.0})
+    assert residuals(problem, [0], found.force, {}).worst < 1e-12
+    drum = Radial("drum", [[1, 0], [0, 1]], [0, 0], RadialLaw((Piece(0, 1000, math.inf, "wall"),)))
+    found = solve_contact(ContactProblem(["x", "y"], np.zeros((2, 2), int), [3, 4], radials=[drum]))
+    assert found.place == pytest.approx({"x": 3e-3, "y": 4e-3})
+    rolls = ArcRow("arc", Arc([1, 0], [0, 0], 0), [[1]], RIGID, 0)
+    with pytest.raises(ValueError, match="nominal of arc: shape") as told:
+        solve_contact(ContactProblem(["x"], [[1]], [1], arcs=[rolls]))
+    assert "relative of arc: shape (1, 1), wanted (3, 1)" in str(told.value)
 
 
 @pytest.mark.parametrize(

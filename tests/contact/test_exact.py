@@ -5,6 +5,7 @@ linear algebra.
 """
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -85,6 +86,23 @@ def test_an_active_set_is_read_from_an_approximate_answer(seed):
     clear = np.abs(forces - (p.gaps + p.linear * forces - p.rows @ x)) > 1e-4
     found = np.array(identify(p, near).closed)
     assert (found == (forces > 0.0))[clear].all()
+
+
+def test_what_a_set_leaves_open_goes_to_its_least_norm_or_stays():
+    """A body on a spring, and one that nothing holds, 3 away from 0 and beyond a stop at 1."""
+    p = replace(
+        problem(0, rigid=True, size=2, contacts=1),
+        stiffness=np.diag([2.0, 0.0]),
+        load=np.array([1.0, 0.0]),
+        rows=np.array([[0.0, -1.0]]),
+        gaps=np.array([-1.0]),
+    )
+    start = Point(np.array([0.0, 3.0]), np.zeros(1), np.zeros((0, 2)))
+    for stay, place in ((False, 1.0), (True, 3.0)):
+        point, active = solve_exact(p, first_guess(p), start, stay=stay)
+        assert point.x == pytest.approx([0.5, place], abs=1e-15)
+        assert point.forces == pytest.approx([0.0], abs=1e-15)
+        assert active.closed == (not stay,)
 
 
 def test_a_regular_system_is_solved_to_round_off():

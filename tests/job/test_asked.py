@@ -73,6 +73,33 @@ def test_positions_that_are_none_are_refused(positions, told):
         ls.solve_many(shipped("fgfbstts/limit_ring"), SAMPLES, positions=positions)
 
 
+@pytest.mark.parametrize("position", [0, 9, 1.0, True, "1", None], ids=repr)
+def test_a_search_refuses_a_position_that_is_none(position):
+    with pytest.raises(ValueError, match=f"^positions {position}: this case has positions 1 to 5"):
+        ls.search(shipped("fgfbstts/limit_ring"), position)
+
+
+def test_a_search_takes_a_position_out_of_an_array():
+    found = ls.search(shipped("two_path/clocking_error"), np.arange(1, 2)[0])
+    assert type(found.answer.index) is int
+
+
+@pytest.mark.parametrize(
+    ("settings", "told"),
+    [
+        ({"solver": "gurobi"}, "unknown solver 'gurobi'; allowed: auto, clarabel, osqp, cvxpy"),
+        ({"solver": None}, "unknown solver None; allowed: auto"),
+        ({"method": "secant"}, "unknown method 'secant'; allowed: newton"),
+        ({"engine": None}, "unknown engine None; allowed: auto, compiled, vectorised"),
+        ({"engine": "fast", "solver": "osqp"}, "unknown engine 'fast'"),
+    ],
+    ids=str,
+)
+def test_a_way_that_is_none_is_refused(settings, told):
+    with pytest.raises(ValueError, match=told):
+        ls.solve(shipped("fgfbstts/base"), **settings)
+
+
 def test_positions_keep_their_order_and_become_plain_numbers():
     result = ls.solve(shipped("fgfbstts/base"), positions=np.array([3, 1]))
     assert [p.position for p in result.positions] == [3, 1]

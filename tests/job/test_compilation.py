@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
@@ -375,6 +376,12 @@ for engine in (engines.engine_named, engines.engine_at_hand):
 print([*told, engines.loaded(), engines.chosen(1) == "vectorised"])
 """
     assert run(script)[0] == [False, True, True, True, True, True]
+
+
+def test_what_another_thread_imports_is_not_loaded_yet(monkeypatch):
+    name, _ = engines.KERNELS[0]
+    monkeypatch.setitem(sys.modules, name, ModuleType(name))
+    assert not engines.loaded()
 
 
 def test_what_is_warm_is_at_hand():

@@ -2,6 +2,7 @@
 
 import html.parser
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import altair as alt
@@ -100,6 +101,27 @@ def test_a_case_and_a_result_show_themselves(ring):
     assert "4 on boundary" in ring._repr_html_() or "stop" in ring._repr_html_()
 
 
+def test_what_a_position_was_solved_with_shows_itself_on_a_screen(ring):
+    case = ls.examples("fgfbstts/limit_ring")
+    found = ls.search(case)
+    known = found.answer.equilibrium
+    other = replace(known, flank_force=dict.fromkeys(known.flank_force, 0.0))
+    every = (
+        ring.positions[0],
+        ls.explain(case),
+        ls.formulate(case),
+        found,
+        replace(found, others=(other,)),
+    )
+    titles = ("Position 1", "Answer of", "Formulation of", "Search at", "Search at")
+    for thing, title in zip(every, titles, strict=True):
+        lines = repr(thing).splitlines()
+        assert lines[0].startswith(title)
+        assert 1 < len(lines) <= ROWS + 10
+        assert max(map(len, lines)) <= WIDTH
+        assert tags(thing._repr_html_()) <= PLAIN
+
+
 def test_hostile_titles_and_names_inject_nothing():
     plain = ls.examples("star/floating_sun_4")
     data = plain.to_dict() | {"title": HOSTILE, "source": HOSTILE}
@@ -174,6 +196,7 @@ def test_every_shipped_case_opens_by_its_name():
     assert "fgfbstts/limit_ring" in names
     for name in names:
         assert ls.examples(name).name == name.rpartition("/")[2]
+    assert ls.examples(Path("star") / "floating_sun_4").name == "floating_sun_4"
 
 
 @pytest.mark.parametrize("given", ["limit_ring", "star/floating_sun_44", "nothing/at_all", "../x"])

@@ -55,6 +55,16 @@ def test_an_unknown_ending_is_told(picture, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_an_unknown_form_or_scale_is_told(picture, tmp_path):
+    figure = picture("limit_ring", "share")
+    with pytest.raises(ValueError, match="unknown form 'gif'; allowed: png, svg, pdf, html, json"):
+        figure.content("gif")
+    for scale in (0, -1.0, float("nan"), 1e9, "2", None):
+        with pytest.raises(ValueError, match=r"scale .*; allowed: a number from 0\.1 to 10"):
+            figure.save(tmp_path / "a.png", scale=scale)
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_nothing_is_left_of_a_picture_that_failed(picture, tmp_path, monkeypatch):
     import vl_convert
 

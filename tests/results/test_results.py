@@ -72,6 +72,16 @@ def test_labelled_arrays_hold_the_same_figures(result):
     assert all(v.attrs["units"] and v.attrs["long_name"] for v in data.data_vars.values())
 
 
+def test_labelled_arrays_do_not_change_the_result(result, tmp_path):
+    arrays = result.dataset
+    with pytest.raises(ValueError, match="read-only"):
+        arrays["torque"] /= 1000.0
+    arrays["mine"] = 2.0 * arrays["torque"]
+    assert "mine" not in result.dataset
+    result.to_netcdf(tmp_path / "result.nc")
+    assert ls.load_result(tmp_path / "result.nc") == result
+
+
 def test_a_table_has_one_row_per_position_and_mesh(result):
     table = result.to_frame()
     assert len(table) == len(result.positions) * len(result.positions[0].torque)

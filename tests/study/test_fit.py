@@ -182,6 +182,14 @@ def test_what_cannot_be_fitted_is_told(unknowns, said):
         ls.fit(case, unknowns)
 
 
+@pytest.mark.parametrize("starts", [0, -1, 1.5, None])
+def test_a_fit_starts_at_least_once(starts):
+    base = shipped("fgfbstts/limit_ring")
+    case = base.replace({"measured.bench": measured(base)})
+    with pytest.raises(ValueError, match=f"starts {starts}; allowed: a whole number from 1 on"):
+        ls.fit(case, {"rings.4.float": ("1 um", "2 um")}, starts=starts)
+
+
 def test_a_measurement_changes_no_mechanics():
     base = shipped("fgfbstts/both_errors")
     study = {"study.one": {"kind": "compare"}}

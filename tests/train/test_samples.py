@@ -8,6 +8,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields
 
 import numpy as np
+import pandas as pd
+import pint
 import pytest
 from tests.support import loaded, round_ring, shipped
 
@@ -18,6 +20,7 @@ from loadshare.train.columns import columns_of
 from loadshare.train.samples import samples_of
 from loadshare.train.situations import Situations, situation_of
 
+PINT = pint.UnitRegistry()
 DIGITS = 1e-13
 """Relative: products are taken in another order, and π/180 before or after."""
 NONE = 1e-19
@@ -228,7 +231,12 @@ WRONG = {
     "empty": ({}, "there is no key"),
     "no values": ({"rings.4.float [um]": []}, "not a list of values"),
     "a table of values": ({"rings.4.float [um]": [[1.0, 2.0]]}, "not a list of values"),
-    "texts with a unit": ({"rings.4.float [um]": ["1", "2"]}, "values are texts"),
+    "lists of several lengths": ({"rings.4.float [um]": [[1.0], [1.0, 2.0]]}, "not a list of"),
+    "twice": ({"rings.4.float [um]": [1.0], "rings.4.float [mm]": [1.0]}, "is given twice"),
+    "nothing": ({"rings.4.float [um]": [1.0, None]}, "neither a number nor a text"),
+    "masked": ({"rings.4.float [um]": np.ma.array([1.0], mask=[True])}, "neither a number"),
+    "complex": ({"rings.4.float [um]": [1.0j]}, "neither a number nor a text"),
+    "texts with a unit": ({"rings.4.float [um]": ["1", "2"]}, "values are no numbers"),
     "no key path": ({"rings..4 [um]": [1.0]}, "is not a key path"),
 }
 
@@ -241,6 +249,31 @@ def test_what_cannot_be_used_is_told(what):
     assert told in str(error.value)
     ring = "rings" if samples else ""
     assert any(ring in problem.key or "44" in problem.key for problem in error.value.problems)
+
+
+@pytest.mark.parametrize(
+    "samples",
+    [
+        pd.DataFrame({"rings.4.float [um]": [1, 2], "rings.5.float": ["1 um", "2 um"]}),
+        pd.DataFrame({"rings.4.float [um]": [1, 2], "rings.5.float": ["1 um", "2 um"]}, dtype="O"),
+        {"rings.4.float [um]": iter([1, 2]), "rings.5.float": (f"{k} um" for k in (1, 2))},
+        {"rings.4.float [um]": range(1, 3), "rings.5.float": np.array([1.0, 2.0]) * PINT.um},
+    ],
+    ids=["frame", "frame of objects", "generators", "quantities"],
+)
+def test_whatever_has_columns_is_read_alike(samples):
+    read = columns_of(samples)
+    assert [column.key for column in read] == ["rings.4.float [um]", "rings.5.float"]
+    for column in read:
+        np.testing.assert_allclose(column.in_si("m"), [1e-6, 2e-6], rtol=1e-15)
+
+
+def test_what_has_no_columns_is_told():
+    for samples in (None, [[1.0, 2.0]], np.ones((2, 2))):
+        with pytest.raises(CaseError, match="no table of values by key"):
+            columns_of(samples)
+    with pytest.raises(CaseError, match="unknown key"):
+        samples_of(everything(), {4: [1.0]})
 
 
 def test_all_problems_are_told_at_once():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from typing import Any, TypeVar, get_origin
 
@@ -125,7 +125,8 @@ def as_data(given: Any, file: str = "case") -> Any:
     Parameters
     ----------
     given : object
-        Elements, tables, lists, physical values; names may be numbers, None means left out.
+        Elements, tables, lists, arrays, physical values; names may be numbers, None means left
+        out.
     file : str
         Where it stands, for messages.
 
@@ -154,9 +155,13 @@ def _as_data(given: Any, path: Path, file: str) -> Any:
             raise CaseError([Problem(file, dotted(path), "", *told)])
         named = ((str(k), item) for k, item in given.items() if item is not None)
         return {key: _as_data(item, (*path, key), file) for key, item in named}
-    if isinstance(given, list | tuple):
+    given = as_text(given)
+    if hasattr(given, "dtype") and hasattr(given, "tolist"):
+        # An array of NumPy or a column of pandas, neither of which is imported for this.
+        given = given.tolist()
+    if isinstance(given, list | tuple | range | Iterator):
         return [_as_data(item, (*path, k), file) for k, item in enumerate(given)]
-    return as_text(given)
+    return given
 
 
 def defaults() -> dict[str, Any]:

@@ -20,6 +20,7 @@ from pydantic_core import InitErrorDetails, PydanticCustomError
 
 from loadshare.case.keys import Path, look_up
 from loadshare.case.quantity import Quantity
+from loadshare.case.table import fixed
 from loadshare.settings import ALLOWED
 
 # Marks a step of pydantic's error locations as the choice of a shape, which is no key of the case.
@@ -89,6 +90,9 @@ class Element(BaseModel):
         ]
         if broken:
             raise ValidationError.from_exception_data(type(self).__name__, broken)
+        for name, value in self.__dict__.items():
+            if isinstance(value, dict):
+                self.__dict__[name] = fixed(value)
         return self
 
     def given(self, *fields: str) -> list[str]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from difflib import get_close_matches
-from pathlib import Path
+from os import PathLike
+from pathlib import Path, PurePath
 from typing import overload
 
 from loadshare.case.model import Case
@@ -21,13 +22,13 @@ NO_CASES = ("pairs",)
 @overload
 def examples() -> tuple[str, ...]: ...
 @overload
-def examples(name: str) -> Case: ...
-def examples(name: str | None = None) -> tuple[str, ...] | Case:
+def examples(name: str | PathLike[str]) -> Case: ...
+def examples(name: str | PathLike[str] | None = None) -> tuple[str, ...] | Case:
     """List the cases that come with the package, or open one.
 
     Parameters
     ----------
-    name : str, optional
+    name : str or path-like, optional
         As listed, such as ``"fgfbstts/limit_ring"``.
 
     Returns
@@ -50,7 +51,7 @@ def examples(name: str | None = None) -> tuple[str, ...] | Case:
     """
     if name is None:
         return tuple(_names())
-    return load_case(example_file(name))
+    return load_case(example_file(name if isinstance(name, str) else PurePath(name).as_posix()))
 
 
 def example_file(name: str) -> Path:

@@ -19,6 +19,7 @@ from loadshare.case.element import Element
 from loadshare.case.keys import Path, covers, parse
 from loadshare.case.origin import Origin
 from loadshare.case.revise import differing, revise
+from loadshare.case.table import fixed
 from loadshare.errors import CaseError
 from loadshare.output import write_whole
 
@@ -70,7 +71,8 @@ class Case(Content):
             raise CaseError(problems)
         given = {n: getattr(draft, n) for n in Content.model_fields if n in data}
         # Each section was read by itself: to read all of them once more would say nothing new.
-        made = Content.model_construct(_fields_set={*given}, **{**defaults(), **given})
+        content = {name: fixed(section) for name, section in {**defaults(), **given}.items()}
+        made = Content.model_construct(_fields_set={*given}, **content)
         for slot in ("__dict__", "__pydantic_fields_set__", "__pydantic_extra__"):
             object.__setattr__(self, slot, getattr(made, slot))
         self.model_post_init(None)

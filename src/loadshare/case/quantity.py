@@ -225,13 +225,16 @@ def as_text(given: object) -> object:
     Returns
     -------
     object
-        Number and unit as text, an array as a list of them; something else unchanged.
+        Number and unit as text, an array as a list of them; a scalar of NumPy as Python's;
+        something else unchanged.
     """
     if isinstance(given, Quantity):
         return given.text
     magnitude, units = getattr(given, "magnitude", None), getattr(given, "units", None)
     if magnitude is None or units is None:
-        return given
+        # To ask for NumPy's types would import it for every command.
+        is_scalar = hasattr(given, "dtype") and getattr(given, "ndim", None) == 0
+        return given.item() if is_scalar else given  # type: ignore[attr-defined]
     if getattr(magnitude, "ndim", 0):
         return [f"{float(number)!r} {units:~C}" for number in magnitude]
     return f"{float(magnitude)!r} {units:~C}".strip()

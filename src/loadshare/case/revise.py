@@ -46,20 +46,19 @@ def revise(
     owned: set[int] = set()
     moved = set()
     problems = []
-    for key, value in changes.items():
+    for key, given in changes.items():
+        value = as_data(given)
         try:
             path = parse(key)
         except ValueError:
-            problems.append(Problem(CHANGES, key, as_given(as_data(value)), "is not a key path"))
+            problems.append(Problem(CHANGES, key, as_given(value), "is not a key path"))
             continue
         _own(changed, path, owned)
-        lost = change(changed, path, as_data(value))
+        lost = change(changed, path, value)
         if lost is None:
             moved.add(path)
         else:
-            problems.append(
-                Problem(CHANGES, key, as_given(as_data(value)), "does not exist", "", lost)
-            )
+            problems.append(Problem(CHANGES, key, as_given(value), "does not exist", "", lost))
     if problems:
         raise CaseError(problems)
     files = {

@@ -14,6 +14,8 @@ from loadshare.settings import ALLOWED
 LONGEST = 72
 BITS = 4 * LONGEST
 """Of a whole number that is shown in decimals."""
+SHOWN = 24
+"""Choices that are listed; more would bury the message."""
 _DIGITS = re.compile(r"\d+")
 
 
@@ -68,15 +70,13 @@ def _is_part(word: str, option: str) -> bool:
     return len(short) > 2 and f"_{short}_" in f"_{long}_"
 
 
-def choices(known: Iterable[str], most: int = 24) -> str:
+def choices(known: Iterable[str]) -> str:
     """Return a list of choices, cut where it would bury the message.
 
     Parameters
     ----------
     known : iterable of str
         The choices, in the order to show.
-    most : int
-        How many to show at most.
 
     Returns
     -------
@@ -84,7 +84,7 @@ def choices(known: Iterable[str], most: int = 24) -> str:
         The choices, separated by commas; ends in an ellipsis where some are left out.
     """
     names = list(known)
-    return ", ".join(names[:most]) + (", …" if len(names) > most else "")
+    return ", ".join(names[:SHOWN]) + (", …" if len(names) > SHOWN else "")
 
 
 def count(number: int, noun: str = "value") -> str:

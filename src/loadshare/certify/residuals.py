@@ -16,13 +16,10 @@ import numpy as np
 from loadshare.array_types import Array
 from loadshare.certify.graphs import complementary, energy, interval, strength
 from loadshare.certify.state import ClaimedState, size
-from loadshare.settings import CERTIFY
+from loadshare.settings import CERTIFY, EPS
 
 Blocks = list[tuple[Array, tuple[str, ...]]]
 Scalars = TypeVar("Scalars", float, Array)
-
-EPS = float(np.finfo(float).eps)
-"""Round-off of a length, relative to it."""
 
 
 def force_balance(state: ClaimedState) -> Blocks:

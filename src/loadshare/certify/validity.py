@@ -298,9 +298,7 @@ class Measuring:
         return {name: self._largest(name, values[:, 0]) for name, values in every.items()}
 
 
-def validity(
-    train: Train, answer: Equilibrium, deflection: float, claimed: Equilibria | None = None
-) -> Validity:
+def validity(train: Train, answer: Equilibrium, deflection: float) -> Validity:
     """Measure the displacements of an answer.
 
     Parameters
@@ -309,10 +307,8 @@ def validity(
     answer : Equilibrium
     deflection : float
         Of the case [m], as its certificate has it.
-    claimed : Equilibria, optional
-        The answer as the only sample.
     """
-    here, claimed = situation_of(train, answer.index), claimed or Equilibria.of(train, answer)
+    here, claimed = situation_of(train, answer.index), Equilibria.of(train, answer)
     return Validity(measuring(train).one(here, claimed, deflection))
 
 

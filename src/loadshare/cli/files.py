@@ -16,22 +16,10 @@ from loadshare.cli.waiting import echo
 from loadshare.output import STANDARD, write_whole
 
 
-def write_text(path: Path, text: str) -> None:
-    """Write a text file, whole or not at all.
-
-    Parameters
-    ----------
-    path : Path
-        Its folder is made.
-    text : str
-    """
-    write_whole(path, text)
-
-
 def save_text(path: Path, text: str) -> None:
     """Write a text file that was asked for; one that cannot be written becomes a message."""
     with writing(path):
-        write_text(path, text)
+        write_whole(path, text)
 
 
 def tell_written(file: Path, more: str = "", *, err: bool = False) -> None:
@@ -54,7 +42,7 @@ def kept() -> str:
 
 def write_document(path: Path, document: dict[str, Any]) -> None:
     """Write plain data as a JSON file, whole or not at all."""
-    write_text(path, document_text(document))
+    write_whole(path, document_text(document))
 
 
 def document_text(document: dict[str, Any]) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -15,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from loadshare.cli.exits import UNUSABLE, fail, writing
-from loadshare.cli.files import tell_written
+from loadshare.cli.files import document_text, tell_written
 from loadshare.cli.options import OUTPUT
 from loadshare.cli.waiting import speak
 from loadshare.errors import LoadshareError
@@ -230,7 +229,7 @@ def _json(name: str, frame: pd.DataFrame, about: Mapping[str, object]) -> str:
         dict(zip(heads, map(_plain, row), strict=True)) for row in frame.itertuples(index=False)
     ]
     document = {"question": name, "version": __version__, **about, "rows": rows}
-    return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    return document_text(document)
 
 
 def _plain(cell: Any) -> object:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias
 
@@ -89,19 +89,12 @@ OUTPUT = "FILE"
 """Metavariable of options for a file to write, by which they are recognised."""
 
 
-def output(*names: str, what: str, callback: Callable[..., Any] | None = None) -> Any:
-    """Return the option for the one file that a command writes, which a callback may refuse."""
-    return typer.Option(
-        *(names or ("-o", "--output")),
-        metavar=OUTPUT,
-        dir_okay=False,
-        writable=True,
-        help=what,
-        callback=callback,
-    )
+def output(what: str) -> Any:
+    """Return the option for the one file that a command writes."""
+    return typer.Option("-o", "--output", metavar=OUTPUT, dir_okay=False, writable=True, help=what)
 
 
-def split_setting(text: str, form: str, name: str = OVER) -> tuple[tuple[str, ...], str]:
+def split_setting(text: str, form: str) -> tuple[tuple[str, ...], str]:
     """Split ``KEY=VALUE`` or ``KEY=KEY=VALUE`` at the equals signs outside of quotes.
 
     Raises
@@ -113,7 +106,7 @@ def split_setting(text: str, form: str, name: str = OVER) -> tuple[tuple[str, ..
 
     *found, value = split_outside(text, "=")
     if not found or not all(found) or not value:
-        raise typer.BadParameter(f"{text!r} is not of the form {form}", param_hint=name)
+        raise typer.BadParameter(f"{text!r} is not of the form {form}", param_hint=OVER)
     return tuple(found), value
 
 

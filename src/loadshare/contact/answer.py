@@ -70,7 +70,7 @@ class ContactAnswer:
 
     @property
     def passed(self) -> bool:
-        """Whether it is an equilibrium to `TOLERANCE`."""
+        """Whether it is an equilibrium to `CONTACT.tolerance`."""
         return self.residuals.worst <= CONTACT.tolerance
 
 
@@ -128,6 +128,7 @@ def residuals(
     pull : mapping of radial element to ndarray, shape (2,)
         Force along its offset.
     """
+    x = np.asarray(x, dtype=np.float64)
     rows = problem.rows_at(x)
     forces = np.array([force.get(r.name, 0.0) for r in rows])
     pushed = [row.vector * f for row, f in zip(rows, forces, strict=True)]

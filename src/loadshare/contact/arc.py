@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import floats
+
 Vector = NDArray[np.float64]
 
 
@@ -31,6 +33,10 @@ class Arc:
     nominal: Vector
     shift: Vector
     clearance: float
+
+    def __post_init__(self) -> None:
+        for name in ("nominal", "shift"):
+            object.__setattr__(self, name, floats(getattr(self, name)))
 
     @property
     def distance(self) -> float:

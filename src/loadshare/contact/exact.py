@@ -79,6 +79,7 @@ def solve_exact(
     start: Point | None = None,
     rounds: int = 0,
     work: Work | None = None,
+    stay: bool = False,
 ) -> tuple[Point, ActiveSet] | None:
     """Solve on an active set and exchange until every sign is right.
 
@@ -95,6 +96,9 @@ def solve_exact(
         Exchanges allowed; 0 allows as many as the programme's size justifies.
     work : Work, optional
         Newton steps allowed; as many as it takes by default.
+    stay : bool
+        Leave coordinates that a set does not determine where they are; by default they go to their
+        least norm, where contacts that carry nothing may be violated.
 
     Returns
     -------
@@ -105,7 +109,7 @@ def solve_exact(
     limit = rounds or 20 + 6 * (len(programme.gaps) + len(programme.cones))
     active, seen, one_only = guess, {guess}, False
     for _ in range(limit):
-        solved = _solve_fixed(programme, active, start, work)
+        solved = _solve_fixed(programme, active, start, work, stay)
         if solved is None:
             return None
         point, settled = solved
@@ -130,7 +134,7 @@ def at_rest(programme: Programme) -> Point:
 
 
 def _solve_fixed(
-    programme: Programme, active: ActiveSet, start: Point, work: Work | None
+    programme: Programme, active: ActiveSet, start: Point, work: Work | None, stay: bool
 ) -> tuple[Point, bool] | None:
     """Newton's method on the smooth equations of an active set; a point, and whether it settled.
 
@@ -143,7 +147,7 @@ def _solve_fixed(
     for _ in range(CONTACT.newton_steps if curved else 1):
         if work is not None:
             work.step()
-        solved = _newton_system(programme, active, Point(x, forces, cone_forces))
+        solved = _newton_system(programme, active, Point(x, forces, cone_forces), stay)
         if solved is None:
             return None
         point = solved
@@ -158,7 +162,7 @@ def _solve_fixed(
     return point, previous <= CONTACT.near
 
 
-def _newton_system(programme: Programme, active: ActiveSet, at: Point) -> Point | None:
+def _newton_system(programme: Programme, active: ActiveSet, at: Point, stay: bool) -> Point | None:
     """One Newton step, in the absolute form that a linear problem solves at once."""
     size = programme.stiffness.shape[0]
     closed = np.array(active.closed, dtype=bool)
@@ -190,6 +194,8 @@ def _newton_system(programme: Programme, active: ActiveSet, at: Point) -> Point 
     if solved is None:
         return None
     x = solved.values[:size]
+    if stay:
+        x = x + solved.moves @ (solved.moves.T @ (at.x - x))
     forces = np.zeros(len(programme.gaps))
     forces[closed] = solved.values[size : size + flanks]
     cone_forces = np.zeros((len(programme.cones), 2))

@@ -62,13 +62,11 @@ def solve_programme(
     except BackendFailure as failure:
         if not polish:
             raise Unsolved(str(failure)) from failure
-        return _without_guess(programme, None, "", work)
+        return Inner(*solve_proximal(programme, None, work), "proximal + exact")
     if not polish:
         return Inner(rough, None, backend.name)
-    exact = solve_exact(programme, identify(programme, rough), rough, work=work)
-    if exact is None:
-        return _without_guess(programme, rough, f"{backend.name} + ", work)
-    return Inner(*exact, f"{backend.name} + exact")
+    point, active, via = _from_rough(programme, rough, work)
+    return Inner(point, active, f"{backend.name} + {via}")
 
 
 def solve_near(programme: Programme, point: Point) -> tuple[Point, ActiveSet]:
@@ -79,10 +77,27 @@ def solve_near(programme: Programme, point: Point) -> tuple[Point, ActiveSet]:
     Unsolved
         If the programme contradicts itself or no consistent active set is found.
     """
-    exact = solve_exact(programme, identify(programme, point), point)
-    return exact or solve_proximal(programme, point, None)
+    found, active, _ = _from_rough(programme, point, None)
+    return found, active
 
 
-def _without_guess(programme: Programme, start: Point | None, via: str, work: Work | None) -> Inner:
-    """Solve where no active set could be read from a back-end's answer, or there is none."""
-    return Inner(*solve_proximal(programme, start, work), f"{via}proximal + exact")
+def _from_rough(
+    programme: Programme, rough: Point, work: Work | None
+) -> tuple[Point, ActiveSet, str]:
+    """Solve exactly, given an answer of a few digits; also tell how.
+
+    Coordinates that forces leave open go to their least norm. Where contacts that carry nothing
+    close and open there without end, they stay where the answer has them: an interior point stands
+    clear of such contacts.
+    """
+    guess = identify(programme, rough)
+    exact = solve_exact(programme, guess, rough, work=work)
+    if exact is not None:
+        return *exact, "exact"
+    try:
+        return *solve_proximal(programme, rough, work), "proximal + exact"
+    except Unsolved:
+        exact = solve_exact(programme, guess, rough, work=work, stay=True)
+        if exact is None:
+            raise
+        return *exact, "exact in place"

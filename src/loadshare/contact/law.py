@@ -11,7 +11,7 @@ import math
 from bisect import bisect_right
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from loadshare.array_types import Array
 from loadshare.settings import CONTACT
 
 
+@runtime_checkable
 class Law(Protocol):
     """What every compliance law answers."""
 

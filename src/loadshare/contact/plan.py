@@ -1,8 +1,8 @@
 """Which parts of a contact problem are in play, and the programme that follows.
 
 A plan starts from what a loaded train most likely does: drive flanks carry load, everything else is
-idle. What turns out otherwise is put in play and the problem is solved again (see *Reduction is
-verified, not trusted* in the design notes). Source: formulation, section 11.
+idle. What turns out otherwise is put in play and the problem is solved again (*Leave
+out, then check* in the design notes). Source: formulation, section 11.
 """
 
 from __future__ import annotations

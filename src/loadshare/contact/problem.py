@@ -12,14 +12,15 @@ scene has coordinates in metres and forces in newtons. Source: formulation, sect
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
+from loadshare.array_types import floats
 from loadshare.contact.arc import Arc
 from loadshare.contact.condense import Condensation, condense
 from loadshare.contact.law import Law
@@ -51,6 +52,9 @@ class Row:
     gap: float
     law: Law
 
+    def __post_init__(self) -> None:
+        _as_floats(self, "vector")
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ArcRow:
@@ -73,6 +77,9 @@ class ArcRow:
     law: Law
     sagitta: float
 
+    def __post_init__(self) -> None:
+        _as_floats(self, "relative")
+
     def row(self, x: Array, wide: bool = False) -> Row:
         """Tangent face at the coordinates x: −n·Δ ≤ g.
 
@@ -84,6 +91,7 @@ class ArcRow:
         return Row(self.name, "arc", -(normal @ self.relative), bound, self.law)
 
 
+@runtime_checkable
 class FollowingLaw(Protocol):
     """A radial law whose friction may follow a torque, such as that of a spline."""
 
@@ -119,6 +127,9 @@ class Radial:
     centre: Array
     source: RadialLaw | RollingLaw | FollowingLaw
     levers: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        _as_floats(self, "matrix", "centre")
 
     @property
     def follows_torque(self) -> bool:
@@ -186,6 +197,11 @@ class ContactProblem:
     arcs: tuple[ArcRow, ...] = ()
     radials: tuple[Radial, ...] = ()
 
+    def __post_init__(self) -> None:
+        _as_floats(self, "stiffness", "load")
+        for name in ("coordinates", "rows", "arcs", "radials"):
+            object.__setattr__(self, name, tuple(getattr(self, name)))
+
     @property
     def size(self) -> int:
         """Number of coordinates."""
@@ -199,17 +215,22 @@ class ContactProblem:
         ValueError
             With all problems, one a line.
         """
-        n, wrong = self.size, []
-        shapes = [("stiffness", self.stiffness, (n, n)), ("load", self.load, (n,))]
-        shapes += [(f"vector of {r.name}", r.vector, (n,)) for r in self.rows]
-        shapes += [(f"relative of {a.name}", a.relative, (3, n)) for a in self.arcs]
-        shapes += [(f"matrix of {r.name}", r.matrix, (2, n)) for r in self.radials]
-        shapes += [(f"centre of {r.name}", r.centre, (2,)) for r in self.radials]
-        for what, array, shape in shapes:
-            if np.shape(array) != shape:
-                wrong.append(f"{what}: shape {np.shape(array)}, wanted {shape}")
+        n = self.size
+        wrong = [] if n else ["coordinates: there is none"]
+        for what, array, shape in self._arrays():
+            if not isinstance(array, np.ndarray):
+                wrong.append(f"{what}: holds what is no number")
+            elif array.shape != shape:
+                wrong.append(f"{what}: shape {array.shape}, wanted {shape}")
             elif not np.isfinite(array).all():
                 wrong.append(f"{what}: holds what is no finite number")
+        laws: list[tuple[str, object, Any]]
+        laws = [(f"law of {row.name}", row.law, Law) for row in self.rows]
+        laws += [(f"law of {arc.name}", arc.law, Law) for arc in self.arcs]
+        radial = RadialLaw | RollingLaw | FollowingLaw
+        laws += [(f"source of {r.name}", r.source, radial) for r in self.radials]
+        no_laws = [(what, law) for what, law, kind in laws if not isinstance(law, kind)]
+        wrong += [f"{what}: {law!r} is no law" for what, law in no_laws]
         if not wrong and not np.array_equal(self.stiffness, self.stiffness.T):
             wrong.append("stiffness: is not symmetric")
         elif (
@@ -223,9 +244,26 @@ class ContactProblem:
         names += [r.name for r in self.radials]
         twice = sorted({name for name in names if names.count(name) > 1})
         wrong += [f"{name}: two elements or coordinates have this name" for name in twice]
-        wrong += [f"gap of {r.name}: {r.gap}" for r in self.rows if not np.isfinite(r.gap)]
         if wrong:
             raise ValueError("\n".join(wrong))
+
+    def _arrays(self) -> Iterator[tuple[str, Any, tuple[int, ...]]]:
+        """Yield what holds numbers: its name, the numbers, and the shape that they should have."""
+        n = self.size
+        yield "stiffness", self.stiffness, (n, n)
+        yield "load", self.load, (n,)
+        for row in self.rows:
+            yield f"vector of {row.name}", row.vector, (n,)
+            yield f"gap of {row.name}", floats(row.gap), ()
+        for arc in self.arcs:
+            yield f"relative of {arc.name}", arc.relative, (3, n)
+            yield f"nominal of {arc.name}", arc.arc.nominal, (3,)
+            yield f"shift of {arc.name}", arc.arc.shift, (3,)
+            yield f"clearance of {arc.name}", floats(arc.arc.clearance), ()
+            yield f"sagitta of {arc.name}", floats(arc.sagitta), ()
+        for radial in self.radials:
+            yield f"matrix of {radial.name}", radial.matrix, (2, n)
+            yield f"centre of {radial.name}", radial.centre, (2,)
 
     @cached_property
     def condensation(self) -> Condensation:
@@ -264,6 +302,12 @@ class ContactProblem:
         """Torques over radial elements that follow them, to begin with."""
         force = self.force_unit()
         return {r.name: force * max(map(abs, r.levers.values()), default=0.0) for r in self.radials}
+
+
+def _as_floats(part: object, *names: str) -> None:
+    """Turn attributes that a user may give as lists or whole numbers into arrays of floats."""
+    for name in names:
+        object.__setattr__(part, name, floats(getattr(part, name)))
 
 
 def of_unit_norm(rows: Array) -> Array:

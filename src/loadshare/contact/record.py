@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from loadshare.arguments import one_of
 from loadshare.contact.plan import Plan
 from loadshare.settings import CONTACT
 
@@ -41,8 +42,7 @@ class Options:
     max_iterations: int = CONTACT.iterations
 
     def __post_init__(self) -> None:
-        if self.method not in METHODS:
-            raise ValueError(f"unknown method {self.method!r}; allowed: {', '.join(METHODS)}")
+        one_of("method", self.method, METHODS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,8 +54,9 @@ class Iteration:
     kind : str
         Class of the programme.
     via : str
-        How it was solved: "linear solve", "active set kept", "<solver> + exact", or with
-        "proximal" where no active set could be read.
+        How it was solved: "linear solve", "active set kept", "<solver> + exact", with
+        "proximal" where no active set could be read, "in place" where coordinates that forces leave
+        open stay where the solver has them.
     law, face, friction : float
         Misfits after the pass: compliance laws and ring faces [deflections], friction bounds
         [loads].

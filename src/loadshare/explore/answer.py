@@ -7,13 +7,14 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from loadshare.case import Case
+from loadshare.case.keys import dotted
 from loadshare.errors import CaseError, Refused
 from loadshare.explore.inputs import Inputs
-from loadshare.explore.pictures import float_shapes, train_forces, train_shapes
+from loadshare.explore.pictures import float_shapes, train_shapes
 from loadshare.job import solve
 from loadshare.job.positions import prepared
 from loadshare.report.numbers import decimals, fixed, omega, small
-from loadshare.report.page.verdict import largest_forces, resting, sharing, trust
+from loadshare.report.page.verdict import trust, verdict_tables
 from loadshare.report.palette import palette_of
 from loadshare.report.records import Cell, Record, Table, table
 from loadshare.report.words import boundary_name
@@ -69,10 +70,13 @@ def answer_of(inputs: Inputs, given: Setting, position: int) -> Plain:
         return {"status": REFUSED} | found
     shown = next((p for p in result.positions if p.position == position), None)
     found |= {"status": PARTLY if messages else CERTIFIED, "bound": _bound_told(result, count)}
-    found |= {"tables": [plain(t) for t in _tables(result)], "bars": list(_bars(result, shown))}
+    found |= {
+        "tables": [plain(t) for t in verdict_tables(result)],
+        "bars": list(_bars(result, shown)),
+    }
     if shown is not None:
         found["floats"] = list(float_shapes(result, shown))
-        found["forces"] = train_forces(shown)
+        found["forces"] = dict(shown.loads.meshes)
         found["states"] = plain(states(shown))
     if any(key.startswith(MOVING) for key in given):
         found["train"] = train_shapes(case)
@@ -94,7 +98,7 @@ def whole_of(inputs: Inputs, given: Setting) -> Plain:
     if result is None:
         return {"status": REFUSED} | found
     found |= {"status": PARTLY if messages else CERTIFIED, "trust": trust(result)}
-    found["tables"] = [plain(t) for t in _tables(result)]
+    found["tables"] = [plain(t) for t in verdict_tables(result)]
     if len(result.positions) > 1:
         found["cycle"] = {
             "positions": [p.position for p in result.positions],
@@ -120,15 +124,6 @@ def _bound_told(result: Result, count: int) -> str:
         f"{where} certified: every torque within {small(proved)} of the exact equilibrium's, "
         "as a part of the largest torque"
     )
-
-
-def _tables(result: Result) -> Iterator[Table]:
-    if result.stages:
-        yield sharing(result)
-    if result.positions[0].floats:
-        yield resting(result)
-    rows = largest_forces(result)
-    yield table("Largest forces", rows, ("what", "where"), ("value",), {"value": "most"})
 
 
 def plain(found: Table) -> Plain:
@@ -246,9 +241,9 @@ def tied(inputs: Inputs) -> list[tuple[str, tuple[str, ...]]]:
         section, _, rest = key.partition(".")
         if not rest or section in ("operating", "march"):
             continue
-        names = [n for n in getattr(inputs.case, section) if key.startswith(_named(section, n))]
+        names = [n for n in getattr(inputs.case, section) if key.startswith(dotted((section, n)))]
         if names:
-            name = f"{section}.*{key[len(_named(section, max(names, key=len))) :]}"
+            name = f"{section}.*{key[len(dotted((section, max(names, key=len)))) :]}"
             found[name] = found.get(name, 0) + 1
     usable = []
     for name, times in found.items():
@@ -258,12 +253,6 @@ def tied(inputs: Inputs) -> list[tuple[str, tuple[str, ...]]]:
             except CaseError:
                 continue
     return usable
-
-
-def _named(section: str, name: str) -> str:
-    from loadshare.case.keys import dotted
-
-    return dotted((section, name))
 
 
 def angles(case: Case) -> list[float] | None:

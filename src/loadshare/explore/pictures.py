@@ -60,11 +60,6 @@ def float_shapes(result: Result, shown: Position) -> Iterator[Plain]:
         }
 
 
-def train_forces(shown: Position) -> dict[str, float]:
-    """Force of every mesh at a position [N]."""
-    return dict(shown.loads.meshes)
-
-
 def train_shapes(case: Case) -> Plain | None:
     """Return the train to scale, seen along the axis of most gears and from the side, in mm.
 

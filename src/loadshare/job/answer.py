@@ -16,10 +16,11 @@ from loadshare.scene.scene import Scene
 from loadshare.solver import Record
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.train import Train
+from loadshare.view import View, Viewed
 
 
-@dataclass(frozen=True, eq=False)
-class Answer:
+@dataclass(frozen=True, eq=False, repr=False)
+class Answer(Viewed):
     """An equilibrium that is certified.
 
     Its forces are known. Its place, where forces leave that open, the figures of its certificate
@@ -111,3 +112,8 @@ class Answer:
             return None
         told = f"position {self.index}: {refusal_told(beyond)}"
         return Refused(told, {name: m.value for name, m in beyond.items()})
+
+    def _view(self) -> View:
+        from loadshare.job.views import answer_view
+
+        return answer_view(self)

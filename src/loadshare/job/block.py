@@ -32,7 +32,7 @@ the ladder has below."""
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Block:
-    """Answers of up to `BLOCK` samples at all requested positions.
+    """Answers of up to `JOB.block` samples at all requested positions.
 
     Attributes
     ----------

@@ -34,8 +34,7 @@ def engine_named(name: str, count: int) -> Engine:
     ----------
     name : {"auto", "compiled", "vectorised"}
         "auto" is the compiled one where it was used in this process, else the one that `chosen`
-        names. Where nothing can be compiled, or kept, the
-        vectorised one comes in place of the compiled one.
+        names. Where nothing can be compiled or kept, the vectorised one takes its place.
     count : int
         Equilibria to solve.
     """
@@ -59,11 +58,9 @@ def chosen(count: int) -> str:
 
 def loaded() -> bool:
     """Whether the compiled engine was used, or loaded, in this process: then it is always ahead."""
-    modules = [sys.modules.get(module) for module, _ in KERNELS]
-    return compilation.why_not() is None and all(
-        module is not None and getattr(module, name).overloads
-        for module, (_, name) in zip(modules, KERNELS, strict=True)
-    )
+    # Another thread may be importing one of the modules.
+    kernels = [getattr(sys.modules.get(module), name, None) for module, name in KERNELS]
+    return compilation.why_not() is None and all(k is not None and k.overloads for k in kernels)
 
 
 def at_hand() -> bool:

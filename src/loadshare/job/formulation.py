@@ -27,6 +27,7 @@ from loadshare.job.positions import explain
 from loadshare.scene import Scene
 from loadshare.settings import JOB
 from loadshare.solver.position import coordinates_of, equilibrium_of
+from loadshare.view import View, Viewed
 
 if TYPE_CHECKING:
     from loadshare.contact.backends.cvxpy_ import CvxpyForm
@@ -35,8 +36,8 @@ READ = "read back"
 """Rung of an answer that somebody else's solver found."""
 
 
-@dataclass(frozen=True, eq=False)
-class Formulation:
+@dataclass(frozen=True, eq=False, repr=False)
+class Formulation(Viewed):
     """The programme of a case at one position, and the way back from its answer.
 
     Attributes
@@ -130,6 +131,11 @@ class Formulation:
         if not certificate.passed:
             raise uncertified(equilibrium.index, certificate)
         return Answer.of(train, equilibrium, certificate, self.answer.record, READ)
+
+    def _view(self) -> View:
+        from loadshare.job.views import formulation_view
+
+        return formulation_view(self)
 
 
 def formulate(

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from loadshare.arguments import whole
 from loadshare.case import Case, load_case
 from loadshare.certify.tolerance import checked_tolerance
 from loadshare.job.allocation import keep_freed_memory
@@ -26,6 +27,7 @@ from loadshare.job.positions import Progress, wanted_positions
 from loadshare.job.recent import Recent
 from loadshare.job.table import KEPT, Table, checked
 from loadshare.settings import CERTIFY, JOB
+from loadshare.train.columns import Columns, columns_of
 from loadshare.train.samples import Samples, samples_of
 
 if TYPE_CHECKING:
@@ -54,7 +56,7 @@ def solve_blocks(
     ------
     Block
     """
-    tolerance = checked_tolerance(tolerance)
+    tolerance, workers = checked_tolerance(tolerance), whole("workers", workers)
     case = case if isinstance(case, Case) else load_case(case)
     keep_freed_memory()
     groups = samples_of(case, samples)
@@ -74,7 +76,7 @@ def solve_blocks(
         samples = group.take(part)
         return solve_block(machine, rows[part], samples, wanted, tolerance, solver, least_norm)
 
-    if workers <= 1 or len(tasks) == 1:
+    if workers == 1 or len(tasks) == 1:
         yield from map(work, tasks)
         return
     with ThreadPoolExecutor(workers) as pool:
@@ -102,7 +104,7 @@ def _machine(case: Case, samples: Samples) -> Machine:
 
 def solve_many(
     case: Case | str | Path,
-    samples: Mapping[str, ArrayLike],
+    samples: Columns,
     *,
     positions: Iterable[int] | None = None,
     keep: Iterable[str] = tuple(KEPT),
@@ -118,7 +120,7 @@ def solve_many(
     ----------
     case : Case or path
         Gives what the samples do not.
-    samples : mapping of str to array_like
+    samples : mapping of str to array_like, or data frame
         Values by dotted key, all of one length. The unit is in brackets after the key, as in
         ``{"rings.4.float [um]": [0, 4, 8]}``; texts with units are allowed as well.
     positions : iterable of int, optional
@@ -132,7 +134,7 @@ def solve_many(
         from 300 equilibria on where its code is on disk, else from 200 000 on: compiling takes a
         minute or two, once in an installation; if that fails, the log says so.
     workers : int
-        Threads.
+        Threads, at least one.
     least_norm : bool
         Move undetermined displacements to the least-norm ones, as `solve` does: takes some ms each.
     progress : Progress, optional
@@ -150,14 +152,16 @@ def solve_many(
         counts those above 1), ``convex`` (nothing that is not convex carries), ``arc_curvature``
         [N/m] that arcs take from the stiffness across them, ``rung`` (a number,
         which its attribute ``flag_meanings`` names in order; 0 where nothing answered). What is
-        refused is NaN; the attribute ``refused`` says why.
+        refused is NaN; the attribute ``refused`` says why, a line for each such as "sample 3,
+        position 1: …", and is empty where nothing is.
 
     Raises
     ------
     CaseError
         If a key or a value cannot be used; all problems are listed.
     ValueError
-        If a position, a variable or an engine does not exist, or the tolerance is no tolerance.
+        If a position, a variable or an engine does not exist, or the tolerance is no tolerance, or
+        `workers` no whole number from 1 on.
 
     Examples
     --------
@@ -168,15 +172,17 @@ def solve_many(
     True
     """
     case = case if isinstance(case, Case) else load_case(case)
+    # Read once: values may come from a generator.
+    table = {column.key: column.values for column in columns_of(samples)}
     blocks = solve_blocks(
         case,
-        samples,
+        table,
         positions=positions,
         tolerance=tolerance,
         engine=engine,
         workers=workers,
         least_norm=least_norm,
     )
-    count = len(np.atleast_1d(np.asarray(next(iter(samples.values()), []))))
-    table = Table.of(blocks, count, checked(keep), progress)
-    return table.dataset(case, checked_tolerance(tolerance))
+    count = len(next(iter(table.values())))
+    found = Table.of(blocks, count, checked(keep), progress)
+    return found.dataset(case, checked_tolerance(tolerance))

@@ -12,10 +12,13 @@ from threading import Lock
 from typing import Protocol
 
 from loadshare._version import __version__
+from loadshare.arguments import one_of
 from loadshare.case import Case, load_case
 from loadshare.certify.tolerance import checked_tolerance
+from loadshare.contact.backends.backend import SOLVERS
 from loadshare.errors import Refused
 from loadshare.job.answer import Answer
+from loadshare.job.engines import ENGINES
 from loadshare.job.hot import HOT, SEARCHED, left_out
 from loadshare.job.ladder import AUTO, climb_all
 from loadshare.job.machine import Machine
@@ -88,7 +91,7 @@ def solve(
         If a position has no certified answer, or one whose displacements are too large for the
         geometry in which it was found. The other positions are in its ``partial``.
     ValueError
-        If a solver, method or position does not exist, or the tolerance is no tolerance.
+        If a solver, method, engine or position does not exist, or the tolerance is no tolerance.
 
     Examples
     --------
@@ -182,6 +185,8 @@ def _options(
 
     What only a back-end can do, another form of the loop or the whole scene, is not its task.
     """
+    one_of("solver", solver, (AUTO, *SOLVERS))
+    one_of("engine", engine, ENGINES)
     if solver != AUTO:
         return Options(solver=solver, method=method, reduce=reduce), None
     hot = method == "newton" and reduce

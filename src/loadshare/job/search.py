@@ -17,7 +17,7 @@ from loadshare.errors import Refused
 from loadshare.job.answer import Answer
 from loadshare.job.ladder import climb_all
 from loadshare.job.machine import Machine
-from loadshare.job.positions import prepared
+from loadshare.job.positions import prepared, wanted_positions
 from loadshare.scene.loading import loading_of
 from loadshare.settings import CERTIFY, JOB
 from loadshare.solver import Options
@@ -29,10 +29,11 @@ from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.ring import DrumRing
 from loadshare.train.situations import situation_of, stack
 from loadshare.train.train import Train
+from loadshare.view import View, Viewed
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Search:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Search(Viewed):
     """What a search for other answers found at a position.
 
     Attributes
@@ -40,7 +41,7 @@ class Search:
     answer : Answer
         The one that is known.
     starts : int
-        Starts that led to a certified equilibrium, of `STARTS`.
+        Starts that led to a certified equilibrium, of `JOB.starts`.
     path : bool or None
         Whether the path from generous clearance ends in the answer; None where it broke off.
     others : tuple of Equilibrium
@@ -53,6 +54,11 @@ class Search:
     others: tuple[Equilibrium, ...]
 
     @property
+    def way(self) -> str:
+        """Where the path from generous clearance ends, in words."""
+        return {True: "leads to the same", False: "leads elsewhere", None: "broke off"}[self.path]
+
+    @property
     def told(self) -> str:
         """What was done and found, as a sentence."""
         found = (
@@ -60,11 +66,15 @@ class Search:
             if not self.others
             else f"{len(self.others)} other answer{'s' if len(self.others) > 1 else ''}"
         )
-        path = {True: "leads to the same", False: "leads elsewhere", None: "broke off"}[self.path]
         return (
             f"Search: {found} from {self.starts} of {JOB.starts} random starts that were "
-            f"certified; the path from generous clearance {path}."
+            f"certified; the path from generous clearance {self.way}."
         )
+
+    def _view(self) -> View:
+        from loadshare.job.views import search_view
+
+        return search_view(self)
 
 
 def search(case: Case | str | Path, position: int = 1, *, seed: int = 0) -> Search:
@@ -80,10 +90,11 @@ def search(case: Case | str | Path, position: int = 1, *, seed: int = 0) -> Sear
 
     Raises
     ------
-    CaseError, Refused
+    CaseError, Refused, ValueError
         As :func:`loadshare.solve`.
     """
     _, machine = prepared(case)
+    (position,) = wanted_positions(machine.train, [position])
     machine = machine.at(position)
     (known,) = climb_all(machine, [position], Options(), CERTIFY.tolerance)
     if isinstance(known, Refused):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, starmap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -43,7 +43,7 @@ def checked(names: Iterable[str]) -> tuple[str, ...]:
     ValueError
         If one of them does not exist.
     """
-    names = tuple(names)
+    names = (names,) if isinstance(names, str) else tuple(names)
     unknown = [name for name in names if name not in KEPT]
     if unknown:
         raise ValueError(f"no variable {', '.join(unknown)}; allowed: {', '.join(KEPT)}")
@@ -86,6 +86,13 @@ EACH = {
 }
 
 
+def _refused(where: tuple[int, int], why: str) -> str:
+    """Return a line that says why a sample has no answer at a position."""
+    sample, position = where
+    told = " ".join(why.splitlines()).removeprefix(f"position {position}: ")
+    return f"sample {sample}, position {position}: {told}"
+
+
 def _frames(train: Train) -> Array:
     """From displacements of all gears to components of those that can move."""
     moving = [(k, gear) for k, gear in enumerate(train.gears.values()) if gear.moves]
@@ -113,7 +120,7 @@ class Table:
         }
         self.variables = {name: self._empty(np.nan, KEPT[name].dims) for name in keep}
         self.each = {name: self._empty(e.none, (), e.type_) for name, e in EACH.items()}
-        self.message: dict[str, str] = {}
+        self.message: dict[tuple[int, int], str] = {}
 
     @classmethod
     def of(
@@ -143,8 +150,7 @@ class Table:
         place = slice(rows[0], rows[-1] + 1) if rows[-1] - rows[0] == len(rows) - 1 else rows
         for name, each in EACH.items():
             self.each[name][place] = getattr(block, each.field)
-        for (row, index), why in block.message.items():
-            self.message[f"sample {row}, position {index}"] = why
+        self.message |= block.message
         for p, answers in enumerate(block.equilibria):
             torque, _ = mesh_torques(answers)
             for name, values in self.variables.items():
@@ -191,6 +197,7 @@ class Table:
                 "loadshare_version": __version__,
                 "tolerance": tolerance,
                 "warned": int((self.each["displaced"] > 1.0).sum()),
-                "refused": self.message,
+                # A text: netCDF has no tables, and no lists of none or one.
+                "refused": "\n".join(starmap(_refused, sorted(self.message.items()))),
             },
         )

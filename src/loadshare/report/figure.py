@@ -6,9 +6,11 @@ import json
 import re
 from dataclasses import dataclass
 from functools import cached_property
+from numbers import Real
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from loadshare.arguments import one_of
 from loadshare.errors import LoadshareError
 from loadshare.output import write_whole
 from loadshare.report.palette import FAINT, INK, SOFT
@@ -19,6 +21,8 @@ if TYPE_CHECKING:
 
 ENDINGS = (".png", ".svg", ".pdf", ".html", ".json")
 """Of pictures on disk."""
+SCALES = 0.1, 10.0
+"""Least and largest scale of a PNG; beyond, it has no pixel, or more than fit in memory."""
 _CLIP = re.compile(r'(id="|url\(#)clip(\d+)("|\))')
 
 # The first that a machine has; vl-convert brings the last but one along.
@@ -144,7 +148,7 @@ class Figure:
             Ending in ``.png``, ``.svg``, ``.pdf``, ``.html`` (with hover read-out, works offline)
             or ``.json`` (the Vega-Lite specification). The folder is made.
         scale : float
-            Pixels of a PNG per unit of the specification.
+            Pixels of a PNG per unit of the specification, 0.1 to 10.
 
         Returns
         -------
@@ -155,6 +159,8 @@ class Figure:
         ------
         LoadshareError
             For any other ending.
+        ValueError
+            For any other scale.
         OSError
             If the file cannot be written.
         """
@@ -175,8 +181,17 @@ class Figure:
         ----------
         form : {"png", "svg", "pdf", "html", "json"}
         scale : float
-            Pixels of a PNG per unit of the specification.
+            Pixels of a PNG per unit of the specification, 0.1 to 10.
+
+        Raises
+        ------
+        ValueError
+            For any other form or scale.
         """
+        one_of("form", form, (ending[1:] for ending in ENDINGS))
+        least, most = SCALES
+        if not isinstance(scale, Real) or not least <= scale <= most:
+            raise ValueError(f"scale {scale!r}; allowed: a number from {least:g} to {most:g}")
         if form == "svg":
             return self.to_svg()
         if form == "html":

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import singledispatch
 from typing import Any
 
+from loadshare.arguments import one_of
 from loadshare.report.figure import Figure
 from loadshare.report.figures import branches, comparison, critical, sensitivity, sweep, tolerance
 from loadshare.report.figures import floats as rests
@@ -18,7 +19,7 @@ from loadshare.study.fit import Fit
 from loadshare.study.march import March
 from loadshare.study.sensitivity import Sensitivity
 from loadshare.study.sweep import Sweep
-from loadshare.study.tolerance.result import Over, Tolerance
+from loadshare.study.tolerance.result import OVERS, Over, Tolerance
 from loadshare.train import build_train
 
 
@@ -132,4 +133,5 @@ def _(found: Comparison | Fit) -> Figure:
 
 @plot.register
 def _(found: Tolerance, stage: str = "system", over: Over = "stage") -> Figure:
+    one_of("over", over, OVERS)
     return tolerance.tolerance(found.dataset.sel(over=over), stage)

@@ -13,6 +13,9 @@ from loadshare.report.numbers import NONE, decimals, fixed, micrometres, omega, 
 from loadshare.results import Position, Result
 from loadshare.results.laws import laws_told
 
+FOLDED = 24
+"""Rows from which a table is shown only when asked for."""
+
 
 @dataclass(frozen=True, slots=True)
 class Cell:

@@ -108,7 +108,7 @@ def dataset(result: Result) -> xr.Dataset:
     -------
     xarray.Dataset
         Dimensions position, mesh, gear, shaft, side, component, end, float, figure and measure;
-        every variable carries its unit.
+        every variable carries its unit. Its arrays cannot be written to.
     """
     import xarray as xr
 
@@ -119,6 +119,7 @@ def dataset(result: Result) -> xr.Dataset:
     data = {}
     for name, variable in VARIABLES.items():
         values = np.concatenate([part.told(name, names) for part in parts])
+        values.flags.writeable = False
         data[name] = variable.labelled(values, "position")
     return xr.Dataset(
         data,

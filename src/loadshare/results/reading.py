@@ -120,15 +120,12 @@ Wrong = tuple[Path, str, str, str]
 """Key path, the value found there, what is wrong with it, and what was expected."""
 
 
-def _raise(wrong: Iterable[Wrong], file: str, hint: str = AGAIN) -> None:
+def _raise(wrong: Iterable[Wrong], file: str) -> None:
     problems = [
         Problem(file, dotted(path), *told) for path, *told in islice(wrong, ALLOWED.problems)
     ]
     if problems:
-        last = problems.pop()
-        raise ResultError(
-            [*problems, Problem(file, last.key, last.given, last.message, last.allowed, hint)]
-        )
+        raise ResultError([*problems[:-1], replace(problems[-1], hint=AGAIN)])
 
 
 def _fail(file: str, message: str, hint: str = AGAIN, key: Path = (), given: str = "") -> NoReturn:

@@ -22,6 +22,7 @@ from loadshare.results.loads import Loads
 from loadshare.settings import CERTIFY
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.train import Train
+from loadshare.view import View, Viewed
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -104,8 +105,8 @@ class Answered(Protocol):
         """How it was found."""
 
 
-@dataclass(frozen=True, eq=False)
-class Position:
+@dataclass(frozen=True, eq=False, repr=False)
+class Position(Viewed):
     """What was found at one position.
 
     Rarely used figures are computed when they are first read. Two positions are equal if their
@@ -132,8 +133,8 @@ class Position:
     coast_torque: Mapping[str, float]
     share: Mapping[str, float | None]
     pair_share: Mapping[str, float | None]
-    train: Train = field(repr=False)
-    answer: Answered = field(repr=False)
+    train: Train
+    answer: Answered
 
     def __eq__(self, other: object) -> bool:
         """Whether another position was claimed, judged and found alike."""
@@ -223,6 +224,11 @@ class Position:
     def uniqueness(self) -> Uniqueness:
         """Whether it is proved to be the only answer."""
         return uniqueness(self.train, self.equilibrium)
+
+    def _view(self) -> View:
+        from loadshare.results.view import position_view
+
+        return position_view(self)
 
 
 _COMPARED = (
@@ -338,9 +344,13 @@ class Result:
         """All that it tells, as arrays over the positions; those of one train together."""
         return figures_of(self.positions)
 
-    @cached_property
+    @property
     def dataset(self) -> xr.Dataset:
-        """All figures as labelled arrays with units in their attributes."""
+        """All figures as labelled arrays with units in their attributes; a copy, to add to."""
+        return self._arrays.copy()
+
+    @cached_property
+    def _arrays(self) -> xr.Dataset:
         from loadshare.results.dataset import dataset
 
         return dataset(self)

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from loadshare.view import View, by_name, figure
+from loadshare.view import View, by_name, figure, listed
 
 if TYPE_CHECKING:
-    from loadshare.results.result import Result
+    from collections.abc import Mapping
+
+    from loadshare.certify import Certificate, FloatState
+    from loadshare.results.result import Position, Result
+    from loadshare.train.equilibrium import Equilibrium
 
 
 def result_view(result: Result) -> View:
@@ -22,7 +26,7 @@ def result_view(result: Result) -> View:
         ),
         ("largest Ω over the stage", by_name(result.omega)),
         ("largest Ω over the group", by_name(result.pair_omega)),
-        ("floats, first position", _floats(result)),
+        ("floats, first position", _floats(result.floats[0] if result.floats else {})),
     )
     rows = []
     for mesh in result.positions[0].torque:
@@ -34,6 +38,31 @@ def result_view(result: Result) -> View:
     return View(f"Result of {stamp.case}", facts, columns, tuple(rows))
 
 
-def _floats(result: Result) -> str:
-    rests = result.floats[0] if result.floats else {}
+def position_view(found: Position) -> View:
+    """Tell how good a position's answer is, where floats rest, and how load is shared."""
+    facts = rest_facts(found.certificate, found.equilibrium)
+    rows = tuple(
+        (
+            mesh,
+            figure(torque, ".2f"),
+            figure(found.share.get(mesh), ".4f"),
+            figure(found.pair_share.get(mesh), ".4f"),
+        )
+        for mesh, torque in found.torque.items()
+    )
+    columns = ("mesh", "torque [N·m]", "Ω over the stage", "Ω over the group")
+    return View(f"Position {found.position}", facts, columns, rows)
+
+
+def rest_facts(certificate: Certificate, found: Equilibrium) -> tuple[tuple[str, str], ...]:
+    """Tell how good an answer is, where its floats rest, and what forces leave open."""
+    said = "certified" if certificate.passed else "not certified"
+    return (
+        (said, f"worst residual {certificate.worst:.1e}"),
+        ("floats", _floats(certificate.floats)),
+        ("undetermined", listed(tuple(found.undetermined))),
+    )
+
+
+def _floats(rests: Mapping[str, FloatState]) -> str:
     return ", ".join(f"{gear} {rest.boundary or rest.state}" for gear, rest in rests.items())

@@ -30,8 +30,6 @@ class HotPath(NamedTuple):
     """Refinements of a solution with that term; each brings its eight digits."""
     refined: float = 1e-9
     """Residual, over the largest redundant, from which on a matrix counts as singular."""
-    pivot: float = 1e-15
-    """Pivot, over the largest, that counts as none."""
     shared: float = 1e-9
     """Part of a redundant in the elements that yield below which only rigid ones take part."""
     noise: float = 1e-13

@@ -1,4 +1,4 @@
-"""Critical values: where along a parameter the active set changes (issue of exact thresholds).
+"""Critical values: where along a parameter the active set changes.
 
 On one active set the equilibrium follows smooth equations. Between two certified points of one set
 a bound proves that no gauge of an element (an approach, a force, a radius) reaches zero; where the
@@ -155,7 +155,7 @@ def critical(
     >>> {event.gear: f"{event.value:.2f} um" for event in found.of("leaves boundary")}
     {'5': '2.98 um', '4': '8.35 um'}
     """
-    case = loaded(case)
+    case = loaded(case, [named(key)])
     numbers, unit = grid([start, stop], "start, stop", RANGE)
     low, high = numbers
     if not low < high:

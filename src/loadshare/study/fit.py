@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from loadshare.arguments import whole
 from loadshare.case import Case
 from loadshare.errors import CaseError, Problem, Refused
 from loadshare.job import solve
@@ -169,6 +170,8 @@ def fit(
         If the case holds no measurement, or an unknown or its bounds cannot be used.
     Refused
         If no starting point leads to a certified answer.
+    ValueError
+        If `starts` is no whole number from 1 on.
 
     Examples
     --------
@@ -180,7 +183,7 @@ def fit(
     >>> f"{found.unknowns[0].value:.2f} ± {found.unknowns[0].deviation:.2f} um"
     '40.57 ± 1.98 um'
     """
-    case = loaded(case)
+    case, starts = loaded(case, map(named, unknowns)), whole("starts", starts)
     problem = _Problem(case, unknowns)
     reached: list[tuple[float, Array]] = []
     chis: list[float] = []

@@ -7,10 +7,9 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from loadshare.case import Case, Study
+from loadshare.case import Case, Study, load_case
 from loadshare.case.words import did_you_mean
 from loadshare.errors import CaseError, Problem
-from loadshare.study.positions import loaded
 
 if TYPE_CHECKING:
     from loadshare.job import Progress
@@ -57,7 +56,7 @@ def run_study(case: Case | str | Path, name: str, *, progress: Progress | None =
     >>> found.dataset["pair_omega"].sel(stage="II").values.round(4).tolist()
     [1.0471, 1.002]
     """
-    case = loaded(case)
+    case = case if isinstance(case, Case) else load_case(case)
     block = case.study.get(name)
     if block is None:
         known = list(case.study)

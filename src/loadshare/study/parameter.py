@@ -43,8 +43,10 @@ class Value:
 
     @property
     def text(self) -> str | float:
-        """How a case file writes it."""
-        return f"{self.number!r} {self.unit}" if self.unit else self.number
+        """How a case file writes it; what may be a count, as one."""
+        if self.unit:
+            return f"{self.number!r} {self.unit}"
+        return int(self.number) if self.number.is_integer() else self.number
 
     @property
     def si_unit(self) -> str:

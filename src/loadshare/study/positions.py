@@ -3,17 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 
 from loadshare.case import Case, load_case
-from loadshare.tooth import resolve
+from loadshare.case.keys import Path as Key
+from loadshare.case.keys import covers, parse
+from loadshare.study.parameter import split_outside
+from loadshare.tooth import bears_on_laws, resolve
 from loadshare.train.situations import VARYING, situation_of
 from loadshare.train.train import Train
 
 
-def loaded(case: Case | str | Path) -> Case:
-    """Return a case, read from its file if a path is given, its mesh laws computed."""
-    return resolve(case if isinstance(case, Case) else load_case(case))
+def loaded(case: Case | str | Path, varied: Iterable[str] = ()) -> Case:
+    """Return a case, read from its file if a path is given, its mesh laws computed.
+
+    Laws that may follow from what varies are left to be computed for each value; but not where a
+    number of the law itself varies.
+
+    Parameters
+    ----------
+    case : Case or path
+    varied : iterable of str
+        Key paths and patterns of what varies; several may be joined by ``=``.
+    """
+    case = case if isinstance(case, Case) else load_case(case)
+    paths: list[Key] = []
+    for part in (part for key in varied for part in split_outside(key, "=")):
+        # What is no key path is reported where it is used.
+        with suppress(ValueError):
+            paths.append(parse(part))
+    if not any(map(bears_on_laws, paths)):
+        return resolve(case)
+    numbers = [path[:3] for path in paths if len(path) > 3]
+    own = {m for m in case.meshes if any(covers(p, ("meshes", m, "law")) for p in numbers)}
+    return resolve(case, leave=case.meshes.keys() - own)
 
 
 def alike(trains: Iterable[Train], positions: Iterable[int]) -> list[list[int]]:

@@ -240,7 +240,7 @@ def sweep(
     >>> found.dataset["pair_omega"].sel(stage="II").values.round(4).tolist()
     [1.0471, 1.0189, 1.0]
     """
-    case = loaded(case)
+    case = loaded(case, map(named, parameters))
     if not 1 <= len(parameters) <= MOST:
         message = f"a sweep has 1 or {MOST} parameters, not {len(parameters)}"
         raise CaseError([Problem(STUDY, "sweep", "", message, "keys joined by = count as one")])

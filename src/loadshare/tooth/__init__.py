@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from loadshare.tooth.law.file import load_law
-    from loadshare.tooth.law.meshes import resolve
+    from loadshare.tooth.law.meshes import bears_on_laws, resolve
     from loadshare.tooth.pair.file import load_pair
 
 _LAZY = {
+    "bears_on_laws": "loadshare.tooth.law.meshes",
     "load_law": "loadshare.tooth.law.file",
     "load_pair": "loadshare.tooth.pair.file",
     "resolve": "loadshare.tooth.law.meshes",
 }
 
-__all__ = ["load_law", "load_pair", "resolve"]
+__all__ = ["bears_on_laws", "load_law", "load_pair", "resolve"]
 
 
 def __getattr__(name: str) -> Any:

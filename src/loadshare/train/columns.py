@@ -3,17 +3,26 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from loadshare.case.keys import Path, dotted, parse
+from loadshare.case.quantity import as_text
 from loadshare.case.units import si_factor
 from loadshare.errors import CaseError, Problem
 
 _UNIT = re.compile(r"(?P<key>.*\S)\s+\[(?P<unit>[^\]]*)\]")
+
+
+class Columns(Protocol):
+    """What has columns with names: a mapping, or a data frame."""
+
+    def items(self) -> Iterable[tuple[Any, Any]]:
+        """Return names and values."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,6 +44,11 @@ class Column:
     values: NDArray[np.generic]
 
     @property
+    def key(self) -> str:
+        """The key with the unit, as a table of samples has it."""
+        return f"{dotted(self.path)} [{self.unit}]" if self.unit else dotted(self.path)
+
+    @property
     def has_numbers(self) -> bool:
         """Whether the values are numbers, not texts."""
         return self.values.dtype.kind in "fiu"
@@ -51,9 +65,11 @@ class Column:
         return self.has_numbers and bool((self.values.astype(np.float64) > 0.0).all())
 
     def text(self, sample: int) -> str | float:
-        """Value of a sample as a case file has it."""
+        """Value of a sample as a case file has it; what may be a count, as one."""
         value = self.values[sample].item()
-        return f"{value!r} {self.unit}" if self.unit else value
+        if self.unit:
+            return f"{value!r} {self.unit}"
+        return int(value) if isinstance(value, float) and value.is_integer() else value
 
     def in_si(self, unit: str) -> NDArray[np.float64]:
         """Values (S,) in an SI unit, empty for bare numbers.
@@ -80,23 +96,27 @@ class Column:
             raise CaseError([problem]) from error
 
 
-def columns_of(samples: Mapping[str, ArrayLike]) -> list[Column]:
+def columns_of(samples: Columns) -> list[Column]:
     """Read a table of samples.
 
     Parameters
     ----------
-    samples : mapping of str to array_like
+    samples : mapping of str to array_like, or data frame
         Values by key path, all of one length. The unit is in brackets after the key, as in
         ``"rings.4.float [um]"``; texts with their units, as in a case file, are allowed as well.
 
     Raises
     ------
     CaseError
-        If lengths differ or a key is no key path; all problems are listed.
+        If lengths differ, or a key is no key path or given twice; all problems are listed.
     """
     columns: list[Column] = []
     problems = []
-    for key, given in samples.items():
+    if not hasattr(samples, "items"):
+        told = "is no table of values by key", "a mapping or a data frame"
+        raise CaseError([Problem("samples", "", "", *told)])
+    for name, given in samples.items():
+        key = str(name)
         match = _UNIT.fullmatch(key)
         text, unit = (match["key"], match["unit"]) if match else (key, "")
         try:
@@ -104,28 +124,49 @@ def columns_of(samples: Mapping[str, ArrayLike]) -> list[Column]:
         except ValueError:
             problems.append(Problem("samples", key, "", "is not a key path"))
             continue
-        column = Column(path, unit, np.atleast_1d(np.asarray(given)))
-        fault = _fault(column, len(columns[0].values) if columns else None)
+        column = Column(path, unit, _values(given))
+        fault = _fault(column, columns)
         if fault:
             problems.append(Problem("samples", key, "", fault))
         else:
             columns.append(column)
-    if not samples:
+    if not columns and not problems:
         problems.append(Problem("samples", "", "", "there is no key", "at least one key"))
     if problems:
         raise CaseError(problems)
     return columns
 
 
-def _fault(column: Column, count: int | None) -> str:
-    """What is wrong with a column beside columns of `count` values; empty where nothing is."""
+def _values(given: object) -> NDArray[np.generic]:
+    """Return values as an array of numbers or of texts, or of objects that are neither."""
+    if isinstance(given, np.ma.MaskedArray | Iterator):
+        # Of a masked array the values below the mask would be taken; so they are None.
+        given = given.tolist() if isinstance(given, np.ma.MaskedArray) else list(given)
+    try:
+        values = np.atleast_1d(np.asarray(as_text(given)))
+        if values.dtype.kind == "O" and values.ndim == 1:
+            # Numbers and texts out of a data frame, and physical values.
+            return np.array([as_text(value) for value in values])
+    except ValueError:
+        # Lists of several lengths.
+        return np.array([], dtype=object)
+    return values
+
+
+def _fault(column: Column, before: list[Column]) -> str:
+    """What is wrong with a column beside those before it; empty where nothing is."""
     values = column.values
     if values.ndim != 1 or not len(values):
         return "is not a list of values"
-    if count is not None and len(values) != count:
+    if before and len(values) != len(before[0].values):
+        count = len(before[0].values)
         return f"has {len(values)} values, the keys before it have {count}"
+    if any(other.path == column.path for other in before):
+        return "is given twice"
+    if values.dtype.kind not in "fiubU":
+        return "holds what is neither a number nor a text"
     if column.unit and not column.has_numbers:
-        return "has a unit, but its values are texts"
+        return "has a unit, but its values are no numbers"
     if column.has_numbers and not np.isfinite(values.astype(float)).all():
         return "holds a value that is not finite"
     return ""

@@ -313,6 +313,24 @@ def test_other_settings_are_told(tmp_path):
     assert ls.Case(tomllib.loads(about["text"])).hash == about["settings"]["case_hash"]
 
 
+def test_numbers_and_arrays_of_numpy_are_settings(tmp_path):
+    """They are written to study.json as plain numbers, so that the same study goes on."""
+    few = {"samples": 64, "seed": 4, "quantiles": [0.5, 0.9], "positions": [1], "chunk": 1}
+    found = run(tmp_path, **few)
+    given = {"samples": np.int64(64), "seed": np.int32(4), "chunk": np.int8(1)}
+    given |= {"quantiles": (level for level in (0.5, 0.9)), "positions": np.array([1])}
+    again = run(tmp_path, **given)
+    assert again.settings == found.settings
+    assert again.of("system").summary.quantiles == found.of("system").summary.quantiles
+
+
+@pytest.mark.parametrize("name", ["workers", "chunk"])
+@pytest.mark.parametrize("value", [0, -1, 1.5])
+def test_workers_and_blocks_are_counted(tmp_path, name, value):
+    with pytest.raises(ValueError, match=f"{name} {value}; allowed: a whole number from 1 on"):
+        run(tmp_path / "study", **{name: value})
+
+
 def test_a_folder_of_something_else_is_left_alone(tmp_path):
     (tmp_path / "mine.txt").write_text("mine")
     with pytest.raises(ls.LoadshareError, match="holds no tolerance study"):

@@ -91,6 +91,8 @@ def boxes(claim: Claim, act: Acts, scale: Array, verge: Flags | None = None) -> 
     act : ndarray of int8, shape (S, elements)
     scale : ndarray, shape (S,)
         Load of the claims [N].
+    verge : ndarray of bool, shape (S, elements), optional
+        Elements of which it is open on which side of their limit they are; none by default.
     """
     verge = np.zeros(act.shape, dtype=bool) if verge is None else verge
     box = _boxes(claim, act, scale, verge, BOUND.soft)

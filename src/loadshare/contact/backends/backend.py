@@ -6,6 +6,7 @@ from collections.abc import Callable
 from importlib import import_module
 from typing import Protocol
 
+from loadshare.arguments import one_of
 from loadshare.contact.programme import Point, Programme
 
 
@@ -52,7 +53,6 @@ def backend(name: str) -> Backend:
     ValueError
         If there is no such back-end.
     """
-    if name not in _ROOMS:
-        raise ValueError(f"unknown solver {name!r}; allowed: {', '.join(SOLVERS)}")
+    one_of("solver", name, SOLVERS)
     make: Callable[[], Backend] = import_module(_ROOMS[name]).make
     return make()

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 import altair as alt
 
+from loadshare.arguments import one_of
 from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
@@ -103,8 +104,7 @@ def share(result: Result, over: Mean = "stage") -> Figure:
     ValueError
         For another mean.
     """
-    if over not in ("stage", "group"):
-        raise ValueError(f"over = {over!r}: allowed are 'stage' and 'group'")
+    one_of("over", over, get_args(Mean))
     field = {"stage": "share", "group": "pair"}[over]
     unit, rows = _rows(result)
     if not any(row[field] is not None for row in rows):

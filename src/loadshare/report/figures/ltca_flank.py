@@ -56,7 +56,7 @@ def plane_of(body: ToothBody, side: int) -> Plane:
     return Plane(body.foot, float(np.linalg.norm(ends[1] - ends[0])), u, height)
 
 
-def load_map(found: Ltca, planes: Sequence[Plane], title: str, part: float = 1.0) -> Figure:
+def load_map(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
     """Load per length on every contact line of the cycle, on the driver's flank.
 
     Parameters
@@ -66,15 +66,13 @@ def load_map(found: Ltca, planes: Sequence[Plane], title: str, part: float = 1.0
         The driver's flank and the driven gear's.
     title : str
         Of the pair.
-    part : float
-        Part of the rated torque, one that was computed.
 
     Returns
     -------
     Figure
         Every line where it stands at its position of the cycle; grey where it carries nothing.
     """
-    lines = _lines(found, part)
+    lines = _lines(found)
     rows = [row for number, line in lines for row in _ribbon(planes[0], number, line)]
     top = _top([line.per_length for _, line in lines], lines, 1e-3)
     where = _axes(planes[0])
@@ -92,12 +90,12 @@ def load_map(found: Ltca, planes: Sequence[Plane], title: str, part: float = 1.0
     said = [
         title,
         f"contact lines of {len(found.positions)} positions on the driver's flank at "
-        f"{significant(part * found.rated)} N·m; {BELOW} {significant(top, 3)} N/mm",
+        f"{significant(found.rated)} N·m; {BELOW} {significant(top, 3)} N/mm",
     ]
     return marks.figure("load_map", panel, "Load on the flank", said)
 
 
-def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str, part: float = 1.0) -> Figure:
+def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
     """Areas of contact over the cycle on both flanks, by their pressure.
 
     Parameters as for :func:`load_map`.
@@ -107,7 +105,7 @@ def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str, part: floa
     Figure
         One panel for each flank; the bands are as wide as Hertz makes them.
     """
-    lines = [(number, line) for number, line in _lines(found, part) if line.loaded]
+    lines = [(number, line) for number, line in _lines(found) if line.loaded]
     top = _top([line.pressure for _, line in lines], lines, 1e-6)
     told = hover("position:Q", ("pair:Q", "pair of teeth"), ("value:Q", "pressure [MPa]", ".4~g"))
     panels = []
@@ -127,14 +125,14 @@ def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str, part: floa
     said = [
         title,
         f"areas of contact at {len(found.positions)} positions and "
-        f"{significant(part * found.rated)} N·m; {BELOW} {significant(top, 3)} MPa",
+        f"{significant(found.rated)} N·m; {BELOW} {significant(top, 3)} MPa",
     ]
     return marks.figure("contact_pattern", alt.vconcat(*panels), "Contact pattern", said)
 
 
-def _lines(found: Ltca, part: float) -> list[tuple[int, LineLoad]]:
-    """Lines of all positions under a part of the rated torque, with the position, from 1."""
-    load = int(np.argmin(np.abs(found.torque / found.rated - part)))
+def _lines(found: Ltca) -> list[tuple[int, LineLoad]]:
+    """Lines of all positions under the rated torque, with the position, from 1."""
+    load = int(np.argmin(np.abs(found.torque - found.rated)))
     return [(k + 1, line) for k, row in enumerate(found.lines) for line in row[load]]
 
 

@@ -6,12 +6,14 @@ import math
 
 import altair as alt
 
+from loadshare.arguments import one_of
+from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.report.figures import marks
 from loadshare.report.figures.marks import Row, chart, hover
 from loadshare.report.palette import COLOURS
 from loadshare.study.sensitivity import Sensitivity
-from loadshare.study.tolerance.result import Over
+from loadshare.study.tolerance.result import OVERS, Over
 
 WIDTH = 320
 ROW = 22
@@ -38,8 +40,19 @@ def sensitivity(found: Sensitivity, stage: str = "system", over: Over = "stage")
     stage : str
     over : {"stage", "group"}
         Over whose mean torque Ω is.
+
+    Raises
+    ------
+    LoadshareError
+        If no input has an effect on such a stage.
+    ValueError
+        If Ω is over no such mean.
     """
+    one_of("over", over, OVERS)
     rates = found.omega if over == "stage" else found.pair_omega
+    stages = list(dict.fromkeys(name for by_stage in rates.values() for name in by_stage))
+    if stages and stage not in stages:
+        raise LoadshareError(f"no stage {stage!r}. Allowed: {', '.join(stages)}")
     bars: dict[str, list[Row]] = {}
     for item in found.inputs:
         value = item.value

@@ -134,6 +134,8 @@ def _shown(
 ) -> _Shown:
     if show not in data:
         there = ", ".join(str(n) for n, v in data.items() if set(parameters) < set(v.dims))
+        if not there:
+            raise LoadshareError("no point of the sweep has an answer, so nothing can be drawn")
         raise LoadshareError(f"the sweep has no variable {show!r}. Allowed: {there}")
     variable = data[show]
     told = str(variable.attrs.get("long_name", show))

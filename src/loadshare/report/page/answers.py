@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from loadshare.report import records
 from loadshare.report.numbers import small
-from loadshare.report.records import Cell, Table, table
+from loadshare.report.records import FOLDED, Cell, Table, table
 from loadshare.report.words import advice, places_told, rest_told, undetermined_told
 from loadshare.results import Result
 
@@ -31,8 +31,6 @@ YIELDING = {
     for what, unit in (("error", "µrad"), ("stiffness", "N·m/rad"))
     for side in ("input", "output")
 }
-FOLDED = 24
-"""Rows from which a table is shown only when asked for."""
 
 
 def omega_table(result: Result) -> Table:

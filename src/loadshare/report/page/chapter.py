@@ -101,25 +101,19 @@ class Chapter:
         return [f"loadshare run {name}", f"loadshare report {name} -o report.html", *studies]
 
 
-def chapter_of_file(
-    file: str | Path,
-    progress: Progress | None = None,
-    changes: Mapping[str, Any] | None = None,
-) -> Chapter:
+def chapter_of_file(file: str | Path, changes: Mapping[str, Any] | None = None) -> Chapter:
     """Solve a case file and put together its chapter; what is wrong with it becomes part of it.
 
     Parameters
     ----------
     file : path-like
-    progress : Progress, optional
-        Called after every position.
     changes : mapping of str to object, optional
         To the case, as `Case.replace` takes them.
     """
     try:
         case = load_case(file)
         case = case.replace(changes) if changes else case
-        return chapter(case, str(file), progress)
+        return chapter(case, str(file))
     except CaseError as error:
         return _unusable(str(file), error)
 

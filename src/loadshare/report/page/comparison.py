@@ -11,15 +11,13 @@ from loadshare.case.content import ABOUT
 from loadshare.case.keys import dotted
 from loadshare.report.numbers import NONE, omega, significant
 from loadshare.report.page.inputs import written
-from loadshare.report.records import Cell, Column, Table
+from loadshare.report.records import FOLDED, Cell, Column, Table
 from loadshare.report.units import engineering
 from loadshare.report.words import rest_told
 from loadshare.results import Result
 
 SAME = 1e-9
 """Difference of two figures that is round-off, as a part of the largest figure in their unit."""
-FOLDED = 24
-"""Rows from which a table is shown only when asked for."""
 
 Figures = dict[tuple[str, str], tuple[float, str]]
 

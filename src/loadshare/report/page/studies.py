@@ -12,7 +12,7 @@ from loadshare.case import Case
 from loadshare.errors import LoadshareError
 from loadshare.report.figure import Figure
 from loadshare.report.left_open import left_open
-from loadshare.report.records import Cell, Column, Table
+from loadshare.report.records import FOLDED, Cell, Column, Table
 from loadshare.study.critical import Critical
 from loadshare.study.march import March
 from loadshare.study.named import run_study
@@ -29,8 +29,6 @@ LONG = "tolerance"
 """Kind of study that is run for a page only when it is asked for by name."""
 POINTS = 61
 """Of the sweep that is drawn behind critical values."""
-FOLDED = 24
-"""Rows from which a table is shown only when asked for."""
 
 
 @dataclass(frozen=True)

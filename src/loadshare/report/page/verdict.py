@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 
 from loadshare.report import records
-from loadshare.report.numbers import NONE, omega, significant, small
+from loadshare.report.numbers import NONE, significant, small
 from loadshare.report.records import Cell, Record, Table, table
 from loadshare.report.units import engineering
 from loadshare.report.words import advice, rest_told, spline_told, undetermined_told
@@ -35,13 +35,10 @@ def verdict_tables(result: Result) -> Iterator[Table]:
 
 def sharing(result: Result) -> Table:
     """Largest Ω of every stage; over the mean of the stage it is K_γ of ISO 6336-1."""
-    rows = []
-    for row in records.omegas(result):
-        value, group = row["over stage"].value, row["over group"].value
-        rows.append(row | {"K": Cell(omega(value), value), "group": Cell(omega(group), group)})
-    alike = all(row["K"].text == row["group"].text for row in rows)
-    figures = ("K",) if alike else ("K", "group")
-    heads = {"K": "Ω = Kγ", "group": "Ω over group", "stage at": "reached at"}
+    rows = list(records.omegas(result))
+    alike = all(row["over stage"].text == row["over group"].text for row in rows)
+    figures = ("over stage",) if alike else ("over stage", "over group")
+    heads = {"over stage": "Ω = Kγ", "over group": "Ω over group", "stage at": "reached at"}
     return table("Load sharing by stage", rows, ("stage", "stage at"), figures, heads)
 
 

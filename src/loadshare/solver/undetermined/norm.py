@@ -35,10 +35,6 @@ class Norm(NamedTuple):
         """Lengths y (n,) [m] with the plain Euclidean norm, from coordinates."""
         return self.root * (x - self.origin)
 
-    def coordinates(self, y: Array) -> Array:
-        """Coordinates x (n,) [m] from lengths."""
-        return self.origin + y / self.root
-
 
 def norm_of(scene: Scene) -> Norm:
     """Return the norm of a scene's coordinates."""

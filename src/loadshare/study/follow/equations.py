@@ -110,7 +110,7 @@ class Equations:
     Parameters
     ----------
     structure : Structure
-    active : ActiveSet
+    active : WorkingSet
     numbers : Numbers
         At any value: they tell which contacts are rigid, linear, curved or tabulated.
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from loadshare.case import Case
-from loadshare.case.keys import parse
 from loadshare.errors import CaseError, Refused
 from loadshare.job.machine import Answers, Machine
 from loadshare.scene.scene import Array
@@ -23,7 +22,6 @@ from loadshare.study.follow.active import States, coordinates, read_states
 from loadshare.study.follow.numbers import Numbers, structure_like
 from loadshare.study.parameter import Parameter, Value, applied
 from loadshare.train import Train, build_train
-from loadshare.train.columns import Column
 from loadshare.train.placed import standing
 from loadshare.train.samples import Samples, samples_of
 from loadshare.train.situations import Situations, situation_of
@@ -108,13 +106,10 @@ class Line:
     def _at(self, values: Array) -> Samples:
         """Samples at other values of the same keys."""
         assert self._samples is not None
-        unit = self.parameter.unit
-        columns = tuple(Column(parse(key), unit, values) for key in self.parameter.keys)
-        known = {c.path: c for c in columns}
-        factor = Value(1.0, unit)
-        si = dict.fromkeys(self._samples.values, values * factor.factor)
+        columns = tuple(replace(column, values=values) for column in self._samples.columns)
+        si = values * Value(1.0, self.parameter.unit).factor
         return replace(
-            self._samples, columns=tuple(known[c.path] for c in self._samples.columns), values=si
+            self._samples, columns=columns, values=dict.fromkeys(self._samples.values, si)
         )
 
     @cached_property

@@ -40,7 +40,7 @@ class Point:
     Attributes
     ----------
     value : float
-    active : ActiveSet
+    active : WorkingSet
     z : ndarray
     worst : float
         Worst scaled residual of its certificate.
@@ -59,7 +59,7 @@ class Change:
     Attributes
     ----------
     value : float
-    before, after : ActiveSet
+    before, after : WorkingSet
     confirmed : bool
         Whether both sides were proved up to it.
     worst : float

@@ -10,7 +10,7 @@ import numpy as np
 
 from loadshare.scene.scene import Array
 from loadshare.scene.structure import Structure, structure_of
-from loadshare.settings import SENSITIVITY
+from loadshare.settings import EPS, SENSITIVITY
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.active import WorkingSet, coordinates, read_pieces, read_states
 from loadshare.study.follow.equations import Equations
@@ -20,8 +20,6 @@ from loadshare.study.follow.stretches import Stretches
 from loadshare.train import Train
 from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import situation_of
-
-_EPS = float(np.finfo(float).eps)
 
 
 class BranchLost(RuntimeError):  # noqa: N818 -- a finding, not a fault
@@ -52,7 +50,7 @@ class Setting:
         ----------
         train : Train
         position : int
-        base : Elements, optional
+        base : Structure, optional
             Of the train at the input's own value; by default this is it.
 
         Raises
@@ -86,16 +84,14 @@ class Setting:
             If the equations of the active set do not reproduce the equilibrium.
         """
         branch = Branch(self, self.active_set(found))
-        return branch, branch.solve(self._x(found))
+        return branch, branch.solve(coordinates(self.structure, found))
 
     def active_set(self, found: Equilibrium) -> WorkingSet:
         """Read the active set of a certified equilibrium."""
-        structure, numbers, x = self.structure, self.numbers, self._x(found)
+        structure, numbers = self.structure, self.numbers
+        x = coordinates(structure, found)
         states = tuple(read_states(structure, numbers, found, x).tolist())
         return WorkingSet(states, read_pieces(structure, numbers, states, x))
-
-    def _x(self, found: Equilibrium) -> Array:
-        return coordinates(self.structure, found)
 
 
 class Gauge(NamedTuple):
@@ -127,7 +123,7 @@ class Branch:
     Parameters
     ----------
     setting : Setting
-    active : ActiveSet
+    active : WorkingSet
 
     Raises
     ------
@@ -171,7 +167,7 @@ class Branch:
         sizes = self.equations.sizes(z[None], self.numbers, state)[0]
         torques = np.abs(self.setting.levers @ state.force[0])
         torques += np.abs(self.torque_gradients(z)) @ np.abs(z)
-        return _EPS * np.concatenate(
+        return EPS * np.concatenate(
             [SENSITIVITY.roundings * sizes, 2.0 * SENSITIVITY.roundings * torques]
         )
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from loadshare.errors import CaseError
 from loadshare.scene.scene import Array
-from loadshare.settings import SENSITIVITY
+from loadshare.settings import EPS, SENSITIVITY
 from loadshare.study.parameter import Value
 from loadshare.study.sensitivity.branch import BranchLost
 
@@ -44,7 +44,6 @@ LEAST = {
 # the last point, of second order.
 _FORWARD = np.array([-21.0, 32.0, -12.0, 1.0]) / 12.0
 _FORWARD_CHECK = np.array([-1.5, 2.0, -0.5, 0.0])
-_EPS = float(np.finfo(float).eps)
 
 Points = dict[int, Array]
 
@@ -202,5 +201,5 @@ def _forward(
 
 def _noise(found: Array, h: float, value: Value, rounding: Array) -> Array:
     """Round-off of a difference: of its terms, and of the values at which they are taken."""
-    of_values = 2.0 * _EPS * abs(value.number) / h
+    of_values = 2.0 * EPS * abs(value.number) / h
     return np.asarray(rounding / (h * value.factor) + of_values * np.abs(found))

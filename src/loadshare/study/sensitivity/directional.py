@@ -21,7 +21,7 @@ import numpy as np
 
 from loadshare.errors import CaseError, Refused
 from loadshare.scene.scene import Array
-from loadshare.settings import SENSITIVITY
+from loadshare.settings import EPS, SENSITIVITY
 from loadshare.solver.hot import contact_states as at
 from loadshare.study.follow.active import WorkingSet, read_pieces, switch_names
 from loadshare.study.sensitivity.branch import Branch, BranchLost, Setting
@@ -29,7 +29,6 @@ from loadshare.study.sensitivity.differences import Derivative, Slope
 from loadshare.study.sensitivity.motion import Gauges, Motion, Point
 from loadshare.train.equilibrium import Equilibrium
 
-_EPS = float(np.finfo(float).eps)
 _NOTHING = (CaseError, ValueError, BranchLost, Refused)
 
 
@@ -136,7 +135,7 @@ class Neighbourhood:
             return None
         rate = -tangent.solve(explicit)
         terms = np.abs(tangent.matrix) @ np.abs(rate) + np.abs(explicit)
-        error = error + len(error) * _EPS * terms + tangent.turned(rate)
+        error = error + len(error) * EPS * terms + tangent.turned(rate)
         error = error + float(left.max(initial=0.0))
         verge = self._verge(point)
         if verge is None:

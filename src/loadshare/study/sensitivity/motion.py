@@ -11,11 +11,10 @@ from functools import cached_property
 import numpy as np
 
 from loadshare.scene.scene import Array
-from loadshare.settings import SENSITIVITY
+from loadshare.settings import EPS, SENSITIVITY
 from loadshare.study.sensitivity.branch import Branch, Gauge
 from loadshare.study.sensitivity.differences import Slope
 
-_EPS = float(np.finfo(float).eps)
 Gauges = dict[tuple[int, int], Gauge]
 """By an element and the state to which it would go."""
 
@@ -127,7 +126,7 @@ class Motion:
         """Bound on the error of linear functionals (k, size) of the rate."""
         adjoint = np.abs(functionals @ self.tangent.inverse)
         terms = np.abs(functionals) @ np.abs(self.rate)
-        return np.asarray(adjoint @ self.error + 4.0 * _EPS * terms)
+        return np.asarray(adjoint @ self.error + 4.0 * EPS * terms)
 
 
 @dataclass(frozen=True, eq=False)

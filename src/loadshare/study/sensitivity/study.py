@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from loadshare.case import Case
+from loadshare.case import Case, load_case
+from loadshare.case.keys import parse
 from loadshare.errors import CaseError
 from loadshare.job import Progress
 from loadshare.job.positions import wanted_positions
@@ -21,8 +22,9 @@ from loadshare.study.sensitivity.corner import Corner
 from loadshare.study.sensitivity.inputs import inputs_of
 from loadshare.study.sensitivity.result import SIDES, Input, Kink, Rates, Sensitivity
 from loadshare.study.sensitivity.trains import Trains
+from loadshare.tooth import bears_on_laws, resolve
 from loadshare.train import Train
-from loadshare.train.build import train_of, with_laws
+from loadshare.train.build import train_of
 from loadshare.train.geometry import geometry_of
 
 
@@ -75,7 +77,8 @@ def sensitivity(
     >>> f"{rate * 1e-6:.5f} per um"
     '-0.00564 per um'
     """
-    case = with_laws(loaded(case))
+    given = case if isinstance(case, Case) else load_case(case)
+    case = loaded(given)
     geometry = geometry_of(case)
     train = train_of(case, geometry)
     chosen = wanted_positions(train, positions)
@@ -84,11 +87,14 @@ def sensitivity(
     rates: dict[tuple[int, str, str], Rates] = {}
     usable, skipped = [], []
     wanted = inputs_of(case, inputs)
+    following = resolve(given, leave=given.meshes)
     for done, item in enumerate(wanted, start=1):
         if progress is not None:
             progress(done, len(wanted))
         try:
-            rates |= _rates(corners, Trains(case, geometry, train, item, chosen), item)
+            own = following if bears_on_laws(parse(item.key)) else case
+            trains = Trains((case, geometry, train), own, item, chosen)
+            rates |= _rates(corners, trains, item)
         except CaseError as refusal:
             if inputs is not None:
                 raise

@@ -21,19 +21,24 @@ class Trains:
 
     Parameters
     ----------
+    base : (Case, Geometry, Train)
+        The case, its mesh laws computed, with its geometry and its train.
     case : Case
-        Its mesh laws computed.
-    geometry : Geometry
-    train : Train
+        The same, but for laws that follow from the input.
     item : Input
     positions : sequence of int
         1-based, at which they are looked at.
     """
 
     def __init__(
-        self, case: Case, geometry: Geometry, train: Train, item: Input, positions: Sequence[int]
+        self,
+        base: tuple[Case, Geometry, Train],
+        case: Case,
+        item: Input,
+        positions: Sequence[int],
     ) -> None:
-        self._base, self._item, self._positions = (case, geometry, train), item, tuple(positions)
+        self._base, self._case, self._item = base, case, item
+        self._positions = tuple(positions)
         self._at = lru_cache(maxsize=None)(self._built)
         self._numbers = lru_cache(maxsize=None)(self._numbers_of)
 
@@ -48,10 +53,10 @@ class Trains:
         return self._at(number)
 
     def _built(self, number: float) -> Train:
-        case, _, train = self._base
         if number == self._item.value.number:
-            return train
-        changed = with_laws(case.replace({self._item.key: self._item.value.at(number).text}))
+            return self._base[2]
+        changes = {self._item.key: self._item.value.at(number).text}
+        changed = with_laws(self._case.replace(changes))
         return train_alike(changed, self._base) or build_train(changed)
 
     def numbers(self, train: Train, position: int, base: Structure) -> Numbers:

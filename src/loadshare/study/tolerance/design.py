@@ -17,7 +17,7 @@ Rows = NDArray[np.int64]
 
 
 class Design(Protocol):
-    """Samples in blocks of up to `BLOCK`."""
+    """Samples in blocks of up to `JOB.block`."""
 
     @property
     def blocks(self) -> int:

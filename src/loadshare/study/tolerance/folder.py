@@ -6,7 +6,8 @@ import hashlib
 import json
 import logging
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -161,11 +162,24 @@ class Folder:
         return np.concatenate(pieces)
 
     def frame(self, columns: Sequence[str] | None = None) -> pd.DataFrame:
-        """Return columns of the study's own samples as a table."""
-        import pyarrow as pa
+        """Return columns of the study's own samples as a table.
 
-        chosen = None if columns is None else list(columns)
-        tables = [read_part(file, chosen).replace_schema_metadata() for file in self.files()]
+        Raises
+        ------
+        ValueError
+            If there is no such column.
+        """
+        import pyarrow as pa
+        from pyarrow import parquet
+
+        files = self.files()
+        chosen = [columns] if isinstance(columns, str) else None if columns is None else [*columns]
+        with _reading(files[0]):
+            there = parquet.read_schema(files[0]).names
+        unknown = [name for name in chosen or () if name not in there]
+        if unknown:
+            raise ValueError(f"no column {', '.join(unknown)}; allowed: {', '.join(there)}")
+        tables = [read_part(file, chosen).replace_schema_metadata() for file in files]
         whole: pd.DataFrame = pa.concat_tables(tables, promote_options="none").to_pandas()
         return whole
 
@@ -196,11 +210,19 @@ def read_part(file: Path, columns: list[str] | None = None) -> pa.Table:
     ResultError
         If the part cannot be read, or was altered since it was written.
     """
-    import pyarrow as pa
     from pyarrow import parquet
 
-    try:
+    with _reading(file):
         return parquet.read_table(file, columns=columns, page_checksum_verification=True)
+
+
+@contextmanager
+def _reading(file: Path) -> Iterator[None]:
+    """Turn what is wrong with a part into a message."""
+    import pyarrow as pa
+
+    try:
+        yield
     except (OSError, ValueError, pa.ArrowException) as error:
         hint = "ask for the same study again: what is not whole is solved anew"
         code = getattr(error, "errno", None)

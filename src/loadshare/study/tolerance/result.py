@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, get_args
 
 from loadshare.pictures import picture
 from loadshare.study.tolerance.folder import Folder
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from loadshare.report.figure import Figure
 
 Over: TypeAlias = Literal["stage", "group"]
+OVERS: tuple[Over, ...] = get_args(Over)
+"""Over whose mean torque Ω may be."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -144,6 +146,11 @@ class Tolerance(Viewed):
         ----------
         columns : sequence of str, optional
             Such as ``["omega.system", "float.4 [m]"]``; all by default.
+
+        Raises
+        ------
+        ValueError
+            If there is no such column.
         """
         return self.folder.frame(columns)
 
@@ -170,6 +177,13 @@ class Tolerance(Viewed):
         stage : str
         over : {"stage", "group"}
             Over whose mean torque Ω is.
+
+        Raises
+        ------
+        LoadshareError
+            If there is no such stage.
+        ValueError
+            If Ω is over no such mean.
         """
         drawn: Figure = picture(self, stage, over)
         return drawn

@@ -163,13 +163,8 @@ def quantile(ordered: Array, level: float, replicates: list[Array] | None) -> Es
     return Estimate(value, low, high)
 
 
-def wilson(hits: int, count: int, confidence: float = TOLERANCE.confidence) -> Estimate:
+def wilson(hits: int, count: int) -> Estimate:
     """Return a probability from independent trials with Wilson's score interval.
-
-    Parameters
-    ----------
-    hits, count : int
-    confidence : float
 
     Notes
     -----
@@ -178,7 +173,7 @@ def wilson(hits: int, count: int, confidence: float = TOLERANCE.confidence) -> E
     """
     from scipy import special
 
-    z = float(special.ndtri(0.5 + confidence / 2.0))
+    z = float(special.ndtri(0.5 + TOLERANCE.confidence / 2.0))
     share = hits / count
     middle = (share + z * z / (2.0 * count)) / (1.0 + z * z / count)
     inner = share * (1.0 - share) / count + z * z / (4.0 * count * count)

@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from loadshare.case import Case, Study
+from loadshare.arguments import one_of, whole
+from loadshare.case import Case, Study, load_case
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.engines import ENGINES, chosen
@@ -47,14 +48,14 @@ def tolerance(
     inputs: Mapping[str, Any] | None = None,
     *,
     study: str | None = None,
-    groups: Sequence[Any] | None = None,
+    groups: Iterable[Any] | None = None,
     samples: int | None = None,
     seed: int | None = None,
     sampling: str | None = None,
     limit: float | None = None,
     indices: int | None = None,
-    quantiles: Sequence[float] | None = None,
-    positions: Sequence[int] | None = None,
+    quantiles: Iterable[float] | None = None,
+    positions: Iterable[int] | None = None,
     worst: bool = True,
     out: str | Path | None = None,
     scheduler: str | None = None,
@@ -103,7 +104,8 @@ def tolerance(
     OSError
         If a file cannot be written; what is there is whole, and the same call goes on.
     ValueError
-        If a position or an engine does not exist.
+        If a position or an engine does not exist, or `workers` or `chunk` is no whole number from 1
+        on.
 
     Examples
     --------
@@ -117,7 +119,9 @@ def tolerance(
     given: dict[str, Any] = {"inputs": inputs, "groups": groups, "quantiles": quantiles}
     given |= {"samples": samples, "seed": seed, "sampling": sampling}
     given |= {"limit": limit, "indices": indices, "positions": positions}
-    job, block = asked_job(loaded(case), study, given, chunk=chunk, engine=engine)
+    case = case if isinstance(case, Case) else load_case(case)
+    workers = whole("workers", workers)
+    job, block = asked_job(case, study, given, chunk=chunk, engine=engine)
     with _folder(out, job) as folder:
         _solve(folder, scheduler, workers, progress)
         return _Reader(folder, block).found(worst)
@@ -151,6 +155,7 @@ def asked_job(
         If a position or an engine does not exist.
     """
     case, name = _asked(case, study, given)
+    case = loaded(case, case.study[name].inputs or ())
     return _job(case, name, chunk, engine), case.study[name]
 
 
@@ -218,10 +223,7 @@ def _job(case: Case, name: str, chunk: int, engine: str) -> Job:
                 problems.append(case.problem(place, message, allowed))
     if problems:
         raise CaseError(problems)
-    if engine not in ENGINES:
-        raise ValueError(f"unknown engine {engine!r}; allowed: {', '.join(ENGINES)}")
-    if chunk < 1:
-        raise ValueError(f"chunk {chunk}: a part has at least one block")
+    one_of("engine", engine, ENGINES)
     wanted = wanted_positions(build_train(case), block.positions)
     if engine == "auto":
         total = equilibria(samples, rows, len(read.units), len(wanted))
@@ -236,7 +238,7 @@ def _job(case: Case, name: str, chunk: int, engine: str) -> Job:
         positions=wanted,
         tolerance=CERTIFY.tolerance,
         engine=engine,
-        chunk=chunk,
+        chunk=whole("chunk", chunk),
     )
 
 
@@ -271,7 +273,7 @@ def _solved(
     settings = folder.job.settings
     if sum(part.rows for part in folder.all) * len(settings["positions"]) <= TOLERANCE.small:
         return solve_here(folder, missing)
-    return solve_parts(folder, missing, max(workers, 1))
+    return solve_parts(folder, missing, workers)
 
 
 class _Reader:

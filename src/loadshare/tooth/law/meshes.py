@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 from contextlib import suppress
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from loadshare.case.checks.fit import mm
+from loadshare.case.keys import Path as KeyPath
 from loadshare.case.keys import dotted, parse
 from loadshare.case.line_of_action import centre_distance
 from loadshare.case.place import minus
@@ -28,7 +30,15 @@ SOURCES = ("geometry", "law_file")
 """Keys of a mesh that name a file its law follows from."""
 
 
-def resolve(case: Case, progress: Tick | None = None) -> Case:
+def bears_on_laws(path: KeyPath) -> bool:
+    """Tell whether laws that are computed may follow from what is at a key path, or a pattern."""
+    section, key = (str(path[k]) if k < len(path) else "" for k in (0, 2))
+    if fnmatchcase("meshes", section):
+        return fnmatchcase("rated_torque", key)
+    return fnmatchcase("gears", section) or path == ("operating", "positions")
+
+
+def resolve(case: Case, progress: Tick | None = None, leave: Collection[str] = ()) -> Case:
     """Replace `geometry`, `law_file` and the words for `law` of the meshes of a case by numbers.
 
     Laws of pairs are computed at the positions of the case, once for each pair file, and kept on
@@ -39,6 +49,8 @@ def resolve(case: Case, progress: Tick | None = None) -> Case:
     case : Case
     progress : callable, optional
         Called after each computed position with how many are done, and how many there are.
+    leave : collection of str
+        Meshes whose word for `law` stays as it is.
 
     Returns
     -------
@@ -58,12 +70,12 @@ def resolve(case: Case, progress: Tick | None = None) -> Case:
         for source in SOURCES
         if getattr(mesh, source) is not None
     }
-    words = {name: m.law for name, m in case.meshes.items() if isinstance(m.law, str)}
+    words = [n for n, m in case.meshes.items() if isinstance(m.law, str) and n not in leave]
     if not sources and not words:
         return case
     laws, pairs, problems = _read(case, sources)
-    inline, taken, wrong = _inline(case)
-    formulas, more = _by_formula(case, [name for name in words if name not in inline])
+    inline, taken, wrong = _inline(case, [n for n in words if case.meshes[n].law_is_of_contact])
+    formulas, more = _by_formula(case, [name for name in words if name not in taken])
     if problems or wrong or more:
         raise CaseError([*problems, *wrong, *more])
     pairs |= inline
@@ -84,13 +96,12 @@ def resolve(case: Case, progress: Tick | None = None) -> Case:
 
 
 def _inline(
-    case: Case,
+    case: Case, names: Sequence[str]
 ) -> tuple[dict[str, PairFile], dict[str, tuple[str, ...]], list[Problem]]:
     """Pairs of the meshes whose law is of their gears' teeth, what they assume, and what is wrong.
 
     What an analysis takes for granted marks the law as assumed.
     """
-    names = [name for name, mesh in case.meshes.items() if mesh.law_is_of_contact]
     if not names:
         return {}, {}, []
     from loadshare.tooth.law.inline import assumed_of, inline_pair

@@ -128,7 +128,7 @@ def misplaced(status, law, u, v, p, q, force_band, length_band, faint):  # type:
 def look_at_radials(s, work, width):  # type: ignore[no-untyped-def]
     """Find out where radial elements should stand, and count those that stand elsewhere.
 
-    `strongest` and `weakest` hold the largest force and length, as `_signs` leaves them.
+    `strongest` and `weakest` hold the largest force and length, as `look_at_rows` leaves them.
     """
     u, v, torque = work.two, work.three, work.one
     for j in range(s.radial_at.shape[0]):

@@ -1,0 +1,26 @@
+"""Tables of a case: what they hold by name, never changed."""
+
+from __future__ import annotations
+
+from typing import Any, NoReturn, TypeVar
+
+Item = TypeVar("Item")
+
+
+class Table(dict[str, Item]):
+    """A table that refuses to be changed, as what is known of its case would no longer be true."""
+
+    def _refuse(self, *_: object, **__: object) -> NoReturn:
+        raise TypeError("a case does not change: Case.replace returns one with other values")
+
+    __setitem__ = __delitem__ = __ior__ = _refuse
+    clear = pop = popitem = setdefault = update = _refuse
+
+    def __reduce__(self) -> tuple[type[Table[Item]], tuple[dict[str, Any]]]:
+        """Copy and pickle it as a whole; by default it would be filled name by name."""
+        return type(self), (dict(self),)
+
+
+def fixed(value: Any) -> Any:
+    """Return a dictionary as a table, and anything else as it is."""
+    return Table(value) if type(value) is dict else value

@@ -1,0 +1,32 @@
+"""A case that is known does not change."""
+
+import copy
+import pickle
+
+import pytest
+from tests.support import CASES
+
+import loadshare as ls
+
+
+@pytest.fixture
+def case() -> ls.Case:
+    external = {"operating.external.10": "1 N*m"}
+    return ls.load_case(CASES / "fgfbstts" / "limit_ring.toml").replace(external)
+
+
+def test_tables_of_a_case_refuse_to_be_changed(case: ls.Case) -> None:
+    for table in (case.rings, case.meshes, case.study, case.operating.external):
+        with pytest.raises(TypeError, match=r"Case\.replace"):
+            table["4"] = None  # type: ignore[index]
+    with pytest.raises(TypeError, match=r"Case\.replace"):
+        case.rings.pop("4")
+    with pytest.raises(TypeError, match=r"Case\.replace"):
+        del case.rings["4"]
+
+
+def test_copies_are_cases_too(case: ls.Case) -> None:
+    for copied in (copy.copy(case), copy.deepcopy(case), pickle.loads(pickle.dumps(case))):
+        assert copied == case
+        with pytest.raises(TypeError, match=r"Case\.replace"):
+            copied.rings.clear()

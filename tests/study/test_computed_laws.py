@@ -1,0 +1,59 @@
+"""Laws computed from the teeth follow what a study varies, as in a case that gives it."""
+
+import numpy as np
+import pytest
+from tests.support import CASES
+
+import loadshare as ls
+
+CASE = ls.load_case(CASES / "planetary" / "four_planets.toml")
+WIDTH = "gears.sun.face_width"
+LAW = 'meshes."sun-planet1".law.b'
+
+
+def omega(width: float) -> float:
+    found = ls.solve(CASE.replace({WIDTH: f"{width!r} mm"}), positions=[1])
+    assert found.omega["system"] is not None
+    return found.omega["system"]
+
+
+def test_a_sweep_is_what_each_case_gives() -> None:
+    found = ls.sweep(CASE, {WIDTH: ["50 mm", "55 mm"]}, positions=[1]).dataset.omega
+    values = found.sel(stage="system").values
+    np.testing.assert_allclose(values, [omega(50.0), omega(55.0)], rtol=1e-12)
+    assert values[0] != values[1]
+
+
+def test_a_sensitivity_is_that_of_the_cases() -> None:
+    case = CASE.replace({WIDTH: "50 mm"})
+    found = ls.sensitivity(case, [WIDTH], positions=[1])
+    step = 1e-3
+    expected = (omega(50.0 + step) - omega(50.0 - step)) / (2.0 * step)
+    for side in ("falling", "rising"):
+        assert 1e-3 * found.omega[WIDTH, side]["system"] == pytest.approx(expected, rel=1e-6)
+
+
+def test_samples_scatter_as_the_cases_do() -> None:
+    spread = {"distribution": "uniform", "low": "50 mm", "high": "60 mm"}
+    found = ls.tolerance(CASE, {WIDTH: spread}, samples=64, indices=0, positions=[1])
+    summary = found.of("system").summary
+    ends = sorted((omega(50.0), omega(60.0)))
+    assert ends[0] <= summary.lowest < summary.highest <= ends[1]
+    assert summary.highest - summary.lowest > 0.9 * (ends[1] - ends[0])
+
+
+def test_a_fit_finds_the_width_back() -> None:
+    measured = {"omega": {"system": omega(50.0)}, "position": 1, "uncertainty": 1e-3}
+    found = ls.fit(CASE.replace({"measured.bench": measured}), {WIDTH: ("40 mm", "58 mm")})
+    assert found.unknowns[0].value == pytest.approx(50.0, rel=1e-6)
+
+
+def test_a_number_of_the_law_itself_is_varied_as_it_stands() -> None:
+    """Beside a width that other meshes follow."""
+    found = ls.sensitivity(CASE, [LAW, WIDTH], positions=[1])
+    assert [item.key for item in found.inputs] == [LAW, WIDTH]
+    assert found.omega[LAW, "rising"]["system"] != 0.0
+    grids = {LAW: ["5e-7 rad/(N*m)", "6e-7 rad/(N*m)"], WIDTH: ["50 mm", "60 mm"]}
+    both = ls.sweep(CASE, grids, positions=[1])
+    values = both.dataset.omega.sel(stage="system").values
+    assert len(np.unique(values)) == 4
