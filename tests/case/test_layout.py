@@ -268,14 +268,18 @@ def test_gears_that_stand_side_by_side_along_the_axis():
     def wheels(height: str) -> Case:
         at = {"angle": "0 deg", "about": "a"}
         return Case(
-            operating={"input": "a", "output": "c", "torque": "100 N*m"},
+            operating={
+                "input": "a",
+                "output": "c",
+                "torque": "100 N*m",
+                "external": {"b": "100 N*m"},
+            },
             gears={
                 "a": gear(20, centre=["0 mm", "0 mm"], face_width="80 mm"),
                 "b": gear(60, centre=at),
                 "c": gear(60, centre=at | {"angle": "20 deg", "height": height}),
             },
             meshes={"a-b": {"law": "iso"}, "a-c": {"law": "iso"}},
-            shafts={"b-c": {"stiffness": "1e5 N*m/rad"}},
         )
 
     wheels("40 mm")  # the face widths of both wheels are 40 mm

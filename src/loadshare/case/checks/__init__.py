@@ -27,6 +27,7 @@ CHECKS = (
     fit.check_tolerance_classes,
     layout.check_tips,
     layout.check_neighbours,
+    layout.check_shafts,
     carriers.check_carriers,
     carriers.check_planet_meshes,
     carriers.check_planet_shafts,

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import combinations
 
-from loadshare.case.checks.fit import OVERLAP, SQUARE, mm, toothed_pairs
+from loadshare.case.checks.fit import OVERLAP, SQUARE, mm, parallel, toothed_pairs
 from loadshare.case.draft import Draft
 from loadshare.case.gears import Polar, Tooth
 from loadshare.case.line_of_action import centre_distance
@@ -16,6 +16,8 @@ from loadshare.case.quantity import LENGTH
 from loadshare.errors import Problem
 from loadshare.involute import base_distance, normal_backlash, root_clearance, tip_limit, tips_pass
 
+APART = 0.1
+"""How far axes may be apart that a shaft joins, as a part of the smaller base radius [-]."""
 WRITTEN = 1e-2
 """By how much tips may be too high for want of written digits, in modules [-]."""
 
@@ -120,6 +122,27 @@ def _passing(pinion: Tooth, ring: Tooth, distance: float) -> float:
         passes = tips_pass(pinion, replace(ring, addendum=ring.addendum_to(middle)), distance)
         low, high = (low, middle) if passes else (middle, high)
     return high
+
+
+def check_shafts(draft: Draft) -> Iterator[Problem]:
+    """Yield shafts between parallel axes that are far apart: a wrong name, most likely.
+
+    Of gears that do not tell their teeth, the centres may be no more than a drawing.
+    """
+    centres = draft.centres()
+    for name, shaft in draft.shafts.items():
+        if not centres.keys() & draft.gears.keys() >= set(shaft.ends):
+            continue
+        one, two = (draft.gears[end] for end in shaft.ends)
+        if one.carrier != two.carrier:
+            continue  # reported already
+        radii = [gear.acting_radius for gear in (one, two) if gear.tooth is not None]
+        if not parallel(one, two) or len(radii) + one.is_carrier + two.is_carrier < 2:
+            continue
+        apart = centre_distance(one, minus(*(centres[end] for end in reversed(shaft.ends))))
+        if radii and apart > APART * min(radii):
+            hint = "A shaft joins gears on one axis."
+            yield draft.problem(("shafts", name), f"is between axes {mm(apart)} apart", hint=hint)
 
 
 @dataclass(frozen=True, slots=True)
