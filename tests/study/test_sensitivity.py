@@ -294,6 +294,8 @@ def test_an_axis_that_cannot_be_turned_alone_is_left_out_or_refused():
         ("rings.4.flot", "is not in the case"),
         ("gears.1.support", "is no number"),
         ("rings.*.flot", "is not in the case"),
+        ("rings.4.float=rings.5.float", "is not one key"),
+        ([("rings.4.float", "rings.5.float")], "is not one key"),
         ("title", "describes the case"),
     ],
 )

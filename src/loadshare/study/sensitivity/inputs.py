@@ -8,8 +8,10 @@ from loadshare.case import Case
 from loadshare.case.keys import Path, dotted, look_up, parse
 from loadshare.case.words import did_you_mean
 from loadshare.errors import CaseError, Problem
-from loadshare.study.parameter import STUDY, Value, leaves, matches, read_value
+from loadshare.study.parameter import STUDY, Value, leaves, matches, read_value, split_outside
 from loadshare.study.sensitivity.result import Input
+
+KEY = "an input that the case gives"
 
 
 def inputs_of(case: Case, wanted: str | Sequence[str] | None) -> list[Input]:
@@ -32,14 +34,17 @@ def inputs_of(case: Case, wanted: str | Sequence[str] | None) -> list[Input]:
     inputs: list[Input] = []
     problems = []
     for pattern in [wanted] if isinstance(wanted, str) else wanted:
+        if not isinstance(pattern, str) or len(split_outside(pattern, "=")) > 1:
+            hint = "Derivatives by keys that take the same value add up."
+            problems.append(Problem(STUDY, str(pattern), "", "is not one key", KEY, hint))
+            continue
         meant = [item for key in matches(case, pattern) for item in _meant(data, key)]
         if not meant:
             given = look_up(data, parse(pattern))
             what = "is not in the case" if given is None else "is no number with a unit"
             shown = "" if given is None else str(given)
             hint = did_you_mean(pattern, (item.key for item in _below(data, ())))
-            allowed = "an input that the case gives"
-            problems.append(Problem(STUDY, pattern, shown, what, allowed, hint))
+            problems.append(Problem(STUDY, pattern, shown, what, KEY, hint))
         inputs += meant
     if problems:
         raise CaseError(problems)
