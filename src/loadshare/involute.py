@@ -178,7 +178,7 @@ def contact_ratio(one: InvoluteTooth, two: InvoluteTooth, distance: float) -> fl
 
 
 def normal_backlash(one: InvoluteTooth, two: InvoluteTooth, distance: float) -> float:
-    """Backlash along the line of action at a centre distance [m]; negative where teeth overlap.
+    """Normal backlash j_bn at a centre distance [m]; negative where teeth overlap.
 
     What the teeth leave of the pitch on the working pitch circles, 2 r_w (π/z − ψ) − 2 r_w2 ψ_2
     with the half angles ψ of the teeth there, times cos α_wt cos β_b. Thickness allowances add

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import random
+import re
 import zipfile
 from pathlib import Path
 
@@ -16,6 +17,7 @@ import loadshare as ls
 from loadshare.errors import CaseError, Refused
 from loadshare.exchange.rexs import export_rexs, import_rexs
 from loadshare.exchange.rexs.reading import read_model
+from loadshare.study.parameter import read_value
 
 
 @pytest.fixture
@@ -79,6 +81,27 @@ def test_shafts_bearings_and_stiffness_are_taken_by_their_formulas(written) -> N
     assert stiffness.si == pytest.approx(20e9 * 0.05 * radius**2)
     assert case.operating.running == "clockwise"
     assert ls.solve(case).positions[0].loads.gears["gear_23"] == pytest.approx(600.0, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"), [("N mm", 1e3), ("kN m", 1e-3), ("Nm", 1.0), ("kN*m", 1e-3)]
+)
+def test_units_that_the_standard_does_not_use_are_read(written, unit, factor) -> None:
+    parts = two_stages()
+    text = xml(*parts).decode()
+    torque = re.search(r'unit="N m">([^<]+)<', text)
+    assert torque is not None
+    other = text.replace(torque[0], f'unit="{unit}">{float(torque[1]) * factor!r}<')
+    plain, found = (import_rexs(written(t.encode(), "unit.rexs")).data for t in (text, other))
+    assert read_value(found["operating"]["torque"]).si == pytest.approx(
+        read_value(plain["operating"]["torque"]).si, rel=1e-12
+    )
+
+
+def test_a_number_in_an_unknown_unit_is_none(written) -> None:
+    text = xml(*two_stages()).decode().replace('unit="N m"', 'unit="furlong"')
+    with pytest.raises(ls.CaseError, match="torque"):
+        import_rexs(written(text.encode(), "unit.rexs"))
 
 
 def test_the_first_load_case_counts(written) -> None:

@@ -79,15 +79,41 @@ def test_backlash_is_the_play_between_flanks(internal: bool, change: float):
 @pytest.mark.parametrize("helix", [0.0, 20.0])
 @pytest.mark.parametrize("internal", [False, True])
 def test_allowances_count_along_the_normal(helix: float, internal: bool):
-    """Closed form of ISO/TR 10064-2: j_bn = −(E_sn1 + E_sn2) cos α_n, at any helix."""
+    """Closed form of ISO/TR 10064-2: j_bn = −(E_sn1 + E_sn2) cos α_n, at any helix.
+
+    Along the line of action, in the transverse plane, it is j_bn / cos β_b.
+    """
     hand = helix if internal else -helix
     kind = {"type": "internal"} if internal else {}
     one = gear(
         25, helix_angle=f"{helix} deg", thickness_allowance="-60 um", pressure_angle="18 deg"
     )
     two = gear(70, helix_angle=f"{hand} deg", thickness_allowance="-90 um", pressure_angle="18 deg")
-    found = build_train(pair(one, two | kind)).meshes["a-b"].backlash
-    assert found == pytest.approx(150e-6 * math.cos(math.radians(18.0)), rel=1e-9)
+    case = pair(one, two | kind)
+    along = math.cos(case.gears["a"].tooth.base_helix_angle)
+    found = build_train(case).meshes["a-b"].backlash
+    assert found * along == pytest.approx(150e-6 * math.cos(math.radians(18.0)), rel=1e-9)
+
+
+@pytest.mark.parametrize("helix", [0.0, 15.0, 30.0])
+def test_gears_turn_by_the_circumferential_backlash(helix: float):
+    """Both ways, less what the mesh yields: j_wt / r_w at the driver, at any helix."""
+    one = gear(25, helix_angle=f"{helix} deg")
+    case = pair(one, gear(70, helix_angle=f"{-helix} deg"), backlash="200 um")
+    a, b = case.gears["a"].tooth, case.gears["b"].tooth
+    angle = working_angle(a, b, distance_without_backlash(a, b))
+    working = a.base_radius / math.cos(angle)
+    one, two = (
+        ls.solve(case.replace({"operating.torque": f"{sign}1e-6 N*m"})).positions[0].rotation["a"]
+        for sign in ("", "-")
+    )
+    assert abs(one - two) == pytest.approx(200e-6 / working, rel=1e-6)
+    normal = 200e-6 * math.cos(angle) * math.cos(a.base_helix_angle)
+    measured = {"backlash": None, "normal_backlash": f"{normal!r} m"}
+    changed = case.replace({f'meshes."a-b".{key}': value for key, value in measured.items()})
+    assert build_train(changed).meshes["a-b"].backlash == pytest.approx(
+        build_train(case).meshes["a-b"].backlash, rel=1e-12
+    )
 
 
 def test_a_centre_distance_that_is_off_opens_the_flanks():

@@ -109,3 +109,28 @@ def test_a_clearance_that_is_used_up_is_told():
 def test_degrees_are_not_a_rise():
     with pytest.raises(ls.CaseError, match="degC is not known"):
         pair().replace({"gears.a.temperature": "90 degC"})
+
+
+def test_a_warm_housing_grows_once_however_a_case_is_changed():
+    """A case made of one before, samples of it, and rates take over what has grown already."""
+    case = shipped("two_path/from_teeth").replace(
+        {
+            "operating.temperature": "30 K",
+            "errors.wheel1.installation": ["5 um", "0 um"],
+            "operating.torque": "300 N*m",
+        }
+    )
+    key, values = "operating.torque", [300.0, 310.0, 320.0]
+    fresh = [ls.Case(case.replace({key: f"{t!r} N*m"}).to_dict()) for t in values]
+    expected = [ls.solve(one).torque.values for one in fresh]
+    changed = case
+    for torque, right in zip(values, expected, strict=True):
+        changed = changed.replace({key: f"{torque!r} N*m"})
+        np.testing.assert_allclose(ls.solve(changed).torque.values, right, rtol=1e-12)
+    many = ls.solve_many(case, {f"{key} [N*m]": values}).torque.values
+    swept = ls.sweep(case, {key: [f"{t!r} N*m" for t in values]}).dataset.torque.values
+    np.testing.assert_allclose(many, expected, rtol=1e-12)
+    np.testing.assert_allclose(swept, expected, rtol=1e-12)
+    mesh = ls.solve(case).torque.mesh.values[0]
+    rate = ls.sensitivity(case, key, positions=[1]).rates[1, key, "rising"].torque[mesh]
+    assert 10.0 * rate == pytest.approx(expected[1][0, 0] - expected[0][0, 0], rel=1e-9)

@@ -4,7 +4,8 @@ import math
 
 import pytest
 
-from loadshare.tooth.law.iso6336 import formula_stiffness
+from loadshare.case import Gear
+from loadshare.tooth.law.iso6336 import formula_stiffness, mesh_stiffness
 
 UNIT = 1e9  # N/(mm·µm)
 
@@ -50,3 +51,11 @@ def test_factors():
 def test_out_of_range(wrong):
     with pytest.raises(ValueError, match=r"x1|positive"):
         example(**wrong)
+
+
+def test_equal_gears_with_unequal_shifts_are_one_pair_either_way():
+    """The formula is not symmetric in its gears; of equal teeth the larger shift comes first."""
+    teeth = {"teeth": 25, "module": "4 mm", "face_width": "40 mm", "centre": ["0 mm", "0 mm"]}
+    one, two = (Gear.model_validate({**teeth, "profile_shift": x}) for x in (0.4, -0.1))
+    there, back = (mesh_stiffness(pair, 0.1012) for pair in ((one, two), (two, one)))
+    assert there == back

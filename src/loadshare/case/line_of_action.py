@@ -80,6 +80,8 @@ def backlash_of_teeth(
 ) -> float | None:
     """Return the backlash that teeth leave along the line of action [m]; None if none are given.
 
+    The line of action lies in the transverse plane: j_bn / cos β_b.
+
     Parameters
     ----------
     mesh : Mesh
@@ -92,7 +94,8 @@ def backlash_of_teeth(
         return None
     distance = centre_distance(driver, minus(centres[mesh.driven], centres[mesh.driver]))
     # Written digits may leave teeth that touch overlapping a little.
-    return max(normal_backlash(driver.tooth, driven.tooth, distance), 0.0)
+    left = normal_backlash(driver.tooth, driven.tooth, distance)
+    return max(left / math.cos(driver.tooth.base_helix_angle), 0.0)
 
 
 def _base_helix(driver: Gear, driven: Gear) -> float:

@@ -133,7 +133,7 @@ class Mesh(Element):
     """
 
     helix_angle: Annotated[Quantity, ANGLE] | None = None
-    """Base helix angle; that of the teeth, or 0 deg, when left out [angle]."""
+    """Base helix angle, for `normal_backlash` [angle]; that of the teeth, or 0 deg, by default."""
 
     stiffness: PerPosition[MeshStiffness] | None = None
     """Constant stiffness at the driver [torque/angle], one value or one per position."""
@@ -182,7 +182,7 @@ class Mesh(Element):
     """
 
     normal_backlash: Distance | None = None
-    """Backlash along the line of action [length], in place of `backlash`."""
+    """Backlash at right angles to the flanks, j_bn [length], in place of `backlash`."""
 
     WAYS = (
         (("stiffness",), ("law", "rated_torque"), ("table",), ("law_file",), ("geometry",)),

@@ -117,7 +117,16 @@ def train_of(
     rings = elements("rings", ring_of)
     if problems:
         raise CaseError(problems)
-    offsets = elements("errors", lambda name, e: _offset(e, gears[name], gears), "offsets")
+
+    def offset_of(name: str, errors: spec.Errors) -> Offset:
+        return _offset(errors, gears[name], gears)
+
+    # Those of a base that is warm have grown already.
+    offsets = (
+        with_growth(case, gears, {n: offset_of(n, e) for n, e in case.errors.items()})
+        if warm
+        else elements("errors", offset_of, "offsets")
+    )
     return Train(
         name=case.name,
         gears=gears,
@@ -126,7 +135,7 @@ def train_of(
         splines=elements("splines", _spline),
         rings={name: ring for name, ring in rings.items() if ring is not None},
         bearings=elements("bearings", bearing_of),
-        offsets=with_growth(case, gears, offsets) if warm else offsets,
+        offsets=offsets,
         stages=tuple(
             Stage(n, tuple(s.meshes), tuple(s.groups or (s.meshes,)))
             for n, s in case.stages.items()
@@ -203,11 +212,11 @@ def _each(
 
 
 def _mesh(name: str, mesh: spec.Mesh, pair: Pair, by_layout: bool) -> Mesh:
+    # The approach is that in the transverse plane, where j = j_wt cos α_wt = j_bn / cos β_b.
     if mesh.normal_backlash is not None:
-        backlash = mesh.normal_backlash.si
+        backlash = mesh.normal_backlash.si / math.cos(pair.line.helix_angle)
     elif isinstance(mesh.backlash, spec.Quantity):
-        line = pair.line
-        backlash = mesh.backlash.si * math.cos(line.pressure_angle) * math.cos(line.helix_angle)
+        backlash = mesh.backlash.si * math.cos(pair.line.pressure_angle)
     else:
         backlash = pair.backlash
     radii = pair.driver.base_radius, pair.driven.base_radius

@@ -129,7 +129,7 @@ class Mesh:
     gaps : tuple of float
         Unloaded gap of the drive flank along the line of action [m], one or one per position.
     backlash : float
-        Normal backlash j_n [m]; infinite if the coast flank cannot touch.
+        Along the line of action [m]; infinite if the coast flank cannot touch.
     turned : bool
         Whether the case names the driven gear first: torque runs against the name of a mesh that
         has one flank only, and that flank is the one it presses.

@@ -20,7 +20,7 @@ class Component:
     id : str
     type, name : str
     attributes : mapping of str to float, bool, str or tuple of float
-        In SI units; those in other units as if they had none.
+        In SI units; numbers in a unit that is not known as texts.
     """
 
     id: str

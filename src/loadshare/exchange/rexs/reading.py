@@ -7,16 +7,20 @@ import binascii
 import json
 import lzma
 import math
+import re
 import struct
 import zipfile
 import zlib
 from collections.abc import Mapping
+from contextlib import suppress
+from functools import lru_cache
 from io import BytesIO
 from pathlib import Path
 from typing import Any, NoReturn
 from xml.etree import ElementTree
 from xml.parsers import expat
 
+from loadshare.case.units import FACTORS, si_factor
 from loadshare.errors import CaseError, Problem
 from loadshare.exchange.rexs.model import Component, Model, Relation, Value
 from loadshare.input import Unreadable, read_file
@@ -42,7 +46,7 @@ UNITS = {
     "W": 1.0,
     "none": 1.0,
 }
-"""SI value of the units of the attributes that are read."""
+"""SI value of units as the standard spells them; others are read as those of a case."""
 CODES = {"float64": "d", "float32": "f"}
 """Arrays as bytes, by the code in the file."""
 
@@ -215,10 +219,28 @@ def _decoded(text: str, code: str) -> Value:
 
 
 def _in_si(value: Value, unit: str) -> Value:
-    factor = UNITS.get(unit.replace("Nm", "N m") if unit.startswith("Nm") else unit)
-    if factor is None or factor == 1.0 or isinstance(value, bool | str):
+    """Return a value in SI units; in a unit that is not known it is a text, and no number."""
+    factor = _factor(unit)
+    if factor == 1.0 or isinstance(value, bool | str):
         return value
+    if factor is None:
+        return f"{value} {unit}"
     return tuple(factor * v for v in value) if isinstance(value, tuple) else factor * value
+
+
+@lru_cache(maxsize=1024)
+def _factor(unit: str) -> float | None:
+    """SI value of a unit; None for one that no input of a case has."""
+    unit = unit.replace("Nm", "N m") if unit.startswith("Nm") else unit
+    if unit in UNITS:
+        return UNITS[unit]
+    spelled = re.sub(r"\s+", "*", re.sub(r"\s*/\s*", "/", unit.strip()))
+    for si in FACTORS:
+        with suppress(ValueError):
+            factor = si_factor(spelled, si)
+            if factor is not None:
+                return factor
+    return None
 
 
 def _from_json(content: bytes) -> Model:

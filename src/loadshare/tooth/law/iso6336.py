@@ -174,7 +174,7 @@ def mesh_stiffness(gears: tuple[Gear, Gear], distance: float, *, measured: bool 
         If a value is outside what the formulas were fitted to.
     """
     # The formula's first gear is the one with fewer teeth; an internal gear is a rack to it.
-    first, second = sorted(gears, key=lambda g: (g.type == "internal", g.teeth))
+    first, second = sorted(gears, key=_as_pinion)
     teeth, widths = [], []
     for gear in (first, second):
         if gear.tooth is None or gear.face_width is None:
@@ -197,6 +197,11 @@ def mesh_stiffness(gears: tuple[Gear, Gear], distance: float, *, measured: bool 
         measured_factor=MEASURED if measured else 1.0,
     )
     return found.mesh * width
+
+
+def _as_pinion(gear: Gear) -> tuple[bool, int, float]:
+    """Order of gears of a pair: the pinion first; of equal teeth that with the larger shift."""
+    return gear.type == "internal", gear.teeth or 0, -(gear.profile_shift or 0.0)
 
 
 def _blank(gear: Gear, width: float) -> float:
