@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -18,6 +19,7 @@ from loadshare.involute import (
     normal_backlash,
     working_angle_without_backlash,
 )
+from loadshare.tooth import resolve
 from loadshare.tooth.law.iso6336 import MEASURED, blank_factor, formula_stiffness, mesh_stiffness
 
 # NREL 5 MW reference gearbox, KISSsoft reports of 2020: module, helix, face width, centre distance,
@@ -198,3 +200,30 @@ def test_teeth_that_do_not_reach_each_other_are_told_how_far_apart_they_would_me
     )
     with pytest.raises(CaseError, match=r"48 mm apart; without backlash it would be 51 mm"):
         ls.solve(case)
+
+
+@pytest.mark.parametrize("law", ["iso", "ltca"])
+def test_faces_side_by_side_carry_where_they_overlap(law: str):
+    """40 mm wide and 32 mm apart they are as 8 mm wide gears; the wider one may overhang."""
+
+    def stiffness(widths: tuple[int, int], height: int) -> float:
+        centre = {"about": "a", "angle": "0 deg", "height": f"{height} mm"}
+        places = {"a": ["0 mm", "0 mm"], "b": centre}
+        case = ls.Case(
+            operating={"input": "a", "output": "b", "torque": "100 N*m", "positions": 2},
+            gears={
+                name: {
+                    "teeth": teeth,
+                    "module": "4 mm",
+                    "face_width": f"{width} mm",
+                    "centre": places[name],
+                }
+                for (name, teeth), width in zip({"a": 25, "b": 30}.items(), widths, strict=True)
+            },
+            meshes={"a-b": {"law": law, "rated_torque": "100 N*m" if law == "ltca" else None}},
+        )
+        found = resolve(case).meshes["a-b"].power_law
+        return 1.0 / np.mean([b.si for b in found.b] if isinstance(found.b, tuple) else found.b.si)
+
+    assert stiffness((40, 40), 32) == pytest.approx(stiffness((8, 8), 0), rel=1e-9)
+    assert stiffness((40, 20), 10) == stiffness((40, 20), 0)

@@ -9,7 +9,11 @@ from dataclasses import dataclass
 from loadshare.case.gears import Gear
 from loadshare.case.meshes import Mesh
 from loadshare.case.place import Vector, axis_of, dot, minus
+from loadshare.case.quantity import Quantity
 from loadshare.involute import normal_backlash
+
+WRITTEN = 1e-6
+"""Part of a face by which heights may be off for want of written digits [-]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +43,34 @@ def centre_distance(driver: Gear, offset: Vector) -> float:
     """
     along = dot(offset, axis_of(driver))
     return math.sqrt(max(dot(offset, offset) - along**2, 0.0))
+
+
+def facing(
+    mesh: Mesh, gears: Mapping[str, Gear], centres: Mapping[str, Vector]
+) -> tuple[Gear, Gear]:
+    """Return driver and driven gear, their faces cut to where these overlap.
+
+    The same gears where all of the narrower face does, or a gear gives no face width.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        Of two gears with parallel axes.
+    gears : mapping of str to Gear
+    centres : mapping of str to tuple of float
+        Centres of both gears [m].
+    """
+    driver, driven = gears[mesh.driver], gears[mesh.driven]
+    if driver.face_width is None or driven.face_width is None:
+        return driver, driven
+    widths = driver.face_width.si, driven.face_width.si
+    offset = minus(centres[mesh.driven], centres[mesh.driver])
+    common = 0.5 * sum(widths) - abs(dot(offset, axis_of(driver)))
+    # Heights are written with a few digits.
+    if not 0.0 < common < min(widths) * (1.0 - WRITTEN):
+        return driver, driven
+    cut = {"face_width": Quantity(f"{common!r} m", common)}
+    return driver.model_copy(update=cut), driven.model_copy(update=cut)
 
 
 def tangent_distance(driver: Gear, driven: Gear) -> float:

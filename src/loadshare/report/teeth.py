@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from loadshare.case import Case, Gear
 from loadshare.case.iso1328 import tolerances_of
-from loadshare.case.line_of_action import centre_distance
+from loadshare.case.line_of_action import centre_distance, facing
 from loadshare.case.mass import inertia_of, mass_of
 from loadshare.case.place import minus
 from loadshare.involute import (
@@ -100,7 +100,7 @@ def _meshes(case: Case) -> Iterator[Record]:
             "α_wt": (math.degrees(working_angle(one, two, apart)), 4),
             "β_b": (math.degrees(abs(one.base_helix_angle)), 4),
             "ε_α": (contact_ratio(one, two, apart), 3),
-            "ε_β": (_overlap_ratio(driver, driven), 3),
+            "ε_β": (_overlap_ratio(*facing(mesh, case.gears, centres)), 3),
             "backlash": (1e6 * normal_backlash(one, two, apart), 1),
         }
         yield {"mesh": Cell(name)} | {

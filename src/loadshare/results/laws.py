@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from loadshare.case import Case
+from loadshare.case import Case, Gear
+from loadshare.case.line_of_action import facing
 
 GIVEN = "given"
 """Basis of a law in numbers of which the case says no more."""
@@ -48,12 +49,12 @@ def laws_of(case: Case, torques: Sequence[Mapping[str, float]]) -> dict[str, Law
     torques : sequence of mapping of mesh to float
         On the driver, position by position [N·m].
     """
-    found = {}
+    found, centres = {}, case.centres()
     for name, mesh in case.meshes.items():
         law = mesh.power_law
         sizes = [abs(each[name]) for each in torques]
         least, largest = min(sizes, default=0.0), max(sizes, default=0.0)
-        load = _line_load(case, mesh.ends, largest)
+        load = _line_load(facing(mesh, case.gears, centres), largest)
         note = ""
         if law is not None and law.holds_from is not None and largest > 0.0:
             note = _below(least, largest, law.holds_from.si)
@@ -92,8 +93,7 @@ def _above(largest: float, limit: float) -> str:
     return ""
 
 
-def _line_load(case: Case, ends: tuple[str, str], torque: float) -> float | None:
-    gears = [case.gears[name] for name in ends]
+def _line_load(gears: tuple[Gear, Gear], torque: float) -> float | None:
     widths = [gear.face_width.si for gear in gears if gear.face_width is not None]
     tooth = gears[0].tooth
     if tooth is None or len(widths) < len(gears):

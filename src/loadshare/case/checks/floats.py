@@ -99,14 +99,12 @@ def check_float_backlashes(draft: Draft) -> Iterator[Problem]:
 def check_idle_inputs(draft: Draft) -> Iterator[Problem]:
     """Yield what was given and has no effect because something else is missing."""
     for name, mesh in draft.meshes.items():
-        if mesh.helix_angle is not None and mesh.helix_angle.si and mesh.normal_backlash is None:
+        helical = mesh.helix_angle is not None and mesh.helix_angle.si
+        if helical and not mesh.given("backlash", "normal_backlash"):
             message = "turns a normal backlash into the transverse plane, but"
             path = ("meshes", name, "helix_angle")
-            if mesh.backlash is not None:
-                told, hint = "the backlash is circumferential", "Drop the angle."
-            else:
-                told = f'meshes."{name}".normal_backlash is missing'
-                hint = "Give it, or drop the angle."
+            told = f'meshes."{name}".normal_backlash is missing'
+            hint = "Give it, or drop the angle."
             yield draft.problem(path, f"{message} {told}", hint=hint)
     for name, ring in draft.rings.items():
         if ring.radius is not None and "measured" in ring.model_fields_set:

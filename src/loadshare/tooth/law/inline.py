@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from loadshare.case.keys import dotted
-from loadshare.case.line_of_action import centre_distance
+from loadshare.case.line_of_action import centre_distance, facing
 from loadshare.case.place import minus
 from loadshare.errors import CaseError, Problem
 from loadshare.tooth.pair.file import PairFile, built
@@ -37,8 +37,8 @@ def inline_pair(case: Case, name: str) -> PairFile:
         With everything that is wrong with the gears or with their mesh, by the keys of the case.
     """
     mesh = case.meshes[name]
-    driver, driven = case.gears[mesh.driver], case.gears[mesh.driven]
     centres = case.centres()
+    driver, driven = facing(mesh, case.gears, centres)
     distance = centre_distance(driver, minus(centres[mesh.driven], centres[mesh.driver]))
     torque = mesh.rated_torque.si if mesh.rated_torque else _rated(driver, driven)
     content = HelicoidContent.model_validate(
@@ -70,6 +70,8 @@ def assumed_of(case: Case, name: str) -> tuple[str, ...]:
     found = [f"rim of {' and '.join(bare)} 1.5 tooth heights"] if bare else []
     if mesh.rated_torque is None:
         found.append(f"rated for {LOAD * 1e-6:g} N per mm of face width and module")
+    if facing(mesh, case.gears, case.centres())[0] is not gears["driver"]:
+        found.append("faces cut to where they overlap")
     if any(gear.tip_radius is None for gear in gears.values()):
         found.append("tip radius of the rack 0.38")
     return (*found, "steel", "unmodified flanks")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from loadshare.case.checks.fit import mm
 from loadshare.case.keys import Path as KeyPath
 from loadshare.case.keys import dotted, parse
-from loadshare.case.line_of_action import centre_distance
+from loadshare.case.line_of_action import centre_distance, facing
 from loadshare.case.place import minus
 from loadshare.case.words import count
 from loadshare.errors import CaseError, Problem
@@ -170,6 +170,7 @@ def _by_formula(
         pair = case.gears[mesh.driver], case.gears[mesh.driven]
         offset = minus(centres[mesh.driven], centres[mesh.driver])
         distance = centre_distance(pair[0], offset)
+        pair = facing(mesh, case.gears, centres)
         try:
             stiffness = mesh_stiffness(pair, distance, measured=measured)
         except ValueError as error:
