@@ -250,3 +250,12 @@ def test_a_file_that_cannot_be_written_is_told(command, cases, tmp_path):
     assert result.exit_code == 2
     assert "cannot be written" in result.stderr
     assert "PASSED" in result.stdout
+
+
+def test_a_case_that_is_written_keeps_laws_that_follow_from_teeth(command, cases, tmp_path):
+    """Changed again, its laws change as those of the case that it was made from."""
+    case, width = cases / "planetary/four_planets.toml", "gears.sun.face_width=30 mm"
+    command("run", case, "--set", "operating.torque=2 kN*m", "-o", tmp_path / "made.toml")
+    change = ("--set", width, "--set", "operating.torque=2 kN*m", "--json")
+    found = [json.loads(command("run", c, *change).stdout) for c in (case, tmp_path / "made.toml")]
+    assert found[0]["omega"] == found[1]["omega"]

@@ -110,6 +110,15 @@ def test_inputs_that_the_data_cannot_tell_apart_are_named():
     assert found.singular_values[-1] < 1e-6 * found.singular_values[0]
 
 
+def test_an_input_that_moves_nothing_is_not_determined():
+    """By itself: there is no other input to compare its effect with."""
+    measured = {"position": 1, "pair_share": {"8-10": 1.02}, "uncertainty": 0.01}
+    case = shipped("fgfbstts/installation_error").replace({"measured.bench": measured})
+    found = ls.fit(case, {"errors.6.installation[0]": ("0 um", "100 um")})
+    assert math.isinf(found.unknowns[0].deviation)
+    assert found.warnings == ("The data do not determine errors.6.installation[0].",)
+
+
 def test_an_input_that_a_weak_one_can_move_is_not_determined():
     """One share, two unknowns: whatever the second is, the first can make up for it.
 

@@ -103,7 +103,7 @@ def run(
     if refusal is not None:
         _end_refused(refusal, loaded.name, file or ())
     assert result is not None
-    _write(file, result, str(case), picture)
+    _write(file, result, loaded, str(case), picture)
 
 
 def _solved(
@@ -148,13 +148,21 @@ def _end_refused(refusal: Refused, case: str, files: Sequence[Output]) -> NoRetu
     fail([*lines, *(f"{f}: not written, for want of an answer" for f in others)], REFUSED)
 
 
-def _write(files: Sequence[Output] | None, result: Result, case: str, picture: str) -> None:
+def _write(
+    files: Sequence[Output] | None, result: Result, given: Case, case: str, picture: str
+) -> None:
     from loadshare.results.writing import netcdf_content
 
     def report() -> str:
         from loadshare.report.page import chapter, report_page
 
         return report_page([chapter(result.case, case, result=result)])
+
+    def changed() -> str:
+        from loadshare.tooth import resolve
+
+        # What names no other file stays as it is: a law from teeth follows their next change.
+        return resolve(given, leave=given.meshes).to_toml()
 
     made = cache(partial(_tables, result))
 
@@ -174,7 +182,7 @@ def _write(files: Sequence[Output] | None, result: Result, case: str, picture: s
     frame = tables_of("run", result.to_frame)
     drawn = figure_of(lambda: getattr(result.plot, picture)())
     makers = {**frame, **drawn, "json": result.to_json, "nc": lambda: netcdf_content(result)}
-    makers |= {"html": report, "xlsx": workbook, "toml": result.case.to_toml}
+    makers |= {"html": report, "xlsx": workbook, "toml": changed}
     write_all(single, makers)
 
 

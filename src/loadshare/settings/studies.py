@@ -183,6 +183,9 @@ class Fit(NamedTuple):
     told_apart: float = 1e-6
     """Singular value of the scaled sensitivities, over the largest, below which inputs are not told
     apart; and part of an input in what is left open, below which it is round-off."""
+    felt: float = 1e-6
+    """Standard deviations by which the figures must change over the range of an input that they
+    determine."""
     at_bound: float = 1e-9
     """Distance to a bound, over the range, that counts as none."""
     inside: float = 1e-10

@@ -327,7 +327,7 @@ class _Problem:
         _, sizes, right = np.linalg.svd(jacobian, full_matrices=True)
         full = np.zeros(len(self.parameters))
         full[: len(sizes)] = sizes
-        loose = full <= FIT.told_apart * max(float(full.max(initial=0.0)), 1e-300)
+        loose = full <= max(FIT.told_apart * float(full.max(initial=0.0)), FIT.felt)
         known = right[~loose]
         covariance = known.T @ np.diag(full[~loose] ** -2.0) @ known
         names = [p.name for p in self.parameters]

@@ -61,7 +61,8 @@ def tolerance(
         over(
             "LOW:HIGH",
             "Input that varies evenly between two values, as in rings.*.float='0 um:12 um', in "
-            "place of those of [study.NAME]; may be repeated.",
+            "place of those of [study.NAME]; without NAME, a study of these alone. May be "
+            "repeated.",
         ),
     ] = None,
     file: Annotated[
