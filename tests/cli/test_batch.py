@@ -116,6 +116,18 @@ def test_what_is_certified_is_kept(command, star, tmp_path):
     assert {f: f.stat().st_mtime_ns for f in tmp_path.glob("floating*")} == before
 
 
+def test_a_result_says_what_its_case_says_now(command, star, tmp_path):
+    """A title changes no mechanics, but the result shows it."""
+    case, out = tmp_path / "case.toml", tmp_path / "out"
+    text = (star / "floating_sun_3.toml").read_text(encoding="utf-8")
+    title = ls.load_case(star / "floating_sun_3.toml").title
+    for told in (title, "Another title"):
+        case.write_text(text.replace(title, told), encoding="utf-8")
+        command("batch", case, "-o", out, "--jobs", "1")
+        assert outcomes(out) == {"case": "certified"}
+        assert ls.load_result(out / "case.json").case.title == told
+
+
 @pytest.mark.parametrize(
     "words", [("--force",), ("--solver", "osqp"), ("--method", "picard"), ("--tolerance", "1e-8")]
 )

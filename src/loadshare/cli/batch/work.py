@@ -170,8 +170,9 @@ def _kept(task: Task, case: Case, count: int) -> tuple[Result | None, tuple[str,
         first = replace(error.problems[0], hint="")
         return None, (f"the file there was not kept: {first}",)
     stamp = result.stamp
-    found = (stamp.case_hash, stamp.version, stamp.solver, stamp.method, stamp.tolerance)
-    asked = (case.hash, __version__, task.solver, task.method, task.tolerance)
+    # Of the cases, not of their hashes: a result shows titles, sources and assumptions as well.
+    found = (result.case, stamp.version, stamp.solver, stamp.method, stamp.tolerance)
+    asked = (case, __version__, task.solver, task.method, task.tolerance)
     whole = stamp.positions == tuple(range(1, count + 1)) and stamp.reduce
     return (result if whole and found == asked else None), ()
 
