@@ -150,18 +150,16 @@ def solve_many(
         distance of a torque from the exact one, over the largest), ``certified``, ``determined``,
         ``displaced`` (displacements over what their geometry allows without a warning; ``warned``
         counts those above 1), ``convex`` (nothing that is not convex carries), ``arc_curvature``
-        [N/m] that arcs take from the stiffness across them, ``rung`` (a number,
-        which its attribute ``flag_meanings`` names in order; 0 where nothing answered). What is
-        refused is NaN; the attribute ``refused`` says why, a line for each such as "sample 3,
-        position 1: …", and is empty where nothing is.
+        [N/m] that arcs take from the stiffness across them, ``rung`` (a number, which its attribute
+        ``flag_meanings`` names in order; 0 where nothing answered). What is refused is NaN; the
+        attribute ``refused`` says why, a line for each ("sample 3, position 1: …").
 
     Raises
     ------
     CaseError
         If a key or a value cannot be used; all problems are listed.
     ValueError
-        If a position, a variable or an engine does not exist, or the tolerance is no tolerance, or
-        `workers` no whole number from 1 on.
+        If a position, a variable, an engine or so many `workers` cannot be, or a tolerance is none.
 
     Examples
     --------
@@ -172,8 +170,7 @@ def solve_many(
     True
     """
     case = case if isinstance(case, Case) else load_case(case)
-    # Read once: values may come from a generator.
-    table = {column.key: column.values for column in columns_of(samples)}
+    table = {c.key: c.values for c in columns_of(samples)}  # Once: it may hold a generator.
     blocks = solve_blocks(
         case,
         table,
@@ -183,6 +180,5 @@ def solve_many(
         workers=workers,
         least_norm=least_norm,
     )
-    count = len(next(iter(table.values())))
-    found = Table.of(blocks, count, checked(keep), progress)
+    found = Table.of(blocks, len(next(iter(table.values()))), checked(keep), progress)
     return found.dataset(case, checked_tolerance(tolerance))

@@ -7,9 +7,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from loadshare.case import Case, Study, load_case
+from loadshare.case import Case, Study
 from loadshare.case.words import did_you_mean
 from loadshare.errors import CaseError, Problem
+from loadshare.study.positions import opened
 
 if TYPE_CHECKING:
     from loadshare.job import Progress
@@ -56,7 +57,7 @@ def run_study(case: Case | str | Path, name: str, *, progress: Progress | None =
     >>> found.dataset["pair_omega"].sel(stage="II").values.round(4).tolist()
     [1.0471, 1.002]
     """
-    case = case if isinstance(case, Case) else load_case(case)
+    case = opened(case)
     block = case.study.get(name)
     if block is None:
         known = list(case.study)

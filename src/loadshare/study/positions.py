@@ -15,6 +15,11 @@ from loadshare.train.situations import VARYING, situation_of
 from loadshare.train.train import Train
 
 
+def opened(case: Case | str | Path) -> Case:
+    """Return a case as it says, read from its file if a path is given."""
+    return case if isinstance(case, Case) else load_case(case)
+
+
 def loaded(case: Case | str | Path, varied: Iterable[str] = ()) -> Case:
     """Return a case, read from its file if a path is given, its mesh laws computed.
 
@@ -27,7 +32,7 @@ def loaded(case: Case | str | Path, varied: Iterable[str] = ()) -> Case:
     varied : iterable of str
         Key paths and patterns of what varies; several may be joined by ``=``.
     """
-    case = case if isinstance(case, Case) else load_case(case)
+    case = opened(case)
     paths: list[Key] = []
     for part in (part for key in varied for part in split_outside(key, "=")):
         # What is no key path is reported where it is used.

@@ -78,11 +78,11 @@ def train_of(
     """
 
     def elements(
-        section: str, convert: Callable[[str, Any], Element], known: str = ""
+        section: str, convert: Callable[[str, Any], Element], known: str = "", anew: bool = False
     ) -> dict[str, Element]:
-        """Elements of a section; those that the base does not have are built."""
+        """Elements of a section; those that the base does not have are built, or all of them."""
         now = getattr(case, section)
-        if base is None:
+        if base is None or anew:
             return {name: convert(name, item) for name, item in now.items()}
         before, there = getattr(base[0], section), getattr(base[1], known or section)
         return {
@@ -117,16 +117,8 @@ def train_of(
     rings = elements("rings", ring_of)
     if problems:
         raise CaseError(problems)
-
-    def offset_of(name: str, errors: spec.Errors) -> Offset:
-        return _offset(errors, gears[name], gears)
-
     # Those of a base that is warm have grown already.
-    offsets = (
-        with_growth(case, gears, {n: offset_of(n, e) for n, e in case.errors.items()})
-        if warm
-        else elements("errors", offset_of, "offsets")
-    )
+    offsets = elements("errors", lambda name, e: _offset(e, gears[name], gears), "offsets", warm)
     return Train(
         name=case.name,
         gears=gears,
@@ -135,7 +127,7 @@ def train_of(
         splines=elements("splines", _spline),
         rings={name: ring for name, ring in rings.items() if ring is not None},
         bearings=elements("bearings", bearing_of),
-        offsets=offsets,
+        offsets=with_growth(case, gears, offsets) if warm else offsets,
         stages=tuple(
             Stage(n, tuple(s.meshes), tuple(s.groups or (s.meshes,)))
             for n, s in case.stages.items()

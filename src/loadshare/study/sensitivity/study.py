@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from loadshare.case import Case, load_case
+from loadshare.case import Case
 from loadshare.case.keys import parse
 from loadshare.errors import CaseError
 from loadshare.job import Progress
@@ -17,7 +17,7 @@ from loadshare.job.positions import wanted_positions
 from loadshare.results.share import coefficients
 from loadshare.settings import SENSITIVITY
 from loadshare.study.answers import each_certified
-from loadshare.study.positions import loaded
+from loadshare.study.positions import loaded, opened
 from loadshare.study.sensitivity.corner import Corner
 from loadshare.study.sensitivity.inputs import inputs_of
 from loadshare.study.sensitivity.result import SIDES, Input, Kink, Rates, Sensitivity
@@ -77,7 +77,7 @@ def sensitivity(
     >>> f"{rate * 1e-6:.5f} per um"
     '-0.00564 per um'
     """
-    given = case if isinstance(case, Case) else load_case(case)
+    given = opened(case)
     case = loaded(given)
     geometry = geometry_of(case)
     train = train_of(case, geometry)

@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 
 from loadshare.arguments import one_of, whole
-from loadshare.case import Case, Study, load_case
+from loadshare.case import Case, Study
 from loadshare.errors import CaseError, Problem
 from loadshare.job import Progress
 from loadshare.job.engines import ENGINES, chosen
 from loadshare.job.positions import wanted_positions
 from loadshare.lock import alone_in
 from loadshare.settings import CERTIFY, JOB, TOLERANCE
-from loadshare.study.positions import loaded
+from loadshare.study.positions import loaded, opened
 from loadshare.study.tolerance.figures import KINDS, SYSTEM
 from loadshare.study.tolerance.folder import WORST as WORST_FILE
 from loadshare.study.tolerance.folder import Folder
@@ -104,8 +104,7 @@ def tolerance(
     OSError
         If a file cannot be written; what is there is whole, and the same call goes on.
     ValueError
-        If a position or an engine does not exist, or `workers` or `chunk` is no whole number from 1
-        on.
+        If a position or an engine does not exist, or `workers` or `chunk` is below 1.
 
     Examples
     --------
@@ -119,9 +118,8 @@ def tolerance(
     given: dict[str, Any] = {"inputs": inputs, "groups": groups, "quantiles": quantiles}
     given |= {"samples": samples, "seed": seed, "sampling": sampling}
     given |= {"limit": limit, "indices": indices, "positions": positions}
-    case = case if isinstance(case, Case) else load_case(case)
     workers = whole("workers", workers)
-    job, block = asked_job(case, study, given, chunk=chunk, engine=engine)
+    job, block = asked_job(opened(case), study, given, chunk=chunk, engine=engine)
     with _folder(out, job) as folder:
         _solve(folder, scheduler, workers, progress)
         return _Reader(folder, block).found(worst)

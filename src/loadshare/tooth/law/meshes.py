@@ -167,10 +167,9 @@ def _by_formula(
     for name in names:
         mesh = case.meshes[name]
         measured = mesh.law == "iso"
-        pair = case.gears[mesh.driver], case.gears[mesh.driven]
+        pair = facing(mesh, case.gears, centres)
         offset = minus(centres[mesh.driven], centres[mesh.driver])
         distance = centre_distance(pair[0], offset)
-        pair = facing(mesh, case.gears, centres)
         try:
             stiffness = mesh_stiffness(pair, distance, measured=measured)
         except ValueError as error:
