@@ -97,7 +97,7 @@ reproduce: $(VENV)/.run ## compute the seed paper's figures (docs/reproduction.m
 	$(BIN)/python -m benchmarks.reproduction
 
 N ?= 10000
-fuzz: $(VENV)/.dev ## try N inputs that nobody meant: no traceback, no hang, no wrong figure
+fuzz: $(VENV)/.dev ## try N unintended inputs: no traceback, no hang, no wrong figure
 	$(BIN)/python -m tests.fuzz --count $(N) --processes $(WORKERS)
 
 $(VENV)/.fuzz: $(VENV)/.dev

@@ -1,7 +1,7 @@
 """Lines of code by package, and functions that are long or branch much.
 
 Run with ``python -m benchmarks.code_lines src [FOLDER ...]``. A line counts if it carries code:
-blank lines, comments, and strings that stand alone (docstrings) do not. Complexity is McCabe's,
+blank lines, comments, and strings on their own (docstrings) do not. Complexity is McCabe's,
 as ruff counts it.
 """
 
@@ -70,13 +70,13 @@ def branched(folders: Iterable[Path]) -> Iterator[tuple[str, str, int, int]]:
         "--exit-zero",
     )
     limit = f"--config=lint.mccabe.max-complexity={BRANCHED}"
-    told = subprocess.run(
+    output = subprocess.run(
         [sys.executable, *words, limit, *map(str, folders)],
         check=True,
         capture_output=True,
         text=True,
     ).stdout
-    for found in json.loads(told):
+    for found in json.loads(output):
         name, size = re.search(r"`(.*)` is too complex \((\d+)", found["message"]).groups()  # type: ignore[union-attr]
         yield os.path.relpath(found["filename"]), name, found["location"]["row"], int(size)
 
@@ -109,7 +109,7 @@ def text(folders: list[Path]) -> str:
 
 
 def main() -> None:
-    """Count and tell."""
+    """Count and print."""
     parser = argparse.ArgumentParser(description="Lines of code, long and branched functions.")
     parser.add_argument("folders", nargs="+", type=Path)
     print(text(parser.parse_args().folders))  # noqa: T201

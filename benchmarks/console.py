@@ -33,5 +33,5 @@ def application(command: Callable[..., Any]) -> typer.Typer:
 
 
 def teller(quiet: bool) -> Callable[[str], None]:
-    """Return what tells each step on stderr, or nothing."""
+    """Return what reports each step on stderr, or nothing."""
     return (lambda _: None) if quiet else (lambda step: typer.echo(step, err=True))

@@ -17,7 +17,7 @@ Row = dict[str, Any]
 
 
 def parser(description: str, what: str, count: int, folder: str) -> argparse.ArgumentParser:
-    """Return a parser of what every run is asked: how many, from which on, and where to keep them.
+    """Return a parser of the options of every run: how many, from which on, and where to keep them.
 
     Parameters
     ----------
@@ -42,15 +42,15 @@ def parser(description: str, what: str, count: int, folder: str) -> argparse.Arg
     return found
 
 
-def publish(page: Path | None, about: str, asked: str, found: str) -> None:
-    """Print what was found, and write it to a page where one is asked for.
+def publish(page: Path | None, about: str, command: str, found: str) -> None:
+    """Print what was found, and write it to a page if one is given.
 
     Parameters
     ----------
     page : Path or None
     about : str
         Title and what was measured, as Markdown.
-    asked : str
+    command : str
         Words after ``python -m`` by which it is measured.
     found : str
         Tables.
@@ -58,13 +58,13 @@ def publish(page: Path | None, about: str, asked: str, found: str) -> None:
     print(found)  # noqa: T201
     if page is not None:
         today = datetime.now(tz=UTC).date().isoformat()
-        by = f"Printed by `python -m {asked}`, version {loadshare.__version__}, {today}."
+        by = f"Printed by `python -m {command}`, version {loadshare.__version__}, {today}."
         page.write_text(f"{about.strip()}\n\n{by}\n\n{found.strip()}\n", encoding="utf-8")
 
 
-def numbers(asked: argparse.Namespace) -> range:
-    """Return the numbers that a run is asked for."""
-    return range(asked.first, asked.first + asked.count)
+def numbers(options: argparse.Namespace) -> range:
+    """Return the numbers of the problems that a run is to solve."""
+    return range(options.first, options.first + options.count)
 
 
 def known(path: Path, of: Mapping[str, Any]) -> dict[int, Row]:
@@ -104,7 +104,7 @@ def run(
     ----------
     numbers : range
     of : mapping
-        What tells these verdicts from others in the file.
+        What distinguishes these verdicts from others in the file.
     path : Path
         File of verdicts; those it holds already are not found again.
     judge : callable
@@ -140,7 +140,7 @@ def progress(done: int, total: int) -> None:
 
 
 class _Judge:
-    """A judge that tells the number as well."""
+    """A judge that returns the number as well."""
 
     def __init__(self, judge: Callable[[int], Row]) -> None:
         self.judge = judge

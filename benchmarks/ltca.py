@@ -108,7 +108,7 @@ def compare_models() -> None:
 
 
 def renewed(pair: GearPair) -> GearPair:
-    """The pair anew, so that nothing is kept from run to run."""
+    """The pair again, so that nothing is kept from run to run."""
     made: GearPair = replace(pair)  # type: ignore[type-var]
     return made
 
@@ -184,9 +184,9 @@ def programme_rows(problem: ContactProblem, pair: HelicoidPair) -> list[list[str
     cold, cold_time = CLOCK.timed(lambda: solve_contact(problem, load), 20)
     warm, warm_time = CLOCK.timed(lambda: solve_contact(problem, 1.1 * load, cold.force), 20)
     for name, contact, seconds in (("cold", cold, cold_time), ("warm", warm, warm_time)):
-        told = f"whole contact, {name} ({contact.passes} passes)"
+        label = f"whole contact, {name} ({contact.passes} passes)"
         residual = f"{contact.certificate.worst:.0e}"
-        rows.append([str(count), told, f"{1e3 * seconds:.2f}", residual])
+        rows.append([str(count), label, f"{1e3 * seconds:.2f}", residual])
     return rows
 
 

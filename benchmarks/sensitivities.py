@@ -58,7 +58,7 @@ TEETH = 1e-4
 KEYS = 6
 """Inputs of a case that are drawn."""
 TRIES = 8
-"""Shipped cases that are asked for a critical value."""
+"""Shipped cases that are searched for a critical value."""
 FINE = ("agrees", "undefined")
 """Outcomes that need no look."""
 FIGURES = {
@@ -79,7 +79,7 @@ class Verdict:
     outcome : str
         "exception", "agrees", "vague" (agrees, within an error that says nothing), "outside" (of
         its stated error), "missed" (none, yet differences converge),
-        "undefined" (none, and said so), "unnamed" (none, and not said why), "undecided"
+        "undefined" (none, and reported as such), "unnamed" (none, without a reason), "undecided"
         (differences do not converge).
     excess : float
         Distance over the sum of both errors.
@@ -103,7 +103,7 @@ def differenced(
 
     None where there is no equilibrium to that side, or differences do not converge.
     """
-    # Laws from teeth or pair files are inputs as well: they stand in the case as it is solved.
+    # Laws from teeth or pair files are inputs as well: they are part of the case as it is solved.
     case = loaded(case)
     train = build_train(case)
     cycle = train.mesh_positions(position)
@@ -139,7 +139,7 @@ def differenced(
             limits.append(((4.0 * near - far) / 3.0, (4.0 * noise + coarse) / 3.0))
         if not fine and len(limits) > 1:
             found, error = _best(limits)
-            if _said(error[:count], found[:count]) < 1e-3 * TEETH:
+            if _relative_error(error[:count], found[:count]) < 1e-3 * TEETH:
                 break
     return _best(limits) if len(limits) > 1 else None
 
@@ -162,7 +162,7 @@ def _best(limits: list[tuple[Array, Array]]) -> tuple[Array, Array]:
     return values[chosen, each], errors[chosen, each]
 
 
-def _said(error: Array, value: Array) -> float:
+def _relative_error(error: Array, value: Array) -> float:
     size = float(np.abs(value).max(initial=0.0))
     return float(error.max(initial=0.0)) / size if size else math.inf
 
@@ -213,7 +213,7 @@ def judged(case: ls.Case, found: Sensitivity, item: Input, position: int, side: 
             return Verdict("unnamed")
         known = differenced(case, item, position, sign)
         count = len(value)
-        if known is not None and _said(known[1][:count], known[0][:count]) < TEETH:
+        if known is not None and _relative_error(known[1][:count], known[0][:count]) < TEETH:
             return Verdict("missed")
         return Verdict("undefined")
     verdict = Verdict("undecided")
@@ -232,19 +232,19 @@ def _compared(rates: object, known: tuple[Array, Array], count: int) -> Verdict:
         return np.concatenate([list(of.torque.values()), *of.displacement.values()])  # type: ignore[attr-defined]
 
     value, stated = laid(rates), laid(rates.error)  # type: ignore[attr-defined]
-    told = ~np.isnan(value)
+    defined = ~np.isnan(value)
     off = np.abs(value - known[0])
     allowed = stated + known[1]
-    excess = np.where(told & (off > 0.0), off / np.maximum(allowed, 1e-300), 0.0)
+    excess = np.where(defined & (off > 0.0), off / np.maximum(allowed, 1e-300), 0.0)
     worst = float(excess.max(initial=0.0))
     # Where differences see a derivative, its stated error must not drown it.
-    seen = _said(known[1][:count], known[0][:count]) < TEETH
-    vague = seen and _said(stated[:count], known[0][:count]) > TEETH
+    seen = _relative_error(known[1][:count], known[0][:count]) < TEETH
+    vague = seen and _relative_error(stated[:count], known[0][:count]) > TEETH
     return Verdict(
         "outside" if worst > 1.0 else "vague" if vague else "agrees",
         worst,
-        _said(stated[:count], value[:count]),
-        _said(known[1][:count], value[:count]),
+        _relative_error(stated[:count], value[:count]),
+        _relative_error(known[1][:count], value[:count]),
     )
 
 
@@ -299,10 +299,10 @@ def _varies(key: str) -> bool:
 
 def one(seed: int, number: int) -> dict[str, Any]:
     """Compare the derivatives of one problem by some of its inputs, to both sides; plain data."""
-    told = problem(seed, number)
-    if told is None:
+    drawn = problem(seed, number)
+    if drawn is None:
         return {"name": "", "position": 0, "verdicts": []}
-    name, case, position = told
+    name, case, position = drawn
     rng = np.random.default_rng([seed, number, 1])
     usable = inputs_of(case, None)
     verdicts: list[dict[str, Any]] = []
@@ -314,8 +314,8 @@ def one(seed: int, number: int) -> dict[str, Any]:
         except ls.CaseError:
             continue
         except Exception:  # noqa: BLE001 -- whatever escapes is counted
-            told_of = Verdict("exception", told=traceback.format_exc(limit=-4))
-            verdicts.append({"key": item.key, "side": "", **asdict(told_of)})
+            failure = Verdict("exception", told=traceback.format_exc(limit=-4))
+            verdicts.append({"key": item.key, "side": "", **asdict(failure)})
             continue
         for side in SIDES:
             verdict = judged(case, found, item, position, side)
@@ -347,8 +347,8 @@ def text(rows: Sequence[dict[str, Any]]) -> str:
             median, high = np.quantile(figures, [0.5, 0.99])
             table.append((meaning, f"median {median:.1e}, 99 % below {high:.1e}"))
     table += list(facts().items())
-    told = ["", "To be looked into:", "", *lines] if lines else []
-    return "\n".join(["| | |", "|---|---|", *(f"| {n} | {v} |" for n, v in table), *told])
+    remarks = ["", "To be looked into:", "", *lines] if lines else []
+    return "\n".join(["| | |", "|---|---|", *(f"| {n} | {v} |" for n, v in table), *remarks])
 
 
 ABOUT = """# Sensitivities against differences
@@ -366,16 +366,16 @@ def main() -> None:
     what = "problems, each of some inputs"
     parser = kept.parser(str(__doc__), what, 400, "sensitivities")
     parser.add_argument("--seed", type=int, default=1)
-    asked = parser.parse_args()
+    options = parser.parse_args()
     rows = kept.run(
-        kept.numbers(asked),
-        {"seed": asked.seed},
-        asked.out / "verdicts.jsonl",
-        partial(one, asked.seed),
-        processes=asked.processes,
+        kept.numbers(options),
+        {"seed": options.seed},
+        options.out / "verdicts.jsonl",
+        partial(one, options.seed),
+        processes=options.processes,
     )
-    words = f"benchmarks.sensitivities --count {len(rows)} --seed {asked.seed}"
-    kept.publish(asked.page, ABOUT, words, text(rows))
+    words = f"benchmarks.sensitivities --count {len(rows)} --seed {options.seed}"
+    kept.publish(options.page, ABOUT, words, text(rows))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Tolerance study of the seed's transmission: time, rate, memory, and the peer way beside it.
+"""Tolerance study of the seed's transmission: time, rate, memory, and those of a peer's way.
 
 Run with ``python -m benchmarks.tolerance [--samples N] [--workers K] [--peers N]``. The peer way is
 a loop over CVXPY with parameters, compiled once and solved again for every sample and position; it
@@ -39,35 +39,35 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--sampling", choices=("random", "sobol"), default="random")
     parser.add_argument("--peers", type=int, default=20, help="samples for the peer way")
-    asked = parser.parse_args()
+    options = parser.parse_args()
     case = ls.load_case(CASE)
     with tempfile.TemporaryDirectory() as folder:
         watch = Watch()
-        begun = time.perf_counter()
+        start = time.perf_counter()
         ends: list[float] = []
         found = ls.tolerance(
             case,
             study=STUDY,
-            samples=asked.samples,
-            sampling=asked.sampling,
+            samples=options.samples,
+            sampling=options.sampling,
             indices=0,
             worst=False,
             out=Path(folder) / "study",
-            workers=asked.workers,
+            workers=options.workers,
             engine="compiled",
             progress=lambda done, total: ends.append(time.perf_counter()),
         )
-        whole = time.perf_counter() - begun
+        whole = time.perf_counter() - start
         own = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
         worker = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
         together = watch.stop()
         disk = sum(file.stat().st_size for file in found.parts)
         positions = len(found.settings["positions"])
-        equilibria = asked.samples * positions
+        equilibria = options.samples * positions
         rows = [
-            ("samples × positions", f"{asked.samples:,} × {positions}"),
+            ("samples × positions", f"{options.samples:,} × {positions}"),
             ("inputs", str(len(found.inputs.every))),
-            ("worker processes", str(asked.workers)),
+            ("worker processes", str(options.workers)),
             ("time, all included [s]", f"{whole:.1f}"),
             ("of it, sampling and solving [s]", f"{ends[-1] - ends[0]:.1f}"),
             ("equilibria per second", f"{equilibria / whole:,.0f}"),
@@ -78,7 +78,7 @@ def main() -> None:
             ("certified samples", f"{found.samples - found.refused:,}"),
             ("largest residual", f"{found.residual:.1e}"),
         ]
-        rows += peer_way(case, found, asked.peers, whole / equilibria)
+        rows += peer_way(case, found, options.peers, whole / equilibria)
     rows += [(name, value) for name, value in facts().items()]
     print("| | |\n|---|---|")  # noqa: T201
     print("\n".join(f"| {name} | {value} |" for name, value in rows))  # noqa: T201
@@ -136,14 +136,14 @@ def peer_way(case: ls.Case, found: Tolerance, count: int, ours: float) -> list[t
                 like = form
                 peer.prepare(form)
                 peer.solve(form)
-            begun = time.perf_counter()
+            start = time.perf_counter()
             try:
                 claim = peer.solve(form)
             except Failure:
                 failed += 1
                 continue
             finally:
-                spent += time.perf_counter() - begun
+                spent += time.perf_counter() - start
             equilibrium = form.equilibrium(claim.x, claim.forces, claim.pulls)
             torque = {
                 name: mesh.radii[0]

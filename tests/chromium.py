@@ -87,8 +87,8 @@ function behind(element) {
 }
 const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT), bad = new Map();
 while (walk.nextNode()) {
-  const element = walk.currentNode.parentElement, told = walk.currentNode.textContent.trim();
-  if (!told || element.closest("script, style, noscript, svg, [hidden]")) continue;
+  const element = walk.currentNode.parentElement, text = walk.currentNode.textContent.trim();
+  if (!text || element.closest("script, style, noscript, svg, [hidden]")) continue;
   if (!element.checkVisibility({ checkOpacity: true, checkVisibilityCSS: true })) continue;
   const style = getComputedStyle(element);
   const [r, g, b, a = 1] = parts(style.color), ground = behind(element);
@@ -98,7 +98,7 @@ while (walk.nextNode()) {
   const large = size >= 24 || (size >= 18.66 && style.fontWeight >= 700);
   if (ratio < (large ? 3 : 4.5))
     bad.set(`${style.color} on rgb(${ground.map(Math.round)}): ${ratio.toFixed(2)}`,
-      `${element.tagName}.${element.className}: ${told.slice(0, 40)}`);
+      `${element.tagName}.${element.className}: ${text.slice(0, 40)}`);
 }
 return [...bad].map(([what, where]) => `${what} in ${where}`);
 """
@@ -133,7 +133,7 @@ const twice = ids.filter((id, at) => ids.indexOf(id) !== at);
 for (const id of new Set(twice)) bad.push(`id twice: ${id}`);
 return bad;
 """
-"""Controls, pictures and frames without a name; headings out of order; names that stand twice."""
+"""Controls, pictures and frames without a name; headings out of order; duplicate names."""
 
 OVER = """
 const [width, done] = arguments, start = performance.now();

@@ -1,4 +1,4 @@
-"""One at a time in a folder: who comes second is told, and who was killed is in nobody's way."""
+"""One at a time in a folder: whoever comes second is told; a killed one is in nobody's way."""
 
 import errno
 import os
@@ -37,10 +37,10 @@ def holder(tmp_path):
 
 
 def test_who_comes_second_is_told_who_is_there_and_since_when(tmp_path, holder):
-    with pytest.raises(ls.LoadshareError) as told, alone_in(tmp_path):
+    with pytest.raises(ls.LoadshareError) as caught, alone_in(tmp_path):
         pass
     who = f"in use by process {holder.pid} on {re.escape(socket.gethostname())}, since "
-    assert re.search(who + r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d [+-]\d{4}\.", str(told.value))
+    assert re.search(who + r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d [+-]\d{4}\.", str(caught.value))
 
 
 def test_who_was_killed_is_in_nobodys_way(tmp_path, holder):
@@ -86,7 +86,7 @@ def test_where_nothing_can_be_written_nobody_is_kept_out(tmp_path, monkeypatch, 
         pass
 
 
-def test_a_file_system_without_locks_is_told(tmp_path, monkeypatch, caplog):
+def test_a_file_system_without_locks_is_reported(tmp_path, monkeypatch, caplog):
     def refuse(_):
         raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
 

@@ -58,20 +58,20 @@ scene or certificate.
 
 
 def main() -> None:
-    """Attack and tell."""
+    """Attack and report."""
     parser = argparse.ArgumentParser(description="Tampered answers against the certificate.")
     parser.add_argument("--count", type=int, default=10_000, help="tampered answers")
     parser.add_argument(
         "--seeds", type=int, nargs="+", default=[1, 2], help="each has its share, and a process"
     )
     parser.add_argument("--page", type=Path, help="Markdown file to write")
-    asked = parser.parse_args()
-    shares = [(seed, asked.count // len(asked.seeds)) for seed in asked.seeds]
+    options = parser.parse_args()
+    shares = [(seed, options.count // len(options.seeds)) for seed in options.seeds]
     with multiprocessing.get_context("spawn").Pool(len(shares)) as pool:
         found = [attack for some in pool.imap(part, shares) for attack in some]
-    seeds = " ".join(map(str, asked.seeds))
-    words = f"benchmarks.attack --count {asked.count} --seeds {seeds}"
-    kept.publish(asked.page, ABOUT, words, text(found))
+    seeds = " ".join(map(str, options.seeds))
+    words = f"benchmarks.attack --count {options.count} --seeds {seeds}"
+    kept.publish(options.page, ABOUT, words, text(found))
     sys.exit(any(a.slipped or a.margin < -ROUNDING for a in found))
 
 

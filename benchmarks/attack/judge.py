@@ -71,9 +71,9 @@ def attacks(seed: int, count: int, each: int = EACH) -> Iterator[Attack]:
         yield from found
 
 
-def part(asked: tuple[int, int]) -> list[Attack]:
+def part(share: tuple[int, int]) -> list[Attack]:
     """Attack with one seed so many times, in a process of its own."""
-    return list(attacks(*asked))
+    return list(attacks(*share))
 
 
 def one(victim: Victim, way: str, rng: np.random.Generator) -> Attack | None:

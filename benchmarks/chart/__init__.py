@@ -1,1 +1,1 @@
-"""Speed against accuracy: measured side by side, drawn, and told."""
+"""Speed against accuracy: measured side by side, drawn, and reported."""

@@ -21,7 +21,7 @@ import loadshare as ls
 from loadshare.case import Case
 given = json.load(sys.stdin)
 case = Case(given["case"], name="long run")
-generator, done, begun, certified = np.random.default_rng(1), 0, time.perf_counter(), 0
+generator, done, start, certified = np.random.default_rng(1), 0, time.perf_counter(), 0
 while done < given["count"]:
     size = min(given["chunk"], given["count"] - done)
     samples = {k: generator.uniform(a, b, size) for k, (a, b) in given["limits"].items()}
@@ -32,9 +32,9 @@ try:
     with open("/proc/self/status") as status:
         (peak,) = (float(line.split()[1]) / 1024.0 for line in status if line.startswith("VmHWM"))
 except OSError:
-    # It tells of the process that began this one as well, if that was larger.
+    # It includes the process that started this one, if that was larger.
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
-print(json.dumps({"equilibria": certified, "seconds": time.perf_counter() - begun, "MiB": peak}))
+print(json.dumps({"equilibria": certified, "seconds": time.perf_counter() - start, "MiB": peak}))
 """
 
 

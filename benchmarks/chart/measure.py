@@ -45,7 +45,7 @@ class Measure:
     ----------
     workload, method : str
     tolerance : float or None
-        As asked of the method; None where it has none.
+        As requested from the method; None where it has none.
     samples : int
         Samples that it was given and whose error is known.
     answered, certified : int
@@ -62,7 +62,7 @@ class Measure:
     setup : float
         Preparation that is not in the time [ms].
     failure : str
-        What it said the first time it had no answer.
+        Its message the first time it had no answer.
     """
 
     workload: str
@@ -239,7 +239,7 @@ def _summary(
     workload: Workload,
     method: str,
     tolerance: float | None,
-    asked: int,
+    count: int,
     errors: list[float],
     certified: int,
     times: Times,
@@ -250,7 +250,7 @@ def _summary(
         workload=workload.name,
         method=method,
         tolerance=tolerance,
-        samples=asked,
+        samples=count,
         answered=len(errors),
         certified=certified,
         **times.microseconds(),
@@ -334,18 +334,18 @@ def _single(workload: Workload, samples: Sequence[Sample], name: str) -> Measure
 
 def _peer(workload: Workload, samples: Sequence[Sample], entry: Entry, tolerance: float) -> Measure:
     forms = [s.reduced if entry.reduced else s.form for s in samples]
-    begun = time.perf_counter()
+    setup_start = time.perf_counter()
     peer = entry.make(tolerance)
     errors: list[float] = []
     times = Times()
-    certified, asked, failure = 0, 0, ""
+    certified, tried, failure = 0, 0, ""
     clock: Clock | None = getattr(peer, "clock", None)
     claims: list[Claim | Failure] = []
     try:
         peer.prepare(forms[0])
-    except Failure as said:
-        claims = [said] * len(forms)
-    setup = time.perf_counter() - begun
+    except Failure as no_answer:
+        claims = [no_answer] * len(forms)
+    setup = time.perf_counter() - setup_start
     with suppress(Failure):
         peer.solve(forms[0])
     started = time.perf_counter()
@@ -358,10 +358,10 @@ def _peer(workload: Workload, samples: Sequence[Sample], entry: Entry, tolerance
                 break
             try:
                 claims.append(times.take(partial(peer.solve, form), 1, clock))
-            except Failure as said:
-                claims.append(said)
+            except Failure as no_answer:
+                claims.append(no_answer)
     for sample, form, claim in zip(samples, forms, claims, strict=False):
-        asked += 1
+        tried += 1
         if isinstance(claim, Failure):
             failure = failure or str(claim)
             continue
@@ -369,5 +369,5 @@ def _peer(workload: Workload, samples: Sequence[Sample], entry: Entry, tolerance
         certified += certify(sample.train, found).passed
         errors.append(error_of(sample, *claimed(sample.train, found)))
     return _summary(
-        workload, entry.name, tolerance, asked, errors, certified, times, setup, failure
+        workload, entry.name, tolerance, tried, errors, certified, times, setup, failure
     )

@@ -10,12 +10,12 @@ from benchmarks.chart.measure import OURS, OURS_BATCH, OURS_NEW, OURS_SOLVE, Mea
 from benchmarks.peers import PEERS
 
 GOOD_WORST, GOOD_MEDIAN = 1e-9, 1e-12
-"""Errors that a ratio asks of ours."""
+"""Errors of ours that a ratio requires."""
 
 
 @dataclass(frozen=True, slots=True)
 class Ratio:
-    """How many times faster ours is, and what was asked for; None for the record only.
+    """How many times faster ours is, and the target; None for the record only.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ WANTED = (
     ),
     *(Ratio(w, OURS_BATCH, ("CVXPY, parameters",), None, calls=False) for w in ("rings", "law")),
 )
-"""What was asked for, and what is on record beside it."""
+"""Ratios with a target, and those that are only recorded."""
 
 
 def speed_report(
@@ -256,14 +256,14 @@ def _ratios(measures: Sequence[Measure], titles: Mapping[str, str]) -> list[str]
             missing = "no answer of the peer" if one is not None else "no answer of ours"
             lines.append(
                 f"| {title} | {wanted.ours} | {wanted.peers[0]} | {kind} | – | – | {missing} | "
-                f"{_asked(wanted)} | – | – | – |"
+                f"{_target(wanted)} | – | – | – |"
             )
             continue
         other, time = found
         ratio = time / one.cpu
         good = one.worst <= GOOD_WORST and one.median <= GOOD_MEDIAN
         good = good and one.certified == one.samples
-        met = _asked(wanted)
+        met = _target(wanted)
         if wanted.wanted is not None:
             met += ": met" if ratio >= wanted.wanted and good else ": **not met**"
         lines.append(
@@ -275,7 +275,7 @@ def _ratios(measures: Sequence[Measure], titles: Mapping[str, str]) -> list[str]
     return lines
 
 
-def _asked(wanted: Ratio) -> str:
+def _target(wanted: Ratio) -> str:
     return "none" if wanted.wanted is None else f"≥ {wanted.wanted:g}"
 
 

@@ -39,7 +39,7 @@ def measure_all(cases: Path, quick: bool, tell: Callable[[str], None]) -> dict[s
     tell : callable
         Called with what is being measured.
     """
-    begun = time.perf_counter()
+    start = time.perf_counter()
     found: list[Measure] = []
     loads = [*workloads(cases, quick), linear_branches(quick)]
     for workload in loads:
@@ -56,7 +56,7 @@ def measure_all(cases: Path, quick: bool, tell: Callable[[str], None]) -> dict[s
     return {
         "facts": facts(),
         "quick": quick,
-        "seconds": time.perf_counter() - begun,
+        "seconds": time.perf_counter() - start,
         "titles": {w.name: w.title for w in loads},
         "measures": [m.to_dict() for m in found],
         "branches": [m.to_dict() for m in scaling],
@@ -81,7 +81,7 @@ def publish(figures: Mapping[str, Any], folder: Path) -> list[Path]:
     written = draw_precision(measures, figures["titles"], folder)
     written += draw_branches(scaling, folder)
     report = folder / "speed.md"
-    told = speed_report(
+    page = speed_report(
         measures,
         scaling,
         figures["titles"],
@@ -90,7 +90,7 @@ def publish(figures: Mapping[str, Any], folder: Path) -> list[Path]:
         figures["seconds"],
         figures["quick"],
     )
-    report.write_text(told, encoding="utf-8")
+    report.write_text(page, encoding="utf-8")
     return [*written, report]
 
 

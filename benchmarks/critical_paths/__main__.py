@@ -3,9 +3,9 @@
 Run with ``python -m benchmarks.critical_paths [--count N] [--points N] [--processes N]``. Every
 path is a random train (stars and split-torque trains with rings, splines, backlash, Hertz contact,
 tabulated laws, errors, elastic shafts and bearings) along one to three inputs that take the same
-value. Its events are compared with the states of all elements in a scan by the batch path, told
-from forces and displacements alone; a path with another end must give the same events. The run may
-be stopped at any time; the same command goes on where it was.
+value. Its events are compared with the states of all elements in a scan by the batch path,
+determined from forces and displacements alone; a path with another end must give the same events.
+The run may be stopped at any time; the same command goes on where it was.
 """
 
 from __future__ import annotations
@@ -31,17 +31,17 @@ def main() -> None:
     parser = kept.parser("Critical values against dense scans.", "paths", 500, "critical_paths")
     parser.add_argument("--points", type=int, default=100_000, help="of a scan")
     parser.add_argument("--engine", default="compiled")
-    asked = parser.parse_args()
+    options = parser.parse_args()
     rows = kept.run(
-        kept.numbers(asked),
-        {"points": asked.points, "engine": asked.engine},
-        asked.out / "verdicts.jsonl",
-        partial(one, asked.points, asked.engine),
-        processes=asked.processes,
-        warm=partial(one, 100, asked.engine, 0),
+        kept.numbers(options),
+        {"points": options.points, "engine": options.engine},
+        options.out / "verdicts.jsonl",
+        partial(one, options.points, options.engine),
+        processes=options.processes,
+        warm=partial(one, 100, options.engine, 0),
     )
-    words = f"benchmarks.critical_paths --count {len(rows)} --points {asked.points}"
-    kept.publish(asked.page, ABOUT, words, text(rows))
+    words = f"benchmarks.critical_paths --count {len(rows)} --points {options.points}"
+    kept.publish(options.page, ABOUT, words, text(rows))
 
 
 if __name__ == "__main__":

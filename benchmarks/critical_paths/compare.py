@@ -14,13 +14,13 @@ from loadshare.study.event import Event
 
 Array = NDArray[np.float64]
 NEAR = 2e-9
-"""Distance of a sample from an event, relative, at which its state is not asked for."""
+"""Distance of a sample from an event, relative, at which its state is not compared."""
 SAME = 1e-11
 """Distance, over the largest value, at which two paths have the same event."""
 
 
 def compared(found: Critical, values: Array, seen: StatesByName) -> tuple[list[str], list[str]]:
-    """Return what events miss of a scan, and what they tell that it does not show.
+    """Return what events miss of a scan, and what they report that it does not show.
 
     Samples in intervals that are named as not proved are left out; beyond each of them states are
     taken from the scan again.
@@ -28,30 +28,31 @@ def compared(found: Critical, values: Array, seen: StatesByName) -> tuple[list[s
     missed: list[str] = []
     invented: list[str] = []
     edges = [found.start, *(v for u in found.unproved for v in (u.start, u.stop)), found.stop]
-    for name, told in seen.items():
+    for name, states in seen.items():
         events = [e for e in found.events if e.element == name]
         for low, high in zip(edges[::2], edges[1::2], strict=True):
             inner = [e for e in events if low <= e.value <= high and e.confirmed]
-            rows = np.flatnonzero((values >= low) & (values <= high) & (told != ""))
-            wrong = _disagreement(inner, values[rows], told[rows])
+            rows = np.flatnonzero((values >= low) & (values <= high) & (states != ""))
+            wrong = _disagreement(inner, values[rows], states[rows])
             if wrong is None:
                 continue
-            changes = int((told[rows][1:] != told[rows][:-1]).sum())
+            changes = int((states[rows][1:] != states[rows][:-1]).sum())
             where = f"{name} at {values[rows][wrong]:.12g}: {changes} changes, {len(inner)} events"
             (missed if changes >= len(inner) else invented).append(where)
     return missed, invented
 
 
-def _disagreement(events: Sequence[Event], values: Array, told: NDArray[np.str_]) -> int | None:
-    """First sample whose state is not the one that events tell; None if all agree."""
+def _disagreement(events: Sequence[Event], values: Array, states: NDArray[np.str_]) -> int | None:
+    """First sample whose state is not the one that events give; None if all agree."""
     if not len(values):
         return None
-    expected = np.full(len(values), told[0] if not events else events[0].before, dtype=told.dtype)
-    asked = np.ones(len(values), dtype=bool)
+    before = states[0] if not events else events[0].before
+    expected = np.full(len(values), before, dtype=states.dtype)
+    clear = np.ones(len(values), dtype=bool)
     for event in events:
         expected = np.where(values > event.value, event.after, expected)
-        asked &= np.abs(values - event.value) > NEAR * max(abs(event.value), values[-1] - values[0])
-    wrong = np.flatnonzero(asked & (expected != told))
+        clear &= np.abs(values - event.value) > NEAR * max(abs(event.value), values[-1] - values[0])
+    wrong = np.flatnonzero(clear & (expected != states))
     return int(wrong[0]) if len(wrong) else None
 
 

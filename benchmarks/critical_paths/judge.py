@@ -71,13 +71,13 @@ def judged(path: Path, points: int, engine: str) -> Outcome:
     """Find a path's events, and compare them with a scan and with a path of another end."""
     outcome = Outcome(path.keys, path.unit, path.start, path.stop)
     try:
-        begun = time.process_time()
+        start = time.process_time()
         found = followed(path, path.stop)
-        outcome.seconds = time.process_time() - begun
+        outcome.seconds = time.process_time() - start
         again = followed(path, path.other) if path.number % EVERY == 0 else found
-        begun = time.process_time()
+        start = time.process_time()
         values, seen = shown(path, found, min(points, 1000) if path.machines else points, engine)
-        outcome.scanning = time.process_time() - begun
+        outcome.scanning = time.process_time() - start
         outcome.asked = _answered(seen, len(values))
     except Refused as refusal:
         outcome.refused = str(refusal).splitlines()[0]
@@ -110,11 +110,11 @@ def shown(
 
 
 def _answered(seen: Mapping[str, StatesByName], count: int) -> int:
-    """Samples of which any state is told."""
-    told = np.zeros(count, dtype=bool)
+    """Number of samples of which any state is known."""
+    answered = np.zeros(count, dtype=bool)
     for states_by_name in seen.values():
-        told |= states_by_name != ""
-    return int(told.sum())
+        answered |= states_by_name != ""
+    return int(answered.sum())
 
 
 def one(points: int, engine: str, number: int) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""States of all elements in a scan, told from forces and displacements alone."""
+"""States of all elements in a scan, determined from forces and displacements alone."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ Flags = NDArray[np.bool_]
 StatesByName = dict[str, NDArray[np.str_]]
 """States of elements at the values of a scan, by name."""
 BAND = 1e-8
-"""Force over load, or radius over deflection, within which a state is not told by a scan."""
+"""Force over load, or radius over deflection, within which a scan does not decide on a state."""
 BLOCK = 8192
 """Samples solved together."""
-ASKED = 20
+CLIMBING = 20
 """Samples of a block at most that climb the ladder where the hot path has no answer."""
 SPACING = 32
 """Of so many samples one is solved first, for the others to begin at."""
@@ -45,7 +45,7 @@ FEW, ROUNDS = 8, 6
 def states_by_name(
     line: Line, values: Array, answers: Equilibria, certified: NDArray[np.bool_]
 ) -> StatesByName:
-    """Tell the state of every element at every value, from forces and displacements alone.
+    """Determine the state of every element at every value, from forces and displacements alone.
 
     Returns
     -------
@@ -59,8 +59,8 @@ def states_by_name(
         **dict(zip(names.contacts, answers.ring_force.T, strict=True)),
     }
     for name, force in forces.items():
-        told = np.where(force > BAND * push, "closed", np.where(force > 0.0, "", "open"))
-        found[name] = np.where(certified, told, "")
+        state = np.where(force > BAND * push, "closed", np.where(force > 0.0, "", "open"))
+        found[name] = np.where(certified, state, "")
     numbers = line.numbers(1, values)
     torque = np.zeros((len(values), len(names.radials)))
     train = line.first
@@ -77,23 +77,23 @@ def states_by_name(
         law = at.graph(given, torque[:, k] / push, radius)
         force = np.linalg.norm(answers.radial_reaction[:, k], axis=1) / push
         if name.startswith("ring"):
-            told = np.where(force > BAND, "on boundary", "inside")
+            state = np.where(force > BAND, "on boundary", "inside")
         else:
-            told = _spline_state(law, radius, force)
-        found[name] = np.where(certified, told, "")
+            state = _spline_state(law, radius, force)
+        found[name] = np.where(certified, state, "")
     return found
 
 
 def _spline_state(law: at.Graph, radius: Array, force: Array) -> Array:
     """State of a spline by radius and force over the units; empty within round-off of a corner."""
     jump = law.bound > law.first * law.stick * (1.0 + 1e-9)
-    told = np.where(radius < law.reach, "slip", "stop")
-    told = np.where(radius < law.stick, "stick", told)
+    state = np.where(radius < law.reach, "slip", "stop")
+    state = np.where(radius < law.stick, "stick", state)
     near = np.abs(radius - law.stick) <= BAND
     low = law.first * np.where(np.isfinite(law.stick), law.stick, 0.0)
     inside = (force > low + BAND) & (force < law.bound - BAND)
-    told = np.where(near, np.where(jump & inside, "about to slip", ""), told)
-    return np.where((np.abs(radius - law.reach) <= BAND) & ~near, "", told)
+    state = np.where(near, np.where(jump & inside, "about to slip", ""), state)
+    return np.where((np.abs(radius - law.reach) <= BAND) & ~near, "", state)
 
 
 class Balance(Judge):
@@ -193,25 +193,25 @@ def scanned(path: Path, line: Line, values: Array, engine: str) -> StatesByName:
         situations = samples.take(block).situations(1)
         solver = engine_named(engine, len(values))
         found = machine.answer(situations, CERTIFY.tolerance, solver, starts=(1,))
-        told = states_by_name(line, here, found.equilibria, found.passed)
-        left = _thinned(np.flatnonzero(~found.passed), ASKED)
+        states = states_by_name(line, here, found.equilibria, found.passed)
+        left = _thinned(np.flatnonzero(~found.passed), CLIMBING)
         if len(left):
             for name, more in _climbed(path, line, here[left], engine).items():
-                told[name][left] = more
-        parts.append(told)
+                states[name][left] = more
+        parts.append(states)
     return {name: np.concatenate([p[name] for p in parts]) for name in parts[0]}
 
 
 def _climbed(path: Path, line: Line, values: Array, engine: str) -> StatesByName:
     """States by the ladder from the hot path to the slowest way."""
-    told: StatesByName = {}
+    states: StatesByName = {}
     table = _table(path, values)
     for block in solve_blocks(path.case, table, positions=[1], engine=engine, workers=1):
         rows = block.rows
         here = states_by_name(line, values[rows], block.equilibria[0], block.certified[:, 0])
         for name, found in here.items():
-            told.setdefault(name, np.full(len(values), "", dtype="<U16"))[rows] = found
-    return told
+            states.setdefault(name, np.full(len(values), "", dtype="<U16"))[rows] = found
+    return states
 
 
 def _table(path: Path, values: Array) -> dict[str, Array]:

@@ -15,21 +15,21 @@ FAULTS = ("missed", "invented", "moved")
 
 def text(rows: Sequence[Row]) -> str:
     """Return a table of all paths, and those with something to look into."""
-    told = [line for row in rows for line in _told(row)]
+    faults = [line for row in rows for line in _fault_lines(row)]
     parts = [
         summary(rows),
-        *(["", "Intervals that are not proved, and faults:", "", *told] if told else []),
+        *(["", "Intervals that are not proved, and faults:", "", *faults] if faults else []),
     ]
     return "\n".join([*parts, "", "The machine:", "", _table(facts().items())])
 
 
-def _told(row: Row) -> Iterator[str]:
-    told = [*(line for name in FAULTS for line in row[name]), row["refused"], row["raised"]]
-    if any(told) or row["unproved"]:
+def _fault_lines(row: Row) -> Iterator[str]:
+    faults = [*(line for name in FAULTS for line in row[name]), row["refused"], row["raised"]]
+    if any(faults) or row["unproved"]:
         ends = f"{row['start']:.6g} to {row['stop']:.6g} {row['unit']}"
         gaps = f"{row['unproved']} unproved, {row['width']:.1e} of the range"
         yield f"- {row['number']}: {', '.join(row['keys'])} {ends}: {gaps}"
-        yield from (f"    - {line}" for line in told if line)
+        yield from (f"    - {line}" for line in faults if line)
 
 
 def summary(every: Sequence[Row]) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from statistics import median
 from typing import Any, TypeVar
 
-Told = TypeVar("Told")
+Returned = TypeVar("Returned")
 TRIALS = 501
 """Empty calls by which the clock's own cost is known."""
 
@@ -34,11 +34,11 @@ class Clock:
         self.reset()
 
     def reset(self) -> None:
-        """Begin anew."""
+        """Start again."""
         self.wall = self.cpu = 0
         self.reported = 0.0
 
-    def call(self, function: Callable[..., Told], *args: Any, **how: Any) -> Told:
+    def call(self, function: Callable[..., Returned], *args: Any, **how: Any) -> Returned:
         """Call a function of an extension module, and add the time that it takes."""
         cpu, wall = time.process_time_ns(), time.perf_counter_ns()
         found = function(*args, **how)

@@ -14,7 +14,7 @@ from loadshare.contact.radial import RadialLaw
 
 
 class CvxpyParameters:
-    """Disciplined parametrised programming; compiled anew where a radial law changes its pieces."""
+    """Disciplined parametrised programming; recompiled where a radial law changes its pieces."""
 
     def __init__(self, tolerance: float) -> None:
         self.tolerance = tolerance

@@ -1,4 +1,4 @@
-"""CVXPY as most people use it: the problem written anew in every pass, Clarabel underneath."""
+"""CVXPY as most people use it: the problem written again in every pass, Clarabel underneath."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ With :math:`F = F_0 + N z`, where :math:`Z^T A^T F_0 = Z^T f` and :math:`Z^T A^T
           \quad \text{s.t.} \quad N z \ge -F_0 , \qquad M = B + A H^{+} A^T .
 
 It is the force method that ours uses, for a solver that finds the active set. The basis N is
-written anew where the faces of arcs turn; that is not in the time of its calls.
+written again where the faces of arcs turn; that is not in the time of its calls.
 """
 
 from __future__ import annotations

@@ -41,32 +41,32 @@ reference in 50 digits. Some problems with 64 branches take minutes.
 
 
 def main() -> None:
-    """Draw, judge, tell."""
+    """Draw, judge, report."""
     about = "Random trains against the 50-digit reference."
     parser = kept.parser(about, "trains", 5000, "random_trains")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--stress", action="store_true", help="the stability map's problems, all")
     parser.add_argument("--planetary", action="store_true", help="planetary sets")
     parser.add_argument("--loops", action="store_true", help="planetary sets with a loop")
-    asked = parser.parse_args()
-    numbers = kept.numbers(asked)
-    seed = SETS - asked.seed if asked.planetary else asked.seed
-    if asked.loops:
-        seed = LOOPED - asked.seed
-    if asked.stress:
+    options = parser.parse_args()
+    numbers = kept.numbers(options)
+    seed = SETS - options.seed if options.planetary else options.seed
+    if options.loops:
+        seed = LOOPED - options.seed
+    if options.stress:
         seed, numbers = STRESS, range(PROBLEMS)
 
-    rows = run(numbers, seed, asked.out / "verdicts.jsonl", asked.processes)
-    count = write_failures(rows, asked.out / "failing")
-    words = "--stress" if asked.stress else f"--count {len(rows)} --seed {asked.seed}"
-    about = MAP.format(count=len(rows), problems=PROBLEMS) if asked.stress else ABOUT
-    if asked.planetary:
+    rows = run(numbers, seed, options.out / "verdicts.jsonl", options.processes)
+    count = write_failures(rows, options.out / "failing")
+    words = "--stress" if options.stress else f"--count {len(rows)} --seed {options.seed}"
+    about = MAP.format(count=len(rows), problems=PROBLEMS) if options.stress else ABOUT
+    if options.planetary:
         words, about = f"{words} --planetary", SETS_ABOUT
-    if asked.loops:
+    if options.loops:
         words, about = f"{words} --loops", LOOPS_ABOUT
-    kept.publish(asked.page, about, f"benchmarks.random_trains {words}", text(rows))
+    kept.publish(options.page, about, f"benchmarks.random_trains {words}", text(rows))
     if count:
-        print(f"\n{count} trains at fault are in {asked.out / 'failing'}.")  # noqa: T201
+        print(f"\n{count} trains at fault are in {options.out / 'failing'}.")  # noqa: T201
 
 
 if __name__ == "__main__":

@@ -55,9 +55,9 @@ def _errors(
     for gear, i in machine.moves.items():
         body = train.gears[gear]
         moved = body.plane @ claim.displacement[gear]
-        told = body.plane @ body.frame.T
+        turn = body.plane @ body.frame.T
         for k, axis in enumerate("xy"):
             value = float(moved[k])
-            exact = sum(of(float(told[k, j])) * at.x[i + j] for j in range(2))
+            exact = sum(of(float(turn[k, j])) * at.x[i + j] for j in range(2))
             error = abs(of(value) - exact * length)
             yield f"{gear} {axis}", error, 8.0 * ROUNDING * np.hypot(*moved) + NONE * length

@@ -96,19 +96,19 @@ def judged(case: Case) -> dict[str, Any]:
     """Solve a train and compare it; plain data, with the processor time of the solve [s]."""
     findings, seconds, train = [], math.nan, None
     solved: dict[int, Position] = {}
-    told, crashed = "", ""
+    message, crashed = "", ""
     start = time.process_time()
     try:
         with limited(SOLVING), warnings.catch_warnings():
             warnings.simplefilter("error")
             solved = _by_index(ls.solve(case))
     except Refused as refusal:
-        told = str(refusal)
+        message = str(refusal)
         solved = _by_index(refusal.partial) if refusal.partial is not None else {}
     except CaseError as refusal:
-        told = crashed = f"invalid: {refusal}"
+        message = crashed = f"invalid: {refusal}"
     except TooLong:
-        told = f"took more than {SOLVING:g} s"
+        message = f"took more than {SOLVING:g} s"
     except Exception:  # noqa: BLE001 -- whatever escapes is a crash, and what is looked for
         crashed = traceback.format_exc(limit=-4)
     seconds = time.process_time() - start
@@ -118,9 +118,8 @@ def judged(case: Case) -> dict[str, Any]:
         if crashed:
             finding.outcome, finding.told = "crashed", crashed
         elif train is not None:
-            _compare(
-                case, standing(train, index), solved.get(index), _told_of(told, index), finding
-            )
+            why = _message_of(message, index)
+            _compare(case, standing(train, index), solved.get(index), why, finding)
         findings.append(asdict(finding))
     return {"name": case.name, "seconds": seconds, "positions": findings}
 
@@ -129,20 +128,22 @@ def _by_index(result: ls.Result) -> dict[int, Position]:
     return {p.position: p for p in result.positions}
 
 
-def _told_of(told: str, index: int) -> str:
-    lines = [t for t in told.splitlines() if t.startswith(f"position {index}:")]
-    return "\n".join(lines) or told
+def _message_of(message: str, index: int) -> str:
+    lines = [t for t in message.splitlines() if t.startswith(f"position {index}:")]
+    return "\n".join(lines) or message
 
 
-def _compare(case: Case, train: Train, found: Position | None, told: str, finding: Finding) -> None:
+def _compare(
+    case: Case, train: Train, found: Position | None, message: str, finding: Finding
+) -> None:
     """Judge one position."""
     machine, settled = _settled(case, train, found, finding)
     if found is None:
-        finding.told = told
+        finding.told = message
         if machine is not None and settled is not None:
             far = is_far(train, finding.position, report(train, machine, settled))
-            finding.outcome = "too far" if BEYOND in told and far else "refused"
-        elif BEYOND in told:
+            finding.outcome = "too far" if BEYOND in message and far else "refused"
+        elif BEYOND in message:
             finding.outcome = "too far"
         elif not solvable(train, finding.position):
             finding.outcome = "no answer"
@@ -197,8 +198,8 @@ def solvable(train: Train, index: int) -> bool:
         return True
 
 
-def _told_play(train: Train, spans: Mapping[str, float]) -> dict[str, float]:
-    """How far what is told may move, at most: along `Gear.plane`, of spans along `Gear.frame`."""
+def _play_in_report(train: Train, spans: Mapping[str, float]) -> dict[str, float]:
+    """How far reported places may move: along `Gear.plane`, from spans along `Gear.frame`."""
     found = dict(spans)
     for name, gear in train.gears.items():
         keys = [f"gear {name} {axis}" for axis in "xy"]
@@ -207,8 +208,8 @@ def _told_play(train: Train, spans: Mapping[str, float]) -> dict[str, float]:
             weights = np.abs(gear.plane @ gear.frame.T)
             weights[:, along == 0.0] = 0.0
             finite = np.where(np.isinf(along), 1e300, along)
-            told = np.where(weights > 1e-9, weights, 0.0) @ finite
-            found |= {k: float(t) for k, t in zip(keys, told, strict=True) if t > 0.0}
+            reach = np.where(weights > 1e-9, weights, 0.0) @ finite
+            found |= {k: float(t) for k, t in zip(keys, reach, strict=True) if t > 0.0}
     return found
 
 
@@ -220,9 +221,9 @@ def misplaced(
     Elsewhere is what is off by more than `PLACED`, and by more than its own bound.
     """
     named, bounds = set(found.undetermined), found.certificate.bound.place
-    free = _told_play(train, play(machine, settled.at, NO_FORCE))
+    free = _play_in_report(train, play(machine, settled.at, NO_FORCE))
     # What hangs on forces of round-off may be called either.
-    loose = _told_play(train, play(machine, settled.at, 1e-9))
+    loose = _play_in_report(train, play(machine, settled.at, 1e-9))
     wrong = {
         name: math.inf
         for name, span in free.items()

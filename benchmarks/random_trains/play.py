@@ -22,7 +22,7 @@ from benchmarks.reference.machine import Machine
 FACETS = 32
 """Sides of the polygon inside a disc, in which a gear may move freely."""
 PIVOT = 1e-14
-"""Pivot that counts as zero: what doubles leave of directions that are meant to be opposite."""
+"""Pivot that counts as zero: what doubles leave of directions that should be opposite."""
 
 
 def play(machine: Machine, at: Guess, force: float) -> dict[str, float]:

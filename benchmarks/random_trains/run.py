@@ -68,11 +68,11 @@ def failures(row: dict[str, Any]) -> list[str]:
     """What is wrong with a train, one line per position at fault."""
     lines = []
     for p in row["positions"]:
-        told = " ".join(p["told"].split())
+        message = " ".join(p["told"].split())
         if p["outcome"] in FAILURES:
             error = f", torque off by {p['error']:.1e}" if p["error"] is not None else ""
             compared = f"reference: {p['reference']}"
-            lines.append(f"position {p['position']}: {p['outcome']}{error}; {compared}; {told}")
+            lines.append(f"position {p['position']}: {p['outcome']}{error}; {compared}; {message}")
         low = [pair for pair in p["bound"] if NO_TORQUE < pair[1] > pair[0]]
         if low or p["below"]:
             lines.append(f"position {p['position']}: bounds below the error: {low}, {p['below']}")

@@ -74,24 +74,24 @@ def _reasons(outcome: str, positions: list[dict[str, Any]]) -> list[str]:
     return _table(head, [(k, str(n)) for k, n in kinds.most_common(12)])
 
 
-def _kind(told: str) -> str:
-    told = told.split(";")[0].removeprefix("position ").split(" (")[0]
-    told = re.sub(r"[-+]?\d+\.?\d*(e[-+]?\d+)?", "…", told)
-    return re.sub(r"gear \w+", "gear …", told)[:110].replace("|", "/")
+def _kind(message: str) -> str:
+    message = message.split(";")[0].removeprefix("position ").split(" (")[0]
+    message = re.sub(r"[-+]?\d+\.?\d*(e[-+]?\d+)?", "…", message)
+    return re.sub(r"gear \w+", "gear …", message)[:110].replace("|", "/")
 
 
 def _times(rows: list[dict[str, Any]]) -> list[str]:
     seconds = np.array([row["seconds"] for row in rows])
     each = np.array([row["seconds"] / len(row["positions"]) for row in rows])
-    told = []
+    lines = []
     for name, times in (("train, new to the process", seconds), ("position", each)):
         figures = [*np.percentile(times, [50.0, 99.0]), times.max()]
-        told.append((name, *(f"{1e3 * f:.1f}" for f in figures)))
-    return _table(("processor time [ms] per", "median", "99 %", "worst"), told)
+        lines.append((name, *(f"{1e3 * f:.1f}" for f in figures)))
+    return _table(("processor time [ms] per", "median", "99 %", "worst"), lines)
 
 
 def _bounds(pairs: list[list[float]]) -> list[str]:
-    """How the claimed bounds stand against true errors."""
+    """How the claimed bounds compare with true errors."""
     if not pairs:
         return []
     claimed, true = np.array(pairs).T
@@ -99,7 +99,7 @@ def _bounds(pairs: list[list[float]]) -> list[str]:
     true = np.where(true < NO_TORQUE, 0.0, true)
     held = int((claimed >= true).sum())
     ratio = claimed[true > 0.0] / true[true > 0.0]
-    told = [("torques", str(len(claimed))), ("bound holds", str(held))]
+    lines = [("torques", str(len(claimed))), ("bound holds", str(held))]
     if len(ratio):
-        told.append(("bound over true error, median", f"{np.median(ratio):.1f}"))
-    return _table(("bound", ""), told)
+        lines.append(("bound over true error, median", f"{np.median(ratio):.1f}"))
+    return _table(("bound", ""), lines)

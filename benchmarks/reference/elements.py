@@ -13,7 +13,7 @@ from typing import Any, Protocol
 Gradient = dict[int, Any]
 Curvature = dict[tuple[int, int], Any]
 
-BEGUN = 1e-9
+ONSET = 1e-9
 """Way beyond a reach, in lengths of the train, at which a wall that begins without slope begins."""
 
 
@@ -144,7 +144,7 @@ class Graph:
         gap = radius - self.reach
         if self.root is None:
             return self.stiffness * gap, self.stiffness
-        gap = gap if gap > 0 else (0 * gap + 1) * BEGUN
+        gap = gap if gap > 0 else (0 * gap + 1) * ONSET
         slope = self.stiffness * self.root(gap)
         return slope * gap, self.power * slope
 

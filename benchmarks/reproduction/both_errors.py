@@ -121,7 +121,7 @@ def torque_entries(both: BothErrors) -> list[Entry]:
 def chapter(
     seed: Seed, both: BothErrors, others: Mapping[str, Case], cycle: Result | None
 ) -> Chapter:
-    """What the page tells of Fig. 10."""
+    """What the page says about Fig. 10."""
     shares = share_entries(both)
     worst = max(abs(e.difference or 0.0) for e in shares if e.kind == "fitted")
     blocks = [
@@ -158,7 +158,7 @@ def chapter(
 
 
 def torque_picture(
-    seed: Seed, cycle: Result, name: str, title: str, levels: Mapping[str, float], told: str
+    seed: Seed, cycle: Result, name: str, title: str, levels: Mapping[str, float], note: str
 ) -> Figure:
     """Torque of both stages' meshes over the five positions.
 
@@ -170,7 +170,7 @@ def torque_picture(
         Of the picture.
     levels : mapping of mesh to float
         Printed torques [N·m].
-    told : str
+    note : str
         What their dotted lines are.
     """
     panels = []
@@ -188,7 +188,7 @@ def torque_picture(
                 ticks=tuple(p.position for p in cycle.positions),
             )
         )
-    return picture(name, title, f"stiffness of every position from tooth contact; {told}", panels)
+    return picture(name, title, f"stiffness of every position from tooth contact; {note}", panels)
 
 
 def _level(cycle: Result, mesh: str, value: float) -> Level:
@@ -211,7 +211,7 @@ def _what_it_determines(both: BothErrors) -> list[str]:
         ],
     )
     matrix = both.conditional.correlation
-    told = ", ".join(
+    correlations = ", ".join(
         f"{CONDITIONAL[i]} with {CONDITIONAL[j]} {signed(matrix[i, j], 2)}"
         for i in range(3)
         for j in range(i + 1, 3)
@@ -225,7 +225,7 @@ def _what_it_determines(both: BothErrors) -> list[str]:
         f"“{both.fitted.warnings[0]}” The variance of each single direction is infinite. If seven "
         "are held at the values above, the other three are determined:",
         conditional,
-        f"Correlations: {told}.",
+        f"Correlations: {correlations}.",
     ]
 
 

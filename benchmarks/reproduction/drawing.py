@@ -30,7 +30,7 @@ SIDES: dict[str, dict[str, Any]] = {
     "left above": {"align": "right", "dx": -6, "dy": -9},
     "left below": {"align": "right", "dx": 4, "dy": 14},
 }
-"""Where words stand beside a mark."""
+"""Where text is placed relative to a mark."""
 CROSS = "M-0.7,-0.7L0.7,0.7M-0.7,0.7L0.7,-0.7"
 
 
@@ -44,7 +44,7 @@ class Printed:
     text : str
         Beside its mark.
     side : str
-        Of the mark on which the text stands: one of `SIDES`.
+        Of the mark on which the text is placed: one of `SIDES`.
     """
 
     x: float
@@ -65,7 +65,7 @@ class Level:
     along : float
         Where its words begin, from 0 (left) to 1.
     below : bool
-        Whether they stand below it.
+        Whether they are placed below it.
     """
 
     y: float
@@ -116,14 +116,14 @@ class Panel:
     ticks: Sequence[float] = ()
 
 
-def picture(name: str, title: str, told: str, panels: Sequence[Panel]) -> Figure:
+def picture(name: str, title: str, subtitle: str, panels: Sequence[Panel]) -> Figure:
     """Return panels side by side.
 
     Parameters
     ----------
     name : str
         Of the file.
-    title, told : str
+    title, subtitle : str
         Heading, and what the marks mean.
     panels : sequence of Panel
     """
@@ -132,7 +132,7 @@ def picture(name: str, title: str, told: str, panels: Sequence[Panel]) -> Figure
     columns = 3 if len(panels) == 3 else 2
     drawn = alt.concat(*(_panel(p, 2 if columns == 2 else 3) for p in panels), columns=columns)
     drawn = drawn.resolve_scale(color="independent", shape="independent")
-    return Figure(name, drawn.properties(title=heading(title, told)))
+    return Figure(name, drawn.properties(title=heading(title, subtitle)))
 
 
 def _panel(panel: Panel, columns: int) -> Drawing:

@@ -1,4 +1,4 @@
-"""A printed figure beside the computed one."""
+"""A printed figure next to the computed one."""
 
 from __future__ import annotations
 

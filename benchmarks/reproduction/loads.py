@@ -123,7 +123,7 @@ def _solved(case: Case, torques: list[float]) -> Result:
 
 
 def chapter(found: Loads) -> Chapter:
-    """What the page tells of Table 2 and Fig. 18."""
+    """What the page says about Table 2 and Fig. 18."""
     light = found.light
     entries = [
         Entry("theory, Ω II without floats", printed.LIGHT_THEORY, light.two, 3),

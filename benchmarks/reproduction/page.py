@@ -10,7 +10,7 @@ from benchmarks.reproduction.entry import table
 from loadshare._version import __version__
 
 PICTURES = "reproduction"
-"""Folder of the pictures, beside the page."""
+"""Folder of the pictures, next to the page."""
 PACKAGES = ("numpy", "scipy", "clarabel", "altair", "vl-convert-python")
 VERSIONS = "Computed with"
 """Begin of the one line that may differ from machine to machine."""

@@ -1,4 +1,4 @@
-"""What the seed paper prints: Figs. 7 to 14 and 18, Table 2 and the text beside them.
+"""What the seed paper prints: Figs. 7 to 14 and 18, Table 2 and the text next to them.
 
 Nothing here is computed or assumed. The figures' curves, Table 2 itself and the error directions
 are not printed.

@@ -63,7 +63,7 @@ def reproduce(folder: Path, tell: Callable[[str], None]) -> Reproduction:
     folder : pathlib.Path
         Of the shipped cases.
     tell : callable
-        Told each step.
+        Called with each step.
 
     Raises
     ------

@@ -173,7 +173,7 @@ def fig14_entries(found: Rings) -> list[Entry]:
 
 
 def ring_chapter(seed: Seed, found: Rings) -> Chapter:
-    """What the page tells of Fig. 13."""
+    """What the page says about Fig. 13."""
     entries = fig13_entries(found)
     worst = max(abs(e.relative or 0.0) for e in entries)
     past = {p: 100 * (pair_omega(found.as_printed.held, p) - 1) for p in PINIONS}
@@ -184,9 +184,9 @@ def ring_chapter(seed: Seed, found: Rings) -> Chapter:
         "{rings}",
         f"All are within {100 * worst:.1f} %. By the stricter measure Ω − 1, pinion 4's pair has "
         f"{past['4']:.2f} % (paper 4.7 %) and pinion 5's {past['5']:.2f} % (paper 1.9 %).",
-        _geometry_told(found),
-        _stiffness_told(found),
-        _mirror_told(found),
+        _geometry_text(found),
+        _stiffness_text(found),
+        _mirror_text(found),
         "**With an ample clearance**, a free pinion shares evenly here, while the paper keeps 0.3 "
         "to 0.4 %. In full float without friction, nothing could sustain a difference.",
     )
@@ -201,7 +201,7 @@ def ring_chapter(seed: Seed, found: Rings) -> Chapter:
 
 
 def point_chapter(seed: Seed, found: Rings) -> Chapter:
-    """What the page tells of Fig. 14."""
+    """What the page says about Fig. 14."""
     entries = fig14_entries(found)
     worst = max(abs(e.relative or 0.0) for e in entries)
     rows = []
@@ -269,7 +269,7 @@ def _angle(point: tuple[float, float]) -> float:
     return math.degrees(math.atan2(point[1], point[0]))
 
 
-def _geometry_told(found: Rings) -> str:
+def _geometry_text(found: Rings) -> str:
     header = ("weights", *geometry.NAMES, *geometry.FIGURES)
     paper = ("*paper*", "–", "–", "–", *(f"{v:g}" for v in geometry.PRINTED))
     spread = [(min(v), max(v)) for v in zip(*(g.values for g in found.geometries), strict=True)]
@@ -287,7 +287,7 @@ def _geometry_told(found: Rings) -> str:
     )
 
 
-def _stiffness_told(found: Rings) -> str:
+def _stiffness_text(found: Rings) -> str:
     rows = [
         (
             f"K of {kind} and its like",
@@ -323,7 +323,7 @@ def _stiffness_told(found: Rings) -> str:
     )
 
 
-def _mirror_told(found: Rings) -> str:
+def _mirror_text(found: Rings) -> str:
     readings = {
         "as printed: ΔA_y9 = −0.1 mm": found.as_printed,
         "other sign: ΔA_y9 = +0.1 mm": found.mirrored,

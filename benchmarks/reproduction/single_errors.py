@@ -132,7 +132,7 @@ def eccentricity(seed: Seed) -> Eccentricity:
 
 
 def order(omega: Mapping[str, float]) -> list[list[str]]:
-    """Gears from the most to the least influence; those that tie stand together."""
+    """Gears from the most to the least influence; those that tie are grouped."""
     groups: list[list[str]] = []
     for gear in sorted(omega, key=lambda g: -omega[g]):
         if groups and omega[groups[-1][0]] - omega[gear] < TIE:
@@ -142,7 +142,7 @@ def order(omega: Mapping[str, float]) -> list[list[str]]:
     return [sorted(group, key=int) for group in groups]
 
 
-def told(groups: Sequence[Sequence[str]]) -> str:
+def text(groups: Sequence[Sequence[str]]) -> str:
     """Return an order in words: ``6 = 8 > 10 > 7 = 9``."""
     return " > ".join(" = ".join(group) for group in groups)
 
@@ -150,7 +150,7 @@ def told(groups: Sequence[Sequence[str]]) -> str:
 def largest_entries(
     paper: Mapping[str, float], one: Mapping[str, float], two: Mapping[str, float]
 ) -> list[Entry]:
-    """Largest coefficients of both stages beside the printed ones."""
+    """Largest coefficients of both stages next to the printed ones."""
     return [
         Entry("largest Ω I from gears 1 to 3", paper["I"], max(one.values()), 4),
         Entry("largest Ω II, within the pair", paper["II"], max(two.values()), 4),
@@ -158,7 +158,7 @@ def largest_entries(
 
 
 def installation_chapter(seed: Seed, found: Installation) -> Chapter:
-    """What the page tells of Fig. 8."""
+    """What the page says about Fig. 8."""
     one, two = found.omega("I"), found.omega("II")
     far = [gear for gear in two if gear != "6"]
     entries = largest_entries(printed.OMEGA_INSTALLATION, one, two)
@@ -186,7 +186,7 @@ def installation_chapter(seed: Seed, found: Installation) -> Chapter:
         entries_table(entries),
         table(("gear", "stage", "Ω, 50 µm along x", "Ω over all directions"), rows),
         "{installation}",
-        f"**Order.** Stage I: {told(order(one))} (paper: 1 > 3 > 2). Stage II: {told(order(two))} "
+        f"**Order.** Stage I: {text(order(one))} (paper: 1 > 3 > 2). Stage II: {text(order(two))} "
         "(paper: 6 first; 7 to 10 similar and far smaller). Gear 6 leads here too: its Ω − 1 is "
         f"{(two['6'] - 1) / (max(two[g] for g in far) - 1):.1f} times that of the next. "
         f"{_mirror_images(found)}\n\n"
@@ -219,7 +219,7 @@ def _mirror_images(found: Installation) -> str:
 
 def _matching_directions(found: Installation) -> str:
     rows = [
-        (f"{angle:.1f}°", *(f"{omega[gear]:.4f}" for gear in STAGE_GEARS["II"]), told(order(omega)))
+        (f"{angle:.1f}°", *(f"{omega[gear]:.4f}" for gear in STAGE_GEARS["II"]), text(order(omega)))
         for angle, omega in found.matching.items()
     ]
     header = ("common direction", *(f"gear {gear}" for gear in STAGE_GEARS["II"]), "order")
@@ -234,7 +234,7 @@ def _matching_directions(found: Installation) -> str:
 
 
 def eccentricity_chapter(seed: Seed, found: Eccentricity) -> Chapter:
-    """What the page tells of Fig. 9."""
+    """What the page says about Fig. 9."""
     one, two = found.omega("I"), found.omega("II")
     entries = largest_entries(printed.OMEGA_ECCENTRICITY, one, two)
     rows = [
@@ -250,7 +250,7 @@ def eccentricity_chapter(seed: Seed, found: Eccentricity) -> Chapter:
         entries_table(entries),
         table(("gear", "stage", "largest Ω over a revolution"), rows),
         "{eccentricity}",
-        f"**Order.** Stage I: {told(order(one))} (paper: 1 first). Stage II: {told(order(two))} "
+        f"**Order.** Stage I: {text(order(one))} (paper: 1 first). Stage II: {text(order(two))} "
         f"(paper: 8 first). Gears {listed(lead)} share the first place: the layout is symmetric, "
         "and over a whole revolution an eccentricity passes through every direction, so mirrored "
         "gears reach the same largest Ω. The torques are periodic, once per revolution, as "

@@ -119,7 +119,7 @@ def float_chapter(
     others: Mapping[str, FullFloat],
     cycle: Result | None,
 ) -> Chapter:
-    """What the page tells of Fig. 11."""
+    """What the page says about Fig. 11."""
     at = found.position
     entries = [
         *(
@@ -171,7 +171,7 @@ def float_chapter(
 
 
 def clearance_chapter(seed: Seed, found: Clearance, full: FullFloat) -> Chapter:
-    """What the page tells of Fig. 12."""
+    """What the page says about Fig. 12."""
     free = found.free
     first_free, last_free = sorted(free, key=lambda p: free[p])
     rows = [(f"{e.value:.3f}", e.gear or "", e.kind) for e in found.events]

@@ -106,7 +106,7 @@ def over_cycle(case: Case, found: Stiffnesses) -> Result:
 
 
 def chapter(seed: Seed, found: Stiffnesses | None) -> Chapter:
-    """What the page tells of Fig. 7."""
+    """What the page says about Fig. 7."""
     if found is None:
         missing = "The pair files `cases/fgfbstts/pairs/` are missing: not computed."
         return Chapter(TITLE, missing, "–", (missing,))

@@ -54,8 +54,8 @@ def stress(
         typer.echo(f"Wrote {file}")
     missed = [c for c in cells if c.method == "ours" and c.failures]
     if missed:
-        told = (f"{c.family}: {len(c.failures)} not as it should be" for c in missed)
-        fail(told, REFUSED)
+        lines = (f"{c.family}: {len(c.failures)} not as it should be" for c in missed)
+        fail(lines, REFUSED)
 
 
 def _explain(family: Family, number: int, case: Path | None) -> None:
@@ -69,7 +69,7 @@ def _explain(family: Family, number: int, case: Path | None) -> None:
     typer.echo(f"{problem.name}: {family.title}, {family.knob} {problem.level:g}")
     answer = "has an answer" if truth.solvable else "has no answer"
     typer.echo(f"The problem {answer}: {truth.why}")
-    typer.echo(f"Ours, in {found.seconds:.3f} s: {found.outcome.value}: {found.told}")
+    typer.echo(f"Ours, in {found.seconds:.3f} s: {found.outcome.value}: {found.reason}")
     if case is not None:
         with writing(case):
             write_whole(case, problem.case.to_toml())

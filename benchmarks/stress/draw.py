@@ -31,7 +31,7 @@ def draw_map(cells: Sequence[Cell], folder: Path) -> list[Path]:
 
     order = list(COLOURS)
     methods = list(dict.fromkeys(c.method for c in cells))
-    rows, told = [], []
+    rows, label_rows = [], []
     for cell in cells:
         title = FAMILIES[cell.family].title
         begin = 0.0
@@ -50,7 +50,7 @@ def draw_map(cells: Sequence[Cell], folder: Path) -> list[Path]:
                     }
                 )
             begin += part
-        told.append({"method": cell.method, "family": title, "label": _label(cell)})
+        label_rows.append({"method": cell.method, "family": title, "label": _label(cell)})
     families = [FAMILIES[f].title for f in dict.fromkeys(c.family for c in cells)]
     bars = (
         alt.Chart()
@@ -70,7 +70,7 @@ def draw_map(cells: Sequence[Cell], folder: Path) -> list[Path]:
     panels = []
     for k, method in enumerate(methods):
         mine = alt.Data(values=[r for r in rows if r["method"] == method])
-        labels = alt.Data(values=[t for t in told if t["method"] == method])
+        labels = alt.Data(values=[t for t in label_rows if t["method"] == method])
         text = (
             alt.Chart(labels)
             .mark_text(align="left", dx=3, fontSize=9, color=INK)
@@ -89,5 +89,5 @@ def draw_map(cells: Sequence[Cell], folder: Path) -> list[Path]:
 
 
 def _label(cell: Cell) -> str:
-    told = "/".join(str(cell.counts[o]) for o in COLOURS if o != "not for it")
-    return told if cell.counts["not for it"] < cell.total else "–"
+    counts = "/".join(str(cell.counts[o]) for o in COLOURS if o != "not for it")
+    return counts if cell.counts["not for it"] < cell.total else "–"

@@ -45,22 +45,22 @@ def stress(
     folder.mkdir(parents=True, exist_ok=True)
     kept = folder / FIGURES
     if not redraw:
-        begun = time.perf_counter()
+        start = time.perf_counter()
         cells = list(run(families, peers, quick, tell))
         write_figures(
             kept,
             {
                 "facts": facts(),
                 "quick": quick,
-                "seconds": time.perf_counter() - begun,
+                "seconds": time.perf_counter() - start,
                 "cells": [c.to_dict() for c in cells],
             },
         )
     figures = read_figures(kept)
     cells = [_cell(c) for c in figures["cells"]]
     report = folder / "stability.md"
-    told = stability_report(cells, figures["facts"], figures["seconds"], figures["quick"])
-    report.write_text(told, encoding="utf-8")
+    page = stability_report(cells, figures["facts"], figures["seconds"], figures["quick"])
+    report.write_text(page, encoding="utf-8")
     return cells, [kept, *draw_map(cells, folder), report]
 
 

@@ -111,17 +111,17 @@ def cell_of(method: str, family: str, verdicts: list[Verdict]) -> Cell:
         slowest=max(v.seconds for v in verdicts),
         sentences=tuple(sorted(reasons, key=lambda r: -reasons[r])[:2]),
         failures=tuple(
-            (v.number, v.outcome.value, v.told) for v in verdicts if not v.as_it_should_be
+            (v.number, v.outcome.value, v.reason) for v in verdicts if not v.as_it_should_be
         ),
     )
 
 
 def _reason(verdict: Verdict) -> str:
     """Kind of a failure, without its figures."""
-    told = verdict.told.split(";")[0].split(" (")[0]
+    reason = verdict.reason.split(";")[0].split(" (")[0]
     if verdict.outcome is Outcome.WRONG:
-        told = told.split(" at ")[0]
-        return "claims an answer that fails: " + " ".join(told.split()[:-1] or [told])
+        reason = reason.split(" at ")[0]
+        return "claims an answer that fails: " + " ".join(reason.split()[:-1] or [reason])
     if verdict.outcome is Outcome.CRASHED:
-        return f"raises {told[:80]}"
-    return told.removeprefix("position 1: ")[:80]
+        return f"raises {reason[:80]}"
+    return reason.removeprefix("position 1: ")[:80]

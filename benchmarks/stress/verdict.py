@@ -43,7 +43,7 @@ class Verdict:
     outcome : Outcome
     solvable : bool
         Whether an answer exists.
-    told : str
+    reason : str
         The refusal, the residual that failed, or the exception.
     named : bool
         Of a problem without an answer: whether the refusal names an element that lacks one.
@@ -57,7 +57,7 @@ class Verdict:
     level: float
     outcome: Outcome
     solvable: bool
-    told: str
+    reason: str
     named: bool
     seconds: float
     worst: float
@@ -81,33 +81,33 @@ def judge(problem: Problem, method: Method) -> Verdict:
     train = build_train(problem.case)
     truth = truth_of(train)
     worst = math.inf
-    begun = perf_counter()
+    start = perf_counter()
     try:
         found = method(problem, train)
     except NotForThis as unfit:
-        told, outcome = str(unfit), Outcome.UNFIT
+        reason, outcome = str(unfit), Outcome.UNFIT
     except (Refused, Failure) as refusal:
-        told, outcome = str(refusal), Outcome.REFUSED
+        reason, outcome = str(refusal), Outcome.REFUSED
     except Exception as fault:  # noqa: BLE001 -- whatever a method raises is a finding of the map
-        told, outcome = f"{type(fault).__name__}: {fault}", Outcome.CRASHED
+        reason, outcome = f"{type(fault).__name__}: {fault}", Outcome.CRASHED
     else:
-        told, outcome, worst = _judged(train, found, truth)
+        reason, outcome, worst = _judged(train, found, truth)
     return Verdict(
         family=problem.family,
         number=problem.number,
         level=problem.level,
         outcome=outcome,
         solvable=truth.solvable,
-        told=told,
-        named=any(_names(told, element) for element in truth.elements),
-        seconds=perf_counter() - begun,
+        reason=reason,
+        named=any(_names(reason, element) for element in truth.elements),
+        seconds=perf_counter() - start,
         worst=worst,
     )
 
 
-def _names(told: str, gear: str) -> bool:
+def _names(message: str, gear: str) -> bool:
     """Tell whether a message names a gear, its ring or spline, or a mesh or shaft of it."""
-    return re.search(rf"\b(gear|ring|spline) {gear}\b|\b{gear}-\w|\w-{gear}\b", told) is not None
+    return re.search(rf"\b(gear|ring|spline) {gear}\b|\b{gear}-\w|\w-{gear}\b", message) is not None
 
 
 def _judged(train: Train, found: Equilibrium, truth: Truth) -> tuple[str, Outcome, float]:
@@ -117,8 +117,8 @@ def _judged(train: Train, found: Equilibrium, truth: Truth) -> tuple[str, Outcom
             f"{name.replace('_', ' ')} {r.scaled:.1e} at {r.where}"
             for name, r in certificate.failing.items()
         )
-        told = failing or f"bound on the torques {certificate.bound.relative:.1e}"
-        return told, Outcome.WRONG, certificate.worst
+        reason = failing or f"bound on the torques {certificate.bound.relative:.1e}"
+        return reason, Outcome.WRONG, certificate.worst
     if not truth.solvable:
         return f"an answer where there is none ({truth.why})", Outcome.WRONG, math.inf
     return f"residual {certificate.worst:.1e}", Outcome.CERTIFIED, certificate.worst

@@ -1,4 +1,4 @@
-"""What a caller gives beside a case: checked, and told what is allowed."""
+"""Arguments besides the case: checked, with errors that say what is allowed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Numba's cache of a function, made safe: what is damaged or out of date is compiled anew."""
+"""Numba's cache of a function, made safe: what is damaged or out of date is compiled again."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from loadshare.lock import one_after_another
 
 
 def fingerprint(function: Callable[..., Any]) -> str:
-    """Return what tells a function, all that it calls and all numbers compiled into it from others.
+    """Return what identifies a function: itself, all that it calls, all numbers from elsewhere.
 
     Numba looks at a function's own file only, and would go on with old numbers of another one.
 
@@ -31,15 +31,15 @@ def fingerprint(function: Callable[..., Any]) -> str:
     function
         The plain one, as it is written.
     """
-    told: list[str] = []
+    parts: list[str] = []
     seen = {function}
     waiting = [function]
     while waiting:
         one = waiting.pop()
         code = one.__code__
-        # What code itself looks like in print names its address in memory.
+        # The printed form of a code object contains its address in memory.
         constants = [c for c in code.co_consts if not isinstance(c, CodeType)]
-        told.append(f"{one.__qualname__} {code.co_code.hex()} {constants!r} {code.co_names!r}")
+        parts.append(f"{one.__qualname__} {code.co_code.hex()} {constants!r} {code.co_names!r}")
         for name in code.co_names:
             value = one.__globals__.get(name)
             called = getattr(value, "py_func", value)
@@ -50,10 +50,10 @@ def fingerprint(function: Callable[..., Any]) -> str:
             elif isinstance(value, tuple) and hasattr(value, "_fields"):
                 # Of a table only what is read.
                 used = [field for field in value._fields if field in code.co_names]
-                told += [f"{name}.{field} = {getattr(value, field)!r}" for field in used]
+                parts += [f"{name}.{field} = {getattr(value, field)!r}" for field in used]
             elif isinstance(value, int | float | str | tuple):
-                told.append(f"{name} = {value!r}")
-    return hashlib.sha256("\n".join(told).encode()).hexdigest()
+                parts.append(f"{name} = {value!r}")
+    return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
 
 class _Files(IndexDataCacheFile):
@@ -64,7 +64,7 @@ class _Files(IndexDataCacheFile):
 
     @property
     def _source_stamp(self) -> Any:
-        # What it calls may be defined further down: it is looked at as late as that.
+        # What it calls may be defined further down, so it is looked at late.
         return self._written, fingerprint(self._function)
 
     @_source_stamp.setter
@@ -94,7 +94,7 @@ class _Files(IndexDataCacheFile):
 class _Places(CompileResultCacheImpl):
     """Where compiled code may be kept.
 
-    For a user without a home, Numba would make a folder named ``~`` where the user stands.
+    For a user without a home, Numba would make a folder named ``~`` in the working directory.
     """
 
     def __init__(self, function: Callable[..., Any]) -> None:
@@ -113,7 +113,7 @@ def _has_home() -> bool:
 
 
 class CodeCache(FunctionCache):
-    """Compiled code of a function on disk; what cannot be read or written is compiled anew.
+    """Compiled code of a function on disk; what cannot be read or written is compiled again.
 
     Of several processes that miss the same code one compiles it, and the others wait for that.
     """
@@ -161,7 +161,7 @@ class CodeCache(FunctionCache):
         """Load what was kept for some types; None where that cannot be read."""
         try:
             return super().load_overload(sig, target_context)
-        except Exception:  # noqa: BLE001 -- it is compiled anew
+        except Exception:  # noqa: BLE001 -- it is compiled again
             return None
 
     def load_all(self, function: Any) -> bool:
@@ -184,7 +184,7 @@ class CodeCache(FunctionCache):
 
 
 class Lost(NullCache):
-    """Nothing is kept; said when something was compiled."""
+    """Keeps nothing, and says so when something was compiled."""
 
     def __init__(self, not_kept: Callable[[], None]) -> None:
         self._not_kept = not_kept

@@ -1,9 +1,9 @@
-"""Compiling with Numba: kept on disk, told while it lasts, and never the reason of a failure.
+"""Compiling with Numba: kept on disk, reported while it lasts, and never the reason for a failure.
 
-What is compiled is kept where Numba finds a folder to write in: beside the source, else in the
+What is compiled is kept where Numba finds a folder to write in: next to the source, else in the
 user's cache folder (`NUMBA_CACHE_DIR` comes before both). Where there is none, where Numba cannot
 be imported, or where it does not compile, `why_not` says so once, in the log, and those who have
-another kernel use that. What is damaged on disk or out of date is compiled anew (`code_cache`).
+another kernel use that. What is damaged on disk or out of date is compiled again (`code_cache`).
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ class Usable:
     ----------
     reason : str or None
         Why not.
-    told : bool
+    reported : bool
         Whether the log says so.
     """
 
     reason: str | None = None
-    told: bool = False
+    reported: bool = False
 
 
 usable = Usable()
@@ -51,9 +51,9 @@ def why_not() -> str | None:
 def tell_why_not() -> None:
     """Say once, in the log, that another kernel takes the place of the compiled one, and why."""
     with _lock:
-        if usable.told or usable.reason is None:
+        if usable.reported or usable.reason is None:
             return
-        usable.told = True
+        usable.reported = True
     log.warning(
         "The compiled kernel is not used: %s. The vectorised one takes its place: the same "
         "answers, more slowly.",
@@ -62,7 +62,7 @@ def tell_why_not() -> None:
 
 
 def give_up(reason: str) -> None:
-    """Use compiled kernels no more; the first reason stands."""
+    """Use compiled kernels no more; the first reason is kept."""
     with _lock:
         usable.reason = usable.reason or reason
 

@@ -12,9 +12,9 @@ from typing import Any
 log = logging.getLogger("loadshare")
 
 PATIENCE = 1.0
-"""Seconds after which compiling is told; small functions are done by then."""
+"""Seconds after which compiling is announced; small functions are done by then."""
 AGAIN = 30.0
-"""Seconds after which it is told again that compiling goes on."""
+"""Seconds after which it is announced again that compiling goes on."""
 PREFIX = "Compiling"
 """First word of every message that tells of compiling."""
 _FIRST = (
@@ -29,13 +29,13 @@ class Watch:
     Attributes
     ----------
     complained : bool
-        Whether it was said that what is compiled is lost at the end.
+        Whether it was reported that what is compiled is lost at the end.
     """
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
         self._depth = 0
-        self._begun = 0.0
+        self._started_at = 0.0
         self._spent = 0.0
         self._attached = False
         self._teller: threading.Thread | None = None
@@ -66,7 +66,7 @@ class Watch:
             self._depth += 1
             if self._depth > 1:
                 return
-            self._begun = time.monotonic()
+            self._started_at = time.monotonic()
             if self._teller is None:
                 self._teller = threading.Thread(target=self._tell, daemon=True)
                 self._teller.start()
@@ -76,11 +76,11 @@ class Watch:
         with self._lock:
             self._depth -= 1
             if self._depth == 0:
-                self._spent += time.monotonic() - self._begun
+                self._spent += time.monotonic() - self._started_at
 
     @contextmanager
     def waiting(self) -> Iterator[None]:
-        """Another process compiles what is needed here: told as if this one did."""
+        """Another process compiles what is needed here: reported as if this one did."""
         self.started()
         try:
             yield
@@ -96,18 +96,18 @@ class Watch:
         log.warning("%s: what was compiled could not be kept (%s).", PREFIX, why)
 
     def wait(self, seconds: float) -> None:
-        """Wait until the last word on what was compiled is said, for so long at most."""
+        """Wait until the last message on compiling is logged, for so long at most."""
         teller = self._teller
         if teller is not None:
             teller.join(seconds)
 
     def _elapsed(self) -> float:
-        running = time.monotonic() - self._begun if self._depth else 0.0
+        running = time.monotonic() - self._started_at if self._depth else 0.0
         return self._spent + running
 
     def _tell(self) -> None:
-        """Run beside the compiler until nothing was compiled for a moment."""
-        told = False
+        """Run alongside the compiler until nothing was compiled for a moment."""
+        announced = False
         idle = 0
         following = PATIENCE
         while idle < 2:
@@ -116,14 +116,14 @@ class Watch:
                 elapsed, busy = self._elapsed(), self._depth > 0
             idle = 0 if busy else idle + 1
             if busy and elapsed >= following:
-                following = AGAIN if not told else following + AGAIN
-                text = f"{elapsed:.0f} s so far" if told else _FIRST
-                told = True
+                following = AGAIN if not announced else following + AGAIN
+                text = f"{elapsed:.0f} s so far" if announced else _FIRST
+                announced = True
                 log.warning("%s: %s", PREFIX, text)
         with self._lock:
             self._teller = None
             elapsed, self._spent = self._spent, 0.0
-        if told:
+        if announced:
             log.warning("%s: done after %.0f s", PREFIX, elapsed)
 
 

@@ -110,10 +110,10 @@ class ResultError(LoadshareError):
         super().__init__(self.problems)
 
     def __str__(self) -> str:
-        told = [str(problem) for problem in self.problems[:SHOWN]]
-        more = len(self.problems) - len(told)
-        return "\n".join([*told, *([f"and {more} more problems"] if more else [])])
+        lines = [str(problem) for problem in self.problems[:SHOWN]]
+        more = len(self.problems) - len(lines)
+        return "\n".join([*lines, *([f"and {more} more problems"] if more else [])])
 
 
 SHOWN = 5
-"""Problems of a result file that are told: a file that was tampered with disagrees everywhere."""
+"""Problems of a result file that are shown: a file that was tampered with disagrees everywhere."""

@@ -7,7 +7,7 @@ import stat
 from pathlib import Path
 
 
-class Unreadable(Exception):  # noqa: N818 -- told as a problem, never raised to a user
+class Unreadable(Exception):  # noqa: N818 -- reported as a problem, never raised to a user
     """Why a file is none that can be read."""
 
 
@@ -39,7 +39,7 @@ def read_file(path: Path, most: int) -> bytes:
 
 
 def real(path: Path) -> Path:
-    """Return a path without links; one that leads around in a circle as it stands.
+    """Return a path without links; one that leads around in a circle unchanged.
 
     `Path.resolve` raises there, or not, by the version of Python.
     """

@@ -50,7 +50,7 @@ def alone_in(folder: Path) -> Iterator[None]:
     with _held(file, handle):
         text = f"process {os.getpid()} on {socket.gethostname()}, since {_now()}"
         with suppress(OSError):
-            # On a full disk it is held all the same, by who is not told.
+            # On a full disk it is held all the same, without the name of its holder.
             os.ftruncate(handle, 0)
             os.write(handle, text.encode())
         yield
@@ -125,11 +125,11 @@ def _acquired(file: Path, level: int = logging.WARNING) -> int | None:
         except FileNotFoundError:
             pass
         except OSError as error:
-            told = _holder(handle)
+            holder = _holder(handle)
             _close(handle)
             if error.errno in TAKEN:
                 raise LoadshareError(
-                    f"{file.parent}: is in use by {told}. Wait until that has ended, or give "
+                    f"{file.parent}: is in use by {holder}. Wait until that has ended, or give "
                     "another folder."
                 ) from None
             words = "%s: this file system has no locks; work here one at a time."
@@ -146,7 +146,7 @@ def _holder(handle: int) -> str:
 
 
 def _close(handle: int) -> None:
-    # A file that is closed is closed, whatever is said of it.
+    # A file that is closed is closed, whatever error that raises.
     with suppress(OSError):
         os.close(handle)
 

@@ -19,10 +19,10 @@ if TYPE_CHECKING:
     import xarray as xr
 
 STANDARD = Path("-")
-"""Stands for standard output."""
+"""Means standard output."""
 
 LONG = 100
-"""Letters of a name that the file beside it has as well; file systems allow some 250 bytes."""
+"""Letters of a name that the temporary file has as well; file systems allow some 250 bytes."""
 
 
 class NotWritten(OSError):  # noqa: N818 -- what became of a file
@@ -35,14 +35,14 @@ class NotWritten(OSError):  # noqa: N818 -- what became of a file
 def write_whole(path: Path, content: str | bytes) -> None:
     """Write a file, whole or not at all.
 
-    It is filled beside its place, brought to the disk, and put in place in one step. A link is
+    It is written next to its place, brought to the disk, and put in place in one step. A link is
     followed; the mode of a file that is there is kept, and its owner where that is allowed. What is
     no file, a device or a pipe, is written to.
 
     Parameters
     ----------
     path : Path
-        Where the file shall stand; its folder is made. "-" stands for standard output.
+        Where the file is to be; its folder is made. "-" means standard output.
     content : str or bytes
         Text is written as UTF-8.
 
@@ -99,7 +99,7 @@ def make_folder(folder: Path) -> None:
 
 
 def clear(files: Iterable[Path]) -> None:
-    """Remove what killed processes left beside files that they were writing.
+    """Remove what killed processes left next to files that they were writing.
 
     A folder in which somebody is writing is left as it is.
 

@@ -1,6 +1,6 @@
 """Pictures of what was found, asked for by the rooms that find it.
 
-The room that draws stands above them; `loadshare`, which knows every room, says here who draws.
+The room that draws is above them; `loadshare`, which knows every room, says here who draws.
 """
 
 from __future__ import annotations

@@ -45,13 +45,13 @@ def side_by_side(
     workers : int
         Processes.
     stopped : callable, optional
-        Whether nothing more is to be begun; what is under way is then finished.
+        Whether nothing more is to be started; what is under way is then finished.
 
     Yields
     ------
     item
     result
-        None where the process died twice: at first, and once more after all others were begun.
+        None where the process died twice: at first, and once more after all others were started.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""How Numba compiles `by_reference`: a pointer, through which a field is read where it stands."""
+"""How Numba compiles `by_reference`: a pointer, through which a field is read where it is."""
 
 # Numba has no types.
 # mypy: disable-error-code="misc,no-untyped-def,no-untyped-call,untyped-decorator,call-arg,override"
@@ -17,7 +17,7 @@ from loadshare.by_reference import by_reference, set_apart
 
 
 class Reference(types.Type):
-    """Where a named tuple stands.
+    """Where a named tuple is.
 
     Parameters
     ----------

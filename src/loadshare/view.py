@@ -26,7 +26,7 @@ class View:
     ----------
     title : str
     facts : tuple of (str, str)
-        What is told, and what of it; empty ones are left out.
+        Names and values; empty values are left out.
     columns : tuple of str
     rows : tuple of tuple of str
         As many cells as there are columns.
@@ -40,7 +40,7 @@ class View:
     @property
     def text(self) -> str:
         """Lines for a console."""
-        lines = [self.title, *(f"{name}: {told}" for name, told in self.facts if told)]
+        lines = [self.title, *(f"{name}: {value}" for name, value in self.facts if value)]
         shown = [self.columns, *self.rows[:ROWS]] if self.rows else []
         widths = [max(map(len, column)) for column in zip(*shown, strict=True)]
         for row in shown:
@@ -54,9 +54,9 @@ class View:
     def html(self) -> str:
         """The same for a notebook; every text is escaped, and no script, style or link is used."""
         facts = "".join(
-            f"<tr><th {_CELL}>{_escaped(name)}</th><td {_CELL}>{_escaped(told)}</td></tr>"
-            for name, told in self.facts
-            if told
+            f"<tr><th {_CELL}>{_escaped(name)}</th><td {_CELL}>{_escaped(value)}</td></tr>"
+            for name, value in self.facts
+            if value
         )
         parts = [f"<div><strong>{_escaped(self.title)}</strong>"]
         parts += [f"<table><tbody>{facts}</tbody></table>"] if facts else []

@@ -61,8 +61,8 @@ def test_long_and_branched_functions_are_listed(tmp_path, monkeypatch):
     branch = "    if x:\n        x = 0\n"
     forked = f"def just(x):\n{branch * (BRANCHED - 1)}\n\ndef forked(x):\n{branch * BRANCHED}"
     (tmp_path / "many.py").write_text(f"{long}\n\n{forked}")
-    told = text([Path()])
-    assert f"{LONG + 1:7}  longer  many.py:{LONG + 3}\n" in told
-    assert f"{BRANCHED + 1:7}  forked" in told
-    assert "exactly" not in told
-    assert "just" not in told
+    report = text([Path()])
+    assert f"{LONG + 1:7}  longer  many.py:{LONG + 3}\n" in report
+    assert f"{BRANCHED + 1:7}  forked" in report
+    assert "exactly" not in report
+    assert "just" not in report

@@ -36,7 +36,7 @@ def test_a_problem_without_an_answer_is_refused_by_name(run):
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("stress", "--family", "nonsense"), "stiffness-ratio"),
         (("stress", "--problem", "3"), "goes with --family"),
@@ -45,11 +45,11 @@ def test_a_problem_without_an_answer_is_refused_by_name(run):
         (("chart", "--cases", "nowhere", "-o", "elsewhere", "--quiet"), "--cases"),
     ],
 )
-def test_wrong_words_are_told(run, words, told, tmp_path, monkeypatch):
+def test_wrong_words_are_reported(run, words, message, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     done = run(*words)
     assert done.exit_code == 2
-    assert told in done.output
+    assert message in done.output
 
 
 @pytest.mark.slow
@@ -70,7 +70,7 @@ def test_the_map_of_one_family_is_written_and_drawn_again(run, tmp_path):
     (tmp_path / "stability.md").unlink()
     assert run("stress", "--redraw", "-o", str(tmp_path)).exit_code == 0
     assert (tmp_path / "stability.md").read_text() == before
-    # The page must open without a network: its scripts stand in it.
+    # The page must open without a network: its scripts are in it.
     assert "<script src=" not in (tmp_path / "stability.html").read_text()
 
 

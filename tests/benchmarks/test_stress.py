@@ -90,7 +90,7 @@ def test_a_wrong_claim_is_called_wrong():
     assert cell.counts["wrong"] == cell.missed == 1
 
 
-def test_crashes_and_refusals_are_told_apart():
+def test_crashes_and_refusals_are_distinguished():
     problem = FAMILIES["lost-contact"].problem(5)
 
     def refuses(_problem, _train):
@@ -102,7 +102,7 @@ def test_crashes_and_refusals_are_told_apart():
     assert judge(problem, refuses).outcome is Outcome.REFUSED
     crash = judge(problem, crashes)
     assert crash.outcome is Outcome.CRASHED
-    assert "ZeroDivisionError" in crash.told
+    assert "ZeroDivisionError" in crash.reason
 
 
 def test_a_certified_answer_to_a_problem_without_one_would_be_wrong():

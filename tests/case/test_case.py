@@ -62,12 +62,12 @@ def test_a_case_built_in_python(drive):
     assert case.problem("gears.1.base_radius", "is odd").file == "built"
 
 
-def test_a_bad_case_built_in_python_is_told_in_the_same_words():
+def test_a_bad_case_built_in_python_is_reported_in_the_same_words():
     with pytest.raises(CaseError) as caught:
         Case(operating={"input": "1"}, gears={}, meshes={})
-    told = str(caught.value).splitlines()
-    assert told[0] == "case: operating.output: is missing. Gear at which it leaves."
-    assert [line[: line.index(".")] for line in told[1:]] == [
+    lines = str(caught.value).splitlines()
+    assert lines[0] == "case: operating.output: is missing. Gear at which it leaves."
+    assert [line[: line.index(".")] for line in lines[1:]] == [
         "case: gears: is empty",
         "case: meshes: is empty",
     ]
@@ -97,7 +97,7 @@ def test_a_face_gears_acting_radius_is_the_mean_of_its_radii():
 
 
 def test_hash_is_of_the_mechanics(drive):
-    said_otherwise = drive.replace(
+    reworded = drive.replace(
         {
             "title": "Another",
             "source": "x",
@@ -107,8 +107,8 @@ def test_hash_is_of_the_mechanics(drive):
             "gears.a.type": "external",
         }
     )
-    assert said_otherwise != drive
-    assert said_otherwise.hash == drive.hash
+    assert reworded != drive
+    assert reworded.hash == drive.hash
     assert drive.replace({'meshes."a-b".stiffness': "1.1e6 N*m/rad"}).hash != drive.hash
     assert len(drive.hash) == 64
 

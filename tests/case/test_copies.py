@@ -90,13 +90,13 @@ def test_gears_on_one_pin_are_copied_together() -> None:
     assert case.gears["pinion3"].centre.about == "planet3"
 
 
-def test_what_is_wrong_with_copies_is_told_once() -> None:
-    for given, told in ((1, "copies"), ("three", "copies"), (["0 mm", "5 mm"], "copies")):
+def test_what_is_wrong_with_copies_is_reported_once() -> None:
+    for given, key in ((1, "copies"), ("three", "copies"), (["0 mm", "5 mm"], "copies")):
         data = changed()
         data["gears"]["planet"]["copies"] = given
         with pytest.raises(CaseError) as caught:
             Case(data)
-        assert f"gears.planet.{told}" in str(caught.value)
+        assert f"gears.planet.{key}" in str(caught.value)
     data = changed()
     data["gears"]["sun"]["copies"] = 3
     with pytest.raises(CaseError, match="goes with a centre by distance and angle"):
@@ -113,9 +113,9 @@ def test_a_problem_names_the_file_in_which_all_copies_stand(tmp_path) -> None:
     own.write_text('extends = "base.toml"\n[gears.planet]\ncopies = 4\n')
     with pytest.raises(CaseError) as caught:
         load_case(own)
-    told = str(caught.value).splitlines()
-    assert len(told) == 4
-    assert all("base.toml" in line and "sun-planet" in line for line in told)
+    lines = str(caught.value).splitlines()
+    assert len(lines) == 4
+    assert all("base.toml" in line and "sun-planet" in line for line in lines)
 
 
 def test_a_pin_without_an_error_can_be_given_one() -> None:

@@ -1,4 +1,4 @@
-"""Tolerances by class, against the numbers that the standard's formulas give by hand."""
+"""Tolerances by class, against the numbers that the standard's formulas give."""
 
 import math
 

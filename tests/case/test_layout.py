@@ -132,7 +132,7 @@ ALONG_Y = {"axis": "y"}
 
 
 @pytest.mark.parametrize(
-    ("a", "b", "told"),
+    ("a", "b", "message"),
     [
         ({}, {"centre": about("c", 0.0)}, "the gear meshes with c or with a gear on the axis"),
         ({}, {"centre": about(None, 90.0), "module": "3 mm"}, "different modules"),
@@ -142,7 +142,7 @@ ALONG_Y = {"axis": "y"}
         (gear(50), {"centre": about("a", 0.0), **gear(45, type="internal")}, "at any distance"),
     ],
 )
-def test_what_keeps_a_distance_from_following_is_told(a: dict, b: dict, told: str):
+def test_what_keeps_a_distance_from_following_is_reported(a: dict, b: dict, message: str):
     gears = {
         "a": gear(20) | {"centre": ["0 mm", "0 mm"]} | a,
         "b": gear(30) | b,
@@ -155,7 +155,7 @@ def test_what_keeps_a_distance_from_following_is_told(a: dict, b: dict, told: st
             meshes={"a-b": {"law": "iso"}},
             shafts={"a-c": {"stiffness": "rigid"}},
         )
-    assert told in str(caught.value)
+    assert message in str(caught.value)
 
 
 def pair(a: dict, b: dict, distance: str) -> Case:
@@ -174,9 +174,9 @@ def test_a_tip_must_not_reach_below_the_pinions_base_circle():
     angle = math.radians(20.0)
     most = 1e3 * math.hypot(0.12 * math.cos(angle), 0.144 * math.sin(angle))
     pinion = gear(12, dedendum=2.0)  # a root that leaves room enough
-    told = refusal(pair, pinion, gear(60), "144 mm")
-    assert "the tip of gear b, at a radius of 124 mm, finds no room in gear a" in told
-    assert f"at most {most:.6g} mm" in told
+    message = refusal(pair, pinion, gear(60), "144 mm")
+    assert "the tip of gear b, at a radius of 124 mm, finds no room in gear a" in message
+    assert f"at most {most:.6g} mm" in message
     for height, fits in ((most + 0.05, False), (most - 0.001, True)):
         wheel = gear(60, tip_alteration=f"{height - 124.0} mm")
         if fits:
@@ -184,7 +184,7 @@ def test_a_tip_must_not_reach_below_the_pinions_base_circle():
         else:
             assert "finds no room" in refusal(pair, pinion, wheel, "144 mm")
     # What the message proposes is enough.
-    proposed = told.partition('tip_alteration = "')[2].partition('"')[0]
+    proposed = message.partition('tip_alteration = "')[2].partition('"')[0]
     pair(pinion, gear(60, tip_alteration=proposed), "144 mm")
 
 
@@ -194,9 +194,9 @@ def test_a_tip_must_not_reach_the_root(internal: bool):
     kind = {"type": "internal"} if internal else {}
     one, two = gear(40, addendum=1.2), gear(100, dedendum=1.15, **kind)
     distance = "120 mm" if internal else "280 mm"
-    told = refusal(pair, one, two, distance)
-    assert "the tip of gear a, at a radius of 84.8 mm, finds no room in gear b" in told
-    assert "at most 84.6 mm" in told
+    message = refusal(pair, one, two, distance)
+    assert "the tip of gear a, at a radius of 84.8 mm, finds no room in gear b" in message
+    assert "at most 84.6 mm" in message
     pair(one | {"tip_alteration": "-0.2 mm"}, two, distance)
 
 
@@ -253,11 +253,11 @@ def test_as_many_planets_as_find_room():
     """sin(π/n) > r_a/a: planets of 36 teeth about a sun of 18 are four at most."""
     assert math.sin(math.pi / 4) > 38.0 / 54.0 > math.sin(math.pi / 5)
     star(4)
-    told = refusal(star, 5)
-    assert "At most 4 such gears fit evenly spaced" in told
-    assert told.count("is in the way of") == 1
+    message = refusal(star, 5)
+    assert "At most 4 such gears fit evenly spaced" in message
+    assert message.count("is in the way of") == 1
     apart = 2.0 * 108.0 * math.sin(math.pi / 5)
-    assert f"overlap by {152.0 - apart:.6g} mm" in told
+    assert f"overlap by {152.0 - apart:.6g} mm" in message
 
 
 def test_planets_at_one_place():

@@ -38,7 +38,7 @@ stiffness = "1e6 N*m/rad"
 """
 
 
-def told(tmp_path, text: str) -> str:
+def refusal_of(tmp_path, text: str) -> str:
     """Problems of a case file."""
     path = tmp_path / "case.toml"
     path.write_text(text, encoding="utf-8")
@@ -74,10 +74,10 @@ def test_the_pair_itself_is_a_case(tmp_path):
 )
 def test_names_and_counts(tmp_path, change, key):
     old, new = change
-    said = told(tmp_path, PAIR.replace(old, new, 1) if old else PAIR + new)
-    assert key in said
-    # What is no name is not told of a second time, as no gear.
-    assert not (key.endswith('""') and '"" is not a gear' in said)
+    message = refusal_of(tmp_path, PAIR.replace(old, new, 1) if old else PAIR + new)
+    assert key in message
+    # What is no name is not reported a second time, as no gear.
+    assert not (key.endswith('""') and '"" is not a gear' in message)
 
 
 @pytest.mark.parametrize("number", ["1e-308", "5e-324", "1e-300", "1e300", "-1e308", "1e400"])
@@ -93,7 +93,7 @@ def test_names_and_counts(tmp_path, change, key):
 )
 def test_numbers_that_no_machine_has(tmp_path, number, value, key):
     unit = value.strip('"').split(" ")[1]
-    assert key in told(tmp_path, PAIR.replace(value, f'"{number} {unit}"', 1))
+    assert key in refusal_of(tmp_path, PAIR.replace(value, f'"{number} {unit}"', 1))
 
 
 @pytest.mark.parametrize("size", [ALLOWED.smallest, ALLOWED.largest])
@@ -116,7 +116,7 @@ def test_numbers_at_the_limits_are_solved_or_refused(size):
     ["9^9^9^9", "N^1e9", "N*m^99999", "mm**-1e308", "N*m*(2^(2^(2^9)))", "m^2^3", "(kN^12)^12"],
 )
 def test_units_that_would_take_for_ever(tmp_path, unit):
-    assert f'operating.torque = "100 {unit}"' in told(tmp_path, PAIR.replace("N*m", unit, 1))
+    assert f'operating.torque = "100 {unit}"' in refusal_of(tmp_path, PAIR.replace("N*m", unit, 1))
 
 
 @pytest.mark.parametrize(
@@ -140,7 +140,7 @@ def test_units_that_engineers_write(unit):
     ],
 )
 def test_nesting(tmp_path, text):
-    assert "is nested deeper than 20 tables and lists" in told(tmp_path, text + "\n" + PAIR)
+    assert "is nested deeper than 20 tables and lists" in refusal_of(tmp_path, text + "\n" + PAIR)
 
 
 @pytest.mark.parametrize(
@@ -174,17 +174,17 @@ def test_nesting_in_python_and_on_the_command_line():
 
 
 def test_a_number_of_thousands_of_digits(tmp_path):
-    assert "cannot be read" in told(tmp_path, "x = " + "9" * 5000 + "\n" + PAIR)
+    assert "cannot be read" in refusal_of(tmp_path, "x = " + "9" * 5000 + "\n" + PAIR)
 
 
 def test_entries(tmp_path):
     many = ", ".join(['"gears.*"'] * (ALLOWED.entries + 1))
-    assert "10001 entries" in told(tmp_path, f"assumed = [{many}]\n{PAIR}")
+    assert "10001 entries" in refusal_of(tmp_path, f"assumed = [{many}]\n{PAIR}")
 
 
 def test_a_file_that_is_too_large(tmp_path):
     text = PAIR + "#" * ALLOWED.bytes
-    assert "larger than 4 MiB" in told(tmp_path, text)
+    assert "larger than 4 MiB" in refusal_of(tmp_path, text)
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="has neither pipes nor devices in folders")
@@ -232,15 +232,15 @@ GEAR = "[gears.g{0}]\ncentre = ['0 mm', '0 mm']\nbase_radius = '1 mm'\n"
 def test_problems_without_number_take_a_moment(tmp_path, text, wanted):
     """Each of these took minutes: what is near to a name was looked for among all others."""
     with limited(10.0):
-        said = told(tmp_path, PAIR + text)
-    assert wanted in said
-    assert said.count("\n") <= 2 * ALLOWED.problems
+        message = refusal_of(tmp_path, PAIR + text)
+    assert wanted in message
+    assert message.count("\n") <= 2 * ALLOWED.problems
 
 
 @pytest.mark.parametrize("number", ["0x" + "f" * 10_000, "0b" + "1" * 100_000])
 def test_numbers_that_python_does_not_write(tmp_path, number):
-    said = told(tmp_path, PAIR.replace("torque =", f"positions = {number}\ntorque =", 1))
-    assert "operating.positions = 0xfff" in said
+    message = refusal_of(tmp_path, PAIR.replace("torque =", f"positions = {number}\ntorque =", 1))
+    assert "operating.positions = 0xfff" in message
 
 
 def test_a_mark_of_byte_order_is_no_part_of_a_case(tmp_path):
@@ -249,8 +249,8 @@ def test_a_mark_of_byte_order_is_no_part_of_a_case(tmp_path):
     assert set(load_case(path).gears) == {"a", "b"}
 
 
-def test_a_key_that_stands_twice_is_told_as_it_is_written(tmp_path):
-    assert "cannot declare gears.a twice" in told(tmp_path, PAIR + "[gears.a]\n")
+def test_a_key_that_is_written_twice_is_reported_as_written(tmp_path):
+    assert "cannot declare gears.a twice" in refusal_of(tmp_path, PAIR + "[gears.a]\n")
 
 
 @pytest.mark.skipif(os.name != "posix", reason="links ask for rights on this system")
@@ -258,7 +258,7 @@ def test_links_in_a_circle(tmp_path):
     (tmp_path / "loop.toml").symlink_to(tmp_path / "loop.toml")
     with pytest.raises(ls.CaseError, match="too many levels of symbolic links"):
         load_case(tmp_path / "loop.toml")
-    assert "loop.toml" in told(tmp_path, 'extends = "loop.toml"\n')
+    assert "loop.toml" in refusal_of(tmp_path, 'extends = "loop.toml"\n')
     done = CliRunner().invoke(app, ["check", str(tmp_path / "loop.toml")])
     assert done.exit_code == 2
     assert "too many levels of symbolic links" in done.output

@@ -54,7 +54,7 @@ def test_a_case_inherits_from_its_own_folder_only(folder, way):
     assert ls.load_case(file, allow_outside=True) == ls.load_case(BASE)
 
 
-def test_what_is_inherited_stays_in_the_folder_of_the_case_that_was_asked_for(folder):
+def test_what_is_inherited_stays_in_the_folder_of_the_requested_case(folder):
     """A file further down may look up, as far as that folder."""
     (folder / "deeper").mkdir()
     (folder / "base.toml").write_text(BASE.read_text())
@@ -91,7 +91,7 @@ def test_what_its_reader_names_may_lie_anywhere():
 
 
 @pytest.mark.parametrize("command", [["run"], ["check"], ["draw"], ["batch"]])
-def test_commands_are_told_by_an_option(folder, command):
+def test_commands_are_allowed_by_an_option(folder, command):
     file = written(folder, 'extends = "../above.toml"\n')
     out = {"draw": ["-o", folder / "a.svg"], "batch": ["-o", folder / "out", "-j", "2"]}
     words = [*command, file, *out.get(command[0], [])]

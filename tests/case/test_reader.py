@@ -16,7 +16,7 @@ def write(folder: Path, **files: str) -> Path:
     return path
 
 
-def said(path: Path, relative_to: Path) -> str:
+def message_of(path: Path, relative_to: Path) -> str:
     with pytest.raises(CaseError) as caught:
         load_case(path)
     return str(caught.value).replace(f"{relative_to}/", "")
@@ -60,7 +60,7 @@ def test_inheritance_chains_and_problems_name_the_file_of_the_key(tmp_path, driv
     top = 'extends = "middle.toml"\nassumed = ["x"]\n[gears.a]\nteeth = 2\n'
     bad = drive_text.replace('"150 mm", "150 mm"', '"150 mm", "15 mm/s"')
     path = write(tmp_path, base=bad, middle=middle, top=top)
-    assert said(path, tmp_path).splitlines() == [
+    assert message_of(path, tmp_path).splitlines() == [
         "top.toml: gears.a.teeth = 2: is not valid here. Allowed: a number of at least 5.",
         'middle.toml: gears.a.support = "3 kg": is a mass, a stiffness is needed. '
         'Allowed: "rigid", "free", or a stiffness such as "1.78e7 N/m".',
@@ -121,8 +121,8 @@ def test_later_rooms_can_name_a_key_with_its_file(tmp_path, drive_text):
         ),
     ],
 )
-def test_a_file_that_cannot_be_read_is_told(tmp_path, drive_text, text, message):
-    assert said(write(tmp_path, base=drive_text, bad=text), tmp_path) == message
+def test_a_file_that_cannot_be_read_is_reported(tmp_path, drive_text, text, message):
+    assert message_of(write(tmp_path, base=drive_text, bad=text), tmp_path) == message
 
 
 @pytest.mark.parametrize(
@@ -145,27 +145,27 @@ def test_another_file_says_what_it_is(tmp_path, cases, name, message):
     }
     if path.parent == tmp_path:
         path.write_bytes(starts[name])
-    assert message in said(path, path.parent)
+    assert message in message_of(path, path.parent)
 
 
-def test_a_file_that_is_not_there_is_told(tmp_path):
-    missing = said(tmp_path / "missing.toml", tmp_path)
+def test_a_file_that_is_not_there_is_reported(tmp_path):
+    missing = message_of(tmp_path / "missing.toml", tmp_path)
     assert missing == "missing.toml: no such file or directory."
 
 
-def test_a_file_that_is_not_text_is_told(tmp_path):
+def test_a_file_that_is_not_text_is_reported(tmp_path):
     path = tmp_path / "latin.toml"
     path.write_bytes(b'title = "\xfc"\n')
-    assert said(path, tmp_path) == "latin.toml: is not UTF-8 text at byte 9."
+    assert message_of(path, tmp_path) == "latin.toml: is not UTF-8 text at byte 9."
 
 
 def test_an_empty_file_is_one_problem(tmp_path):
-    told = said(write(tmp_path, empty="\n"), tmp_path)
-    assert told == "empty.toml: is empty; `loadshare new NAME` writes a case to start from."
+    message = message_of(write(tmp_path, empty="\n"), tmp_path)
+    assert message == "empty.toml: is empty; `loadshare new NAME` writes a case to start from."
 
 
 def test_a_case_without_its_sections_lacks_them(tmp_path):
-    assert said(write(tmp_path, bare='title = "x"\n'), tmp_path).splitlines() == [
+    assert message_of(write(tmp_path, bare='title = "x"\n'), tmp_path).splitlines() == [
         "bare.toml: operating: is missing. The operating point: where the power enters and "
         "leaves, and how much of it.",
         "bare.toml: gears: is missing. The gears, by name.",
@@ -175,7 +175,7 @@ def test_a_case_without_its_sections_lacks_them(tmp_path):
 
 
 def test_a_bad_value_does_not_hide_an_unknown_name_beside_it(tmp_path):
-    """The ring's clearance is wrong, and so is its neighbour; both are told at once."""
+    """The ring's clearance is wrong, and so is its neighbour; both are reported at once."""
     text = (ROOT / "cases/fgfbstts/limit_ring.toml").read_text(encoding="utf-8")
     base = ROOT / "cases/fgfbstts/base.toml"
     text = text.replace('"base.toml"', f'"{base}"').replace('["9", "8"]', '["9", "88"]')
@@ -183,7 +183,7 @@ def test_a_bad_value_does_not_hide_an_unknown_name_beside_it(tmp_path):
     file.write_text(
         text.replace('"0 um"\nfloat = "2.74', '"-1 um"\nfloat = "2.74'), encoding="utf-8"
     )
-    with pytest.raises(CaseError) as told:
+    with pytest.raises(CaseError) as caught:
         load_case(file)
-    keys = [p.key for p in told.value.problems]
+    keys = [p.key for p in caught.value.problems]
     assert keys == ["rings.5.clearance", "rings.5.neighbours[1]"]

@@ -15,7 +15,7 @@ RULES = tomllib.loads(Path(__file__).with_name("rules.toml").read_text(encoding=
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule["said"][0].partition(": ")[2][:40])
-def test_a_broken_rule_is_told_word_for_word(drive: Case, rule):
+def test_a_broken_rule_is_reported_word_for_word(drive: Case, rule):
     changes = dict.fromkeys(rule.get("drop", ())) | rule.get("change", {})
     with pytest.raises(CaseError) as caught:
         drive.replace(changes)
@@ -35,7 +35,7 @@ def test_every_check_is_broken_by_a_rule(drive: Case, check):
 def test_no_message_speaks_the_language_of_a_library():
     for rule in RULES:
         for word in ("Input should", "pydantic", "validation", "NoneType", "Traceback"):
-            assert not any(word in said for said in rule["said"])
+            assert not any(word in message for message in rule["said"])
 
 
 def test_one_bad_element_hides_no_other(drive: Case):

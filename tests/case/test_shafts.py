@@ -41,8 +41,8 @@ def test_one_bore_holds_for_all_sections():
 
 
 def test_the_train_has_it(drive: Case):
-    told = {'shafts."b-c".stiffness': None, 'shafts."b-c".diameter': "60 mm"}
-    case = drive.replace(told | {'shafts."b-c".length': "200 mm"})
+    changes = {'shafts."b-c".stiffness': None, 'shafts."b-c".diameter': "60 mm"}
+    case = drive.replace(changes | {'shafts."b-c".length': "200 mm"})
     given = drive.replace({'shafts."b-c".stiffness': "504485 N*m/rad"})
     found, expected = (build_train(c).shafts["b-c"].stiffness for c in (case, given))
     assert found == pytest.approx(expected, rel=1e-6)

@@ -116,11 +116,11 @@ def test_attacks_depend_on_their_seed_alone(found):
     assert [a.error for a in again] == pytest.approx([a.error for a in found[:8]], abs=1e-13)
 
 
-def test_what_slips_is_told():
+def test_what_slips_is_reported():
     slip = Attack("a train", "one number", True, 2e-9, -1e-9)
     fine = Attack("a train", "one number", True, 1e-12, 1e-12)
-    told = text([slip, fine])
-    assert "| one number | 2 | 1 | 1 | 2 | 2.0e-09 |" in told
-    assert "Bounds below the true error: 1." in told
-    assert "slipped: Attack(train='a train'" in told
+    report = text([slip, fine])
+    assert "| one number | 2 | 1 | 1 | 2 | 2.0e-09 |" in report
+    assert "Bounds below the true error: 1." in report
+    assert "slipped: Attack(train='a train'" in report
     assert (slip.slipped, fine.slipped) == (True, False)

@@ -47,8 +47,8 @@ def test_matrix_product_in_twice_the_precision() -> None:
                 ),
                 Fraction(0),
             )
-            told = Fraction(float(found.high[i, j])) + Fraction(float(found.low[i, j]))
-            assert abs(told - true) <= Fraction(float(sizes[i, j])) / 2**95
+            computed = Fraction(float(found.high[i, j])) + Fraction(float(found.low[i, j]))
+            assert abs(computed - true) <= Fraction(float(sizes[i, j])) / 2**95
 
 
 @given(st.floats(1e-30, 1e30))
@@ -56,8 +56,8 @@ def test_power_two_thirds(force: float) -> None:
     found = power_two_thirds(np.array([force]))
     with mpmath.workdps(50):
         true = mpmath.cbrt(mpmath.mpf(force)) ** 2
-        told = mpmath.mpf(float(found.high[0])) + mpmath.mpf(float(found.low[0]))
-        assert abs(told / true - 1) < mpmath.mpf(2) ** -95
+        computed = mpmath.mpf(float(found.high[0])) + mpmath.mpf(float(found.low[0]))
+        assert abs(computed / true - 1) < mpmath.mpf(2) ** -95
 
 
 def problems() -> list[tuple[str, int]]:
@@ -97,7 +97,7 @@ def test_bound_holds_against_fifty_digits(family: str, number: int) -> None:
 @pytest.mark.parametrize(
     ("family", "number"),
     [
-        # Parallel lines of action, but for rounding, leave a float's balance to idle flanks.
+        # Parallel lines of action, except for rounding, leave a float's balance to idle flanks.
         ("free-pinion", 33),
         ("light-load", 40),
         # Friction of 1e-9 N is put aside, and is no zero.
@@ -201,9 +201,9 @@ def test_statics_are_those_of_singular_values() -> None:
         left, _, right = np.linalg.svd(directions, full_matrices=True)
         inverse = np.linalg.pinv(directions.T, rcond=1e-11)
         np.testing.assert_allclose(found.particular, inverse, atol=1e-12)
-        for told, true in ((found.redundant, left[:, rank:]), (found.moves, right[rank:].T)):
-            assert told.shape == true.shape
-            np.testing.assert_allclose(told @ told.T, true @ true.T, atol=1e-12)
+        for computed, true in ((found.redundant, left[:, rank:]), (found.moves, right[rank:].T)):
+            assert computed.shape == true.shape
+            np.testing.assert_allclose(computed @ computed.T, true @ true.T, atol=1e-12)
 
 
 def test_what_ends_a_free_move_takes_more_than_the_load_along_it() -> None:

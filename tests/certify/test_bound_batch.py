@@ -60,7 +60,7 @@ def relative_bounds(columns: Columns, here: Situations, claim: Equilibria) -> np
     return judged(columns, here, claim).relative
 
 
-def spoilt(found: Equilibria, scales: dict[str, float], seed: int) -> Equilibria:
+def disturbed(found: Equilibria, scales: dict[str, float], seed: int) -> Equilibria:
     """Claims that are off by 1e-14 to 1e-5 of the case, in all figures or some."""
     rng = np.random.default_rng(seed)
     rows = np.arange(COUNT) % len(found.rotation)
@@ -106,7 +106,7 @@ def test_bounds_hold_and_are_those_of_the_source(name, plain, monkeypatch):
     situations, found = claims(train, positions(train)[:4])
     verdicts = Judge(train).judge(situations, found)
     scales = scales_of(train, float(verdicts.load[0]), float(verdicts.deflection[0]))
-    wrong = spoilt(found, scales, len(name))
+    wrong = disturbed(found, scales, len(name))
     rows = np.arange(COUNT) % len(found.rotation)
     here = situations.take(rows) if situations.count > 1 else situations
     right = taken(found, rows)
@@ -132,9 +132,9 @@ def test_a_slip_off_its_place_is_not_proved_right():
     wrong = taken(found, np.zeros(3, dtype=int))
     wrong.radial_reaction[1] *= 1.0 - 1e-3
     wrong.radial_reaction[2] *= 0.0
-    told = relative_bounds(columns, situations, wrong)
-    assert told[0] <= 1e-11
-    assert (told[1:] > 1e-9).all()
+    given = relative_bounds(columns, situations, wrong)
+    assert given[0] <= 1e-11
+    assert (given[1:] > 1e-9).all()
 
 
 @pytest.mark.parametrize("array", CLAIMS)
@@ -147,8 +147,8 @@ def test_not_a_number_is_bounded_by_nothing(array):
     wrong = taken(found, np.zeros(len(read), dtype=int))
     for row, k in enumerate(read):
         getattr(wrong, array)[row].reshape(-1)[k] = np.nan
-    told = relative_bounds(columns, situations, wrong)
-    assert np.isinf(told).all()
+    given = relative_bounds(columns, situations, wrong)
+    assert np.isinf(given).all()
 
 
 @pytest.mark.parametrize(
@@ -167,23 +167,23 @@ def test_nothing_is_proved_where_a_situation_is_not_a_number(field):
         if field == "torque" and k == columns.order[train.output]:
             continue  # the output is held: its torque is a reaction
         values.reshape(-1)[k] = np.nan
-        told = relative_bounds(columns, replace(situations, **{field: values}), found)
-        assert np.isinf(told).all(), (field, k)
+        given = relative_bounds(columns, replace(situations, **{field: values}), found)
+        assert np.isinf(given).all(), (field, k)
 
 
 def test_large_batches_are_bounded_as_small_ones():
-    """A thousand claims and more, of which some cannot be right: the others are told alike."""
+    """A thousand claims and more, of which some cannot be right: the others are bounded alike."""
     train = build_train(shipped("fgfbstts/all_elements"))
     columns = Columns(train)
     situations, found = claims(train, [1])
     many = taken(found, np.zeros(1200, dtype=int))
     many.flank_force[::100] *= 1.0 + 1e-3
-    told = Judge(train).judge(situations, many, compiled=True).bounds
+    given = Judge(train).judge(situations, many, compiled=True).bounds
     single = bounds(columns, situations, taken(many, np.arange(2)))
-    assert told.force is None
-    assert (told.relative[::100] > 1e-9).all()
+    assert given.force is None
+    assert (given.relative[::100] > 1e-9).all()
     assert single.relative[0] > 1e-9
-    assert 0.0 < single.relative[1] <= told.relative[1] <= 1e-11
+    assert 0.0 < single.relative[1] <= given.relative[1] <= 1e-11
 
 
 IDLING = (212, 278, 555, 721)
@@ -227,7 +227,7 @@ def true_errors(train: Train, found: Equilibria, largest: float) -> np.ndarray:
 
 @pytest.mark.parametrize("number", mostly_slow(IDLING, (278,)))
 def test_an_idling_hertz_flank_is_bounded(number):
-    """It is endlessly soft, whatever little it is claimed to carry; others tell of it all the same.
+    """It is endlessly soft, whatever little it is claimed to carry; others show it all the same.
 
     Its tangent, and the secant to no force, are many times those of its neighbours.
     """
@@ -242,11 +242,11 @@ def test_an_idling_hertz_flank_is_bounded(number):
     np.maximum(wrong.flank_force, 0.0, out=wrong.flank_force)
     wrong.displacement[3::4] *= 1.0 + 1e-12 * rng.normal(size=wrong.displacement[3::4].shape)
     with np.errstate(all="ignore"):
-        told, alone = (relative_bounds(columns, situations, c) for c in (wrong, found))
+        given, alone = (relative_bounds(columns, situations, c) for c in (wrong, found))
     largest = max((found.flank_force * columns.arms).max(), np.abs(situations.torque).max())
-    assert (true_errors(train, wrong, largest) <= told * (1.0 + 1e-6)).all()
+    assert (true_errors(train, wrong, largest) <= given * (1.0 + 1e-6)).all()
     assert alone[0] <= 1e-11
-    assert np.isfinite(told[1::4]).mean() > 0.25
+    assert np.isfinite(given[1::4]).mean() > 0.25
 
 
 def test_a_stop_that_is_touched_carries_nothing():
@@ -272,12 +272,12 @@ def test_compiled_bounds_of_right_claims_are_those_of_single_ones(name):
     train = build_train(WAYS[name]())
     columns = Columns(train)
     situations, found = claims(train, positions(train)[:2])
-    told = relative_bounds(columns, situations, found)
+    given = relative_bounds(columns, situations, found)
     single = bounds(columns, situations, found).relative
-    assert (told <= 1e-11).all()
+    assert (given <= 1e-11).all()
     assert (single <= 1e-11).all()
     largest = max((found.flank_force * columns.arms).max(), np.abs(situations.torque).max())
-    for bound in (told, single):
+    for bound in (given, single):
         assert true_errors(train, taken(found, np.array([0])), largest)[0] <= bound[0]
 
 
@@ -297,5 +297,5 @@ def test_a_corner_of_a_table_within_reach(where):
     forces[corner] = force * (1.0 + where * 1e-3)
     table[0, mesh, 1, corner] = law * (1.0 + where * 1e-3)
     assert (np.diff(forces[~np.isnan(forces)]) > 0.0).all()
-    told = relative_bounds(columns, replace(situations, table=table), found)
-    assert told[0] <= 1e-9
+    given = relative_bounds(columns, replace(situations, table=table), found)
+    assert given[0] <= 1e-9

@@ -1,7 +1,7 @@
 """The compiled certificate gives the verdicts of NumPy's, whatever claim is wrong and by how much.
 
 Source: formulation, sections 8 and 16. It adds up forces along coordinates, NumPy's body by body;
-both take the same scales. The tests of `test_many` put it beside the single one as well.
+both take the same scales. The tests of `test_many` compare it with the single one as well.
 """
 
 from dataclasses import fields, replace
@@ -44,13 +44,13 @@ def test_one_wrong_claim(name):
     scales = scales_of(train, float(right.load[0]), float(right.deflection[0]))
     wrong = [claim for claim in CLAIMS if getattr(found, claim)[0].size]
     rows = np.zeros(len(wrong) * len(SIZES), dtype=int)
-    spoilt = taken(found, rows)
+    altered = taken(found, rows)
     rng = np.random.default_rng(len(name))
     for k, claim in enumerate(wrong):
         for m, size in enumerate(SIZES):
-            figures = getattr(spoilt, claim)[k * len(SIZES) + m]
+            figures = getattr(altered, claim)[k * len(SIZES) + m]
             figures += size * scales[claim] * rng.normal(size=figures.shape)
-    many = alike(train, situations, spoilt)
+    many = alike(train, situations, altered)
     refused = dict(zip(wrong, ~many.passed.reshape(-1, len(SIZES)), strict=True))
     # Rigid shafts and bearings carry what they must: nobody reads what is claimed for them.
     for claim in set(wrong) - {"shaft_torque", "support_force"}:
@@ -89,11 +89,11 @@ def test_no_claim_with_any_figure_that_is_none_passes(name, bad):
     train = build_train(WAYS[name]())
     situations, found = claims(train, [1])
     places = [(claim, k) for claim in CLAIMS for k in range(getattr(found, claim)[0].size)]
-    spoilt = taken(found, np.zeros(len(places), dtype=int))
+    altered = taken(found, np.zeros(len(places), dtype=int))
     for row, (claim, k) in enumerate(places):
-        getattr(spoilt, claim)[row].reshape(-1)[k] = bad
-    assert np.isinf(alike(train, situations, spoilt).worst).all()
-    assert np.isinf(Judge(train).judge(situations, spoilt, compiled=True).worst).all()
+        getattr(altered, claim)[row].reshape(-1)[k] = bad
+    assert np.isinf(alike(train, situations, altered).worst).all()
+    assert np.isinf(Judge(train).judge(situations, altered, compiled=True).worst).all()
 
 
 @pytest.mark.parametrize(
@@ -157,7 +157,7 @@ def test_no_answer_at_all():
     assert verdicts.worst.shape == verdicts.bounds.relative.shape == (0,)
 
 
-def test_numba_is_imported_only_when_asked_for():
+def test_numba_is_imported_only_on_request():
     assert "numba" not in modules_after("import loadshare.certify")
 
 
@@ -166,16 +166,16 @@ def test_a_contact_that_pulls():
     train = build_train(shipped("fgfbstts/all_elements"))
     situations, found = claims(train, [1])
     load = float(Judge(train).judge(situations, found).load[0])
-    spoilt = taken(found, np.zeros(2, dtype=int))
+    altered = taken(found, np.zeros(2, dtype=int))
     idle = int(np.argmin(found.flank_force[0]))
-    spoilt.flank_force[:, idle] = (
+    altered.flank_force[:, idle] = (
         -0.5 * CERTIFY.tolerance * load,
         -2.0 * CERTIFY.tolerance * load,
     )
-    alike(train, situations, spoilt)
+    alike(train, situations, altered)
     expected = (0.5 * CERTIFY.tolerance, 2.0 * CERTIFY.tolerance)
-    figures = residuals(train, situations, spoilt)[:, RESIDUALS.index("cone_membership")]
-    compiled = Judge(train).judge(situations, spoilt, compiled=True).worst
+    figures = residuals(train, situations, altered)[:, RESIDUALS.index("cone_membership")]
+    compiled = Judge(train).judge(situations, altered, compiled=True).worst
     for found in (figures, compiled):
         np.testing.assert_allclose(found, expected, rtol=1e-6, atol=ABSOLUTE)
 

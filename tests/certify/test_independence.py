@@ -1,4 +1,4 @@
-"""The certificate stands alone: it imports no solver, no programme and no back-end (formulation,
+"""The certificate is independent: it imports no solver, no programme and no back-end (formulation,
 section 8).
 """
 
@@ -35,7 +35,7 @@ def test_the_certificate_imports_no_solver():
 @pytest.mark.parametrize(
     ("solver", "absent"), [("clarabel", ("cvxpy", "osqp")), ("osqp", ("cvxpy", "clarabel"))]
 )
-def test_a_back_end_is_imported_only_when_asked_for(solver, absent):
+def test_a_back_end_is_imported_only_on_request(solver, absent):
     loaded = modules_after(
         f"from loadshare.contact.backends.backend import backend\nbackend({solver!r})"
     )

@@ -113,17 +113,17 @@ def taken(found: Equilibria, rows: np.ndarray) -> Equilibria:
 def damaged(found: Equilibria, scales: dict[str, float], seed: int) -> Equilibria:
     """Every answer with one to three of its figures scaled, turned round, dropped or shifted."""
     rng = np.random.default_rng(seed)
-    spoilt = taken(found, np.arange(len(found.rotation)))
+    wrong = taken(found, np.arange(len(found.rotation)))
     some = [name for name in CLAIMS if getattr(found, name)[0].size]
-    for row in range(len(spoilt.rotation)):
+    for row in range(len(wrong.rotation)):
         for _ in range(rng.integers(1, 4)):
             name = some[rng.integers(len(some))]
-            figures = getattr(spoilt, name)[row].reshape(-1)
+            figures = getattr(wrong, name)[row].reshape(-1)
             k = rng.integers(len(figures))
             shift = rng.choice([-1.0, 1.0]) * scales[name] * 10.0 ** rng.uniform(-10.0, 0.5)
             changes = (1.001 * figures[k], -figures[k], 0.0, figures[k] + shift)
             figures[k] = changes[rng.integers(len(changes))]
-    return spoilt
+    return wrong
 
 
 def scales_of(train: Train, load: float, deflection: float) -> dict[str, float]:
@@ -141,7 +141,7 @@ def scales_of(train: Train, load: float, deflection: float) -> dict[str, float]:
 
 
 def alike(train: Train, situations: Situations, found: Equilibria) -> Verdicts:
-    """Verdicts of NumPy; the compiled ones must be the same but for the energy gap, which follows
+    """Verdicts of NumPy; the compiled ones must be the same except the energy gap, which follows
     from the others.
     """
     judge = Judge(train)
@@ -174,11 +174,11 @@ def agree(train: Train, indices: list[int], situations: Situations, found: Equil
         np.testing.assert_allclose(figures[row], due, rtol=RELATIVE, atol=ABSOLUTE)
         assert single.residuals.keys() == expected.keys()
         for name, residual in single.residuals.items():
-            told(residual, expected[name])
+            agrees(residual, expected[name])
         assert many.passed[row] == single.passed
 
 
-def told(residual: Residual, expected: oracle.Figures) -> None:
+def agrees(residual: Residual, expected: oracle.Figures) -> None:
     """A single residual has the oracle's figure, and names an element that shows it."""
     assert residual.unit == expected.unit
     scale = expected.scale
@@ -219,12 +219,12 @@ def test_wrong_answers(name):
     rows = np.arange(30) % len(first)
     indices = [first[row] for row in rows]
     scales = scales_of(train, float(right.load[0]), float(right.deflection[0]))
-    spoilt = damaged(taken(found, rows), scales, seed=len(name))
-    agree(train, indices, situations.take(rows), spoilt)
-    many = alike(train, situations.take(rows), spoilt)
+    wrong = damaged(taken(found, rows), scales, seed=len(name))
+    agree(train, indices, situations.take(rows), wrong)
+    many = alike(train, situations.take(rows), wrong)
     assert not many.passed.all()
     if "all_elements" in name:
-        figures = residuals(train, situations.take(rows), spoilt)
+        figures = residuals(train, situations.take(rows), wrong)
         assert (figures > CERTIFY.tolerance).any(axis=0).all(), (
             "a residual was never put to the test"
         )
@@ -244,25 +244,25 @@ def test_answers_of_random_trains(family):
         agree(train, [1], situations, found)
         rows = np.zeros(6, dtype=int)
         scales = scales_of(train, float(right.load[0]), float(right.deflection[0]))
-        spoilt = damaged(taken(found, rows), scales, seed)
-        agree(train, [1] * 6, situations.take(rows), spoilt)
+        wrong = damaged(taken(found, rows), scales, seed)
+        agree(train, [1] * 6, situations.take(rows), wrong)
 
     run()
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
 def test_a_figure_that_is_not_a_number(bad):
-    """In whatever claim it stands: every residual is infinite, and the samples beside it are not
+    """Whatever claim it is in: every residual is infinite, and the samples next to it are not
     touched.
     """
     train = build_train(shipped("fgfbstts/all_elements"))
     situations, found = claims(train, [1])
     names = [name for name in CLAIMS if getattr(found, name)[0].size]
     rows = np.zeros(len(names) + 1, dtype=int)
-    spoilt = taken(found, rows)
+    wrong = taken(found, rows)
     for row, name in enumerate(names):
-        getattr(spoilt, name)[row].flat[-1] = bad
-    many = alike(train, situations.take(rows), spoilt)
+        getattr(wrong, name)[row].flat[-1] = bad
+    many = alike(train, situations.take(rows), wrong)
     for row, name in enumerate(names):
         assert np.isinf(many.worst[row]), name
     assert many.passed.tolist() == [False] * len(names) + [True]
@@ -275,10 +275,10 @@ def test_a_spline_whose_law_drops():
     case = shipped("fgfbstts/all_elements").replace({"splines.5.stick_limit": "0.5 um"})
     train = build_train(case)
     situations, found = claims(train, [1])
-    spoilt = taken(found, np.zeros(2, dtype=int))
-    spoilt.flank_force[0] *= 1e-3
-    many = alike(train, situations.take(np.zeros(2, dtype=int)), spoilt)
-    single = certify(train, spoilt.one(0, 1))
+    wrong = taken(found, np.zeros(2, dtype=int))
+    wrong.flank_force[0] *= 1e-3
+    many = alike(train, situations.take(np.zeros(2, dtype=int)), wrong)
+    single = certify(train, wrong.one(0, 1))
     assert "drop" in single.residuals["cone_membership"].where
     assert np.isinf(many.worst[0])
     assert [figure.scaled for figure in single.residuals.values()] == [np.inf] * 7
@@ -293,18 +293,18 @@ def test_a_gear_beyond_its_neighbour():
     situations, found = claims(train, [1])
     places = [(ring, side) for ring in train.drums for side in (0, 1)]
     rows = np.zeros(len(places), dtype=int)
-    spoilt = taken(found, rows)
+    wrong = taken(found, rows)
     order = list(train.gears)
     for row, (ring, side) in enumerate(places):
-        moved = spoilt.displacement[row]
+        moved = wrong.displacement[row]
         gear, neighbour = order.index(ring.gear), order.index(ring.neighbours[side])
         way = situation_of(train, 1).arc(ring, side).start + moved[gear] - moved[neighbour]
         moved[gear] -= 2.0 * way
-    agree(train, [1] * len(places), situations.take(rows), spoilt)
-    many = alike(train, situations.take(rows), spoilt)
+    agree(train, [1] * len(places), situations.take(rows), wrong)
+    many = alike(train, situations.take(rows), wrong)
     assert np.isinf(many.worst).all()
     for row, (ring, side) in enumerate(places):
-        where = certify(train, spoilt.one(row, 1)).failing["penetration"].where
+        where = certify(train, wrong.one(row, 1)).failing["penetration"].where
         assert "beyond the neighbour" in where
         assert ring.arc_name(ring.neighbours[side]) in where
 
@@ -317,18 +317,18 @@ def test_a_squeeze_between_opposed_arcs():
     situations, found = claims(train, [1])
     rings = list(train.rings.values())
     rows = np.zeros(len(rings), dtype=int)
-    spoilt = taken(found, rows)
+    wrong = taken(found, rows)
     load = certify(train, found.one(0, 1)).load
     for row, ring in enumerate(rings):
         for neighbour in ring.neighbours:
-            spoilt.ring_force[row, found.names.contacts.index(ring.arc_name(neighbour))] += (
+            wrong.ring_force[row, found.names.contacts.index(ring.arc_name(neighbour))] += (
                 1e6 * load
             )
-    alike(train, situations.take(rows), spoilt)
-    figures = residuals(train, situations.take(rows), spoilt)
+    alike(train, situations.take(rows), wrong)
+    figures = residuals(train, situations.take(rows), wrong)
     cone = RESIDUALS.index("cone_membership")
     for row, ring in enumerate(rings):
-        single = certify(train, spoilt.one(row, 1)).failing["cone_membership"]
+        single = certify(train, wrong.one(row, 1)).failing["cone_membership"]
         assert single.where == f"ring {ring.gear}: arcs"
         assert figures[row, cone] == pytest.approx(single.scaled, rel=RELATIVE)
 
@@ -339,14 +339,14 @@ def test_a_wrong_shaft_torque_is_caught():
     situations, found = claims(train, [1])
     elastic = [k for k, s in enumerate(train.shafts.values()) if np.isfinite(s.stiffness)]
     rows = np.zeros(len(elastic), dtype=int)
-    spoilt = taken(found, rows)
+    wrong = taken(found, rows)
     for row, shaft in enumerate(elastic):
-        spoilt.shaft_torque[row, shaft] *= 1.0 + 1e-6
-    alike(train, situations.take(rows), spoilt)
-    figures = residuals(train, situations.take(rows), spoilt)
+        wrong.shaft_torque[row, shaft] *= 1.0 + 1e-6
+    alike(train, situations.take(rows), wrong)
+    figures = residuals(train, situations.take(rows), wrong)
     assert elastic
     for row in range(len(elastic)):
-        failing = certify(train, spoilt.one(row, 1)).failing
+        failing = certify(train, wrong.one(row, 1)).failing
         assert {"moment_balance", "deformation_law"} <= failing.keys()
         assert (figures[row, [1, 4]] > CERTIFY.tolerance).all()
 
@@ -356,16 +356,16 @@ def test_a_wrong_support_force_is_caught():
     situations, found = claims(train, [1])
     held = [k for k, g in enumerate(train.gears.values()) if g.support is not None]
     rows = np.zeros(len(held), dtype=int)
-    spoilt = taken(found, rows)
+    wrong = taken(found, rows)
     load = float(Judge(train).judge(situations, found).load[0])
     for row, gear in enumerate(held):
-        spoilt.support_force[row, gear, 0] += 1e-6 * load
-    alike(train, situations.take(rows), spoilt)
-    figures = residuals(train, situations.take(rows), spoilt)
+        wrong.support_force[row, gear, 0] += 1e-6 * load
+    alike(train, situations.take(rows), wrong)
+    figures = residuals(train, situations.take(rows), wrong)
     assert len(held) > 1
     for row, k in enumerate(held):
         gear = list(train.gears.values())[k]
-        failing = certify(train, spoilt.one(row, 1)).failing
+        failing = certify(train, wrong.one(row, 1)).failing
         assert failing["force_balance"].where.endswith(gear.name)
         # A bearing that is not there carries nothing; an elastic one what its displacement says.
         law = "deformation_law" if gear.support[0] > 0.0 else "cone_membership"

@@ -50,11 +50,11 @@ def test_steps_of_a_march(name):
     assert certificate.passed
     rows = np.zeros(16, dtype=int)
     scales = scales_of(train, certificate.load, certificate.deflection)
-    spoilt = damaged(taken(claimed, rows), scales, seed=len(name))
-    agree(train, [2] * len(rows), situations, spoilt)
-    many = alike(train, situations, spoilt)
+    wrong = damaged(taken(claimed, rows), scales, seed=len(name))
+    agree(train, [2] * len(rows), situations, wrong)
+    many = alike(train, situations, wrong)
     assert not many.passed.all()
-    figures = residuals(train, situations, spoilt)
+    figures = residuals(train, situations, wrong)
     for residual in ("force_balance", "penetration", "cone_membership", "energy_gap"):
         assert (figures[:, RESIDUALS.index(residual)] > CERTIFY.tolerance).any(), residual
 

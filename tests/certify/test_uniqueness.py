@@ -107,10 +107,10 @@ def _sideways(train, moved, answer) -> float:
     return potential(bare, moved) - potential(bare, answer)
 
 
-def test_what_is_convex_is_said_to_be():
+def test_what_is_convex_is_reported_as_such():
     base = ls.solve(shipped("fgfbstts/full_float"), positions=[1])
     assert base.uniqueness.kind == "convex"
-    assert base.uniqueness.told == "only answer: the problem is convex"
+    assert base.uniqueness.text == "only answer: the problem is convex"
 
 
 def test_an_arc_that_does_not_carry_leaves_the_least_energy():
@@ -122,7 +122,7 @@ def test_an_arc_that_does_not_carry_leaves_the_least_energy():
 
 
 def test_a_float_on_an_elastic_ring_is_unique_and_the_energy_says_so():
-    """Random moves around the answer of an elastic ring cost energy; the claim stands in JSON."""
+    """Random moves around the answer of an elastic ring cost energy; the claim is in JSON."""
     case = shipped("fgfbstts/limit_ring").replace(
         {"rings.4.stiffness": "1e9 N/m", "rings.5.stiffness": "1e9 N/m"}
     )
@@ -143,9 +143,9 @@ def test_a_float_on_an_elastic_ring_is_unique_and_the_energy_says_so():
             }
             there = replace(answer, displacement=dict(answer.displacement) | moved)
             assert potential(train, there) > rest
-    told = result.to_dict()["positions"][0]["uniqueness"]
-    assert told["kind"] == "local"
-    assert told["curvature"] == position.uniqueness.curvature
+    record = result.to_dict()["positions"][0]["uniqueness"]
+    assert record["kind"] == "local"
+    assert record["curvature"] == position.uniqueness.curvature
 
 
 def test_friction_that_follows_the_torque_is_no_convex_problem():
@@ -186,7 +186,7 @@ def test_a_search_finds_the_places_beside_a_saddle():
     places = [o.displacement["p"][1] for o in (beyond.answer.equilibrium, *beyond.others)]
     assert len(beyond.others) >= 1
     assert max(abs(y) for y in places) > 1e-4
-    assert "other answer" in beyond.told
+    assert "other answer" in beyond.text
     below = search(squeezed_case(0.5 * CRITICAL))
     assert below.others == ()
     assert below.starts > 0

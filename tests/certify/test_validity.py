@@ -89,8 +89,8 @@ def test_the_neglected_approach_is_that_of_exact_involutes(kind):
             moved = size * R1 * way
             linear = float(mesh.drive_normal[:2] @ moved)
             neglected = abs(exact(kind, r2, moved) - linear)
-            told = validity(train, claim(train, moved), 1.0).measures["approach"].value
-            misfits.append(abs(told - neglected) / (size * R1) ** 2)
+            measured = validity(train, claim(train, moved), 1.0).measures["approach"].value
+            misfits.append(abs(measured - neglected) / (size * R1) ** 2)
         # Third order over second order: ten times smaller where the displacement is.
         assert misfits[1] < 0.15 * misfits[0] + 1e-6
         across = abs(float(mesh.coast_normal[:2] @ way))

@@ -1,7 +1,7 @@
 """The certificate refuses wrong answers of every kind, and names what is wrong with them.
 
 Source: formulation, section 8. Each scenario is solved once; then one thing about the answer is
-spoilt, and the residual that must show it is named together with the element. Nothing here relies
+altered, and the residual that must show it is named together with the element. Nothing here relies
 on how the answer was found.
 """
 
@@ -35,7 +35,7 @@ SCENARIOS = {
 
 @dataclass(frozen=True)
 class Wrong:
-    """A spoilt answer, the residual that must show it, and the element (None: any)."""
+    """An altered answer, the residual that must show it, and the element (None: any)."""
 
     what: str
     answer: Equilibrium
@@ -51,7 +51,7 @@ def solved(scenario: str) -> tuple[Train, Equilibrium]:
     return train, found
 
 
-def spoilt(found: Equilibrium, field: str, changes: Mapping[str, object]) -> Equilibrium:
+def altered(found: Equilibrium, field: str, changes: Mapping[str, object]) -> Equilibrium:
     return replace(found, **{field: {**getattr(found, field), **changes}})
 
 
@@ -66,14 +66,14 @@ def load(train: Train, found: Equilibrium) -> float:
 def flipped_flank(train: Train, found: Equilibrium) -> Iterator[Wrong]:
     for name, force in found.flank_force.items():
         if force > 0.0:
-            answer = spoilt(found, "flank_force", {name: -force})
+            answer = altered(found, "flank_force", {name: -force})
             yield Wrong(name, answer, "cone_membership", name)
 
 
 def scaled_flank(train: Train, found: Equilibrium) -> Iterator[Wrong]:
     for name, force in found.flank_force.items():
         if force > 0.0:
-            answer = spoilt(found, "flank_force", {name: 1.001 * force})
+            answer = altered(found, "flank_force", {name: 1.001 * force})
             yield Wrong(name, answer, "deformation_law", name)
 
 
@@ -89,7 +89,7 @@ def scaled_everything(train: Train, found: Equilibrium) -> Iterator[Wrong]:
 def missing_contact(train: Train, found: Equilibrium) -> Iterator[Wrong]:
     for name, force in found.flank_force.items():
         if force > 0.0:
-            yield Wrong(name, spoilt(found, "flank_force", {name: 0.0}), "penetration", name)
+            yield Wrong(name, altered(found, "flank_force", {name: 0.0}), "penetration", name)
 
 
 def force_on_open_flank(train: Train, found: Equilibrium) -> Iterator[Wrong]:
@@ -97,32 +97,32 @@ def force_on_open_flank(train: Train, found: Equilibrium) -> Iterator[Wrong]:
     for name, force in found.flank_force.items():
         if force == 0.0:
             push = 1e-4 * load(train, found)
-            answer = spoilt(found, "flank_force", {name: push})
+            answer = altered(found, "flank_force", {name: push})
             yield Wrong(name, answer, "complementarity", name)
 
 
 def pulling_ring(train: Train, found: Equilibrium) -> Iterator[Wrong]:
     for name in found.ring_force:
         pull = -1e-3 * load(train, found)
-        yield Wrong(name, spoilt(found, "ring_force", {name: pull}), "cone_membership", name)
+        yield Wrong(name, altered(found, "ring_force", {name: pull}), "cone_membership", name)
 
 
 def missing_ring_force(train: Train, found: Equilibrium) -> Iterator[Wrong]:
     for name, force in found.ring_force.items():
         if force > 1e-6 * load(train, found):
             gear = name.removeprefix("ring ").split(":")[0]
-            answer = spoilt(found, "ring_force", {name: 0.0})
+            answer = altered(found, "ring_force", {name: 0.0})
             yield Wrong(name, answer, "force_balance", gear)
 
 
 def shifted_float(train: Train, found: Equilibrium) -> Iterator[Wrong]:
-    """A gear beside its place, along each of its two directions that the answer determines."""
+    """A gear off its place, along each of its two directions that the answer determines."""
     for gear, body in train.gears.items():
         for axis, way in zip("xy", body.frame, strict=True):
             if body.support is None or f"gear {gear} {axis}" in found.undetermined:
                 continue
             moved = found.displacement[gear] + 1e-3 * deflection(train, found) * way
-            answer = spoilt(found, "displacement", {gear: moved})
+            answer = altered(found, "displacement", {gear: moved})
             yield Wrong(f"{gear} {axis}", answer, "deformation_law", None)
 
 
@@ -133,12 +133,12 @@ def beyond_the_ring(train: Train, found: Equilibrium) -> Iterator[Wrong]:
             moved = found.displacement[ring.gear] + far * train.gears[ring.gear].frame[0]
             # An elastic ring has no reach: there its graph is what the reaction leaves.
             shows = "penetration" if math.isinf(ring.stiffness) else "cone_membership"
-            answer = spoilt(found, "displacement", {ring.gear: moved})
+            answer = altered(found, "displacement", {ring.gear: moved})
             yield Wrong(ring.name, answer, shows, None)
             continue
         for name, sign in zip(ring.stop_names, (1.0, -1.0), strict=True):
             moved = found.displacement[ring.gear] + sign * far * ring.across
-            answer = spoilt(found, "displacement", {ring.gear: moved})
+            answer = altered(found, "displacement", {ring.gear: moved})
             yield Wrong(name, answer, "penetration", None)
 
 
@@ -149,7 +149,7 @@ def beyond_the_neighbour(train: Train, found: Equilibrium) -> Iterator[Wrong]:
             arc = situation_of(train, found.index).arc(ring, side)
             relative = found.displacement[ring.gear] - found.displacement[neighbour]
             far = found.displacement[ring.gear] - 2.0 * (arc.start + relative)
-            answer = spoilt(found, "displacement", {ring.gear: far})
+            answer = altered(found, "displacement", {ring.gear: far})
             yield Wrong(ring.arc_name(neighbour), answer, "penetration", None)
 
 
@@ -158,7 +158,7 @@ def rigid_gear_moved(train: Train, found: Equilibrium) -> Iterator[Wrong]:
     for name, gear in train.gears.items():
         way = gear.frame[0] if gear.support is None else gear.axis
         moved = found.displacement[name] + 1e-3 * deflection(train, found) * way
-        answer = spoilt(found, "displacement", {name: moved})
+        answer = altered(found, "displacement", {name: moved})
         yield Wrong(name, answer, "deformation_law", None)
 
 
@@ -167,7 +167,7 @@ def rotated_gear(train: Train, found: Equilibrium) -> Iterator[Wrong]:
         if f"gear {name} rotation" in found.undetermined:
             continue
         angle = found.rotation[name] + 1e-3 * deflection(train, found) / gear.base_radius
-        answer = spoilt(found, "rotation", {name: angle})
+        answer = altered(found, "rotation", {name: angle})
         # A gear that touches nothing shows as one that now overlaps.
         touching = any(
             found.flank_force[n] > 0.0
@@ -186,7 +186,7 @@ def swapped_meshes(train: Train, found: Equilibrium) -> Iterator[Wrong]:
         )
         low, high = found.flank_force[a], found.flank_force[b]
         if high - low > 1e-6 * load(train, found):
-            answer = spoilt(found, "flank_force", {a: high, b: low})
+            answer = altered(found, "flank_force", {a: high, b: low})
             yield Wrong(f"{a} and {b}", answer, "deformation_law", None)
 
 
@@ -198,7 +198,7 @@ def turned_reaction(train: Train, found: Equilibrium) -> Iterator[Wrong]:
             continue
         force = found.radial_reaction[name]
         tilted = force + 1e-3 * np.cross(train.gears[pull.gear].axis, force)
-        answer = spoilt(found, "radial_reaction", {name: tilted})
+        answer = altered(found, "radial_reaction", {name: tilted})
         yield Wrong(name, answer, "cone_membership", name)
 
 
@@ -211,7 +211,7 @@ def wrong_size_of_reaction(train: Train, found: Equilibrium) -> Iterator[Wrong]:
         if name not in found.radial_reaction:
             continue
         rigid = math.isinf(getattr(pull, "stiffness", 0.0))
-        answer = spoilt(found, "radial_reaction", {name: 1.001 * found.radial_reaction[name]})
+        answer = altered(found, "radial_reaction", {name: 1.001 * found.radial_reaction[name]})
         shows, where = ("force_balance", pull.gear) if rigid else ("cone_membership", name)
         yield Wrong(name, answer, shows, where)
 
@@ -219,7 +219,7 @@ def wrong_size_of_reaction(train: Train, found: Equilibrium) -> Iterator[Wrong]:
 def pulling_reaction(train: Train, found: Equilibrium) -> Iterator[Wrong]:
     """A reaction that pushes outwards."""
     for name, force in found.radial_reaction.items():
-        answer = spoilt(found, "radial_reaction", {name: -force})
+        answer = altered(found, "radial_reaction", {name: -force})
         yield Wrong(name, answer, "cone_membership", name)
 
 
@@ -271,7 +271,7 @@ def test_what_is_not_a_number_is_refused_wherever_it_stands(scenario, wrong):
     for field in fields:
         for name, old in getattr(found, field).items():
             nan = np.full(3, wrong) if isinstance(old, np.ndarray) else wrong
-            verdict = certify(train, spoilt(found, field, {name: nan}))
+            verdict = certify(train, altered(found, field, {name: nan}))
             assert not verdict.passed, (field, name)
             assert verdict.failing, (field, name)
 
@@ -281,7 +281,7 @@ def test_the_certificate_answers_in_proportion(scenario):
     """A misfit below the tolerance shows as such, the same misfit just above it fails, for every
     contact that carries. Whether the torques are then bounded closely enough is another question.
 
-    The residual is proportional to the misfit, so its slope at a thousand tolerances tells where
+    The residual is proportional to the misfit, so its slope at a thousand tolerances shows where
     the tolerance is crossed. The slope itself lies near 1: the certificate neither overlooks a
     force nor magnifies round-off. 20 % are left on either side for what the right answer's own
     residual (below 1e-12) and curvature add.
@@ -293,7 +293,7 @@ def test_the_certificate_answers_in_proportion(scenario):
         for name, force in carrying.items():
 
             def verdict(size: float, field=field, name=name, force=force) -> Certificate:
-                return certify(train, spoilt(found, field, {name: force + size * scale}))
+                return certify(train, altered(found, field, {name: force + size * scale}))
 
             slope = verdict(1e-6).worst / 1e-6
             assert 1e-2 < slope < 1e2, name
@@ -305,8 +305,8 @@ def test_the_certificate_answers_in_proportion(scenario):
 def test_the_tolerance_is_the_callers(tolerance):
     train, found = solved("two path")
     (name, force), *_ = found.flank_force.items()
-    spoiled = spoilt(found, "flank_force", {name: force * (1.0 + 1e-9)})
-    verdict = certify(train, spoiled, tolerance)
+    wrong = altered(found, "flank_force", {name: force * (1.0 + 1e-9)})
+    verdict = certify(train, wrong, tolerance)
     assert verdict.tolerance == tolerance
     assert verdict.passed == (tolerance == 1e-6)
 
@@ -318,7 +318,7 @@ def test_a_free_displacement_does_not_blind_the_certificate():
     found, _ = answer(build_train(shipped("fgfbstts/limit_ring").replace(other)))
     free = np.cross(train.gears["1"].axis, train.meshes["1-2"].drive_normal)
     far = found.displacement["1"] + 1e3 * free / np.linalg.norm(free)
-    assert not certify(train, spoilt(found, "displacement", {"1": far})).passed
+    assert not certify(train, altered(found, "displacement", {"1": far})).passed
 
 
 def test_a_preload_between_rigid_stops_does_not_blind_the_certificate():
@@ -328,7 +328,7 @@ def test_a_preload_between_rigid_stops_does_not_blind_the_certificate():
     found, _ = answer(build_train(case.replace({"operating.power": "1998 kW"})))
     up, down = train.rings["4"].stop_names
     pressed = {up: found.ring_force[up] + 1e13, down: found.ring_force[down] + 1e13}
-    assert not certify(train, spoilt(found, "ring_force", pressed)).passed
+    assert not certify(train, altered(found, "ring_force", pressed)).passed
 
 
 def test_a_torque_at_which_a_spline_has_no_law_is_refused():
@@ -343,6 +343,6 @@ def test_a_torque_at_which_a_spline_has_no_law_is_refused():
     train = build_train(shipped("fgfbstts/both_errors").replace({"splines": {"4": spline}}))
     found, _ = answer(train)
     assert certify(train, found).passed
-    verdict = certify(train, spoilt(found, "flank_force", {"4-6": 0.0, "4-7": 0.0}))
+    verdict = certify(train, altered(found, "flank_force", {"4-6": 0.0, "4-7": 0.0}))
     assert not verdict.passed
     assert "spline 4" in verdict.failing["cone_membership"].where

@@ -48,7 +48,7 @@ def test_a_folder_of_cases_gives_a_result_each(command, star, tmp_path):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device")
-def test_a_result_that_cannot_be_written_is_told_and_stops_no_other(command, star, tmp_path):
+def test_a_result_that_cannot_be_written_is_reported_and_stops_no_other(command, star, tmp_path):
     (tmp_path / "out").mkdir()
     target = tmp_path / "out" / "floating_sun_4.json"
     target.symlink_to("/dev/full")
@@ -121,11 +121,11 @@ def test_a_result_says_what_its_case_says_now(command, star, tmp_path):
     case, out = tmp_path / "case.toml", tmp_path / "out"
     text = (star / "floating_sun_3.toml").read_text(encoding="utf-8")
     title = ls.load_case(star / "floating_sun_3.toml").title
-    for told in (title, "Another title"):
-        case.write_text(text.replace(title, told), encoding="utf-8")
+    for shown in (title, "Another title"):
+        case.write_text(text.replace(title, shown), encoding="utf-8")
         command("batch", case, "-o", out, "--jobs", "1")
         assert outcomes(out) == {"case": "certified"}
-        assert ls.load_result(out / "case.json").case.title == told
+        assert ls.load_result(out / "case.json").case.title == shown
 
 
 @pytest.mark.parametrize(
@@ -158,7 +158,7 @@ def test_a_file_that_is_not_the_answer_is_replaced(command, star, tmp_path, dama
 
 
 @pytest.mark.parametrize(
-    ("doctor", "told"),
+    ("doctor", "message"),
     [
         (lambda d: d["omega"].update(system=1.5), "omega.system = 1.5: does not follow"),
         (lambda d: d["positions"][0]["torque"].update({"sun-planet1": 1e3}), "positions[0].torque"),
@@ -168,7 +168,7 @@ def test_a_file_that_is_not_the_answer_is_replaced(command, star, tmp_path, dama
     ],
 )
 def test_a_doctored_file_is_not_kept_and_the_summary_says_why(
-    command, star, tmp_path, doctor, told
+    command, star, tmp_path, doctor, message
 ):
     case, file = star / "floating_sun_3.toml", tmp_path / "floating_sun_3.json"
     command("batch", case, "-o", tmp_path, "--jobs", "1")
@@ -181,7 +181,7 @@ def test_a_doctored_file_is_not_kept_and_the_summary_says_why(
     (found,) = summary(tmp_path)["cases"]
     assert found["outcome"] == "certified"
     assert found["message"].startswith("the file there was not kept: ")
-    assert told in found["message"]
+    assert message in found["message"]
     assert "floating_sun_3: certified: the file there was not kept" in result.stdout
     assert file.read_text(encoding="utf-8") == good
 
@@ -302,7 +302,7 @@ def test_an_interrupt_from_the_keyboard_stops_a_batch_in_processes(cases, tmp_pa
     ],
 )
 def test_a_batch_ends_where_it_stands(cases, tmp_path, environment, sent, code, jobs):
-    """At the second Ctrl-C and at SIGTERM what is under way is left, and what is kept is told."""
+    """At the second Ctrl-C and at SIGTERM what is under way is left, what is kept is reported."""
     out, script = tmp_path / "out", tmp_path / "script.py"
     script.write_text(GATED, encoding="utf-8")
     words = (cases / "star", "-o", out, "--jobs", jobs)
@@ -322,7 +322,7 @@ def test_a_batch_ends_where_it_stands(cases, tmp_path, environment, sent, code, 
     finally:
         guard.cancel()
     assert batch.returncode == code
-    # The file of a case is there a moment before its process has told of it.
+    # The file of a case is there a moment before its process has reported it.
     assert re.search(r"Interrupted: [01] of 4 cases done\.\nThe same command goes on", stderr)
     assert "Traceback" not in stderr
     assert set(outcomes(out).items()) <= {("floating_sun_3", "certified")}

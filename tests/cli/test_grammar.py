@@ -64,7 +64,7 @@ MEASURED = (
     "--set",
     'measured.tried={ position = 1, pair_share = { "6-10" = 0.99 }, uncertainty = 0.01 }',
 )
-ASKED = {
+RESULTS = {
     "run": (("--position", 1), (*FILES, "toml")),
     "sweep": (("--over", "rings.4.float=0 um, 4 um", "--position", 1), FILES),
     "critical": (("--over", "rings.4.float=7 um:9 um", "--position", 1), FILES),
@@ -79,12 +79,12 @@ ASKED = {
 }
 
 
-@pytest.mark.parametrize("name", mostly_slow(ASKED, ASKED.keys() - {"tolerance"}))
+@pytest.mark.parametrize("name", mostly_slow(RESULTS, RESULTS.keys() - {"tolerance"}))
 def test_every_result_is_written_in_every_form(command, tmp_path, name):
-    words, forms = ASKED[name]
+    words, forms = RESULTS[name]
     files = [tmp_path / f"found.{form}" for form in forms]
-    asked = [word for file in files for word in ("-o", file)]
-    done = command(name, RING, *words, "--quiet", *asked)
+    outputs = [word for file in files for word in ("-o", file)]
+    done = command(name, RING, *words, "--quiet", *outputs)
     assert (done.exit_code, done.output) == (0, "")
     for form, file in zip(forms, files, strict=True):
         content = file.read_bytes()
@@ -119,12 +119,12 @@ steps = 1
     assert command("study", case, "floats", *varied).exit_code == 0
     rows = json.loads(file.read_text())["rows"]
     assert {row["rings.4.float [um]"] for row in rows} == {2.0, 4.0}
-    told = command("study", case, "march", "--over", "rings.4.float=2 um, 4 um")
-    assert told.exit_code == 2
-    assert "a march varies no input over values" in told.stderr
-    told = command("study", case, "floats", "-o", tmp_path / "found.toml")
-    assert told.exit_code == 2
-    assert "a sweep can write .csv" in told.stderr.replace("\n", " ")
+    refused = command("study", case, "march", "--over", "rings.4.float=2 um, 4 um")
+    assert refused.exit_code == 2
+    assert "a march varies no input over values" in refused.stderr
+    refused = command("study", case, "floats", "-o", tmp_path / "found.toml")
+    assert refused.exit_code == 2
+    assert "a sweep can write .csv" in refused.stderr.replace("\n", " ")
 
 
 @pytest.mark.parametrize(
@@ -145,7 +145,7 @@ def test_the_ending_or_a_word_tells_the_form(text, form, file):
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("run", RING, "-o", "x.txt"), ".txt does not say what to write. This command writes"),
         (("run", RING, "-o", "x"), "it has no ending that says what to write"),
@@ -161,10 +161,10 @@ def test_the_ending_or_a_word_tells_the_form(text, form, file):
         (("critical", RING, "a", "--over", "a=1:2"), "says it all"),
     ],
 )
-def test_what_cannot_be_written_or_varied_is_told(command, words, told):
+def test_what_cannot_be_written_or_varied_is_reported(command, words, message):
     done = command(*words)
     assert done.exit_code == 2
-    assert told in " ".join(done.stderr.split())
+    assert message in " ".join(done.stderr.split())
     assert done.stdout == ""
 
 
@@ -247,13 +247,13 @@ def proposed(line: str) -> list[str]:
     """What the shell proposes after a line that ends in what is being typed."""
     words = line.split(" ")
     count = str(len(words) - 1)
-    asked = {"COMP_WORDS": line, "COMP_CWORD": count, "_LOADSHARE_COMPLETE": "complete_bash"}
+    variables = {"COMP_WORDS": line, "COMP_CWORD": count, "_LOADSHARE_COMPLETE": "complete_bash"}
     done = subprocess.run(
         [sys.executable, "-c", START],
         capture_output=True,
         text=True,
         check=False,
-        env=plain_environment(**asked),
+        env=plain_environment(**variables),
     )
     assert done.stderr == ""
     return done.stdout.split()

@@ -48,13 +48,13 @@ IN_A_CASE = {
 }
 
 
-@pytest.mark.parametrize(("text", "told"), IN_A_CASE.items(), ids=list(IN_A_CASE))
-def test_a_mistake_in_a_case_is_one_message_that_leads_on(command, tmp_path, text, told):
+@pytest.mark.parametrize(("text", "message"), IN_A_CASE.items(), ids=list(IN_A_CASE))
+def test_a_mistake_in_a_case_is_one_message_that_leads_on(command, tmp_path, text, message):
     case = tmp_path / "case.toml"
     case.write_text(f"extends = '{BASE.as_posix()}'\n{text}\n")
     done = command("run", case)
     assert done.exit_code == 2
-    assert told in done.stderr
+    assert message in done.stderr
     assert done.stderr.splitlines()[1:] == ["1 problem; nothing was solved."]
 
 
@@ -64,8 +64,8 @@ def box(tmp_path_factory):
     folder = tmp_path_factory.mktemp("box")
     command = on_a_screen_of(80)
     found = [f"{folder}/result.{form}" for form in ("json", "nc", "csv", "xlsx", "svg", "html")]
-    asked = [word for file in (*found, f"{folder}/tables/") for word in ("-o", file)]
-    assert command("run", RING, "--position", 1, "-q", *asked).exit_code == 0
+    outputs = [word for file in (*found, f"{folder}/tables/") for word in ("-o", file)]
+    assert command("run", RING, "--position", 1, "-q", *outputs).exit_code == 0
     swept = ("sweep", RING, "--over", "rings.4.float=4 um", "--position", 1, "-q", "-o")
     assert command(*swept, folder / "sweep.json").exit_code == 0
     (folder / "unit.rexs").write_bytes(units.xml(*units.planetary()))
@@ -99,16 +99,16 @@ WRONG_FILES = {
 }
 
 
-@pytest.mark.parametrize(("words", "told"), WRONG_FILES.items(), ids=str)
+@pytest.mark.parametrize(("words", "message"), WRONG_FILES.items(), ids=str)
 def test_a_file_of_another_kind_says_what_it_is_and_who_takes_it(
-    command, box, tmp_path, monkeypatch, words, told
+    command, box, tmp_path, monkeypatch, words, message
 ):
     monkeypatch.chdir(tmp_path)
     name, file = words
     more = {"sweep": ("--over", "a=1"), "import": ("-o", "none.toml")}.get(name, ())
     done = command(name, box / file, *more)
     assert done.exit_code == 2
-    assert told in done.stderr
+    assert message in done.stderr
     assert not (tmp_path / "none.toml").exists()
 
 
@@ -131,11 +131,11 @@ WORDS = {
 }
 
 
-@pytest.mark.parametrize(("words", "told"), WORDS.items(), ids=str)
-def test_a_mistake_on_the_command_line_leads_on(command, words, told):
+@pytest.mark.parametrize(("words", "message"), WORDS.items(), ids=str)
+def test_a_mistake_on_the_command_line_leads_on(command, words, message):
     done = command(*words)
     assert done.exit_code == 2
-    assert told in " ".join(done.stderr.split())
+    assert message in " ".join(done.stderr.split())
 
 
 KEYS = ("base_radius", "outer_radius", "teeth", "bore", "profile_shift", "gears.4.float", "planet1")

@@ -33,11 +33,11 @@ def test_a_file_stands_whole_or_not_at_all(tmp_path, monkeypatch):
         raise OSError(errno.ENOSPC, "the disk is full", str(to))
 
     monkeypatch.setattr(Path, "write_bytes", breaks)
-    with pytest.raises(NotWritten, match="full") as told:
+    with pytest.raises(NotWritten, match="full") as caught:
         write_whole(file, "two")
-    assert told.value.filename == str(file)
-    again = pickle.loads(pickle.dumps(told.value))
-    assert (type(again), str(again)) == (NotWritten, str(told.value))
+    assert caught.value.filename == str(file)
+    again = pickle.loads(pickle.dumps(caught.value))
+    assert (type(again), str(again)) == (NotWritten, str(caught.value))
     assert file.read_text() == "one"
     assert [f.name for f in file.parent.iterdir()] == ["file.txt"]
 
@@ -55,21 +55,21 @@ def test_what_a_killed_process_left_is_cleared(tmp_path):
 
 @pytest.mark.skipif(os.name != "posix", reason="no locks of folders on this system")
 def test_what_another_is_writing_is_left_alone(tmp_path, monkeypatch):
-    """Both write the same file: each has its own beside it until it is whole."""
+    """Both write the same file: each has its own next to it until it is whole."""
     file = tmp_path / "file.txt"
-    begun, going = threading.Event(), threading.Event()
+    started, going = threading.Event(), threading.Event()
     at_once = Path.write_bytes
 
     def slow(to: Path, content: bytes) -> None:
         at_once(to, content)
         if content == b"of one":
-            begun.set()
+            started.set()
             assert going.wait(60)
 
     monkeypatch.setattr(Path, "write_bytes", slow)
     one = threading.Thread(target=write_whole, args=(file, "of one"))
     one.start()
-    assert begun.wait(60)
+    assert started.wait(60)
     write_whole(file, "of the other")
     clear([file])
     assert len(list(tmp_path.iterdir())) == 2
@@ -79,8 +79,10 @@ def test_what_another_is_writing_is_left_alone(tmp_path, monkeypatch):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="folders are not brought to the disk")
-@pytest.mark.parametrize(("code", "is_told"), [(errno.EIO, True), (errno.EINVAL, False)])
-def test_a_folder_that_cannot_be_brought_to_the_disk_is_told(tmp_path, monkeypatch, code, is_told):
+@pytest.mark.parametrize(("code", "reported"), [(errno.EIO, True), (errno.EINVAL, False)])
+def test_a_folder_that_cannot_be_brought_to_the_disk_is_reported(
+    tmp_path, monkeypatch, code, reported
+):
     """Unless its file system has no such thing."""
     real = os.fsync
 
@@ -91,7 +93,7 @@ def test_a_folder_that_cannot_be_brought_to_the_disk_is_told(tmp_path, monkeypat
 
     monkeypatch.setattr(output.os, "fsync", failing)
     file = tmp_path / "file.txt"
-    if is_told:
+    if reported:
         with pytest.raises(OSError, match="Input/output"):
             write_whole(file, "one")
     else:
@@ -142,9 +144,9 @@ def test_a_pipe_is_written_to(tmp_path):
     os.mkfifo(pipe)
     reader = threading.Thread(target=lambda: found.append(pipe.read_text()))
     reader.start()
-    told = call("run", CASE, "--json", pipe)
+    done = call("run", CASE, "--json", pipe)
     reader.join(30)
-    assert told.exit_code == 0
+    assert done.exit_code == 0
     assert stat.S_ISFIFO(pipe.stat().st_mode)
     assert json.loads(found[0])["case"] == "floating_sun_3"
 
@@ -164,18 +166,18 @@ def test_a_device_is_written_to():
         ("schema", "-o", "/dev/full"),
     ],
 )
-def test_a_full_disk_is_told_by_name(words):
-    told = call(*words)
-    assert told.exit_code == 2
-    assert "/dev/full: cannot be written" in told.output
-    assert "Traceback" not in told.output
+def test_a_full_disk_is_reported_by_name(words):
+    done = call(*words)
+    assert done.exit_code == 2
+    assert "/dev/full: cannot be written" in done.output
+    assert "Traceback" not in done.output
 
 
-def test_a_dash_is_stdout_and_the_rest_is_told_beside_it():
-    told = call("run", CASE, "--json", STANDARD)
-    assert told.exit_code == 0
-    assert json.loads(told.stdout)["case"] == "floating_sun_3"
-    assert "PASSED" in told.stderr
+def test_a_dash_is_stdout_and_messages_go_to_stderr():
+    done = call("run", CASE, "--json", STANDARD)
+    assert done.exit_code == 0
+    assert json.loads(done.stdout)["case"] == "floating_sun_3"
+    assert "PASSED" in done.stderr
     table = call("run", CASE, "--csv", STANDARD)
     assert table.stdout.startswith("position,")
     drawing = call("draw", CASE, "-o", STANDARD)
@@ -208,9 +210,9 @@ def test_what_is_read_is_not_written_over(copied, words):
     base.with_name("link.html").symlink_to(case)
     before = base.read_text(), case.read_text()
     command, _, option, out = words
-    told = call(command, case, option, base.with_name(out))
-    assert told.exit_code == 2
-    assert "is read by this command" in " ".join(told.output.split())
+    done = call(command, case, option, base.with_name(out))
+    assert done.exit_code == 2
+    assert "is read by this command" in " ".join(done.output.split())
     assert (base.read_text(), case.read_text()) == before
 
 
@@ -218,9 +220,9 @@ def test_a_law_is_not_written_over_its_pair(tmp_path):
     pair = CASES / "fgfbstts" / "pairs" / "p12.toml"
     own = tmp_path / "law.toml"
     own.write_text(pair.read_text())
-    told = call("ltca", own, "-o", tmp_path)
-    assert told.exit_code == 2
-    assert "is read by this command" in " ".join(told.output.split())
+    done = call("ltca", own, "-o", tmp_path)
+    assert done.exit_code == 2
+    assert "is read by this command" in " ".join(done.output.split())
     assert own.read_text() == pair.read_text()
 
 

@@ -15,7 +15,7 @@ def test_a_certified_case_prints_everything_an_engineer_asks_for(command, cases)
     result = command("run", cases / "fgfbstts/limit_ring.toml")
     assert result.exit_code == 0
     assert result.stderr == ""
-    for told in (
+    for line in (
         "Limit rings on the floating pinions",
         "limit_ring.toml",
         "Input torque 2175.238 N·m on gear 1, output gear 10; 5 positions",
@@ -26,7 +26,7 @@ def test_a_certified_case_prints_everything_an_engineer_asks_for(command, cases)
         "energy gap",
         "PASSED  5 of 5 positions certified",
     ):
-        assert told in result.stdout
+        assert line in result.stdout
 
 
 def test_the_figures_printed_are_those_of_the_result(command, cases):
@@ -100,7 +100,7 @@ def test_positions_are_chosen_and_each_solved_once(command, cases, tmp_path):
     assert [p["position"] for p in found] == [3, 2]
 
 
-def test_a_change_is_told_and_made(command, cases):
+def test_a_change_is_reported_and_made(command, cases):
     words = ("--set", "operating.power=", "--set", "operating.torque=100 N*m")
     result = command("run", cases / "fgfbstts/base.toml", *words, "--set", "operating.speed=")
     assert result.exit_code == 0
@@ -124,27 +124,27 @@ def test_the_words_of_the_options_are_those_of_the_solver_room():
 
 
 def test_explain_tells_how_the_first_position_was_solved(command, cases):
-    """A back-end asked for by name answers on its own rung."""
+    """A back-end requested by name answers on its own rung."""
     options = ("--explain", "--solver", "clarabel")
     result = command("run", cases / "fgfbstts/limit_ring.toml", *options)
     assert result.stdout.count("How position") == 1
-    for told in (
+    for line in (
         *("How position 1 was solved", "clarabel + exact", "QP, 15 coordinates", "gear 4 x"),
         *("ring 4: arc 6", "clarabel + ", " + exact", "active set kept", "its bearing is rigid"),
     ):
-        assert told in result.stdout
+        assert line in result.stdout
 
 
 def test_explain_tells_what_acts_on_the_hot_path(command, cases):
     result = command("run", cases / "fgfbstts/limit_ring.toml", "--explain")
-    for told in (
+    for line in (
         *("hot path", "force method, 2 redundants, 15 coordinates", "sets tried"),
         *("Acting", "ring 4: arc 6", "open by", "its bearing is rigid"),
     ):
-        assert told in result.stdout
+        assert line in result.stdout
 
 
-def test_explain_follows_the_positions_and_options_asked_for(command, cases):
+def test_explain_follows_the_requested_positions_and_options(command, cases):
     words = ("--position", "2", "--position", "4", "--solver", "osqp", "--explain")
     stdout = command("run", cases / "fgfbstts/limit_ring.toml", *words).stdout
     assert "How position 2 was solved" in stdout
@@ -188,7 +188,7 @@ def test_certified_positions_are_kept_when_others_are_refused(command, half_held
     assert document["refused"]["figures"] == {}
 
 
-def test_the_failing_figures_are_told_and_written(command, cases, tmp_path):
+def test_the_failing_figures_are_reported_and_written(command, cases, tmp_path):
     target = tmp_path / "r.json"
     case = cases / "fgfbstts/limit_ring.toml"
     result = command("run", case, "--tolerance", "1e-30", "-o", target)
@@ -218,7 +218,7 @@ def test_all_problems_of_a_case_are_listed_one_per_line(command, broken):
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "message"),
     [
         (("--solver", "x"), "'--solver': 'x' is not one of 'auto', 'clarabel', 'osqp', 'cvxpy'"),
         (("--method", "x"), "'--method': 'x' is not one of 'newton', 'picard', 'power'"),
@@ -231,10 +231,10 @@ def test_all_problems_of_a_case_are_listed_one_per_line(command, broken):
         (("--colour",), "No such option"),
     ],
 )
-def test_wrong_usage_leaves_with_2_and_says_what_is_allowed(command, cases, words, told):
+def test_wrong_usage_leaves_with_2_and_says_what_is_allowed(command, cases, words, message):
     result = command("run", cases / "fgfbstts/base.toml", *words)
     assert result.exit_code == 2
-    assert told in result.stderr
+    assert message in result.stderr
     assert result.stdout == ""
 
 
@@ -244,7 +244,7 @@ def test_a_missing_case_is_a_problem(command, tmp_path):
     assert "no such file" in result.stderr
 
 
-def test_a_file_that_cannot_be_written_is_told(command, cases, tmp_path):
+def test_a_file_that_cannot_be_written_is_reported(command, cases, tmp_path):
     (tmp_path / "taken").write_text("")
     result = command("run", cases / "fgfbstts/base.toml", "-o", tmp_path / "taken" / "r.json")
     assert result.exit_code == 2

@@ -56,6 +56,6 @@ def test_what_tells_no_teeth_has_no_tables(cases):
 
 def test_a_shaft_tells_its_stiffness(cases):
     case = load_case(cases / "fgfbstts" / "base.toml")
-    told = {'shafts."2-4".stiffness': None, 'shafts."2-4".diameter': "60 mm"}
-    found = rows(case.replace(told | {'shafts."2-4".length': "200 mm"}), 0)
+    changes = {'shafts."2-4".stiffness': None, 'shafts."2-4".diameter': "60 mm"}
+    found = rows(case.replace(changes | {'shafts."2-4".length': "200 mm"}), 0)
     assert found == {"2-4": {"shaft": "2-4", "stiffness": "504480"}}

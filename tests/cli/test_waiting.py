@@ -42,7 +42,7 @@ def _shown(sent):
     return ""
 
 
-def test_what_takes_long_is_told_until_something_is_said(monkeypatch, capsys):
+def test_what_takes_long_is_reported_until_something_is_printed(monkeypatch, capsys):
     monkeypatch.setattr(waiting, "DELAY", 0.01)
     with terminal() as sent:
         with waiting.waiting():
@@ -68,7 +68,7 @@ def test_what_is_quick_or_quiet_tells_nothing(monkeypatch):
         assert sent() == ""
 
 
-def test_no_terminal_is_told_nothing(monkeypatch, capsys):
+def test_nothing_is_printed_without_a_terminal(monkeypatch, capsys):
     monkeypatch.setattr(waiting, "DELAY", 0.0)
     with waiting.waiting():
         time.sleep(0.05)

@@ -118,7 +118,7 @@ def test_what_has_no_equilibrium_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("part", "value", "told"),
+    ("part", "value", "message"),
     [
         ("stiffness", np.array([[-1.0]]), "negative eigenvalue"),
         ("stiffness", np.eye(2), r"shape \(2, 2\), wanted \(1, 1\)"),
@@ -132,8 +132,8 @@ def test_what_has_no_equilibrium_is_refused() -> None:
         ("radials", (Radial("drum", [[1.0]], [0.0, 0.0], None),), "source of drum: None is no law"),
     ],
 )
-def test_arrays_that_do_not_belong_together_are_named(part, value, told) -> None:
-    with pytest.raises(ValueError, match=told):
+def test_arrays_that_do_not_belong_together_are_named(part, value, message) -> None:
+    with pytest.raises(ValueError, match=message):
         solve_contact(dataclasses.replace(block(1.0), **{part: value}))
 
 
@@ -147,9 +147,9 @@ def test_lists_and_whole_numbers_will_do() -> None:
     found = solve_contact(ContactProblem(["x", "y"], np.zeros((2, 2), int), [3, 4], radials=[drum]))
     assert found.place == pytest.approx({"x": 3e-3, "y": 4e-3})
     rolls = ArcRow("arc", Arc([1, 0], [0, 0], 0), [[1]], RIGID, 0)
-    with pytest.raises(ValueError, match="nominal of arc: shape") as told:
+    with pytest.raises(ValueError, match="nominal of arc: shape") as caught:
         solve_contact(ContactProblem(["x"], [[1]], [1], arcs=[rolls]))
-    assert "relative of arc: shape (1, 1), wanted (3, 1)" in str(told.value)
+    assert "relative of arc: shape (1, 1), wanted (3, 1)" in str(caught.value)
 
 
 @pytest.mark.parametrize(

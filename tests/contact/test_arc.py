@@ -1,6 +1,6 @@
 """The exclusion arc of a limit ring, on the side where the gear is mounted and beyond.
 
-Source: formulation, section 6: the arc condition is meant on the side on which the pinion stands.
+Source: formulation, section 6: the arc condition holds on the side on which the pinion is.
 """
 
 import numpy as np

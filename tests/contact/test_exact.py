@@ -74,7 +74,7 @@ def test_the_exact_solve_finds_what_brute_force_finds(seed, rigid):
 
 @pytest.mark.parametrize("seed", range(10))
 def test_an_active_set_is_read_from_an_approximate_answer(seed):
-    """A hundred times the error of any back-end, and every contact is still told apart."""
+    """A hundred times the error of any back-end, and every contact is still distinguished."""
     p = problem(seed, rigid=False)
     x, forces = by_brute_force(p)
     rng = np.random.default_rng(seed + 1000)

@@ -117,7 +117,7 @@ def test_no_load_at_all_is_an_equilibrium():
     assert set(torques.values()) == {0.0}
 
 
-def test_unknown_solvers_methods_and_positions_are_told():
+def test_unknown_solvers_methods_and_positions_are_reported():
     with pytest.raises(ValueError, match="unknown method 'secant'; allowed: newton, picard, power"):
         Options(method="secant")
     with pytest.raises(ValueError, match="unknown solver 'gurobi'; allowed: clarabel, osqp, cvxpy"):

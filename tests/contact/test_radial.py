@@ -118,7 +118,7 @@ def test_scaling_is_a_change_of_units(law):
         assert interval(scaled, radius / 2e-6) == pytest.approx(tuple(expected), rel=1e-9)
 
 
-def test_an_unbounded_complementary_energy_is_told():
+def test_an_unbounded_complementary_energy_is_reported():
     """A level last piece carries no more than its force."""
     law = RadialLaw((Piece(0.0, 1e6, 1e-6, "stick"), Piece(1.0, 0.0, math.inf, "slip")))
     assert math.isfinite(complementary(law, 1.0))

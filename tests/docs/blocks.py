@@ -34,7 +34,7 @@ _NUMBER = re.compile(r"[+\-−]?(?:\d+\.?\d*|\.\d+)(?:[eE][+\-]?\d+)?")
 
 @dataclass(frozen=True)
 class Block:
-    """A fenced block: its language, text, and where the text stands in the page."""
+    """A fenced block: its language, text, and where the text is in the page."""
 
     language: str
     text: str
@@ -92,7 +92,7 @@ def run_console(text: str) -> str:
                 check=False,
             )
             rows = [row.rstrip() for row in done.stdout.rstrip().splitlines()]
-            # Told once in an installation, by whichever command comes first.
+            # Printed once in an installation, by whichever command comes first.
             parts += [line, *(row for row in rows if not row.startswith("Compiling: "))]
     return "\n".join(parts) + "\n"
 

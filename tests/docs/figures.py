@@ -1,6 +1,6 @@
 """Where every number in the prose of the documentation comes from.
 
-`RULES` computes numbers anew: a text of a page in which ``{}`` stands for each number, and what
+`RULES` computes numbers again: a text of a page in which ``{}`` stands for each number, and what
 gives them, in that order. `GIVEN` holds the numbers that are no results, as patterns with the kind
 they are of. Whoever writes a number into a page adds it to one of the two; results to `RULES`.
 """
@@ -32,7 +32,7 @@ Values = Callable[[], Sequence[float | Below]]
 
 @dataclass(frozen=True)
 class Rule:
-    """Numbers of a page, or of a section of it, that are computed anew."""
+    """Numbers of a page, or of a section of it, that are computed again."""
 
     page: str
     text: str
@@ -301,7 +301,7 @@ def split_in_bearings(clearance: int) -> list[float]:
 
 
 def validation_rules() -> Iterator[Rule]:
-    """Rules of the validation page; what the paper prints stands in the texts."""
+    """Rules of the validation page; what the paper prints is in the texts."""
 
     def rule(text: str, values: Values, section: str = "") -> Rule:
         return Rule(VALIDATION, text, values, section)
@@ -413,11 +413,11 @@ def ring_rules(rule: Callable[..., Rule]) -> Iterator[Rule]:
             lambda g=gear, x=micrometres: [freed()[g], freed()[g] - x],
         )
     for gear, where in (("4", (4.14, 7.13)), ("5", (1.37, -2.37))):
-        told = f"({where[0]}, {where[1]})".replace("-", "−")
+        printed = f"({where[0]}, {where[1]})".replace("-", "−")
         size = {"4": "8.24", "5": "2.74"}[gear]
         for kind, ringed in (("unlimited", False), (f"ring of {size} µm", True)):
             yield rule(
-                f"balance point of pinion {gear}, {kind} [µm] | {told} | ({{}}, {{}}) | "
+                f"balance point of pinion {gear}, {kind} [µm] | {printed} | ({{}}, {{}}) | "
                 "({}, {}) |",
                 point(gear, where, ringed),
             )

@@ -31,7 +31,7 @@ blocks = _load("blocks")
 def cells(page: str, place: str) -> Iterator[tuple[Any, str, str, Any]]:
     """Run the Python blocks of a page; yield each, its output, its picture's file, and the picture.
 
-    A block whose last line is a picture shows it, as a notebook does; the image stands below.
+    A block whose last line is a picture shows it, as a notebook does; the image is below.
     """
     names: dict[str, Any] = {"__name__": "page"}
     for block in blocks.blocks_of(page):

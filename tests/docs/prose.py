@@ -1,6 +1,6 @@
-"""Numbers in the prose of the documentation: found, and told apart by where they come from.
+"""Numbers in the prose of the documentation: found, and classified by where they come from.
 
-A number may be *computed* (a rule of `figures.py` computes it anew), *printed elsewhere* (a case, a
+A number may be *computed* (a rule of `figures.py` computes it), *printed elsewhere* (a case, a
 paper, a standard: a pattern of `figures.py` with the reason), or it stands in what is not prose:
 blocks and inline code, formulas, links, headings. Any other number is an error of the page.
 """
@@ -37,7 +37,7 @@ class Found:
         As it is printed.
     start : int
     line : str
-        The line in which it stands.
+        The line that it is on.
     """
 
     text: str
@@ -74,7 +74,7 @@ def same(shown: str, computed: float) -> bool:
 
 
 def uncovered(page: str, spans: Iterable[tuple[int, int]]) -> list[str]:
-    """Return the numbers that stand in none of the spans, each with its line."""
+    """Return the numbers that are in none of the spans, each with its line."""
     covered = list(spans)
     return [
         f"{found.text} in: {found.line.strip()}"
@@ -84,7 +84,7 @@ def uncovered(page: str, spans: Iterable[tuple[int, int]]) -> list[str]:
 
 
 def matches(rule: Any, page: str) -> list[re.Match[str]]:
-    """Return where the text of a rule stands: in its section, or anywhere in the page."""
+    """Return where the text of a rule is: in its section, or anywhere in the page."""
     first, last = 0, len(page)
     if rule.section:
         first = page.index(f"# {rule.section}\n")

@@ -41,8 +41,8 @@ def test_a_page_shows_what_its_blocks_print_and_draw(page):
             if image:
                 drawn += 1
                 kept = (GALLERY / image).read_text(encoding="utf-8")
-                told = [" ".join(gallery.words(svg)) for svg in (kept, figure.to_svg())]
-                assert gallery.blocks.differences(*told) == []
+                drawn_words = [" ".join(gallery.words(svg)) for svg in (kept, figure.to_svg())]
+                assert gallery.blocks.differences(*drawn_words) == []
     assert drawn > 0
 
 
@@ -74,9 +74,9 @@ def test_a_notebook_has_the_blocks_of_its_page_and_no_output(page):
     whole = json.loads(hooks.notebook(text))
     code = ["".join(c["source"]) for c in whole["cells"] if c["cell_type"] == "code"]
     assert code == [b.strip() for b in re.findall(r"^```python\n(.*?)^```", text, re.M | re.S)]
-    told = "".join("".join(c["source"]) for c in whole["cells"] if c["cell_type"] == "markdown")
-    assert "```text" not in told
-    assert "![" not in told
+    prose = "".join("".join(c["source"]) for c in whole["cells"] if c["cell_type"] == "markdown")
+    assert "```text" not in prose
+    assert "![" not in prose
 
 
 @pytest.mark.slow

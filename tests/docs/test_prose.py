@@ -1,4 +1,4 @@
-"""Every number in the prose of the pages is computed anew, or known to be no result."""
+"""Every number in the prose of the pages is computed again, or known to be no result."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def read(page: str) -> str:
 
 
 def misfits(rule, text: str) -> list[str]:
-    """What is wrong with the numbers of a rule, wherever its text stands in a page."""
+    """What is wrong with the numbers of a rule, wherever its text is in a page."""
     found = prose.matches(rule, text)
     if not found:
         return []  # what becomes of such a rule is another test's
@@ -73,7 +73,7 @@ def test_every_rule_is_about_something(page):
     text = read(page)
     own = [r for r in figures.RULES if r.page == page]
     idle = [r.text for r in own if not prose.matches(r, text)]
-    # A clearance is told once, whether the pinion sticks or slips there.
+    # A clearance is given once, whether the pinion sticks or slips there.
     assert [t for t in idle if not t.endswith(("| st", "| slip"))] == []
 
 

@@ -157,10 +157,10 @@ def test_forces_and_displacements_are_written_back(written) -> None:
     # v is y and w is z, as of the gears' frames here: both axes are x.
     for id_, force in (("61", first), ("62", both - first), ("63", pushed["gear_23"])):
         for axis, value in zip("vw", force, strict=True):
-            told = found[id_].number(f"force_acting_on_outer_component_{axis}")
-            assert told == pytest.approx(value, rel=1e-12)
-            told = found[id_].number(f"force_acting_on_inner_component_{axis}")
-            assert told == pytest.approx(-value, rel=1e-12)
+            exported = found[id_].number(f"force_acting_on_outer_component_{axis}")
+            assert exported == pytest.approx(value, rel=1e-12)
+            exported = found[id_].number(f"force_acting_on_inner_component_{axis}")
+            assert exported == pytest.approx(-value, rel=1e-12)
     assert np.abs(pushed["gear_23"]).max() > 1e3, "a bearing with clearance carries as well"
     stage = found["41"].attributes
     mesh = "gear_22-gear_23"
@@ -194,10 +194,10 @@ def test_the_pins_of_planets_are_inside_of_their_bearings(written) -> None:
     found = read_model(written(export_rexs(result, unit).encode(), "copy.rexs")).components
     for k in range(3):
         force = result.positions[0].loads.bearings[f"gear_{247 + k}"]
-        told = [
+        exported = [
             found[f"{300 + k}"].number(f"force_acting_on_inner_component_{axis}") for axis in "vw"
         ]
-        assert told == pytest.approx(force)
+        assert exported == pytest.approx(force)
 
 
 def test_a_unit_of_another_case_is_refused(written) -> None:
@@ -208,7 +208,7 @@ def test_a_unit_of_another_case_is_refused(written) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "told"),
+    ("content", "message"),
     [
         (b"", "not valid XML"),
         (b"<model/>", "no components"),
@@ -221,10 +221,10 @@ def test_a_unit_of_another_case_is_refused(written) -> None:
         (xml([(1, "gear_unit", "", {})], []), "no cylindrical stage"),
     ],
 )
-def test_what_is_no_unit_is_told(written, content, told) -> None:
+def test_what_is_no_unit_is_reported(written, content, message) -> None:
     with pytest.raises(CaseError) as caught:
         import_rexs(written(content))
-    assert told in str(caught.value)
+    assert message in str(caught.value)
 
 
 def test_a_carriers_bearing_keeps_its_clearance(written) -> None:
@@ -239,7 +239,7 @@ def test_a_carriers_bearing_keeps_its_clearance(written) -> None:
     assert case.errors["carrier_3"].installation[2].si == pytest.approx(7e-6)
 
 
-def test_places_told_from_other_components_are_told_of(written) -> None:
+def test_places_derived_from_other_components_are_reported(written) -> None:
     components, relations = two_stages()
     moved = [
         (i, kind, name, a | {"reference_component_for_position": (11, "none")} if i == 22 else a)
@@ -251,7 +251,7 @@ def test_places_told_from_other_components_are_told_of(written) -> None:
 
 
 @pytest.mark.parametrize("packed", [zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
-def test_damaged_archives_are_told_or_read(written, tmp_path, packed) -> None:
+def test_damaged_archives_are_reported_or_read(written, tmp_path, packed) -> None:
     with zipfile.ZipFile(tmp_path / "good.rexsz", "w", packed) as archive:
         archive.writestr("unit.rexs", xml(*planetary()))
     good, dice = (tmp_path / "good.rexsz").read_bytes(), random.Random(3)
@@ -273,7 +273,7 @@ def test_what_is_odd_in_a_file_is_no_hindrance_to_writing_back(written) -> None:
     assert "mesh_load_factor_iso_6336_2019" in export_rexs(result, unit)
 
 
-def test_what_a_unit_lacks_is_told_all_at_once(written) -> None:
+def test_what_a_unit_lacks_is_reported_all_at_once(written) -> None:
     components, relations = two_stages()
     poorer = [
         (i, kind, name, {k: v for k, v in a.items() if k not in dropped})
@@ -289,10 +289,10 @@ def test_what_a_unit_lacks_is_told_all_at_once(written) -> None:
     ]
     with pytest.raises(CaseError) as caught:
         import_rexs(written(xml(poorer, relations)))
-    told = str(caught.value)
-    assert "cylindrical_gear 20: has no number_of_teeth" in told
-    assert "cylindrical_gear 23: has no place" in told
-    assert "torque_around_u_axis" in told
+    message = str(caught.value)
+    assert "cylindrical_gear 20: has no number_of_teeth" in message
+    assert "cylindrical_gear 23: has no place" in message
+    assert "torque_around_u_axis" in message
 
 
 def mutated(content: bytes, dice: random.Random) -> bytes:
@@ -319,7 +319,7 @@ def mutated(content: bytes, dice: random.Random) -> bytes:
 
 
 @pytest.mark.parametrize("start", range(4))
-def test_changed_files_are_told_or_solved(written, start) -> None:
+def test_changed_files_are_reported_or_solved(written, start) -> None:
     """No change of a file ends in anything but a case, a list of problems, or a refusal."""
     forms = [
         xml(*planetary()),
@@ -334,7 +334,7 @@ def test_changed_files_are_told_or_solved(written, start) -> None:
         try:
             case = import_rexs(path).case()
         except CaseError:
-            outcomes.add("told")
+            outcomes.add("reported")
             continue
         try:
             result = ls.solve(case)
@@ -342,4 +342,4 @@ def test_changed_files_are_told_or_solved(written, start) -> None:
             outcomes.add("solved")
         except Refused:
             outcomes.add("refused")
-    assert {"told", "solved"} <= outcomes
+    assert {"reported", "solved"} <= outcomes

@@ -95,7 +95,7 @@ def test_cells_are_what_their_keys_take(box) -> None:
 
 
 @pytest.mark.parametrize(
-    ("tables", "told"),
+    ("tables", "message"),
     [
         (
             {"gears": GEARS.replace("40,2", "40,2 kg")},
@@ -135,15 +135,15 @@ def test_cells_are_what_their_keys_take(box) -> None:
         ({"gears": "name," + ".".join("a" * 30) + "\na,1\n"}, "is no key"),
     ],
 )
-def test_what_is_wrong_is_told_with_its_cell(box, tables, told) -> None:
+def test_what_is_wrong_is_reported_with_its_cell(box, tables, message) -> None:
     with pytest.raises(CaseError) as caught:
         import_tables(box(**tables)).case()
-    assert told in str(caught.value)
+    assert message in str(caught.value)
 
 
-def test_a_folder_without_tables_and_none_at_all_are_told(tmp_path) -> None:
-    for path, told in ((tmp_path, "holds no CSV file"), (tmp_path / "x", "no such file")):
-        with pytest.raises(CaseError, match=told):
+def test_a_folder_without_tables_and_none_at_all_are_reported(tmp_path) -> None:
+    for path, message in ((tmp_path, "holds no CSV file"), (tmp_path / "x", "no such file")):
+        with pytest.raises(CaseError, match=message):
             import_tables(path)
 
 

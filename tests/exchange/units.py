@@ -50,8 +50,8 @@ def _add(under: ElementTree.Element, components: Iterable[Component], coded: boo
                 for one in value:
                     ElementTree.SubElement(array, "c").text = repr(one)
             else:
-                told = str(value).lower() if isinstance(value, bool) else str(value)
-                attribute.text = told
+                text = str(value).lower() if isinstance(value, bool) else str(value)
+                attribute.text = text
 
 
 def _coded(values: list[float]) -> str:

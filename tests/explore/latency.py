@@ -1,7 +1,7 @@
 """How soon the explorer answers: `nice -n 5 python -m tests.explore.latency [REPEATS]`.
 
 From the change of a slider to the frame that shows its answer, and from an address to a page with
-its first answer. The state of the machine is told beside it, on which these times hang.
+its first answer. The load of the machine, on which these times depend, is printed as well.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ LOADS = 5
 SLIDE = """
 const [value, done] = arguments;
 const slider = document.querySelector("[data-name='rings.5.float'] input[type=range]");
-const begun = performance.now();
+const start = performance.now();
 slider.value = value;
 slider.dispatchEvent(new Event("input", { bubbles: true }));
 const look = () => {
-  const { asked, state } = document.body.dataset;
-  if (state === "present" && document.getElementById("answer").dataset.of === asked)
-    requestAnimationFrame(() => setTimeout(() => done(performance.now() - begun)));
+  const { number, state } = document.body.dataset;
+  if (state === "present" && document.getElementById("answer").dataset.of === number)
+    requestAnimationFrame(() => setTimeout(() => done(performance.now() - start)));
   else setTimeout(look, 1);
 };
 look();
@@ -49,17 +49,17 @@ def main(repeats: int) -> None:
         loads = []
         for _ in range(LOADS):
             browser.get("about:blank")
-            begun = time.perf_counter()
+            start = time.perf_counter()
             opened(browser, address)
-            loads.append(time.perf_counter() - begun)
+            loads.append(time.perf_counter() - start)
         browser.set_script_timeout(60)
         slides = []
         for k in range(repeats):
             # Some 2 µm to and fro, never where it was.
             slides.append(browser.execute_async_script(SLIDE, 1.0 + 0.04 * ((17 * k) % repeats)))
             time.sleep(0.02)
-    told = ", ".join(f"{load:.1f}" for load in (before[0], os.getloadavg()[0]))
-    say(f"load of the machine before and after: {told}; {os.cpu_count()} processors")
+    averages = ", ".join(f"{load:.1f}" for load in (before[0], os.getloadavg()[0]))
+    say(f"load of the machine before and after: {averages}; {os.cpu_count()} processors")
     say(f"page with its first answer: {_spread(loads, 's', 2)}, {LOADS} times")
     say(f"slider to screen: {_spread(slides, 'ms', 0)}, {repeats} times, {len(NAMES)} sliders")
 

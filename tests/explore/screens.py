@@ -55,8 +55,8 @@ def _along(browser) -> None:
     for button in browser.find_elements(By.CSS_SELECTOR, ".control[data-name] .row button")[:2]:
         button.click()
     _waits(browser, "#trace svg")
-    told = "return document.querySelector('.control[data-name] [role=status]').textContent"
-    WebDriverWait(browser, 300).until(lambda b: "on the slider" in b.execute_script(told))
+    status = "return document.querySelector('.control[data-name] [role=status]').textContent"
+    WebDriverWait(browser, 300).until(lambda b: "on the slider" in b.execute_script(status))
 
 
 def _studied(browser) -> None:

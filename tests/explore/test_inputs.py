@@ -61,7 +61,7 @@ def test_a_part_of_an_error_keeps_the_others():
 
 
 def test_an_error_that_the_case_cannot_have_is_not_offered():
-    """Nothing tells how far the gears of this case turn: no eccentricity can."""
+    """Nothing determines how far the gears of this case turn: no eccentricity can."""
     assert not [key for key in Inputs(shipped("fgfbstts/limit_ring")).every if "eccentric" in key]
 
 

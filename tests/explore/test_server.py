@@ -1,4 +1,4 @@
-"""The server: equal to `ls.solve`, refusing what is not asked properly, remembering nobody."""
+"""The server: equal to `ls.solve`, refusing malformed requests, remembering nobody."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from loadshare.report.page.verdict import largest_forces, resting, sharing
 FLOAT = "rings.5.float"
 
 
-def told(case):
+def tables_of(case):
     """What a page must show of a case: rows of tables, from a solve of its own."""
     result = ls.solve(case)
     rows = [plain(sharing(result))["rows"]] if result.stages else []
@@ -44,7 +44,7 @@ def test_an_answer_is_that_of_solve(seed, text):
     found = answer(seed, {FLOAT: text, "operating.power": "1234.5 kW"})
     assert found["status"] == "certified"
     case = load_case(SEED).replace({FLOAT: text, "operating.power": "1234.5 kW"})
-    assert shown(found) == told(case)
+    assert shown(found) == tables_of(case)
 
 
 @pytest.mark.parametrize(
@@ -65,7 +65,7 @@ def test_any_case_can_be_explored(served, name):
         rest = ask(address, "/whole", {})[2]
     assert status == 200
     assert found["status"] == "certified"
-    assert shown(found) == told(shipped(name))
+    assert shown(found) == tables_of(shipped(name))
     assert "Bound" in rest["trust"]
     assert case["positions"] == found["count"]
 
@@ -98,7 +98,7 @@ def test_many_positions_are_solved_one_by_one(served):
         ({FLOAT: None}, "is not a value"),
     ],
 )
-def test_a_setting_that_makes_no_case_is_told(seed, changes, why):
+def test_a_setting_that_makes_no_case_is_reported(seed, changes, why):
     import re
 
     found = answer(seed, changes)
@@ -107,7 +107,7 @@ def test_a_setting_that_makes_no_case_is_told(seed, changes, why):
     assert "tables" not in found
 
 
-def test_a_refused_setting_is_told(seed):
+def test_a_refused_setting_is_reported(seed):
     """A load that would press teeth together by more than they are high."""
     found = answer(seed, {"operating.power": "2e9 kW"})
     assert found["status"] == "refused"
@@ -192,11 +192,11 @@ def test_a_hundred_at_once_do_not_mix(served):
     """Everybody gets the answer to their own setting, whoever asks meanwhile."""
     draw, case = random.Random(5), shipped("star/floating_sun_4")
     texts = [f"{draw.uniform(100.0, 900.0):.3f} N*m" for _ in range(12)]
-    wanted = {text: told(case.replace({"operating.torque": text})) for text in texts}
-    asked = [draw.choice(texts) for _ in range(100)]
+    wanted = {text: tables_of(case.replace({"operating.torque": text})) for text in texts}
+    requests = [draw.choice(texts) for _ in range(100)]
     with served(case) as address, ThreadPoolExecutor(100) as people:
-        found = list(people.map(lambda text: answer(address, {"operating.torque": text}), asked))
-    assert all(shown(one) == wanted[text] for one, text in zip(found, asked, strict=True))
+        found = list(people.map(lambda text: answer(address, {"operating.torque": text}), requests))
+    assert all(shown(one) == wanted[text] for one, text in zip(found, requests, strict=True))
     assert len({str(rows) for rows in wanted.values()}) == len(texts)
 
 

@@ -1,4 +1,4 @@
-"""Studies beside the page: by workers, broken off when nobody waits for them."""
+"""Studies next to the page: by workers, cancelled when nobody waits for them."""
 
 from __future__ import annotations
 
@@ -48,9 +48,9 @@ def test_critical_values_are_those_of_the_study(seed):
     found = [event["value"] for line in lines for event in line["events"]]
     # Where the search began shows in the last digits.
     assert found == pytest.approx(sorted({e.value for e in wanted.events}), rel=1e-9)
-    told = lines[0]["events"][0]["told"]
-    assert told.startswith("gear 5 leaves its ring")
-    assert told.endswith("at 2.977 um")
+    text = lines[0]["events"][0]["told"]
+    assert text.startswith("gear 5 leaves its ring")
+    assert text.endswith("at 2.977 um")
     gaps = [end for line in lines for gap in line["gaps"] for end in gap[:2]]
     assert gaps == pytest.approx([e for u in wanted.unproved for e in (u.start, u.stop)], rel=1e-8)
 
@@ -66,10 +66,10 @@ def test_stretches_make_the_whole_slider():
 
 
 @pytest.mark.slow
-def test_a_stretch_whose_end_makes_no_case_is_told(seed):
+def test_a_stretch_whose_end_makes_no_case_is_reported(seed):
     """It is no reason to know nothing of the others."""
-    asked = {"name": "rings.4.float", "low": -1.0, "high": 2.0, "at": 2.0}
-    lines = study(seed, "critical", asked)
+    request = {"name": "rings.4.float", "low": -1.0, "high": 2.0, "at": 2.0}
+    lines = study(seed, "critical", request)
     assert lines[0]["gaps"] == []
     low, high, why = lines[-1]["gaps"][0]
     assert (low, high) == (-1.0, -0.5)
@@ -89,12 +89,12 @@ def test_what_matters_comes_in_parts(seed):
     keys = ["rings.4.float", "rings.5.float", "errors.9.installation.amount"]
     lines = study(seed, "slopes", {"keys": keys})
     assert [line["done"] for line in lines] == [2, 3]
-    told = {row[0]: row[1:] for line in lines for row, _ in line["rows"]}
+    cells = {row[0]: row[1:] for line in lines for row, _ in line["rows"]}
     wanted = ls.sensitivity(str(SEED), "rings.5.float", positions=[1])
     rate = wanted.omega["rings.5.float", "rising"]["system"] * 1e-6
-    assert f"{rate:+.3g}" in told["rings.5.float"][0]
-    assert told["rings.4.float"][0].startswith("0 ")
-    assert set(told) == set(keys)
+    assert f"{rate:+.3g}" in cells["rings.5.float"][0]
+    assert cells["rings.4.float"][0].startswith("0 ")
+    assert set(cells) == set(keys)
     effects = {row[0]: effect for line in lines for row, effect in line["rows"]}
     assert effects["rings.5.float"] > effects["rings.4.float"] == 0.0
 
@@ -116,13 +116,13 @@ def test_a_tolerance_study_of_what_is_shown_is_the_one_of_the_library(seed):
     count = JOB.block + 400 if at_hand() else 512
     body = {"ranges": RANGES, "samples": count, "seed": 3, "limit": 1.003}
     lines = study(seed, "tolerance", body)
-    begun, *parts = lines
+    first, *parts = lines
     assert len(parts) > 1
     assert [part["done"] for part in parts] == sorted(part["done"] for part in parts)
     case = ls.load_case(SEED).replace(
         {"errors.6.installation": {"amount": "100.0 um", "direction": "90.0 deg"}}
     )
-    table = tomllib.loads(begun["begun"]["toml"])["study"]["explorer"]
+    table = tomllib.loads(first["begun"]["toml"])["study"]["explorer"]
     assert table["inputs"]["rings.4.float=rings.5.float"]["distribution"] == "uniform"
     case = case.replace({"study.explorer": table})
     found = ls.tolerance(case, indices=0, worst=False)
@@ -138,29 +138,29 @@ def test_a_study_of_the_case_is_the_one_that_its_file_describes(served):
     case = shipped("nrel_5mw/gearbox")
     with served(case) as address:
         offered = ask(address, "/case")[2]["studies"]
-        begun, *parts = study(address, "tolerance", {"study": "pins", "samples": 32, "seed": 1})
+        first, *parts = study(address, "tolerance", {"study": "pins", "samples": 32, "seed": 1})
     assert set(offered) == {"pins", "teeth"}
-    assert begun["begun"]["limit"] == 1.1
+    assert first["begun"]["limit"] == 1.1
     found = ls.tolerance(case, study="pins", samples=32, indices=0, worst=False)
     assert parts[-1]["table"]["rows"] == figures(found, 1.1)
-    assert begun["begun"]["inputs"] == [[i.name, str(i.distribution)] for i in found.inputs.every]
+    assert first["begun"]["inputs"] == [[i.name, str(i.distribution)] for i in found.inputs.every]
 
 
 @pytest.mark.slow
 def test_samples_without_an_answer_are_counted(seed):
     """A load that would press teeth together by more than they are high."""
-    asked = {"changes": {"operating.power": "2e9 kW"}, "ranges": RANGES, "samples": 20}
-    last = study(seed, "tolerance", asked)[-1]
+    request = {"changes": {"operating.power": "2e9 kW"}, "ranges": RANGES, "samples": 20}
+    last = study(seed, "tolerance", request)[-1]
     assert (last["done"], last["refused"]) == (20, 20)
     assert last["reasons"][0].startswith("20 × ")
     assert "table" not in last
 
 
 def test_what_is_no_length_scatters_about_its_setting(seed):
-    asked = {"ranges": {"operating.power": [0.0, 9.0]}, "changes": {"operating.power": "100 kW"}}
-    begun = study(seed, "tolerance", asked | {"samples": 1})[0]["begun"]
-    told = "truncated normal mean 100, deviation 2, low 94, high 106 kW"
-    assert begun["inputs"] == [["operating.power", told]]
+    request = {"ranges": {"operating.power": [0.0, 9.0]}, "changes": {"operating.power": "100 kW"}}
+    first = study(seed, "tolerance", request | {"samples": 1})[0]["begun"]
+    distribution = "truncated normal mean 100, deviation 2, low 94, high 106 kW"
+    assert first["inputs"] == [["operating.power", distribution]]
 
 
 @pytest.mark.parametrize(
@@ -197,7 +197,7 @@ def test_odd_studies_are_answered_with_a_message(seed, name, body, status):
         ("tolerance", {"ranges": {"title": [0, 1]}}, "describes the case"),
     ],
 )
-def test_a_study_that_cannot_be_is_told(seed, name, body, why):
+def test_a_study_that_cannot_be_is_reported(seed, name, body, why):
     status, _, content = ask(seed, f"/study/{name}", body)
     assert status == 200
     found = content if isinstance(content, dict) else json.loads(content)
@@ -291,24 +291,24 @@ def test_a_tolerance_study_grows_is_stopped_and_says_of_what_it_is(browser, seed
     before = shown(browser, "sampled").text
     WebDriverWait(browser, 120).until(lambda b: shown(b, "sampled").text != before)
     shown(browser, "stop").click()
-    told = shown(browser, "sampled").text
-    assert told.startswith("stopped: ")
-    assert told.endswith("of 100000 samples")
+    label = shown(browser, "sampled").text
+    assert label.startswith("stopped: ")
+    assert label.endswith("of 100000 samples")
     time.sleep(0.5)
-    assert shown(browser, "sampled").text == told
+    assert shown(browser, "sampled").text == label
     assert not shown(browser, "stop").is_enabled()
-    # Begun again, it ends with the setting; what was found says of which setting it is.
+    # Started again, it ends with the setting; what was found says of which setting it is.
     begin(browser, 100_000)
     assert not shown(browser, "earlier").is_displayed()
     slider = browser.find_element(By.CSS_SELECTOR, "[data-name='rings.5.float'] [type=range]")
     slider.send_keys(Keys.ARROW_RIGHT)
     settled(browser)
-    told = shown(browser, "sampled").text
-    assert told.startswith("stopped, as the setting has changed: ")
+    label = shown(browser, "sampled").text
+    assert label.startswith("stopped, as the setting has changed: ")
     assert shown(browser, "earlier").is_displayed()
     assert "As the case has it" in shown(browser, "sampled-of").text
     time.sleep(0.5)
-    assert shown(browser, "sampled").text == told
+    assert shown(browser, "sampled").text == label
     assert browser.get_log("browser") == []
 
 
@@ -336,7 +336,7 @@ def test_what_matters_on_the_page(browser, seed):
     shown(browser, "slopes").click()
     WebDriverWait(browser, 120).until(
         lambda b: (
-            b.find_elements(By.CSS_SELECTOR, "#mattering tr") and not shown(b, "slopes-told").text
+            b.find_elements(By.CSS_SELECTOR, "#mattering tr") and not shown(b, "slopes-status").text
         )
     )
     rows = browser.find_elements(By.CSS_SELECTOR, "#mattering tbody tr")

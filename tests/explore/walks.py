@@ -20,7 +20,7 @@ STATE = "return document.body.dataset.state"
 SETTLED = ("present", "none")
 SAYS = """
 const says = () => ({
-  asked: document.body.dataset.asked,
+  number: document.body.dataset.number,
   state: document.body.dataset.state,
   outcome: document.getElementById("state").textContent,
   of: document.getElementById("answer").dataset.of || null,
@@ -50,7 +50,7 @@ let playing = true, marked = 0;
 const look = () => {
   const now = says();
   if (now.state === "asking") marked += 1;
-  else seen.set(`${now.asked} ${now.state} ${JSON.stringify(now.tables)}`, now);
+  else seen.set(`${now.number} ${now.state} ${JSON.stringify(now.tables)}`, now);
   if (playing) requestAnimationFrame(look);
 };
 look();
@@ -98,27 +98,27 @@ def settled(browser, timeout=60):
 
 
 def walked(browser, steps, seed):
-    """All that the page said was of the present inputs in a random walk, and frames it did not."""
+    """All that a page showed as current in a random walk, and the number of frames it did not."""
     browser.set_script_timeout(600)
     found = browser.execute_async_script(WALK, steps, seed)
     return found["seen"], found["marked"]
 
 
 def setting(inputs, fields):
-    """Changes of a case, from what stands in the fields of the page."""
+    """Changes of a case, from the contents of the fields of the page."""
     return inputs.changes(
         {key: text for key, text in fields.items() if text != str(inputs.every[key].text)}
     )
 
 
-def contradicted(says, inputs, told):
+def contradicted(says, inputs, tables_of):
     """Why what the page says is not of the inputs that it shows; empty if it is."""
     try:
-        wanted = told(inputs.case.replace(setting(inputs, says["fields"])))
+        wanted = tables_of(inputs.case.replace(setting(inputs, says["fields"])))
     except CaseError:
         return "" if says["outcome"] == "invalid" and not says["tables"] else "invalid, but shown"
     except Refused:
         return "" if says["outcome"] == "refused" and not says["tables"] else "refused, but shown"
-    if says["of"] != says["asked"] or says["state"] != "present":
+    if says["of"] != says["number"] or says["state"] != "present":
         return "is of another setting"
     return "" if says["tables"] == wanted else f"{says['tables']} instead of {wanted}"

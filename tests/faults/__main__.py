@@ -27,29 +27,29 @@ from tests.faults.trial import KINDS, Stage
 
 
 def _tried(
-    scene: Scene, folder: Path, server: Server, shim: Shim, asked: argparse.Namespace
+    scene: Scene, folder: Path, server: Server, shim: Shim, options: argparse.Namespace
 ) -> int:
     """Try the faults of a scene, print what was found, and return how many are wrong."""
     stage = Stage(scene, folder, server, shim)
-    wrong, faults, bad, told = Counter[str](), Counter[str](), 0, time.monotonic()
-    begun = told
-    planned = stage.plan(asked.step, asked.once)
-    for number, fault in planned[asked.first :]:
+    wrong, faults, bad, reported = Counter[str](), Counter[str](), 0, time.monotonic()
+    start = reported
+    planned = stage.plan(options.step, options.once)
+    for number, fault in planned[options.first :]:
         found = stage.trial(number, fault)
         faults[fault if found.seen.hit else "none"] += 1
         wrong.update({one.kind for one in found.wrong})
         bad += bool(found.wrong)
         if found.wrong:
             typer.echo(f"  {found}")
-        if time.monotonic() - told > 60.0:
-            told = time.monotonic()
+        if time.monotonic() - reported > 60.0:
+            reported = time.monotonic()
             typer.echo(f"  {scene.name}: {sum(faults.values()):,} so far")
-        if asked.seconds is not None and time.monotonic() - begun > asked.seconds:
-            typer.echo(f"  {scene.name}: stopped after {asked.seconds} s")
+        if options.seconds is not None and time.monotonic() - start > options.seconds:
+            typer.echo(f"  {scene.name}: stopped after {options.seconds} s")
             break
     met = ", ".join(f"{count} {name}" for name, count in sorted(faults.items()))
     kinds = ", ".join(f"{wrong[kind]} {kind}" for kind in KINDS)
-    tried, seconds = sum(faults.values()), time.monotonic() - begun
+    tried, seconds = sum(faults.values()), time.monotonic() - start
     typer.echo(
         f"{scene.name}: {len(stage.log):,} calls; {tried:,} of {len(planned):,} faults tried in "
         f"{seconds:.0f} s ({met}): {kinds}"
@@ -68,16 +68,16 @@ def _run() -> int:
     parser.add_argument("--first", type=int, default=0, help="leave so many faults out at first")
     parser.add_argument("--only", default="", help="scenes whose name begins so")
     parser.add_argument("--seconds", type=int, help="most for each scene")
-    asked = parser.parse_args()
+    options = parser.parse_args()
     if why_not():
         typer.echo(f"Nothing is tried: {why_not()}.")
         return 2
-    study = asked.samples, asked.positions, asked.indices
+    study = options.samples, options.positions, options.indices
     scenes = [
-        *batch_scenes(asked.cases),
+        *batch_scenes(options.cases),
         *study_scenes(*study),
         *file_scenes(),
-        *worker_scenes(asked.cases, *study),
+        *worker_scenes(options.cases, *study),
     ]
     bad = 0
     with TemporaryDirectory() as above:
@@ -85,10 +85,10 @@ def _run() -> int:
         shim = Shim(folder)
         with Server(folder, shim.environment() | ENVIRONMENT) as server:
             for number, scene in enumerate(scenes):
-                if scene.name.startswith(asked.only):
+                if scene.name.startswith(options.only):
                     own = folder / f"{number}"
                     own.mkdir()
-                    bad += _tried(scene, own, server, shim, asked)
+                    bad += _tried(scene, own, server, shim, options)
     typer.echo(f"{bad} faults left something wrong")
     return 1 if bad else 0
 

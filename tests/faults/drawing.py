@@ -15,8 +15,8 @@ def _draw() -> None:
     from loadshare.report.figure import Figure
 
     spec, form, how = json.load(sys.stdin)
-    told: Any = Figure._converted(cast("Figure", SimpleNamespace(spec=spec)), form, **how)
-    sys.stdout.buffer.write(told.encode() if isinstance(told, str) else told)
+    drawn: Any = Figure._converted(cast("Figure", SimpleNamespace(spec=spec)), form, **how)
+    sys.stdout.buffer.write(drawn.encode() if isinstance(drawn, str) else drawn)
 
 
 if __name__ == "__main__":

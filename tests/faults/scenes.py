@@ -1,4 +1,4 @@
-"""Commands that write files: what lies there before, what is asked, what may differ afterwards."""
+"""Commands that write files: what is there before, the command, what may differ afterwards."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Scene:
         In which ``{}`` stands for the folder; cases lie in ``in``, all that is written in ``out``.
     prepare : callable
     again : tuple of int
-        Exit codes, beside 2, with which an error may be told.
+        Exit codes, besides 2, with which an error may be reported.
     apart : bool
         Whether its workers are processes of their own.
     """
@@ -59,11 +59,11 @@ def masked(name: str, content: bytes) -> bytes:
         return MINUTE.sub(b"", content)
     if Path(name).name != SUMMARY:
         return content
-    told = json.loads(content)
-    del told["counts"]
-    for case in told["cases"]:
+    document = json.loads(content)
+    del document["counts"]
+    for case in document["cases"]:
         del case["seconds"], case["outcome"]
-    return json.dumps(told).encode()
+    return json.dumps(document).encode()
 
 
 def batch_scenes(count: int) -> list[Scene]:

@@ -1,4 +1,4 @@
-"""A process that has everything imported, and forks for every command it is asked to run.
+"""A process that has everything imported, and forks for every command that it is to run.
 
 A command in a process of its own takes seconds, most of them for imports; a fork takes some
 thousandths. Answers of the solver are kept from the undisturbed run: what is tried here are files,
@@ -33,7 +33,7 @@ class Ended:
     code : int
         Exit code; negative for the signal that killed it.
     out, err : str
-        What it said.
+        What it printed.
     """
 
     code: int
@@ -41,7 +41,7 @@ class Ended:
     err: str
 
     @property
-    def said(self) -> str:
+    def output(self) -> str:
         """All of it."""
         return self.out + self.err
 
@@ -153,8 +153,8 @@ def _keep_answers() -> None:
     from loadshare.study.tolerance import design, figures, omegas, study, worst
 
     def case_key(case: Any, **how: Any) -> str:
-        told = {name: value for name, value in how.items() if name != "progress"}
-        return f"{case.name} {case.hash} {sorted(told.items())}"
+        options = {name: value for name, value in how.items() if name != "progress"}
+        return f"{case.name} {case.hash} {sorted(options.items())}"
 
     kept = _keeping(loadshare.job.solve, case_key)
     loadshare.job.solve = worst.solve = kept  # type: ignore[attr-defined]
@@ -186,13 +186,13 @@ def _keep_answers() -> None:
 
 def _drawn(figure: Any, form: str, **how: float) -> str | bytes:
     """Draw in another process: a fork of one that has drawn would wait for threads it lacks."""
-    told = subprocess.run(
+    drawn = subprocess.run(
         [sys.executable, "-m", "tests.faults.drawing"],
         input=json.dumps([figure.spec, form, how]).encode(),
         stdout=subprocess.PIPE,
         check=True,
     ).stdout
-    return told.decode() if form == "svg" else told
+    return drawn.decode() if form == "svg" else drawn
 
 
 def _solve_here(here: bool) -> None:

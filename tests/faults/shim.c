@@ -1,7 +1,7 @@
 /* Counts the file-system calls of a process below chosen folders, and lets one of them fail.
  *
- * Loaded before libc (LD_PRELOAD), it sees the calls of Python and of every C library alike. What
- * it is told and what it tells stands in one file that all processes of a run share, named by
+ * Loaded before libc (LD_PRELOAD), it sees the calls of Python and of every C library alike. Its
+ * orders and its reports are in one file that all processes of a run share, named by
  * LOADSHARE_FAULTS; `shim.py` writes and reads the same fields.
  */
 #define _GNU_SOURCE
@@ -35,7 +35,7 @@ struct control {
     char root[ROOM]; /* folder that is watched */
     char name[64];   /* of the first call that failed */
     char path[ROOM]; /* what it was about */
-    char log[ROOM];  /* file to which each call is told; empty for none */
+    char log[ROOM];  /* file to which each call is written; empty for none */
 };
 
 static struct control *control;
@@ -234,7 +234,7 @@ OPENAT(openat64)
 FOPEN(fopen)
 FOPEN(fopen64)
 
-/* A file that is closed is closed, whatever is said of it. */
+/* A file that is closed is closed, whatever close returns. */
 int close(int fd) {
     static int (*own)(int);
     if (own == NULL) *(void **)&own = dlsym(RTLD_NEXT, "close");

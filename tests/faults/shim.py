@@ -1,4 +1,4 @@
-"""The C library that counts file-system calls and lets one fail: compiled, loaded, told, read."""
+"""The C library that counts file-system calls and lets one fail: compiled, loaded, set, read."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Seen:
 
 
 class Shim:
-    """The library and the file by which it is told what shall fail.
+    """The library and the file that sets what shall fail.
 
     Parameters
     ----------
@@ -101,11 +101,11 @@ class Shim:
         fault : str
             A key of `FAULTS`.
         log : pathlib.Path, optional
-            File to which every call is told.
+            File to which every call is written.
         """
         error, lasting = FAULTS[fault]
-        told = os.fsencode(log) if log is not None else b""
-        fields = (1, 0, target, error, lasting, 0, os.fsencode(root), b"", b"", told)
+        log_name = os.fsencode(log) if log is not None else b""
+        fields = (1, 0, target, error, lasting, 0, os.fsencode(root), b"", b"", log_name)
         self._shared[:] = FIELDS.pack(*fields)
 
     def disarm(self) -> Seen:

@@ -53,7 +53,7 @@ def test_no_fault_leaves_anything_wrong_in_a_study(served, tmp_path, name):
 
 
 def test_pages_are_compared_but_for_the_minute():
-    """So it is as long as pages tell it in these words."""
+    """So it is as long as pages say it in these words."""
     pages = [
         report_page([], datetime(2026, 1, 2, 3, minute, tzinfo=UTC)).encode() for minute in (4, 5)
     ]
@@ -86,7 +86,7 @@ def test_all_is_on_the_disk_before_it_has_its_name(served, tmp_path):
     moved = [name for name, _ in stage.log].index("rename")
     folder = os.path.dirname(temporary)  # noqa: PTH120 -- of a text
     assert ("fsync", folder) in stage.log[moved:]
-    # The folder was made, and its name stands in the one above.
+    # The folder was made, and its name is in the one above.
     made = stage.log.index(("mkdir", folder))
     assert ("fsync", os.path.dirname(folder)) in stage.log[made:moved]  # noqa: PTH120
 

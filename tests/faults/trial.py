@@ -22,8 +22,8 @@ LEFT = re.compile(r"^(.*/)?\.(.+)\.[0-9a-f]{16}$")
 """What a killed process may leave, until the command is given again."""
 CHANGING = ("mkdir", "rename", "unlink", "fsync", "flock", "chmod", "chown")
 KINDS = ("told", "lost", "corrupt", "unusable", "different", "left")
-"""What may be wrong: how the error is told, files that are gone, files that are neither what was
-there nor what is asked for; a command that does not end well when it is given again, files that
+"""What may be wrong: the report of the error, files that are gone, files that are neither what was
+there nor what is requested; a command that does not end well when it is given again, files that
 then are not those of an undisturbed run, and temporary ones that are still there."""
 
 
@@ -68,8 +68,8 @@ class Trial:
 
     def __str__(self) -> str:
         call = f"{self.fault} in {self.seen.name} {Path(self.seen.path).name}"
-        told = "; ".join(f"{w.kind}: {w.what}" for w in self.wrong)
-        return f"{self.scene}, call {self.number} ({call}), code {self.code}: {told or 'well'}"
+        faults = "; ".join(f"{w.kind}: {w.what}" for w in self.wrong)
+        return f"{self.scene}, call {self.number} ({call}), code {self.code}: {faults or 'well'}"
 
 
 class Stage:
@@ -91,7 +91,7 @@ class Stage:
 
         def run(words: tuple[str, ...]) -> None:
             ended = server.run(words, fork=False)
-            assert ended.code == 0, ended.said
+            assert ended.code == 0, ended.output
 
         scene.prepare(self.root, run)
         self.root.rename(self._start)
@@ -111,7 +111,7 @@ class Stage:
         self.shim.arm(self.root, log=log)
         ended = self._given()
         self.shim.disarm()
-        assert ended.code == self.code, ended.said
+        assert ended.code == self.code, ended.output
         lines = log.read_text(encoding="utf-8").splitlines()
         return [(name, path) for _, name, path in (line.split("\t") for line in lines)]
 
@@ -145,7 +145,7 @@ class Stage:
         self.shim.arm(self.root, number, fault)
         ended = self._given()
         seen = self.shim.disarm()
-        wrong = [*self._told(ended, seen, fault), *self._state(ended)]
+        wrong = [*self._reported(ended, seen, fault), *self._state(ended)]
         again = self._given()
         wrong += self._resumed(again)
         return Trial(self.scene.name, number, fault, seen, ended.code, tuple(wrong))
@@ -157,32 +157,32 @@ class Stage:
         shutil.rmtree(self.root, ignore_errors=True)
         shutil.copytree(self._start, self.root)
 
-    def _told(self, ended: Ended, seen: Seen, fault: str) -> Iterator[Wrong]:
+    def _reported(self, ended: Ended, seen: Seen, fault: str) -> Iterator[Wrong]:
         """Judge how a command ended of which a call failed."""
-        if "Traceback" in ended.said or "Exception ignored" in ended.said:
+        if "Traceback" in ended.output or "Exception ignored" in ended.output:
             yield Wrong("told", f"a traceback: {ended.err.strip().splitlines()[-1]}")
         elif ended.code == -signal.SIGKILL:
             if fault != "kill" or not seen.hit:
                 yield Wrong("told", "was killed")
         elif ended.code not in (self.code, 2, *self.scene.again):
-            yield Wrong("told", f"left with {ended.code}: {ended.said.strip()[-200:]}")
-        elif ended.code != self.code and not self._named(ended.said, fault, Path(seen.path)):
-            yield Wrong("told", f"names no file: {ended.said.strip()[-200:]}")
+            yield Wrong("told", f"left with {ended.code}: {ended.output.strip()[-200:]}")
+        elif ended.code != self.code and not self._named(ended.output, fault, Path(seen.path)):
+            yield Wrong("told", f"names no file: {ended.output.strip()[-200:]}")
 
-    def _named(self, said: str, fault: str, failed: Path) -> bool:
-        """Whether what is said names the file, or one that was to stand in the folder.
+    def _named(self, output: str, fault: str, failed: Path) -> bool:
+        """Whether the output names the file, or one that was to be in the folder.
 
         Where a disk stays full, the file that ends a command need not be the first that failed.
         """
         if FAULTS[fault].lasting:
-            return str(self.root) in said
+            return str(self.root) in output
         match = LEFT.match(str(failed))
         if match:
-            return f"{match[1]}{match[2]}" in said
-        return str(failed) in said
+            return f"{match[1]}{match[2]}" in output
+        return str(failed) in output
 
     def _state(self, ended: Ended) -> Iterator[Wrong]:
-        """Judge what stands on disk after the fault."""
+        """Judge what is on disk after the fault."""
         now = _files(self.root)
         for name, content in now.items():
             allowed = [files[name] for files in (self.before, self.after) if name in files]
@@ -193,16 +193,16 @@ class Stage:
         yield from (Wrong("lost", name) for name in self.before if name not in now)
         if ended.code == self.code == 0:
             yield from (Wrong("lost", f"{n}, and not a word") for n in self.after if n not in now)
-            # A summary tells of a result that could not be read, and so was not kept.
-            told = [n for n in now if n in self.after and not _tells(n, now[n])]
-            old = [n for n in told if not _same(n, now[n], self.after[n])]
+            # A summary reports a result that could not be read, and so was not kept.
+            kept = [n for n in now if n in self.after and not _tells(n, now[n])]
+            old = [n for n in kept if not _same(n, now[n], self.after[n])]
             yield from (Wrong("different", f"{name}, and not a word") for name in old)
 
     def _resumed(self, again: Ended) -> Iterator[Wrong]:
         """Judge the command that was given again."""
         now = _files(self.root)
-        if again.code != self.code or "Traceback" in again.said:
-            yield Wrong("unusable", f"left with {again.code}: {again.said.strip()[-300:]}")
+        if again.code != self.code or "Traceback" in again.output:
+            yield Wrong("unusable", f"left with {again.code}: {again.output.strip()[-300:]}")
             return
         yield from (Wrong("left", name) for name in now if LEFT.match(name))
         yield from (Wrong("lost", f"{n}, also then") for n in self.after if n not in now)
@@ -221,7 +221,7 @@ def _files(folder: Path) -> Files:
 
 
 def _tells(name: str, content: bytes) -> bool:
-    """Whether it is the whole of what tells also of what went wrong: a batch's summary, a page."""
+    """Whether it is a whole file that also reports what went wrong: a batch's summary, a page."""
     if name.endswith(".html"):
         return b"cannot be used" in content and content.rstrip().endswith(b"</html>")
     try:

@@ -19,14 +19,16 @@ def _run() -> None:
     parser = argparse.ArgumentParser(prog="python -m tests.flips", description=__doc__)
     parser.add_argument("--count", type=int, default=1000, help="of each kind of file")
     parser.add_argument("--seed", type=int, default=1)
-    asked = parser.parse_args()
+    options = parser.parse_args()
     logging.getLogger("loadshare").setLevel(logging.ERROR)
     with TemporaryDirectory() as folder:
         for subject in subjects(Path(folder)):
-            found = sum(subject.flip(place) for place in places(subject, asked.count, asked.seed))
-            size, rest = len(subject.whole), asked.count - found
-            told = f"{asked.count} flips: {found} found, {rest} change nothing"
-            typer.echo(f"{subject.kind} ({size} bytes): {told}")
+            found = sum(
+                subject.flip(place) for place in places(subject, options.count, options.seed)
+            )
+            size, rest = len(subject.whole), options.count - found
+            counts = f"{options.count} flips: {found} found, {rest} change nothing"
+            typer.echo(f"{subject.kind} ({size} bytes): {counts}")
 
 
 if __name__ == "__main__":

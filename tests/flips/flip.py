@@ -42,9 +42,9 @@ class Subject:
 
     def flip(self, place: int) -> bool:
         """Flip one bit of the file, tell whether that was found, and mend it."""
-        spoilt = bytearray(self.whole)
-        spoilt[place // 8] ^= 1 << (place % 8)
-        self.file.write_bytes(spoilt)
+        damaged = bytearray(self.whole)
+        damaged[place // 8] ^= 1 << (place % 8)
+        self.file.write_bytes(damaged)
         try:
             return self.notices()
         finally:

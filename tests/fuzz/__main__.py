@@ -1,4 +1,4 @@
-"""Try inputs that nobody meant: ``python -m tests.fuzz --count 100000 --processes 2``.
+"""Try unintended inputs: ``python -m tests.fuzz --count 100000 --processes 2``.
 
 Prints what must not happen, once of each kind, and keeps the input in `corpus`, where the tests try
 it again; leaves with 1 if anything did.
@@ -24,7 +24,7 @@ from tests.fuzz.corpus import keep
 from tests.fuzz.trial import Trial, compile_first, drawn, trial
 
 MEMORY = 2 << 30
-"""Bytes that no input may take, beside what the process has."""
+"""Bytes that no input may take, besides what the process has."""
 
 
 def _alone(seed: int, number: int) -> Trial:
@@ -35,9 +35,9 @@ def _alone(seed: int, number: int) -> Trial:
 
 
 def _data() -> int:
-    """Bytes of data that this process has; where nobody tells, none."""
-    with suppress(OSError), Path("/proc/self/status").open(encoding="ascii") as told:
-        return 1024 * next(int(line.split()[1]) for line in told if line.startswith("VmData"))
+    """Bytes of data that this process has; 0 where the system does not say."""
+    with suppress(OSError), Path("/proc/self/status").open(encoding="ascii") as lines:
+        return 1024 * next(int(line.split()[1]) for line in lines if line.startswith("VmData"))
     return 0
 
 
@@ -63,15 +63,15 @@ def _run() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0, help="number of the first input")
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
-    asked = parser.parse_args()
+    options = parser.parse_args()
     with ProcessPoolExecutor(1) as pool:
         # In a process of its own: what compiling takes would count as an input's memory.
         pool.submit(compile_first).result()
-    begun, told, faults, codes = time.monotonic(), time.monotonic(), 0, Counter[str]()
+    start, reported, faults, codes = time.monotonic(), time.monotonic(), 0, Counter[str]()
     seen: set[str] = set()
-    with ProcessPoolExecutor(asked.processes) as pool:
-        numbers = range(asked.first, asked.first + asked.count)
-        every = pool.map(partial(_alone, asked.seed), numbers, chunksize=20)
+    with ProcessPoolExecutor(options.processes) as pool:
+        numbers = range(options.first, options.first + options.count)
+        every = pool.map(partial(_alone, options.seed), numbers, chunksize=20)
         for done, found in enumerate(every, 1):
             codes[f"{found.kind} {found.code}"] += 1
             if found.fault:
@@ -80,10 +80,10 @@ def _run() -> int:
                     seen.add(found.fault)
                     kept = _kept(found.seed, found.number)
                     typer.echo(f"{found.fault}\n    {' '.join(found.words)[:200]}\n    {kept}")
-            if time.monotonic() - told > 10.0:
-                told = time.monotonic()
-                typer.echo(f"{done:,} tried, {faults} faults, {told - begun:.0f} s")
-    typer.echo(f"{asked.count:,} tried in {time.monotonic() - begun:.0f} s: {faults} faults")
+            if time.monotonic() - reported > 10.0:
+                reported = time.monotonic()
+                typer.echo(f"{done:,} tried, {faults} faults, {reported - start:.0f} s")
+    typer.echo(f"{options.count:,} tried in {time.monotonic() - start:.0f} s: {faults} faults")
     typer.echo(", ".join(f"{kind}: {count}" for kind, count in sorted(codes.items())))
     return 1 if faults else 0
 

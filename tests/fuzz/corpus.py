@@ -9,7 +9,7 @@ from pathlib import Path
 from tests.fuzz.trial import CASES, tried
 
 CORPUS = Path(__file__).with_name("corpus")
-"""A folder for each, with its files as they lay and `command.json`."""
+"""A folder for each, with its files as they were and `command.json`."""
 COMMAND = "command.json"
 
 
@@ -29,12 +29,12 @@ def keep(name: str, kind: str, words: tuple[str, ...], folder: Path) -> Path:
     kept = CORPUS / name
     kept.mkdir(parents=True, exist_ok=True)
     for file in folder.rglob("*"):
-        # What is shipped is laid beside it again.
+        # Shipped files are put next to it again.
         if file.is_file() and not _is_shipped(file):
             _copy(file, kept / file.relative_to(folder))
     marked = [w.replace(str(folder), "{folder}").replace(str(CASES), "{cases}") for w in words]
-    told = {"kind": kind, "words": marked}
-    (kept / COMMAND).write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
+    command = {"kind": kind, "words": marked}
+    (kept / COMMAND).write_text(json.dumps(command, indent=1) + "\n", encoding="utf-8")
     return kept
 
 
@@ -55,10 +55,10 @@ def retried(kept: Path, folder: Path) -> str:
     for file in kept.rglob("*"):
         if file.is_file():
             _copy(file, folder / file.relative_to(kept))
-    told = json.loads((folder / COMMAND).read_text(encoding="utf-8"))
-    # By hand: words may hold braces of their own.
+    command = json.loads((folder / COMMAND).read_text(encoding="utf-8"))
+    # Not by format(): words may hold braces of their own.
     words = (
         word.replace("{folder}", str(folder)).replace("{cases}", str(CASES))
-        for word in told["words"]
+        for word in command["words"]
     )
-    return tried(told["kind"], tuple(words), folder)[1]
+    return tried(command["kind"], tuple(words), folder)[1]

@@ -1,4 +1,4 @@
-"""Inputs that nobody meant: shipped files with some values, keys, units or bytes changed."""
+"""Unintended inputs: shipped files with some values, keys, units or bytes changed."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def places(data: Any, above: tuple[Step, ...] = ()) -> Iterator[tuple[Step, ...]
 
 
 def at(data: Any, path: tuple[Step, ...]) -> Any:
-    """Return what stands at a place."""
+    """Return the value at a place."""
     for step in path:
         data = data[step]
     return data
@@ -164,7 +164,7 @@ def rescaled(random: Random, data: dict[str, Any]) -> dict[str, Any]:
 
 
 def garbled(random: Random, text: bytes) -> bytes:
-    """Return text with some bytes changed, left out, put in or said twice."""
+    """Return text with some bytes changed, left out, put in or repeated."""
     made = bytearray(text)
     for _ in range(int(random.integers(1, 6))):
         where = int(random.integers(len(made) + 1))

@@ -1,4 +1,4 @@
-"""A slice of the inputs that nobody meant; ``make fuzz N=100000`` tries as many as one likes."""
+"""A slice of the unintended inputs; ``make fuzz N=100000`` tries as many as one likes."""
 
 import os
 import stat
@@ -64,7 +64,7 @@ def test_pipes_and_devices_are_not_waited_for(tmp_path):
     assert "is not a regular file" in found.output
 
 
-def test_a_name_that_is_too_long_is_told():
+def test_a_name_that_is_too_long_is_reported():
     found = on_a_screen_of(80)("check", "a" * 5000)
     assert found.exit_code == 2
     assert "file name too long" in found.output
@@ -81,6 +81,6 @@ LONG = {"case-101-1696", "study-40003-5927", "study-60005-19145"}
     mostly_slow(KEPT, [kept for kept in KEPT if kept.name not in LONG]),
     ids=lambda kept: kept.name,
 )
-def test_what_was_found_once_is_told_in_words(tmp_path, kept, monkeypatch):
+def test_what_was_found_once_is_reported_in_words(tmp_path, kept, monkeypatch):
     monkeypatch.delenv(OUTSIDE)
     assert retried(kept, tmp_path) == ""

@@ -1,4 +1,4 @@
-"""One input that nobody meant, given to the command: what must never happen, and what did."""
+"""One unintended input, given to the command: what must never happen, and what did."""
 
 from __future__ import annotations
 
@@ -120,23 +120,23 @@ class Trial:
 
 def _command(words: tuple[str, ...]) -> tuple[int, str]:
     """Exit code and output of a command in this process."""
-    said = StringIO()
+    output = StringIO()
     try:
-        with redirect_stdout(said), redirect_stderr(said):
+        with redirect_stdout(output), redirect_stderr(output):
             main(words)
     except SystemExit as left:
         code = left.code
-    return (code if isinstance(code, int) else 0 if code is None else 1), said.getvalue()
+    return (code if isinstance(code, int) else 0 if code is None else 1), output.getvalue()
 
 
 def _judged(words: tuple[str, ...], folder: Path) -> tuple[int, str]:
     """Exit code of a command, and what is wrong about it."""
-    code, said = _command(words)
+    code, output = _command(words)
     if code not in (0, 1, 2):
         return code, f"left with {code}"
-    if "Traceback" in said:
-        return code, f"a traceback: {said.strip().splitlines()[-1]}"
-    if code and not said.strip():
+    if "Traceback" in output:
+        return code, f"a traceback: {output.strip().splitlines()[-1]}"
+    if code and not output.strip():
         return code, "left without a word"
     file = folder / "found.json"
     if code == 0 and file.exists():
@@ -194,7 +194,7 @@ def study_case(name: str) -> dict[str, Any]:
 
 
 def shortened(case: dict[str, Any]) -> dict[str, Any]:
-    """Return a case without what may take hours as it is asked for: samples, steps."""
+    """Return a case without what may legitimately take hours: samples, steps."""
     for table in _tables_in(case):
         for key in COUNTS & set(table):
             if isinstance(table[key], int) and 20 < table[key] <= ALLOWED.samples:
@@ -283,12 +283,12 @@ def _tables(random: Random, folder: Path) -> tuple[str, ...]:
     box = folder / "box"
     box.mkdir()
     tables = dict(case_tables(data))
-    spoilt = pick(random, tuple(tables))
+    damaged = pick(random, tuple(tables))
     for name, text in tables.items():
         content = text.encode()
-        if name == spoilt and random.integers(2):
+        if name == damaged and random.integers(2):
             content = garbled(random, content)
-        elif name == spoilt:
+        elif name == damaged:
             cells = re.split("([,\n])", text)
             for _ in range(random.integers(1, 4)):
                 cells[2 * random.integers(len(cells) // 2)] = pick(random, (*NUMBERS, *NAMES))
@@ -337,7 +337,7 @@ _RESULTS: list[dict[str, Any]] = []
 
 
 def _result(random: Random, folder: Path) -> tuple[str, ...]:
-    """Write a result with some values changed, and its digest made anew."""
+    """Write a result with some values changed, and its digest recomputed."""
     from loadshare.results.digest import DIGEST, digest_of
 
     if not _RESULTS:

@@ -18,8 +18,7 @@ from numba.core.caching import IndexDataCacheFile
 from tests.support import CASES, mostly_slow, shipped
 
 import loadshare as ls
-from loadshare import compilation
-from loadshare import compile_watch as told
+from loadshare import compilation, compile_watch
 from loadshare.compile_watch import Watch, watch
 from loadshare.job import engines
 from loadshare.job.engines import engine_at_hand, engine_named
@@ -101,11 +100,11 @@ def read_only(tmp_path: Path):
 )
 def test_with_nowhere_to_write_the_vectorised_kernel_answers(read_only, torques, named):
     environment = {**read_only, "NUMBA_CACHE_DIR": read_only["HOME"] if named else ""}
-    found, said = run(SOLVE, as_a_user(), **environment)
+    found, output = run(SOLVE, as_a_user(), **environment)
     assert found == torques
-    assert said.count("The compiled kernel is not used") == 1
-    assert "set NUMBA_CACHE_DIR to one that can be written" in said
-    assert "Traceback" not in said
+    assert output.count("The compiled kernel is not used") == 1
+    assert "set NUMBA_CACHE_DIR to one that can be written" in output
+    assert "Traceback" not in output
 
 
 @pytest.mark.parametrize(
@@ -117,9 +116,9 @@ def test_with_nowhere_to_write_the_vectorised_kernel_answers(read_only, torques,
     ids=["no numba", "another numba"],
 )
 def test_without_a_usable_numba_the_vectorised_kernel_answers(torques, spoil):
-    found, said = run(spoil + SOLVE)
+    found, output = run(spoil + SOLVE)
     assert found == torques
-    assert said.count("The compiled kernel is not used: Numba cannot be used") == 1
+    assert output.count("The compiled kernel is not used: Numba cannot be used") == 1
 
 
 def test_without_numba_the_contact_programme_runs_as_it_is_written():
@@ -151,8 +150,8 @@ def test_a_kernel_that_does_not_compile_is_replaced(caplog):
     wanted = machine.answer(situations(machine), 1e-9, vectorised.settle)
     np.testing.assert_array_equal(found.equilibria.flank_force, wanted.equilibria.flank_force)
     assert found.passed.all()
-    told = [r.message for r in caplog.records if not r.message.startswith("Compiling:")]
-    assert [words.count("it does not compile (TypingError") for words in told] == [1]
+    messages = [r.message for r in caplog.records if not r.message.startswith("Compiling:")]
+    assert [words.count("it does not compile (TypingError") for words in messages] == [1]
     assert engine_named("compiled", 10**6) is vectorised.settle
 
 
@@ -205,7 +204,7 @@ DAMAGES = {
 
 @pytest.mark.parametrize("damage", DAMAGES)
 @pytest.mark.parametrize("ending", ["nbi", "nbc"])
-def test_what_was_kept_and_is_damaged_is_compiled_anew(tmp_path, monkeypatch, ending, damage):
+def test_what_was_kept_and_is_damaged_is_compiled_again(tmp_path, monkeypatch, ending, damage):
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     file = tmp_path / "kept.py"
     file.write_text(MODULE, encoding="utf-8")
@@ -216,9 +215,9 @@ def test_what_was_kept_and_is_damaged_is_compiled_anew(tmp_path, monkeypatch, en
     kept = list((tmp_path / "__pycache__").glob(f"*.{ending}"))
     assert len(kept) == 1
     kept[0].write_bytes(DAMAGES[damage](kept[0].read_bytes()))
-    spoiled = loaded(file)
-    assert spoiled(2.0) == 4.0
-    assert sum(spoiled.stats.cache_hits.values()) == 0
+    replaced = loaded(file)
+    assert replaced(2.0) == 4.0
+    assert sum(replaced.stats.cache_hits.values()) == 0
     mended = loaded(file)
     assert mended(2.0) == 4.0
     assert sum(mended.stats.cache_hits.values()) == 1
@@ -264,7 +263,7 @@ def test_what_another_process_compiles_is_waited_for(tmp_path, monkeypatch):
     assert twice(3.0) == 6.0
 
 
-def test_what_cannot_be_written_any_more_is_told_once(tmp_path, monkeypatch, caplog):
+def test_what_cannot_be_written_any_more_is_reported_once(tmp_path, monkeypatch, caplog):
     file = tmp_path / "kept.py"
     file.write_text(MODULE, encoding="utf-8")
     twice = loaded(file)
@@ -276,9 +275,9 @@ def test_what_cannot_be_written_any_more_is_told_once(tmp_path, monkeypatch, cap
     monkeypatch.setattr(IndexDataCacheFile, "save", full)
     with caplog.at_level(logging.WARNING, logger="loadshare"):
         assert (twice(2.0), twice(2)) == (4.0, 4.0)
-    told = [r.message for r in caplog.records if "could not be kept" in r.message]
-    assert len(told) == 1
-    assert "No space left on device" in told[0]
+    messages = [r.message for r in caplog.records if "could not be kept" in r.message]
+    assert len(messages) == 1
+    assert "No space left on device" in messages[0]
 
 
 # --- What is at hand ---
@@ -369,11 +368,11 @@ def test_what_is_loaded_is_used_for_the_smallest_batch():
 import loadshare as ls
 from loadshare.job import engines
 from loadshare.solver.hot import compiled, vectorised
-told = [engines.loaded(), engines.engine_named("auto", 1) is vectorised.settle]
+found = [engines.loaded(), engines.engine_named("auto", 1) is vectorised.settle]
 ls.solve({str(CASE)!r}, engine="compiled", positions=[1])
 for engine in (engines.engine_named, engines.engine_at_hand):
-    told.append(engine("auto", 1) is compiled.settle)
-print([*told, engines.loaded(), engines.chosen(1) == "vectorised"])
+    found.append(engine("auto", 1) is compiled.settle)
+print([*found, engines.loaded(), engines.chosen(1) == "vectorised"])
 """
     assert run(script)[0] == [False, True, True, True, True, True]
 
@@ -427,19 +426,19 @@ print([str(e.data["dispatcher"]) for _, e in compiled.buffer])
     assert run(script)[0] == []
 
 
-# --- Compiling is told ---
+# --- Compiling is reported ---
 
 
 @pytest.fixture
 def nothing_compiles():
-    """Whoever tells of what was compiled before is done."""
+    """Reports on what was compiled before are done."""
     watch.wait(60.0)
 
 
 @pytest.mark.usefixtures("nothing_compiles")
-def test_compiling_is_told_while_it_lasts(monkeypatch, caplog):
-    monkeypatch.setattr(told, "PATIENCE", 0.05)
-    monkeypatch.setattr(told, "AGAIN", 0.1)
+def test_compiling_is_reported_while_it_lasts(monkeypatch, caplog):
+    monkeypatch.setattr(compile_watch, "PATIENCE", 0.05)
+    monkeypatch.setattr(compile_watch, "AGAIN", 0.1)
     mine = Watch()
     with caplog.at_level(logging.WARNING, logger="loadshare"):
         mine.started()
@@ -455,8 +454,8 @@ def test_compiling_is_told_while_it_lasts(monkeypatch, caplog):
 
 
 @pytest.mark.usefixtures("nothing_compiles")
-def test_what_takes_no_time_is_not_told(monkeypatch, caplog):
-    monkeypatch.setattr(told, "PATIENCE", 0.2)
+def test_what_takes_no_time_is_not_reported(monkeypatch, caplog):
+    monkeypatch.setattr(compile_watch, "PATIENCE", 0.2)
     mine = Watch()
     with caplog.at_level(logging.WARNING, logger="loadshare"):
         mine.started()
@@ -469,10 +468,10 @@ def test_numba_tells_the_watch(tmp_path, monkeypatch):
     file = tmp_path / "kept.py"
     file.write_text(MODULE, encoding="utf-8")
     twice = loaded(file)
-    begun: list[str] = []
-    monkeypatch.setattr(watch, "started", lambda: begun.append("started"))
-    monkeypatch.setattr(watch, "ended", lambda: begun.append("ended"))
+    calls: list[str] = []
+    monkeypatch.setattr(watch, "started", lambda: calls.append("started"))
+    monkeypatch.setattr(watch, "ended", lambda: calls.append("ended"))
     assert twice(2.0) == 4.0
-    assert begun == ["started", "ended"]
+    assert calls == ["started", "ended"]
     assert twice(3.0) == 6.0
-    assert len(begun) == 2
+    assert len(calls) == 2

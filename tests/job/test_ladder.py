@@ -156,16 +156,16 @@ def test_a_back_end_that_is_named_comes_first(solver, monkeypatch):
     assert found.stamp.solver == solver
 
 
-@pytest.mark.parametrize("asked", [{"method": "picard"}, {"method": "power"}, {"reduce": False}])
-def test_what_only_a_back_end_can_do_is_not_asked_of_the_hot_path(asked):
-    found = ls.solve(shipped("fgfbstts/limit_ring"), positions=[1], **asked)
+@pytest.mark.parametrize("options", [{"method": "picard"}, {"method": "power"}, {"reduce": False}])
+def test_what_only_a_back_end_can_do_is_not_given_to_the_hot_path(options):
+    found = ls.solve(shipped("fgfbstts/limit_ring"), positions=[1], **options)
     assert found.positions[0].effort.rung == "clarabel + exact"
 
 
 def test_the_rungs_in_order():
-    told = [name for name, _ in rungs(Options())]
-    assert told[:2] == ["clarabel + exact", "whole scene"]
-    assert told[2:] == ["whole scene, picard", "whole scene, power"]
+    names = [name for name, _ in rungs(Options())]
+    assert names[:2] == ["clarabel + exact", "whole scene"]
+    assert names[2:] == ["whole scene, picard", "whole scene, power"]
     assert [name for name, _ in rungs(Options(method="power", reduce=False))] == [
         "clarabel + exact",
         "whole scene, newton",
@@ -236,12 +236,12 @@ def test_a_contradiction_names_the_limits():
     assert set(contradiction(scene)) == {"ring 4: arc 6", "ring 4: arc 7"}
     with pytest.raises(Refused) as refused:
         ls.solve(case, positions=[1])
-    told = str(refused.value)
-    assert "position 1: rigid limits contradict one another" in told
-    assert "ring 4: arc 6" in told
-    assert "ring 4: arc 7" in told
-    assert "ring 5" not in told
-    assert "clearance" in told
+    message = str(refused.value)
+    assert "position 1: rigid limits contradict one another" in message
+    assert "ring 4: arc 6" in message
+    assert "ring 4: arc 7" in message
+    assert "ring 5" not in message
+    assert "clearance" in message
     assert refused.value.partial is None
 
 
@@ -393,7 +393,7 @@ def test_a_float_between_opposed_arcs_rolls_or_is_refused():
 
 
 def test_a_squeeze_is_refused_by_its_certificate():
-    """The rolled answer with a squeeze added to both arcs of ring 4: in balance but for 1e-6 of
+    """The rolled answer with a squeeze added to both arcs of ring 4: in balance except for 1e-6 of
     it, and refused for what the two directions leave open.
     """
     case = beside_the_line()
@@ -451,7 +451,7 @@ def test_what_a_part_of_the_load_displaces_too_far_is_refused_at_once():
 
 def test_a_refusal_tells_of_a_part_of_the_load_that_is_too_much_already():
     """Soft rings give way until the input rolls off its arc: a part of the load turns it far."""
-    with pytest.raises(ls.Refused, match="large for the geometry already") as told:
+    with pytest.raises(ls.Refused, match="large for the geometry already") as caught:
         climb(build_train(draw(1, 1292)), 1, Options(), CERTIFY.tolerance)
-    assert "under 70% of the load" in str(told.value)
-    assert "line of action turned" in str(told.value)
+    assert "under 70% of the load" in str(caught.value)
+    assert "line of action turned" in str(caught.value)

@@ -234,7 +234,7 @@ def test_a_law_that_drops_is_refused_sample_by_sample():
 
 
 def test_values_that_do_not_go_together_are_refused_sample_by_sample():
-    """Every value alone may stand in a case; the pair of the second sample may not: S2 < S1."""
+    """Every value alone is allowed in a case; the pair of the second sample is not: S2 < S1."""
     case = shipped("fgfbstts/spline_clearance").replace(
         {
             "splines.4.friction": None,
@@ -296,7 +296,7 @@ def test_what_the_hot_path_leaves_climbs_and_says_so(monkeypatch):
         assert apart(expected, found, name) < 1e-9
 
 
-def test_what_is_not_there_is_told():
+def test_what_is_not_there_is_reported():
     case = shipped(LIMIT_RING)
     with pytest.raises(ValueError, match=r"no variable torques; allowed: torque, share"):
         ls.solve_many(case, RINGS, keep=["torques"])
@@ -374,7 +374,7 @@ def test_samples_of_different_machines_come_back_in_their_places():
         assert furthest(alone.positions[0].torque, torque) < 1e-9
 
 
-def test_gears_that_float_in_some_samples_only_are_all_told():
+def test_gears_that_float_in_some_samples_only_are_all_reported():
     """Whichever sample comes first."""
     case = shipped("fgfbstts/both_errors")
     for order in (["rigid", "free"], ["free", "rigid"]):
@@ -388,7 +388,7 @@ def test_gears_that_float_in_some_samples_only_are_all_told():
 
 
 def test_blocks_come_one_by_one(monkeypatch):
-    """In order and only as they are asked for."""
+    """In order and only on demand."""
     small_blocks(monkeypatch, 4)
     solved = []
     real = many.solve_block
@@ -413,7 +413,7 @@ def test_workers_run_ahead_by_a_block_each_and_no_more(monkeypatch):
 
 
 def test_memory_does_not_grow_with_the_blocks(monkeypatch):
-    """Twenty-four blocks take no more room at once than four, but for the input's own columns."""
+    """Twenty-four blocks take no more room at once than four, except the input's own columns."""
     small_blocks(monkeypatch, 100)
     case = shipped(LIMIT_RING)
 
@@ -434,13 +434,13 @@ def test_memory_does_not_grow_with_the_blocks(monkeypatch):
     assert more - few < 2000 * 16 * 8
 
 
-def test_progress_is_told_after_every_block(monkeypatch):
+def test_progress_is_reported_after_every_block(monkeypatch):
     small_blocks(monkeypatch, 4)
-    told = []
+    reported = []
     ls.solve_many(
         shipped(LIMIT_RING),
         floats(10),
         positions=[1],
-        progress=lambda done, total: told.append((done, total)),
+        progress=lambda done, total: reported.append((done, total)),
     )
-    assert told == [(4, 10), (8, 10), (10, 10)]
+    assert reported == [(4, 10), (8, 10), (10, 10)]

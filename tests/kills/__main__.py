@@ -22,18 +22,18 @@ def _run() -> int:
     parser.add_argument("--count", type=int, default=20)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0, help="number of the first kill")
-    asked = parser.parse_args()
-    begun = time.monotonic()
+    options = parser.parse_args()
+    start = time.monotonic()
     every = []
     with TemporaryDirectory() as temporary, cluster(Path(temporary), 2) as started:
         await_workers(started.address, 2)
         bench = Bench.of(Path(temporary), KINDS, started)
         typer.echo(", ".join(f"{kind}: {s:.1f} s" for kind, s in bench.seconds.items()))
-        for number in range(asked.first, asked.first + asked.count):
-            every.append(trial(bench, asked.seed, number))
-            _tell(every[-1], asked.seed)
-    typer.echo(f"{len(every)} tried in {time.monotonic() - begun:.0f} s")
-    return _told(every)
+        for number in range(options.first, options.first + options.count):
+            every.append(trial(bench, options.seed, number))
+            _tell(every[-1], options.seed)
+    typer.echo(f"{len(every)} tried in {time.monotonic() - start:.0f} s")
+    return _summarised(every)
 
 
 def _tell(found: Trial, seed: int) -> None:
@@ -46,8 +46,8 @@ def _tell(found: Trial, seed: int) -> None:
         typer.echo(f"    --seed {seed} --first {found.number} --count 1")
 
 
-def _told(every: list[Trial]) -> int:
-    """Tell the figures; return the exit code."""
+def _summarised(every: list[Trial]) -> int:
+    """Print the figures; return the exit code."""
     for kind, target in sorted({(one.kind, one.target) for one in every}):
         some = [one for one in every if (one.kind, one.target) == (kind, target)]
         killed = sum(one.met for one in some)

@@ -27,7 +27,7 @@ class Cluster:
         Of the scheduler.
     scheduler : subprocess.Popen
     workers : list of subprocess.Popen
-        Each starts its worker anew when that one dies, unless it was told not to.
+        Each starts its worker again when that one dies, unless it was told not to.
     """
 
     address: str

@@ -1,4 +1,4 @@
-"""One kill: a command is begun, something of it is killed, and the command is given again."""
+"""One kill: a command is started, something of it is killed, and the command is given again."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Trial:
     met : bool
         Whether what was to be killed was there.
     after : float
-        Seconds after the command was begun.
+        Seconds after the command was started.
     gone : float
         Seconds until nothing was left of what was killed.
     orphans : tuple of str
@@ -99,14 +99,14 @@ class Bench:
         Where the kind of that name is solved.
     seconds : dict
         How long an undisturbed command takes, by kind.
-    said : dict
-        What it says.
+    outputs : dict
+        What it prints, by kind.
     """
 
     folder: Path
     cluster: Cluster | None
     seconds: dict[str, float]
-    said: dict[str, str]
+    outputs: dict[str, str]
 
     @classmethod
     def of(cls, folder: Path, kinds: tuple[str, ...], cluster: Cluster | None = None) -> Bench:
@@ -115,18 +115,18 @@ class Bench:
         (folder / "study.toml").write_text(STUDY, encoding="utf-8")
         bench = cls(folder, cluster, {}, {})
         for kind in kinds:
-            begun = time.monotonic()
-            with _begun(bench.words(kind, folder / kind)) as (process, _):
-                said, told = process.communicate(timeout=LIMIT)
+            start = time.monotonic()
+            with _running(bench.words(kind, folder / kind)) as (process, _):
+                out, err = process.communicate(timeout=LIMIT)
             if process.returncode != 0:
-                raise RuntimeError(f"{kind}, undisturbed: {told}")
-            bench.seconds[kind] = time.monotonic() - begun
-            bench.said[kind] = said
+                raise RuntimeError(f"{kind}, undisturbed: {err}")
+            bench.seconds[kind] = time.monotonic() - start
+            bench.outputs[kind] = out
         return bench
 
-    def told(self, kind: str, out: Path) -> str:
+    def output(self, kind: str, out: Path) -> str:
         """Return what an undisturbed command of a kind says that writes to a folder."""
-        return self.said[kind].replace(str(self.folder / kind), str(out))
+        return self.outputs[kind].replace(str(self.folder / kind), str(out))
 
     def words(self, kind: str, out: Path) -> list[str]:
         """Return the command of a kind that writes to a folder."""
@@ -158,7 +158,7 @@ def trial(bench: Bench, seed: int, number: int, kinds: tuple[str, ...] = KINDS) 
         # One that was killed before is there again after some seconds.
         await_workers(bench.cluster.address, len(bench.cluster.workers))
     faults: list[str] = []
-    with _begun(bench.words(kind, out)) as (process, mark):
+    with _running(bench.words(kind, out)) as (process, mark):
         with suppress(subprocess.TimeoutExpired):
             process.wait(after)
         crew = partial(_crew, process.pid, bench.cluster if kind == "cluster" else None)
@@ -172,9 +172,9 @@ def trial(bench: Bench, seed: int, number: int, kinds: tuple[str, ...] = KINDS) 
             gone, orphans = _left(lambda: _marked(mark))
             faults += _ended(process, DIED)
         faults += [f"left at the end: {one}" for one in _left(lambda: _marked(mark))[1]]
-    with _begun(bench.words(kind, out)) as (process, mark):
+    with _running(bench.words(kind, out)) as (process, mark):
         # A batch says how long each case took.
-        faults += _ended(process, (0,), None if kind == "batch" else bench.told(kind, out))
+        faults += _ended(process, (0,), None if kind == "batch" else bench.output(kind, out))
         faults += [f"left after the second: {one}" for one in _left(lambda: _marked(mark))[1]]
     faults += differences(kind, bench.folder / kind, out)
     if not faults:
@@ -189,7 +189,7 @@ def differences(kind: str, undisturbed: Path, out: Path) -> list[str]:
     """
     files = {file.relative_to(undisturbed) for file in undisturbed.rglob("*") if file.is_file()}
     found = {file.relative_to(out) for file in out.rglob("*") if file.is_file()}
-    told = [f"{kind}: {file} is there in one only" for file in sorted(files ^ found)]
+    differing = [f"{kind}: {file} is there in one only" for file in sorted(files ^ found)]
     for file in sorted(files & found):
         one, other = (folder / file for folder in (undisturbed, out))
         if kind == "batch" and file.name == "summary.json":
@@ -197,8 +197,8 @@ def differences(kind: str, undisturbed: Path, out: Path) -> list[str]:
         else:
             same = one.read_bytes() == other.read_bytes()
         if not same:
-            told.append(f"{kind}: {file} differs")
-    return told
+            differing.append(f"{kind}: {file} differs")
+    return differing
 
 
 def _summary(file: Path) -> dict[str, Any]:
@@ -211,8 +211,8 @@ def _summary(file: Path) -> dict[str, Any]:
 
 
 @contextmanager
-def _begun(words: list[str]) -> Iterator[tuple[subprocess.Popen[str], str]]:
-    """Begin a command in a session of its own; nothing of it outlives the block."""
+def _running(words: list[str]) -> Iterator[tuple[subprocess.Popen[str], str]]:
+    """Run a command in a session of its own; nothing of it outlives the block."""
     mark = secrets.token_hex(8)
     variables = os.environ | {
         "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
@@ -244,7 +244,7 @@ def _kill(
     workers: Callable[[], list[psutil.Process]],
     random: np.random.Generator,
 ) -> tuple[bool, psutil.Process | None]:
-    """Kill what is to be killed; tell whether it was there, and which worker it was."""
+    """Kill what is to be killed; return whether it was there, and which worker it was."""
     if target == "worker":
         while process.poll() is None:
             crew = workers()
@@ -305,26 +305,26 @@ def _marked(mark: str) -> list[psutil.Process]:
 
 def _left(alive: Callable[[], list[psutil.Process]]) -> tuple[float, tuple[str, ...]]:
     """Wait until nothing is alive; return how long that took, and what still is after `GONE`."""
-    begun = time.monotonic()
+    start = time.monotonic()
     while True:
         left = alive()
-        seconds = time.monotonic() - begun
+        seconds = time.monotonic() - start
         if not left or seconds > GONE:
             return seconds, tuple(f"{one.pid} {' '.join(_words(one))}" for one in left)
         time.sleep(0.02)
 
 
 def _ended(
-    process: subprocess.Popen[str], codes: tuple[int, ...], said: str | None = None
+    process: subprocess.Popen[str], codes: tuple[int, ...], expected: str | None = None
 ) -> list[str]:
     """Return what is wrong with how a command ends."""
     try:
-        out, told = process.communicate(timeout=LIMIT)
+        out, err = process.communicate(timeout=LIMIT)
     except subprocess.TimeoutExpired:
         return ["hangs"]
-    wrong = [] if process.returncode in codes else [f"code {process.returncode}: {told[-500:]}"]
-    if "Traceback" in told:
-        wrong.append(told[-2000:])
-    if said is not None and out != said:
+    wrong = [] if process.returncode in codes else [f"code {process.returncode}: {err[-500:]}"]
+    if "Traceback" in err:
+        wrong.append(err[-2000:])
+    if expected is not None and out != expected:
         wrong.append(f"says something else:\n{out}")
     return wrong

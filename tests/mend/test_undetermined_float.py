@@ -1,6 +1,6 @@
-"""A pinion whose branch carries nothing has no place: that is said, with how far it may move.
+"""A pinion whose branch carries nothing has no place: that is reported, with how far it may move.
 
-Sources: the closed forms beside each test; formulation, sections 4 to 6.
+Sources: the closed forms in each test; formulation, sections 4 to 6.
 """
 
 import math
@@ -103,7 +103,7 @@ def test_a_branch_without_contact_turns_from_flank_to_flank(name):
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_it_is_told_in_every_form(name, tmp_path):
+def test_it_is_reported_in_every_form(name, tmp_path):
     result = ls.solve(case_of(name))
     expected = [-PLAY, PLAY]
     document = result.to_dict()["positions"][0]["undetermined"]

@@ -36,7 +36,7 @@ def play(one: Tooth, two: Tooth, distance: float) -> float:
     """Angle by which the second gear turns from flank to flank [rad], from points of the flanks.
 
     A tooth of the first gear stands in a space of the second, and both its flanks are followed by
-    points up to the tip: each tells by how much the second gear's flank beside it is off.
+    points up to the tip: each gives by how much the second gear's flank next to it is off.
     """
     inside = two.internal
     radius = np.linspace(one.base_radius, one.tip, 200_001)

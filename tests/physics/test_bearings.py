@@ -67,8 +67,8 @@ def planets_in_bearings(
 @pytest.mark.parametrize("offset", [(0.0, 0.0), (3.0, -4.0)])
 def test_a_loaded_gear_in_a_round_gap(stiffness, offset):
     """It goes along its force to the end of the gap, and F / K further."""
-    told = "rigid" if math.isinf(stiffness) else f"{stiffness!r} N/m"
-    found = ls.solve(pair(stiffness=told, offset=[f"{v} um" for v in offset])).positions[0]
+    text = "rigid" if math.isinf(stiffness) else f"{stiffness!r} N/m"
+    found = ls.solve(pair(stiffness=text, offset=[f"{v} um" for v in offset])).positions[0]
     expected = np.array(offset) * 1e-6 + (20e-6 + FORCE / stiffness) * ALONG
     assert found.displacement["a"] == pytest.approx(tuple(expected), rel=1e-12)
     rest = found.floats["a"]
@@ -95,11 +95,13 @@ def test_a_loaded_gear_in_a_rolling_bearing(key, power, solver, engine, clearanc
 def test_a_bearing_without_clearance_is_an_elastic_or_a_rigid_one():
     without = {k: v for k, v in planets_in_bearings("0 um").to_dict().items() if k != "bearings"}
     gears = without["gears"]
-    for told, support in (("5e8 N/m", "5e8 N/m"), ("rigid", "rigid")):
+    for stiffness, support in (("5e8 N/m", "5e8 N/m"), ("rigid", "rigid")):
         for name in gears:
             if name.startswith("planet"):
                 gears[name]["support"] = support
-        plain, held = (ls.solve(c) for c in (ls.Case(without), planets_in_bearings("0 um", told)))
+        plain, held = (
+            ls.solve(c) for c in (ls.Case(without), planets_in_bearings("0 um", stiffness))
+        )
         for one, other in zip(plain.positions, held.positions, strict=True):
             assert other.torque == pytest.approx(one.torque, rel=1e-11)
 
@@ -242,7 +244,7 @@ def test_a_turned_train_shares_alike(frame):
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "message"),
     [
         ({"bearings.a.clearance": "-1 um"}, "bearings.a.clearance"),
         ({"bearings.a.stiffness": None}, "bearings.a.stiffness"),
@@ -259,8 +261,8 @@ def test_a_turned_train_shares_alike(frame):
         ({"gears.a.support": "rigid"}, "gears.a.support"),
     ],
 )
-def test_what_does_not_hold_is_told(changes, told):
-    with pytest.raises(ls.CaseError, match=told):
+def test_what_does_not_hold_is_reported(changes, message):
+    with pytest.raises(ls.CaseError, match=message):
         pair().replace(changes)
 
 
@@ -271,15 +273,15 @@ FULL = TURN @ np.diag([5e7, 3e8]) @ TURN.T
 
 
 def on_a_full_matrix(matrix: np.ndarray) -> ls.Case:
-    told = [[f"{v!r} N/m" for v in row] for row in matrix.tolist()]
-    told[1][0] = told[0][1]
-    return pair().replace({"bearings": {}, "gears.a.support": told})
+    entries = [[f"{v!r} N/m" for v in row] for row in matrix.tolist()]
+    entries[1][0] = entries[0][1]
+    return pair().replace({"bearings": {}, "gears.a.support": entries})
 
 
 @pytest.mark.parametrize("engine", ["vectorised", "compiled"])
 @pytest.mark.parametrize("solver", ["auto", "clarabel"])
 def test_a_gear_on_a_bearing_stiffest_aslant(solver, engine):
-    """It moves by the inverse of the matrix times the force, told along x and y."""
+    """It moves by the inverse of the matrix times the force, given along x and y."""
     case = on_a_full_matrix(FULL)
     found = ls.solve(case, solver=solver, engine=engine).positions[0]
     expected = np.linalg.solve(FULL, FORCE * ALONG)
@@ -331,13 +333,13 @@ def test_a_full_matrix_turns_with_the_train():
 
 
 @pytest.mark.parametrize(
-    ("matrix", "told"),
+    ("matrix", "message"),
     [
         ([["1e8 N/m", "1e7 N/m"], ["2e7 N/m", "1e8 N/m"]], "is not symmetric"),
         ([["1e8 N/m", "2e8 N/m"], ["2e8 N/m", "1e8 N/m"]], "not positive in all directions"),
         ([["1e8 N/m"], ["2e8 N/m"]], "gears.a.support"),
     ],
 )
-def test_what_is_no_stiffness_is_told(matrix, told):
-    with pytest.raises(ls.CaseError, match=told):
+def test_what_is_no_stiffness_is_reported(matrix, message):
+    with pytest.raises(ls.CaseError, match=message):
         pair().replace({"bearings": {}, "gears.a.support": matrix})

@@ -5,7 +5,7 @@ Ligata, Kahraman, Singh, J. Mech. Des. 131, 021007 (2009), restated for the defi
 split-path tests, ADA314767.
 
 Tolerances: with linear springs and an identified active set an answer is exact up to the round-off
-of one small linear solve, 1e-12; 1e-9 is asked for. Where a case is written with rounded lengths,
+of one small linear solve, 1e-12; 1e-9 is required. Where a case is written with rounded lengths,
 its own numbers enter the closed form, and only what the rounding cannot leave exact (equal spacing,
 equal angles) is allowed for.
 """

@@ -105,15 +105,15 @@ def test_gears_that_carry_nothing_leave_no_torque_unproved(number):
     assert not faults([number], seed=1)
 
 
-def test_a_search_that_goes_to_and_fro_is_told():
-    """An idle gear on its ring, held and let go in turns: Clarabel was asked, for two seconds."""
+def test_a_search_that_goes_to_and_fro_is_reported():
+    """An idle gear on its ring, held and let go in turns: Clarabel was called, for two seconds."""
     assert not faults([4849], seed=1)
     assert ls.solve(draw(1, 4849)).positions[0].effort.rung in {HOT, SEARCHED}
 
 
 @pytest.mark.parametrize("number", mostly_slow((586, 902, 2529, 2914), (902,)))
 def test_gears_without_load_are_put_where_there_is_room(number):
-    """Back-ends were asked for seconds, and one position was refused. Either a few of the contacts
+    """Back-ends were tried for seconds, and one position was refused. Either a few of the contacts
     without load closed in the way of others, or a gear rolled off the arc that it rested on.
     """
     assert not faults([number], seed=1)

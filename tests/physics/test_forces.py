@@ -42,9 +42,9 @@ def test_weights_are_masses_times_gravity():
 
 
 def test_gravity_needs_masses():
-    with pytest.raises(ls.CaseError, match=r"gears\.a\.mass: is missing") as told:
+    with pytest.raises(ls.CaseError, match=r"gears\.a\.mass: is missing") as caught:
         pair().replace({"operating.gravity": ["0 m/s^2", "-9.81 m/s^2"]})
-    assert len(told.value.problems) == 2
+    assert len(caught.value.problems) == 2
 
 
 def test_light_loads_between_gravity_and_clearance_agree_with_50_digits():
@@ -90,8 +90,8 @@ def test_forces_on_planetary_sets_agree_with_50_digits(seed):
     case = case_of(SETS, seed)
     drive = max(map(abs, ls.solve(case, positions=[1]).positions[0].loads.meshes.values()))
     sizes = np.random.default_rng(seed).normal(size=(len(case.gears), 2)) * 0.1 * drive
-    told = [[f"{v!r} N" for v in size] for size in sizes.tolist()]
-    case = case.replace({"operating.forces": dict(zip(case.gears, told, strict=True))})
+    written = [[f"{v!r} N" for v in size] for size in sizes.tolist()]
+    case = case.replace({"operating.forces": dict(zip(case.gears, written, strict=True))})
     answer = ls.explain(case, 1)
     exact = reference(build_train(case), 1, answer.equilibrium)
     found = ls.solve(case, positions=[1]).positions[0]

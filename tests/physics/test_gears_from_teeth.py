@@ -182,7 +182,7 @@ def test_a_star_from_teeth_is_the_one_from_typed_numbers():
     assert own.omega["I"] == pytest.approx(1.0, abs=1e-9)
 
 
-def test_teeth_that_do_not_reach_each_other_are_told_how_far_apart_they_would_mesh() -> None:
+def test_teeth_out_of_reach_are_reported_with_the_distance_at_which_they_mesh() -> None:
     """A ring of 75 teeth about planets of 24 beside a sun of 24: 51 mm, where the sun has 48."""
     centre = ["0 mm", "0 mm"]
     gears: dict[str, dict] = {

@@ -5,7 +5,7 @@ every element.
 
 Tolerances: a relation that rewrites the numbers (other names, frames, units) leaves the equilibrium
 the same up to round-off times the condition of the case; 1e-9 of the largest force and of the
-deflection is asked for.
+deflection is required.
 """
 
 import math

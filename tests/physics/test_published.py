@@ -2,7 +2,7 @@
 
 Source: the seed paper's Figs. 8, 10, 13, 14 as quoted in the seed's reconstruction (printed values
 P, model values D). The paper prints no radii, angles or error directions, so the model is a fit:
-agreement is asked for to what the fit's own table leaves open, not to round-off, and every
+agreement is required to what the fit's own table leaves open, not to round-off, and every
 tolerance says which.
 
 Frame: gear 10 at the origin, pinions 4 and 5 at +60° and −60°; a pinion's float is along the radial
@@ -133,7 +133,7 @@ def test_the_shares_of_fig_10():
     """50.88 % on branch 12, and 0.933, 1.067, 0.967, 1.033 within the pairs.
 
     The error directions are assumed in whole degrees so that the shares come out to 0.002; 0.003 is
-    asked for.
+    required.
     """
     (position,) = ls.solve(shipped("fgfbstts/both_errors"), positions=[1]).positions
     printed = {"6-10": 0.933, "7-10": 1.067, "8-10": 0.967, "9-10": 1.033}

@@ -85,7 +85,7 @@ def splines(draw: st.DrawFn, kinds: tuple[str, ...]) -> dict[str, object]:
 
 @st.composite
 def circles(draw: st.DrawFn) -> dict[str, object]:
-    """A round limit ring that may stand off centre."""
+    """A round limit ring that may be off centre."""
     stiffness = draw(st.sampled_from(["rigid", "1e9 N/m"]))
     offset = ["0 um", draw(lengths(1.0))]
     return {"radius": draw(lengths()), "offset": offset, "stiffness": stiffness}
@@ -180,7 +180,7 @@ def undetermined(certificate: Certificate) -> set[str]:
 
 
 def determined(found: Mapping[str, float], shared: Set[str]) -> dict[str, float]:
-    """Forces, or components of forces, but for those that are shared."""
+    """Forces, or components of forces, except those that are shared."""
     return {k: v for k, v in found.items() if not {k, k.rsplit(" ", 1)[0]} & shared}
 
 
@@ -213,11 +213,11 @@ def is_solved_and_agreed(case: ls.Case) -> None:
         except ls.Refused:
             continue  # the ladder does not depend on every rung
         kind = kind or record.kind
-        told = certify(train, found)
-        if told.passed:
+        verdict = certify(train, found)
+        if verdict.passed:
             # Forces are unique, unless rigid parts share them: a spline without play in a drum
             # without clearance. Displacements are not where a branch is unloaded.
-            shared = undetermined(known) | undetermined(told)
+            shared = undetermined(known) | undetermined(verdict)
             one, other = (determined(forces(v), shared) for v in (expected, found))
             assert furthest(one, other) < AGREE, options
 

@@ -88,7 +88,7 @@ def test_batches_and_marches_have_it():
 
 
 @pytest.mark.parametrize(
-    ("changes", "told"),
+    ("changes", "message"),
     [
         ({"gears.ring.face_width": None}, r"gears\.ring\.face_width: is missing"),
         ({"gears.sun.ovalisation": ["1e8 N/m"]}, "is for internal gears only"),
@@ -96,6 +96,6 @@ def test_batches_and_marches_have_it():
         ({"gears.ring.ovalisation": "soft"}, r"gears\.ring\.ovalisation"),
     ],
 )
-def test_what_does_not_hold_is_told(changes, told):
-    with pytest.raises(ls.CaseError, match=told):
+def test_what_does_not_hold_is_reported(changes, message):
+    with pytest.raises(ls.CaseError, match=message):
         a_set(**changes)

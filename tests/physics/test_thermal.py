@@ -62,8 +62,8 @@ def test_backlash_is_that_of_larger_teeth_at_larger_distances(internal, warm):
         moved = build_train(warmed)
         shift = moved.offset("planet", {"planet": 0.0}) if housing else np.zeros(3)
         opened = sum(n @ shift for n in (before.drive_normal, before.coast_normal))
-        told = after.backlash + after.gaps[0] - before.backlash - before.gaps[0] + opened
-        assert told == pytest.approx(change, rel=1e-2)
+        computed = after.backlash + after.gaps[0] - before.backlash - before.gaps[0] + opened
+        assert computed == pytest.approx(change, rel=1e-2)
 
 
 def test_what_is_warm_all_over_shares_as_if_it_were_cold():
@@ -101,7 +101,7 @@ def test_a_warm_shaft_uses_up_clearance(gear, housing):
     assert np.hypot(*found.displacement["a"]) == pytest.approx(clearance + FORCE / 1e8, rel=1e-9)
 
 
-def test_a_clearance_that_is_used_up_is_told():
+def test_a_clearance_that_is_used_up_is_reported():
     with pytest.raises(ls.CaseError, match=r"bearings\.a\.clearance.*used up"):
         ls.solve(pair(diameter="60 mm").replace({"gears.a.temperature": "90 K"}))
 

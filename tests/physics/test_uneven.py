@@ -61,7 +61,7 @@ def turned(angle: float) -> np.ndarray:
 
 @pytest.mark.parametrize(("load", "output", "held"), CHOICES)
 def test_every_step_is_the_set_placed_anew(load: str, output: str, held: str) -> None:
-    """By hand: planets, what stands on the carrier, and eccentricities where the step has them."""
+    """Explicitly: planets, what is on the carrier, and eccentricities where the step has them."""
     case = mounted(load, output, held)
     if held == "carrier":
         case = case.replace({"bearings.carrier": None, "operating.forces": None})
@@ -89,7 +89,7 @@ def test_every_step_is_the_set_placed_anew(load: str, output: str, held: str) ->
         assert position.torque == pytest.approx(again.torque, rel=1e-9)
         size = max(np.hypot(*p) for p in again.displacement.values())
         for name, moved in again.displacement.items():
-            # Told as seen from the carrier.
+            # Given as seen from the carrier.
             seen = goes.T @ moved
             assert position.displacement[name] == pytest.approx(seen, abs=1e-9 * size)
         for name, force in again.loads.bearings.items():
@@ -231,15 +231,15 @@ def test_studies_have_it() -> None:
     assert [r["carrier"].boundary for r in rests] == ["outer race", None]
 
 
-def test_results_are_kept_and_judged_anew(tmp_path: Any) -> None:
+def test_results_are_kept_and_judged_again(tmp_path: Any) -> None:
     result = ls.solve(marched(mounted()))
     path = tmp_path / "found.json"
     result.to_json(path)
     again = ls.load_result(path)
     assert again.positions == result.positions
-    told = json.loads(path.read_text())
-    told["positions"][2]["claim"]["flank_force"]["sun-p0"] *= 1.001
-    path.write_text(json.dumps(told))
+    document = json.loads(path.read_text())
+    document["positions"][2]["claim"]["flank_force"]["sun-p0"] *= 1.001
+    path.write_text(json.dumps(document))
     with pytest.raises(ls.ResultError):
         ls.load_result(path)
 

@@ -14,7 +14,7 @@ def torques(path: str) -> dict[str, float]:
 
 
 def test_the_split_path_box_from_its_teeth():
-    """The same box but for digits: its angles are written to 1e-10 deg, its centres to 10 nm."""
+    """The same box except for digits: its angles are written to 1e-10 deg, its centres to 10 nm."""
     given, teeth = torques("two_path/clocking_error.toml"), torques("two_path/from_teeth.toml")
     names = {
         "in-wheelA": "in-wheel1",

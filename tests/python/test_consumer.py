@@ -45,7 +45,7 @@ def test_its_types_are_those_that_a_user_sees(tmp_path):
         cwd=tmp_path,
         env=environment,
     )
-    told = [line for line in found.stdout.splitlines() if ": error:" in line]
-    assert len(told) == 2, found.stdout + found.stderr
-    assert "Result" in told[0]
-    assert "no_such_thing" in told[1]
+    errors = [line for line in found.stdout.splitlines() if ": error:" in line]
+    assert len(errors) == 2, found.stdout + found.stderr
+    assert "Result" in errors[0]
+    assert "no_such_thing" in errors[1]

@@ -40,7 +40,7 @@ def full_float() -> ls.Result:
 
 @pytest.fixture(scope="session")
 def pressed_sun() -> ls.Result:
-    """A sun on a round ring that stands off centre."""
+    """A sun on a round ring that is off centre."""
     return ls.solve(round_ring())
 
 
@@ -68,7 +68,7 @@ def ring_chapter() -> Chapter:
 
 
 class Spec:
-    """A specification, to be asked what it shows."""
+    """A specification, with methods for what it shows."""
 
     def __init__(self, spec: dict[str, Any]) -> None:
         self.spec = spec

@@ -1,4 +1,4 @@
-"""The page in a browser: opens offline without a complaint, tells figures, sorts tables."""
+"""The page in a browser: opens offline without a complaint, shows figures, sorts tables."""
 
 from __future__ import annotations
 
@@ -74,12 +74,12 @@ def test_hovering_over_a_float_tells_its_figures(opened):
         )
     )
     lines = [line.strip() for line in tip.splitlines() if line.strip()]
-    told = dict(zip(lines[::2], lines[1::2], strict=True))
-    assert told["position"] == "1–5"
-    assert told["rests"] == "upper stop + arc 6"
-    assert told["x [µm]"].startswith("4.12")
-    assert told["y [µm]"].startswith("7.13")
-    assert float(told["reaction of the ring [N]"]) > 50.0
+    tooltip = dict(zip(lines[::2], lines[1::2], strict=True))
+    assert tooltip["position"] == "1–5"
+    assert tooltip["rests"] == "upper stop + arc 6"
+    assert tooltip["x [µm]"].startswith("4.12")
+    assert tooltip["y [µm]"].startswith("7.13")
+    assert float(tooltip["reaction of the ring [N]"]) > 50.0
 
 
 def test_tables_sort_by_figures_and_by_words(opened):

@@ -108,7 +108,7 @@ def test_report_tells_what_failed_and_writes_the_page_all_the_same(command):
     assert "Star with 3 planets" in page
 
 
-def test_a_page_that_cannot_be_written_is_told(command):
+def test_a_page_that_cannot_be_written_is_reported(command):
     Path("report.html").mkdir()
     result = command("report", STAR)
     assert result.exit_code == 2

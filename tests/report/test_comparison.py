@@ -1,4 +1,4 @@
-"""Several cases on a page: what differs comes first, and nothing else is said to differ."""
+"""Several cases on a page: what differs comes first, and nothing else is shown as different."""
 
 from __future__ import annotations
 
@@ -47,8 +47,8 @@ def test_round_off_is_no_difference():
     """A bearing that carries 3e-8 N in one case and nothing in the other is not among them."""
     results = [ls.solve(shipped(f"fgfbstts/{n}")) for n in ("limit_ring", "installation_error")]
     _, figures, *_ = comparison(["a", "b"], results)
-    told = [r for r in figures.rows if [c.text for c in r[:2]] == [BEARING, "gear 5"]]
-    assert told == []
+    rows = [r for r in figures.rows if [c.text for c in r[:2]] == [BEARING, "gear 5"]]
+    assert rows == []
     assert any(r[0].text == BEARING for r in figures.rows)
 
 

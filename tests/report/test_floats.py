@@ -9,7 +9,7 @@ import pytest
 from tests.support import shipped
 
 import loadshare as ls
-from loadshare.report.words import direction_name, places_told
+from loadshare.report.words import direction_name, places_text
 
 
 def panels(figure, read):
@@ -52,15 +52,15 @@ def test_the_enlargement_is_the_one_drawn(picture, read):
     figure = picture("limit_ring", "floats")
     for panel in panels(figure, read):
         low, high = panel.marks("point")[0]["encoding"]["x"]["scale"]["domain"]
-        told = next(line for line in panel.words().splitlines() if line.startswith("enlarged"))
-        factor = float(told.split()[2].replace(",", ""))
-        # Told with two digits.
+        enlarged = next(line for line in panel.words().splitlines() if line.startswith("enlarged"))
+        factor = float(enlarged.split()[2].replace(",", ""))
+        # Given with two digits.
         assert factor == pytest.approx(75e-3 / ((high - low) * 1e-6), rel=0.05)
         # 75 mm at 96 px an inch.
         assert panel.spec["width"] == pytest.approx(75.0 / 25.4 * 96.0, abs=1.0)
 
 
-def test_the_seeds_balance_points_are_told(limit_ring, picture, read):
+def test_the_seeds_balance_points_are_reported(limit_ring, picture, read):
     words = read(picture("limit_ring", "floats").spec).words()
     assert "on boundary: upper stop + arc 6" in words
     assert "on boundary: upper stop + arc 8" in words
@@ -119,16 +119,16 @@ def test_a_case_without_floats_says_so():
 
 
 @pytest.mark.parametrize(
-    ("numbers", "told"),
+    ("numbers", "text"),
     [([1, 2, 3], "1–3"), ([5], "5"), ([1, 3, 4, 9], "1, 3–4, 9"), ([1, 3, 5, 7], "1, 3, 5 …")],
 )
-def test_places(numbers, told):
-    assert places_told(numbers) == told
+def test_places(numbers, text):
+    assert places_text(numbers) == text
 
 
 @pytest.mark.parametrize(
-    ("vector", "told"),
+    ("vector", "text"),
     [((0, 0, -1), "−z"), ((1, 0, 0), "x"), ((0.6, 0.8, 0), "(0.6, 0.8, 0)")],
 )
-def test_directions(vector, told):
-    assert direction_name(vector) == told
+def test_directions(vector, text):
+    assert direction_name(vector) == text

@@ -54,9 +54,9 @@ def test_the_verdict_is_on_the_first_screen(browser, pages):
     browser.get((pages / "one.html").as_uri())
     cards = browser.find_elements(By.CSS_SELECTOR, ".cards")
     assert all(c.rect["y"] + c.rect["height"] <= 800 for c in cards)
-    told = cards[0].text
+    verdict = cards[0].text
     for words in ("Load sharing by stage", "1.0013", "upper stop + arc 6", "flank", "Assumed"):
-        assert words in told
+        assert words in verdict
 
 
 def test_letters_on_a_phone_are_large_enough(browser, pages):

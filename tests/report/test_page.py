@@ -112,7 +112,7 @@ def test_assumed_inputs_are_marked(ring_chapter):
 
 @pytest.mark.parametrize("name", ["fgfbstts/all_elements", "branches/split_torque_6"])
 def test_every_input_is_shown(name):
-    """Each text that a case holds below its sections stands in some cell."""
+    """Each text that a case holds below its sections is in some cell."""
     case = shipped(name)
     cells = "\n".join(c.text for t in input_tables(case) for row in t.rows for c in row)
 
@@ -146,7 +146,7 @@ def test_text_of_a_case_stays_text(evil_page):
     assert "<svg onload=alert(1)>" in reader.text
 
 
-def test_a_bad_case_is_drawn_and_its_problems_told(tmp_path):
+def test_a_bad_case_is_drawn_and_its_problems_reported(tmp_path):
     base = (CASES / "star/floating_sun_3.toml").as_posix()
     bad = tmp_path / "bad.toml"
     text = "[gears.planet1]\ncentre = ['95 mm', '0 mm']\n"
@@ -161,7 +161,7 @@ def test_a_bad_case_is_drawn_and_its_problems_told(tmp_path):
     assert "no such file" in text
 
 
-def test_a_refused_position_is_told_beside_those_that_are_certified():
+def test_a_refused_position_is_reported_next_to_those_that_are_certified():
     case = shipped("star/floating_sun_3").replace(
         {
             'meshes."sun-planet3"': None,

@@ -70,7 +70,7 @@ def test_a_name_that_tells_no_gears_still_has_a_look():
     assert palette.mesh("upper").colour in COLOURS
 
 
-def test_equal_looks_in_one_panel_are_told_apart():
+def test_equal_looks_in_one_panel_are_distinguished():
     same = {"a-b": look(3), "b-a": look(3), "c": look(3)}
     found = distinct(same)
     assert len(set(found)) == 3

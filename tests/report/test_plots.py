@@ -17,7 +17,7 @@ def test_a_study_is_drawn_as_its_settings_say(limit_ring):
     assert found.plot("torque").spec != found.plot("omega").spec
 
 
-def test_what_a_study_has_not_found_is_told(limit_ring):
+def test_what_a_study_has_not_found_is_reported(limit_ring):
     case = limit_ring.case
     rates = ls.sensitivity(case, ["rings.4.float"], positions=[1])
     inputs = {"rings.4.float": {"distribution": "uniform", "low": "0 um", "high": "9 um"}}
@@ -32,7 +32,7 @@ def test_what_a_study_has_not_found_is_told(limit_ring):
     assert scatter.to_frame("omega.II").columns.tolist() == ["omega.II"]
 
 
-def test_a_sweep_without_any_answer_is_told(limit_ring):
+def test_a_sweep_without_any_answer_is_reported(limit_ring):
     contradicting = {
         "rings.4.measured": "nominal",
         "rings.4.clearance": "10 um",
@@ -44,7 +44,7 @@ def test_a_sweep_without_any_answer_is_told(limit_ring):
         found.plot()
 
 
-def test_what_has_no_pictures_is_told():
+def test_what_has_no_pictures_is_reported():
     with pytest.raises(TypeError, match="no pictures of dict"):
         ls.plot({})
 

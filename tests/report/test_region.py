@@ -157,7 +157,7 @@ def test_a_gear_without_a_ring_has_no_region():
 
 
 def test_a_bearing_inside_a_ring_is_drawn_beside_it():
-    """Both outlines, and no area: where both let the centre be is less than either tells."""
+    """Both outlines, and no area: where both let the centre be is less than either gives."""
     bearing = {"clearance": "3 um", "stiffness": "2e8 N/m"}
     case = shipped("fgfbstts/limit_ring").replace({"bearings": {"4": bearing}})
     found = ls.solve(case, positions=[1])

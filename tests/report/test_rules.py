@@ -1,4 +1,4 @@
-"""Rules across a panel: words stand on the side that has room, and never over one another."""
+"""Rules across a panel: words are on the side that has room, and never over one another."""
 
 from itertools import pairwise
 

@@ -47,7 +47,7 @@ def test_html_holds_its_scripts_and_loads_nothing(picture, tmp_path):
     assert "default-src 'none'" in page
 
 
-def test_an_unknown_ending_is_told(picture, tmp_path):
+def test_an_unknown_ending_is_reported(picture, tmp_path):
     with pytest.raises(ls.LoadshareError, match=r"'.bmp'.*Allowed: .png, .svg, .pdf, .html, .json"):
         picture("limit_ring", "share").save(tmp_path / "a.bmp")
     with pytest.raises(ls.LoadshareError, match="none"):
@@ -55,7 +55,7 @@ def test_an_unknown_ending_is_told(picture, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_an_unknown_form_or_scale_is_told(picture, tmp_path):
+def test_an_unknown_form_or_scale_is_reported(picture, tmp_path):
     figure = picture("limit_ring", "share")
     with pytest.raises(ValueError, match="unknown form 'gif'; allowed: png, svg, pdf, html, json"):
         figure.content("gif")

@@ -122,15 +122,15 @@ def test_a_float_without_a_ring_has_no_reaction_to_show(line, read):
 
 
 @pytest.mark.parametrize(
-    ("settings", "told"),
+    ("settings", "message"),
     [
         ({"show": "colour"}, "no variable 'colour'. Allowed: omega, torque, reaction"),
         ({"names": ["III"]}, "no stage III. Allowed: I, II, system"),
         ({"show": "torque", "position": 9}, "no position 9"),
     ],
 )
-def test_what_is_not_there_is_told(line, settings, told):
-    with pytest.raises(ls.LoadshareError, match=told):
+def test_what_is_not_there_is_reported(line, settings, message):
+    with pytest.raises(ls.LoadshareError, match=message):
         sweep(line, **settings)
 
 
@@ -234,12 +234,12 @@ def test_counts_draw_what_samples_draw(scattered, read):
 
 
 @pytest.mark.parametrize("stage", ["III", ""])
-def test_a_stage_that_is_not_there_is_told(scattered, stage):
+def test_a_stage_that_is_not_there_is_reported(scattered, stage):
     with pytest.raises(ls.LoadshareError, match="Allowed: II, system"):
         tolerance(scattered, stage)
 
 
-def test_a_study_without_figures_is_told(scattered):
+def test_a_study_without_figures_is_reported(scattered):
     with pytest.raises(ls.LoadshareError, match="needs omega"):
         tolerance(scattered.drop_vars("omega"))
     with pytest.raises(ls.LoadshareError, match="no sample"):

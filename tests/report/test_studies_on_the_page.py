@@ -79,7 +79,7 @@ def page(one, tmp_path_factory):
     return file
 
 
-def test_every_kind_is_shown_but_a_long_one_only_when_asked(case, one):
+def test_every_kind_is_shown_but_a_long_one_only_on_request(case, one):
     assert quick_studies(case) == [n for n in HELD["study"] if n != "scatter"]
     assert [part.name for part in one.studies] == list(HELD["study"])
     assert one.left_out == {}
@@ -144,25 +144,25 @@ def test_their_pictures_fit_every_screen(browser, page, width, dark):
 
 
 @pytest.mark.slow
-def test_the_command_runs_what_is_asked_for(case, tmp_path):
+def test_the_command_runs_what_is_requested(case, tmp_path):
     file = tmp_path / "case.toml"
     file.write_text(case.to_toml(), encoding="utf-8")
     out = tmp_path / "report.html"
 
-    def told(*words):
+    def report(*words):
         done = CliRunner().invoke(app, ["report", str(file), "-o", str(out), *words])
         return done, Reader(out.read_text(encoding="utf-8")).text if done.exit_code == 0 else ""
 
-    done, text = told("--study", "measured")
+    done, text = report("--study", "measured")
     assert done.exit_code == 0
     assert "measured: comparison" in text
     assert "Not run for this page: clearance (sweep)" in text
-    done, text = told("--no-studies")
+    done, text = report("--no-studies")
     assert "measured: comparison" not in text
-    done, _ = told("--study", "lost")
+    done, _ = report("--study", "lost")
     assert done.exit_code == 2
     assert "lost: no such study. Allowed: changes, clearance" in " ".join(done.stderr.split())
-    done, _ = told("--study", "measured", "--no-studies")
+    done, _ = report("--study", "measured", "--no-studies")
     assert done.exit_code == 2
     assert "contradicts --no-studies" in done.stderr
 

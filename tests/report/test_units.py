@@ -35,7 +35,7 @@ def test_the_unit_an_engineer_reads(value, unit, name, shown):
     assert found.of(value) == pytest.approx(shown, rel=1e-12)
 
 
-def test_nothing_is_told_in_micrometres():
+def test_nothing_is_given_in_micrometres():
     assert engineering([], "m").name == "µm"
     assert engineering([0.0], "m").name == "µm"
 

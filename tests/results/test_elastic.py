@@ -171,9 +171,9 @@ def test_arrays_and_documents_hold_the_same_figures() -> None:
     result = ls.solve(shipped("fgfbstts/all_elements"))
     assert result.dataset["torsional_stiffness"].dims == ("position", "side")
     document = result.to_dict()
-    for p, told in zip(result.positions, document["positions"], strict=True):
+    for p, record in zip(result.positions, document["positions"], strict=True):
         arrays = result.dataset.sel(position=p.position)
-        for name, figures in told["elastic"].items():
+        for name, figures in record["elastic"].items():
             assert getattr(p.elastic, name) == figures
             assert dict(zip(figures, arrays[name].values.tolist(), strict=True)) == figures
 

@@ -1,6 +1,6 @@
 """Trains that carry little or nothing, drawn at random: what forces leave open survives its file.
 
-A result is read by computing the ranges anew from the claimed place, which is another point of the
+A result is read by computing the ranges again from the claimed place, which is another point of the
 same set with other last digits: they agree if they are those of the set, and not of the point.
 """
 
@@ -47,7 +47,7 @@ def test_what_is_open_survives_its_file(part, tmp_path):
         try:
             result = ls.solve(drawn(chance), positions=[1])
         except ls.LoadshareError:
-            # Two values that do not fit together, or no equilibrium; that is told.
+            # Two values that do not fit together, or no equilibrium; that is reported.
             continue
         result.to_json(file)
         again = ls.load_result(file).positions[0]

@@ -21,7 +21,7 @@ def result(request):
 
 
 def without_bounds(result):
-    """The text of a result but for its bounds, which loading finds anew by another way."""
+    """The text of a result except its bounds, which loading finds again by another way."""
     document = result.to_dict()
     del document["digest"]
     for position in document["positions"]:

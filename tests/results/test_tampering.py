@@ -30,7 +30,7 @@ from loadshare.study.memory import stepped
 from loadshare.train import build_train
 
 METADATA = ("effort", "stop", "input")
-"""Told for readers: no figure follows from them. Of the input, what bears on the mechanics is
+"""For readers: no figure follows from them. Of the input, what bears on the mechanics is
 hashed; the rest is titles and notes."""
 WORDS = ("version", "case", "solver", "method", "reduce", "rung", "kind", "where")
 """Words for readers, which may be any, but nothing other than words."""
@@ -159,7 +159,7 @@ def small():
     return ls.solve(shipped("fgfbstts/limit_ring"), positions=[1, 2])
 
 
-def told(document: Any) -> str:
+def refusal_of(document: Any) -> str:
     with pytest.raises(ls.ResultError) as caught:
         read_document(document if isinstance(document, str) else json.dumps(document), "file.json")
     return str(caught.value)
@@ -195,22 +195,24 @@ def test_what_is_wrong_is_named(small, path, value, message):
     document = json.loads(small.to_json())
     if path[-1] == "4-6 drive":
         path = (*path[:-1], next(n for n in at(document, path[:-1]) if n.startswith("4-6")))
-    assert message in told(changed(document, path, value))
+    assert message in refusal_of(changed(document, path, value))
 
 
 def test_a_position_left_out_is_missed(small):
-    assert "position 2 is missing" in told(without(json.loads(small.to_json()), ("positions", 1)))
+    assert "position 2 is missing" in refusal_of(
+        without(json.loads(small.to_json()), ("positions", 1))
+    )
 
 
 def test_text_that_is_no_plain_json_is_refused(small):
     text = small.to_json()
-    assert "the key omega appears twice" in told(text.replace('"pair_omega"', '"omega"'))
+    assert "the key omega appears twice" in refusal_of(text.replace('"pair_omega"', '"omega"'))
     torque = f"{small.positions[0].torque['4-6']!r}"
     for number in ("NaN", "Infinity", "-Infinity", "1e999"):
-        assert "not a finite number" in told(text.replace(torque, number))
-    assert "holds no result" in told(text[: len(text) // 2])
-    assert "holds no result" in told("[" * 100_000)
-    assert "holds no result" in told("[]")
+        assert "not a finite number" in refusal_of(text.replace(torque, number))
+    assert "holds no result" in refusal_of(text[: len(text) // 2])
+    assert "holds no result" in refusal_of("[" * 100_000)
+    assert "holds no result" in refusal_of("[]")
 
 
 def test_results_of_other_cases_are_not_taken_for_this_one(small):
@@ -219,9 +221,9 @@ def test_results_of_other_cases_are_not_taken_for_this_one(small):
         shipped("fgfbstts/limit_ring").replace({"rings.4.float": "4.1 um"}), positions=[1, 2]
     )
     here, there = json.loads(small.to_json()), json.loads(other.to_json())
-    assert "no equilibrium of the case" in told(here | {"positions": there["positions"]})
+    assert "no equilibrium of the case" in refusal_of(here | {"positions": there["positions"]})
     mixed = there | {"input": here["input"], "stamp": here["stamp"]}
-    assert "no equilibrium of the case" in told(mixed)
+    assert "no equilibrium of the case" in refusal_of(mixed)
 
 
 def test_a_march_begins_where_the_step_before_ended():
@@ -235,10 +237,10 @@ def test_a_march_begins_where_the_step_before_ended():
     step = stepped(train, 3)
     claim = as_data(claim_of(train, step.equilibrium))
     strange = changed(document, path[:-1], claim)
-    assert "is not the slip at the end of the step before" in told(strange)
+    assert "is not the slip at the end of the step before" in refusal_of(strange)
     later = {**document, "positions": document["positions"][1:]}
     later["stamp"] = {**document["stamp"], "positions": [2, 3]}
-    assert "a march does not begin at its step 2" in told(later)
+    assert "a march does not begin at its step 2" in refusal_of(later)
     assert found.passed
     assert ls.solve(found.case.replace({"march": None})).positions[0].claim.slip is None
 
@@ -255,10 +257,10 @@ def test_a_meaningless_equilibrium_is_refused_on_loading_too(small):
     position = position_of(train, 1, found.flank_force, judged)
     stamp = replace(small.stamp, case=soft.name, case_hash=soft.hash, positions=(1,))
     made = result_from(soft, train, [position], lambda: stamp)
-    assert "the displacements are too large for the geometry" in told(made.to_json())
+    assert "the displacements are too large for the geometry" in refusal_of(made.to_json())
 
 
-def test_a_result_of_some_positions_is_whole_if_no_more_were_asked_for(small):
+def test_a_result_of_some_positions_is_whole_if_no_more_were_requested(small):
     assert small.passed
     assert small.stamp.positions == (1, 2)
 
@@ -280,14 +282,14 @@ def test_a_result_of_some_positions_is_whole_if_no_more_were_asked_for(small):
     ],
 )
 def test_arrays_that_do_not_agree_with_their_result_are_refused(small, tmp_path, change):
-    file, spoilt = tmp_path / "good.nc", tmp_path / "spoilt.nc"
+    file, changed_file = tmp_path / "good.nc", tmp_path / "changed.nc"
     small.to_netcdf(file)
     assert ls.load_result(file) == small
     with xr.open_dataset(file, engine="h5netcdf") as arrays:
-        change(arrays.load()).to_netcdf(spoilt, engine="h5netcdf")
-    spoilt.write_bytes(sealed(spoilt.read_bytes()))
-    with pytest.raises(ls.ResultError, match=r"spoilt\.nc"):
-        ls.load_result(spoilt)
+        change(arrays.load()).to_netcdf(changed_file, engine="h5netcdf")
+    changed_file.write_bytes(sealed(changed_file.read_bytes()))
+    with pytest.raises(ls.ResultError, match=r"changed\.nc"):
+        ls.load_result(changed_file)
 
 
 def test_a_digest_is_of_what_a_file_holds_and_not_of_how_it_is_laid_out(small):
@@ -296,10 +298,10 @@ def test_a_digest_is_of_what_a_file_holds_and_not_of_how_it_is_laid_out(small):
     laid_out = json.dumps(document, indent=3, sort_keys=True)
     assert read_document(laid_out, "file.json")[0] == small
     for path in (("positions", 0, "effort", "rung"), ("input", "source"), ("digest",)):
-        assert "was changed after it was written" in told(changed(document, path, "another"))
+        assert "was changed after it was written" in refusal_of(changed(document, path, "another"))
     last = np.nextafter(document["omega"]["I"], 2.0)
-    assert "was changed after it was written" in told(changed(document, ("omega", "I"), last))
-    assert "digest" in told(without(document, ("digest",)))
+    assert "was changed after it was written" in refusal_of(changed(document, ("omega", "I"), last))
+    assert "digest" in refusal_of(without(document, ("digest",)))
 
 
 def test_arrays_that_another_program_wrote_again_are_refused(small, tmp_path):
@@ -325,10 +327,10 @@ def test_a_small_file_of_many_mistakes_takes_a_moment_and_little_memory(tmp_path
     document = json.loads(ls.solve(shipped("star/floating_sun_3")).to_json())
     file = tmp_path / "result.json"
     file.write_text(json.dumps({**document, **change}), encoding="utf-8")
-    with limited(10.0), pytest.raises(ls.ResultError) as told:
+    with limited(10.0), pytest.raises(ls.ResultError) as caught:
         ls.load_result(file)
-    assert wanted in str(told.value)
-    assert len(told.value.problems) <= 1000
+    assert wanted in str(caught.value)
+    assert len(caught.value.problems) <= 1000
 
 
 def test_positions_are_compared_in_a_moment(tmp_path):

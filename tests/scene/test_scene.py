@@ -120,15 +120,15 @@ def test_no_more_model_than_the_scene_needs(name, kind):
     assert answer(train)[1].kind == kind
 
 
-def test_what_was_removed_is_told_with_its_margin():
+def test_what_was_removed_is_reported_with_its_margin():
     """Every coast flank that stays open is left out, with how far it is open."""
     train = build_train(with_backlash(shipped("fgfbstts/both_errors"), "1 mm"))
     found, record = answer(train)
-    told = dict(record.removed)
+    removed = dict(record.removed)
     for mesh in train.meshes.values():
-        assert told[f"{mesh.name} coast"].startswith("open by ")
+        assert removed[f"{mesh.name} coast"].startswith("open by ")
         carried = found.flank_force[mesh.name]
-        assert told[mesh.name] == f"closed under {carried:.6g} N: a spring, not an inequality"
+        assert removed[mesh.name] == f"closed under {carried:.6g} N: a spring, not an inequality"
     assert record.kind == "linear"
     assert record.rounds == 1
     assert {n for n, r in record.plan.rows.items() if r is Role.IN_PLAY} == set()

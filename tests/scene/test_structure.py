@@ -159,12 +159,12 @@ def test_the_numbers_of_a_sample_are_those_of_its_scene(name):
             for j, radial in enumerate(scene.radials):
                 torque = 123.0
                 law = radial.law(torque)
-                told = graph(of(loading.radial)[None, j], np.array([torque / force]))
+                single = graph(of(loading.radial)[None, j], np.array([torque / force]))
                 ends = [p.length for p in law.pieces if np.isfinite(p.length)]
                 if law.pieces[-1].name == "stick":
-                    assert np.isinf(told.stick[0])
+                    assert np.isinf(single.stick[0])
                 else:
-                    reach = float(told.reach[0]) * length
+                    reach = float(single.reach[0]) * length
                     assert reach == pytest.approx(sum(ends), rel=DIGITS, abs=1e-18)
                 column = structure.radial_column(j)
                 np.testing.assert_allclose(

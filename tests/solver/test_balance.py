@@ -1,4 +1,4 @@
-"""What no forces can balance is told before anything is searched for.
+"""What no forces can balance is reported before anything is searched for.
 
 Source: formulation, section 6: a load along a move that nothing resists has no equilibrium.
 """
@@ -26,13 +26,13 @@ def test_what_is_held_is_balanced(name):
     assert not is_unbalanced(structure, np.zeros(scene.size))
 
 
-def test_what_a_ring_alone_holds_is_not_told_to_be_free():
+def test_what_a_ring_alone_holds_is_not_reported_as_free():
     scene = assemble(build_train(round_ring()), 1)
     assert not is_unbalanced(structure_of(scene.train), scene.load)
 
 
 @pytest.mark.parametrize("number", range(24))
-def test_what_is_told_to_be_free_moves_without_end(number):
+def test_what_is_reported_as_free_moves_without_end(number):
     """The linear programme names what moves, and none of these is solved."""
     case = draw(11, number)
     scene = assemble(build_train(case), 1)

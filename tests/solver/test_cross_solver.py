@@ -3,7 +3,7 @@
 Source: formulation, sections 7 and 11. What is compared are all forces (over the largest) and all
 displacements that the equilibrium determines (over the deflection of the case). The exact solve on
 the identified active set leaves round-off times the condition of the case, about 1e-12; 1e-9
-between back-ends and methods and 1e-10 with and without reduction are asked for.
+between back-ends and methods and 1e-10 with and without reduction are required.
 """
 
 from functools import cache

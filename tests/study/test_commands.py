@@ -85,7 +85,7 @@ def test_sweep(command, tmp_path):
 
 
 def test_a_narrow_screen_cuts_no_figure(narrow):
-    """Two inputs with long names, in eighty columns: every Ω stands whole."""
+    """Two inputs with long names, in eighty columns: every Ω is printed in full."""
     result = narrow(
         *("sweep", CASES / "two_path/clocking_error.toml", "--position", 1),
         *("--over", "shafts.'wheelA-pinionA'.clocking=0 mrad, 1 mrad"),
@@ -94,10 +94,10 @@ def test_a_narrow_screen_cuts_no_figure(narrow):
     assert result.stdout.count("1.0457") == 2 * 3
     assert "by stage and by group alike" in result.stdout
     keys = ("meshes.*.stiffness", "shafts.*.stiffness", "gears.6.centre.distance")
-    told = narrow("sensitivity", RING, *keys, "--position", 1).stdout
-    assert re.search(r'meshes\."9-10"\.stiffness +6\.425e\+06 N\*m/rad', told)
+    output = narrow("sensitivity", RING, *keys, "--position", 1).stdout
+    assert re.search(r'meshes\."9-10"\.stiffness +6\.425e\+06 N\*m/rad', output)
     # None has a kink: no column for the other side.
-    assert "falling" not in told
+    assert "falling" not in output
 
 
 def test_a_sweep_with_points_that_cannot_be_solved_tells_them(command):
@@ -200,7 +200,7 @@ positions = [1]
     assert "1 point of 2 not certified." in result.stderr
 
 
-def test_an_event_that_is_not_confirmed_is_told(command, monkeypatch):
+def test_an_event_that_is_not_confirmed_is_reported(command, monkeypatch):
     from dataclasses import replace
 
     from loadshare.study import critical as room
@@ -220,7 +220,7 @@ def test_studies_are_listed(command, measured):
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (("sweep", RING, "--over", "rings.4.float"), "is not of the form"),
         (("sweep", RING, "--over", "rings.4.flot=0 um:1 um:2"), "Did you mean float"),
@@ -244,10 +244,10 @@ def test_studies_are_listed(command, measured):
         (("study", RING, "x"), "study.x: is not in the case"),
     ],
 )
-def test_what_cannot_be_done_is_told(command, words, said):
+def test_what_cannot_be_done_is_reported(command, words, message):
     result = command(*words)
     assert result.exit_code == 2
-    assert said in result.stderr.replace("\n", " ")
+    assert message in result.stderr.replace("\n", " ")
 
 
 def test_a_refused_study_ends_as_such(command):

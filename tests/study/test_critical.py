@@ -81,7 +81,7 @@ def test_the_thresholds_of_fig_13(shipped_rings, pinion, printed):
 
 def test_what_is_as_near_to_a_change_as_round_off_is_given_up_at_once(shipped_rings):
     """A free pinion has the room between its arcs, which goes with the square of the float: close
-    to the change there is none to tell. 1500 solves went into cutting that in vain.
+    to the change there is none to report. 1500 solves went into cutting that in vain.
     """
     assert [gap.why for gap in shipped_rings.unproved] == [
         "all of it is too close to a change for double precision"
@@ -109,7 +109,7 @@ def test_every_event_is_confirmed_by_certified_solves(rings):
     assert str(rings.events[-1]) == "8.35008 um: ring 4: upper stop: float leaves boundary"
 
 
-def test_two_events_in_a_millionth_of_the_interval_are_told_apart():
+def test_two_events_in_a_millionth_of_the_interval_are_distinguished():
     """Over 20 mm, the arcs of pinion 5 hand over to each other within 20 nm."""
     case = off_line().replace({"rings.4.float": "20 um"})
     found = ls.critical(case, "rings.5.float", "0 mm", "20 mm", positions=[1])
@@ -258,17 +258,17 @@ def test_an_event_is_exact_where_gauges_go_on_steeper_beyond_it(end):
 @pytest.mark.parametrize(("before", "beyond"), [(2e-3, 0.8), (0.8, 2e-3), (1.0, 1.0)])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_a_zero_is_found_whatever_the_gauges_do_beyond_it(before, beyond, sign):
-    zero, asked = sign * 1.9090368843159013, []
+    zero, requested = sign * 1.9090368843159013, []
 
     def of(values: np.ndarray) -> np.ndarray:
-        asked.append(values)
+        requested.append(values)
         left = sign * (zero - values)
         least = np.where(left > 0.0, before, beyond) * left
         return np.stack([least, 1.0 + 0.0 * values], axis=1)
 
     values = sign * np.array([1.8, 1.9, 2.0])
     assert first_zero(of, values, of(values), 2) == pytest.approx(zero, rel=1e-15)
-    assert len(asked) <= 5
+    assert len(requested) <= 5
 
 
 def searched(case: ls.Case, key: str, low: float, high: float, unit: str) -> Search:
@@ -327,18 +327,18 @@ def test_a_float_comes_to_its_round_limit_where_the_limit_lets_go_of_it():
 def test_random_paths_agree_with_a_scan(number):
     """On path 193 an enclosure neither contracts nor diverges: a matrix is singular."""
     outcome = judged(random_path(number), 400, "vectorised")
-    told = (outcome.missed, outcome.invented, outcome.moved, outcome.refused, outcome.raised)
-    assert told == ([], [], [], "", "")
+    faults = (outcome.missed, outcome.invented, outcome.moved, outcome.refused, outcome.raised)
+    assert faults == ([], [], [], "", "")
 
 
 def test_a_table_tells_what_a_run_came_to():
     fine = {"number": 6, **asdict(Outcome(("operating.torque",), "N*m", 1.0, 2.0, events=2))}
     wrong = {**fine, "number": 7, "missed": ["sun-planet at 1.5: 1 changes, 0 events"]}
-    told = text([fine, wrong])
-    assert "\n- 7: operating.torque 1 to 2 N*m: 0 unproved" in told
-    assert "| events | 4 |" in told
-    assert "| missed | 1 |" in told
-    assert "| invented | 0 |" in told
+    table = text([fine, wrong])
+    assert "\n- 7: operating.torque 1 to 2 N*m: 0 unproved" in table
+    assert "| events | 4 |" in table
+    assert "| missed | 1 |" in table
+    assert "| invented | 0 |" in table
 
 
 @pytest.mark.slow
@@ -365,7 +365,7 @@ def test_an_interval_without_events():
 
 
 @pytest.mark.parametrize(
-    ("key", "start", "stop", "said"),
+    ("key", "start", "stop", "message"),
     [
         ("rings.4.float", "3 um", "2 um", "start 3 um is not below stop 2 um"),
         ("rings.4.flot", "0 um", "2 um", "Did you mean float?"),
@@ -375,8 +375,8 @@ def test_an_interval_without_events():
         ("rings..float", "0 um", "2 um", "is not a key path"),
     ],
 )
-def test_what_cannot_be_followed_is_told(key, start, stop, said):
-    with pytest.raises(ls.CaseError, match="(?s)" + said.replace("?", r"\?")):
+def test_what_cannot_be_followed_is_reported(key, start, stop, message):
+    with pytest.raises(ls.CaseError, match="(?s)" + message.replace("?", r"\?")):
         ls.critical(shipped("fgfbstts/limit_ring"), key, start, stop)
 
 

@@ -123,7 +123,7 @@ def test_an_input_that_a_weak_one_can_move_is_not_determined():
     """One share, two unknowns: whatever the second is, the first can make up for it.
 
     The second bears on the share about a tenth as much as the first. Held at either end, the first
-    is fitted to values many standard deviations apart, so no finite deviation may be told for it.
+    is fitted to values many standard deviations apart, so no finite deviation may be given for it.
     """
     base = shipped("fgfbstts/installation_error")
     one = {"position": 1, "pair_share": {"6-10": 0.8}, "uncertainty": 0.01}
@@ -175,7 +175,7 @@ def test_several_starts_find_what_one_misses():
 
 
 @pytest.mark.parametrize(
-    ("unknowns", "said"),
+    ("unknowns", "message"),
     [
         ({}, "has no unknown"),
         ({"rings.4.float": ("3 um", "3 um")}, "is no range"),
@@ -184,10 +184,10 @@ def test_several_starts_find_what_one_misses():
         ({"rings.4.flot": ("1 um", "2 um")}, "Did you mean float"),
     ],
 )
-def test_what_cannot_be_fitted_is_told(unknowns, said):
+def test_what_cannot_be_fitted_is_reported(unknowns, message):
     base = shipped("fgfbstts/limit_ring")
     case = base.replace({"measured.bench": measured(base)})
-    with pytest.raises(ls.CaseError, match=said):
+    with pytest.raises(ls.CaseError, match=message):
         ls.fit(case, unknowns)
 
 
@@ -207,6 +207,6 @@ def test_a_measurement_changes_no_mechanics():
     assert case != base
 
 
-def test_nothing_measured_is_told():
+def test_nothing_measured_is_reported():
     with pytest.raises(ls.CaseError, match="holds no measurement"):
         ls.compare(shipped("fgfbstts/limit_ring"))

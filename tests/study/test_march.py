@@ -148,7 +148,7 @@ def test_a_law_that_jumps_has_no_memory():
         ls.march(case)
 
 
-def test_a_case_without_a_march_is_told():
+def test_a_case_without_a_march_is_reported():
     with pytest.raises(ls.CaseError, match="march: is missing"):
         ls.march(shipped("fgfbstts/full_float"), steps=3)
 
@@ -168,15 +168,15 @@ def test_a_refused_step_leaves_those_before_it(monkeypatch):
 
 
 def test_arrays_and_progress():
-    told = []
+    reported = []
     found = ls.march(
         CASES / "fgfbstts/full_float.toml",
         gear="4",
         revolutions=0.5,
         steps=4,
-        progress=lambda *done: told.append(done),
+        progress=lambda *done: reported.append(done),
     )
-    assert told == [(k, 4) for k in range(1, 5)]
+    assert reported == [(k, 4) for k in range(1, 5)]
     arrays = found.dataset
     assert arrays["slip"].dims == ("position", "spline", "component")
     assert arrays["revolutions"].values.tolist() == [0.0, 0.125, 0.25, 0.375]

@@ -22,7 +22,7 @@ LOADS = (1000.0, 1400.0, 700.0, 701.0, 1300.0)
 
 
 def with_splines(load: float, friction: float, rooms: dict[str, float]) -> Train:
-    """Two shafts whose gears float, with rooms [m] beside the friction of 400 N·m each."""
+    """Two shafts whose gears float, with rooms [m] besides the friction of 400 N·m each."""
     train = two_shafts(friction, f"{load!r} N*m")
     (spline,) = train.splines.values()
     needs = spline.bound(400.0) / spline.bending_stiffness

@@ -1,4 +1,4 @@
-"""Marches at the limits: no room beside friction, next to none, and friction next to nothing.
+"""Marches at the limits: no room besides friction, next to none, and friction next to nothing.
 
 Source: formulation, section 5. A clearance of F_m/K_w leaves a slip no room, so the spline is the
 spring K_w; without friction it is the holonomic one.

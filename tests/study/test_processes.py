@@ -32,9 +32,9 @@ def test_a_process_that_dies_costs_one_more_try_and_leaves_the_others_side_by_si
     """Of 40 items the fourth kills its process at first; from the 21st on, two at a time meet."""
 
     def work(n):
-        with (tmp_path / f"{n}").open("a") as told:
-            told.write("begun ")
-        if n == 3 and (tmp_path / "3").read_text() == "begun ":
+        with (tmp_path / f"{n}").open("a") as log:
+            log.write("started ")
+        if n == 3 and (tmp_path / "3").read_text() == "started ":
             os.kill(os.getpid(), signal.SIGKILL)
         other = tmp_path / f"{n ^ 1}"
         end = time.monotonic() + 60.0
@@ -46,10 +46,10 @@ def test_a_process_that_dies_costs_one_more_try_and_leaves_the_others_side_by_si
 
     found = list(side_by_side(work, range(40), 2))
     assert sorted(found) == [(n, "met") for n in range(40)]
-    # It is tried again when all others have begun.
+    # It is tried again when all others have started.
     assert [n for n, _ in found].index(3) >= 38
-    begun = {n: (tmp_path / f"{n}").read_text().count("begun") for n in range(40)}
-    assert begun == {n: 2 if n == 3 else 1 for n in range(40)}
+    starts = {n: (tmp_path / f"{n}").read_text().count("started") for n in range(40)}
+    assert starts == {n: 2 if n == 3 else 1 for n in range(40)}
 
 
 def test_a_process_that_dies_between_two_items_takes_none_with_it():
@@ -66,12 +66,12 @@ def test_a_process_that_dies_between_two_items_takes_none_with_it():
     assert found[1] == found[2] != found[0]
 
 
-def test_what_is_under_way_is_finished_when_no_more_is_to_be_begun():
-    begun = []
-    found = side_by_side(lambda n: n, range(9), 1, lambda: len(begun) > 1)
+def test_what_is_under_way_is_finished_when_no_more_is_to_be_started():
+    started = []
+    found = side_by_side(lambda n: n, range(9), 1, lambda: len(started) > 1)
     for item, _ in found:
-        begun.append(item)
-    assert begun == [0, 1]
+        started.append(item)
+    assert started == [0, 1]
 
 
 def test_nobody_asks_for_more(tmp_path):
@@ -117,11 +117,11 @@ def test_a_script_needs_no_guard(tmp_path):
     script = tmp_path / "script.py"
     script.write_text(
         "from loadshare.processes import side_by_side\n"
-        "print('begun', *side_by_side(lambda n: n + 1, [1, 2], 1))\n",
+        "print('started', *side_by_side(lambda n: n + 1, [1, 2], 1))\n",
         encoding="utf-8",
     )
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
     done = subprocess.run(
         [sys.executable, script], capture_output=True, text=True, check=True, env=environment
     )
-    assert done.stdout == "begun (1, 2) (2, 3)\n"
+    assert done.stdout == "started (1, 2) (2, 3)\n"

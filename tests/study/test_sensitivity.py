@@ -72,9 +72,9 @@ def verdicts(case: ls.Case, found: Sensitivity, position: int = 1) -> dict[str, 
     }
 
 
-def disagreeing(told: dict[str, Verdict]) -> dict[str, Verdict]:
+def disagreeing(verdicts_by_key: dict[str, Verdict]) -> dict[str, Verdict]:
     """Those beyond the stated errors, without differences to compare to, or without a reason."""
-    return {k: v for k, v in told.items() if v.outcome not in ("agrees", "undefined")}
+    return {k: v for k, v in verdicts_by_key.items() if v.outcome not in ("agrees", "undefined")}
 
 
 @pytest.mark.parametrize(
@@ -105,10 +105,10 @@ def test_differences_of_full_solves(name, keys):
     case = shipped(name)
     found = sensitivity(case, keys, positions=[1])
     assert found.inputs
-    told = verdicts(case, found)
-    assert not disagreeing(told)
+    compared = verdicts(case, found)
+    assert not disagreeing(compared)
     # Where anything moves, both the stated error and that of the differences say something.
-    moving = [v for v in told.values() if math.isfinite(v.stated) and v.stated < 1.0]
+    moving = [v for v in compared.values() if math.isfinite(v.stated) and v.stated < 1.0]
     assert moving
     assert np.median([v.stated for v in moving]) < 1e-7
     assert np.median([v.known for v in moving]) < 1e-4
@@ -167,10 +167,10 @@ def test_a_gear_that_comes_to_float_has_no_displacement_to_that_side():
 @pytest.mark.slow
 def test_drawn_and_critical_cases():
     rows = [{"number": k, **one(7, k)} for k in range(2, 4)]
-    told = outcomes(rows)
-    assert set(told) <= set(FINE)
-    assert told.count("agrees") >= 4
-    assert f"| one-sided derivatives | {len(told)} |" in text(rows)
+    found_outcomes = outcomes(rows)
+    assert set(found_outcomes) <= set(FINE)
+    assert found_outcomes.count("agrees") >= 4
+    assert f"| one-sided derivatives | {len(found_outcomes)} |" in text(rows)
     rows[0]["verdicts"][0]["outcome"] = "outside"
     assert "\n- 2: " in text(rows)
 
@@ -222,7 +222,7 @@ def test_a_kink_has_a_derivative_to_each_side_and_says_so(key):
 
 def test_a_pinion_that_floats_free_is_caught_by_its_arcs():
     """Nothing presses on it: an input that does so has the slope of the arc that is then in the
-    way, another one on each side, and the kink is told. Where it rests remains open.
+    way, another one on each side, and the kink is reported. Where it rests remains open.
     """
     case = shipped("fgfbstts/tolerance")
     key = 'meshes."4-6".pressure_angle'
@@ -289,7 +289,7 @@ def test_an_axis_that_cannot_be_turned_alone_is_left_out_or_refused():
 
 
 @pytest.mark.parametrize(
-    ("key", "said"),
+    ("key", "message"),
     [
         ("rings.4.flot", "is not in the case"),
         ("gears.1.support", "is no number"),
@@ -299,9 +299,9 @@ def test_an_axis_that_cannot_be_turned_alone_is_left_out_or_refused():
         ("title", "describes the case"),
     ],
 )
-def test_what_is_no_input_is_told(key, said):
+def test_what_is_no_input_is_reported(key, message):
     case = shipped("fgfbstts/limit_ring").replace({"title": "5 GPa"})
-    with pytest.raises(ls.CaseError, match=said):
+    with pytest.raises(ls.CaseError, match=message):
         ls.sensitivity(case, key)
 
 
@@ -441,12 +441,12 @@ def test_friction_of_a_torque_that_is_round_off_has_no_sign():
     assert rates[0].torque == pytest.approx(rates[1].torque, rel=1e-6, abs=1e-3)
 
 
-def test_a_body_that_nothing_holds_is_told_at_once(monkeypatch):
+def test_a_body_that_nothing_holds_is_reported_at_once(monkeypatch):
     """Two flanks hold pinion 1; it drifts as soon as only one of them pushes another way."""
     monkeypatch.setattr(machine, "search", lambda *_: pytest.fail("a search was made"))
     key = 'meshes."1-2".pressure_angle'
     found = sensitivity(shipped("fgfbstts/limit_ring"), key, positions=[1])
-    told = {remark.side: remark.message for remark in found.remarks}
-    assert set(told) == set(SIDES)
-    assert all("nothing balances the load on gear 1 x" in message for message in told.values())
+    messages = {remark.side: remark.message for remark in found.remarks}
+    assert set(messages) == set(SIDES)
+    assert all("nothing balances the load on gear 1 x" in message for message in messages.values())
     assert all(math.isnan(v) for side in SIDES for v in found.rates[1, key, side].torque.values())

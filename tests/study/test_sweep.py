@@ -105,9 +105,9 @@ def test_the_picture_is_that_of_the_arrays(tmp_path):
     shown = {r["x"]: r["y"] for r in rows if "y" in r}
     arrays = found.dataset["pair_omega"].sel(stage="II")
     assert shown == dict(zip([0.0, 4.0, 8.0, 12.0], arrays.values.tolist(), strict=True))
-    told = {r["text"]: r["x"] for r in rows if "text" in r}
-    assert told == {event: value for value, event in events}
-    assert set(told) == {"gear 4: float leaves boundary", "gear 5: float leaves boundary"}
+    labels = {r["text"]: r["x"] for r in rows if "text" in r}
+    assert labels == {event: value for value, event in events}
+    assert set(labels) == {"gear 4: float leaves boundary", "gear 5: float leaves boundary"}
     text = found.plot().save(tmp_path / "sweep.svg").read_text(encoding="utf-8")
     assert "Limit rings on the floating pinions" in text
     with pytest.raises(ls.LoadshareError, match="no variable 'colour'"):
@@ -126,9 +126,9 @@ def test_a_star_ties_all_that_it_means():
 def test_two_parameters_and_a_point_that_cannot_be(tmp_path):
     case = shipped("fgfbstts/limit_ring")
     over = {"rings.4.float": ["-1 um", "0 um"], "operating.power": ["1 MW", "2000 kW"]}
-    told = []
-    found = ls.sweep(case, over, positions=[1], progress=lambda *done: told.append(done))
-    assert told[-1] == (2, 2)
+    reported = []
+    found = ls.sweep(case, over, positions=[1], progress=lambda *done: reported.append(done))
+    assert reported[-1] == (2, 2)
     assert [p.status for p in found.points] == ["invalid", "invalid", "certified", "certified"]
     assert "is negative" in found.points[0].message
     arrays = found.dataset
@@ -173,7 +173,7 @@ def test_a_setting_makes_the_table_of_a_gears_errors():
 
 
 @pytest.mark.parametrize(
-    ("over", "said"),
+    ("over", "message"),
     [
         ({}, "1 or 2 parameters"),
         ({"rings.4.flot": "0 um:1 um:3"}, "Did you mean float"),
@@ -188,8 +188,8 @@ def test_a_setting_makes_the_table_of_a_gears_errors():
         ({"rings.4.float": ["0 um"], "rings.*.float": ["1 um"]}, "is set by"),
     ],
 )
-def test_what_cannot_be_swept_is_told(over, said):
-    with pytest.raises(ls.CaseError, match=said):
+def test_what_cannot_be_swept_is_reported(over, message):
+    with pytest.raises(ls.CaseError, match=message):
         ls.sweep(shipped("fgfbstts/limit_ring"), over)
 
 

@@ -30,7 +30,7 @@ def mounted(place: Path) -> Iterator[Path]:
 
 
 def fill(disk: Path, left: int) -> None:
-    """Fill a disk but for so many bytes."""
+    """Fill a disk except for so many bytes."""
     free = os.statvfs(disk).f_bavail * PAGE
     with (disk / "ballast").open("wb") as file:
         os.posix_fallocate(file.fileno(), 0, free - left)
@@ -38,7 +38,7 @@ def fill(disk: Path, left: int) -> None:
 
 
 def files(disk: Path) -> dict[str, bytes]:
-    """What stands on a disk, hidden files and all, but for what fills it."""
+    """What is on a disk, hidden files and all, except what fills it."""
     return {
         file.relative_to(disk).as_posix(): file.read_bytes()
         for file in disk.rglob("*")

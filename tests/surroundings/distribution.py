@@ -80,9 +80,9 @@ def installed_and_run(file: Path) -> None:
             text = (ROOT / "cases" / name).read_bytes()
             (place / Path(name).name).write_bytes(text)
         command = str(scripts / "loadshare")
-        told = _output(place, command, "--version")
-        if told.split() != ["loadshare", version()]:
-            raise SystemExit(f"{file.name}: --version says {told!r}")
+        output = _output(place, command, "--version")
+        if output.split() != ["loadshare", version()]:
+            raise SystemExit(f"{file.name}: --version says {output!r}")
         if "PASSED  5 of 5 positions certified" not in _output(
             place, command, "run", "limit_ring.toml"
         ):
@@ -108,17 +108,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path)
     parser.add_argument("--tag", default="", help="tag of the release, which names the version")
-    asked = parser.parse_args()
-    if asked.tag and asked.tag != f"v{version()}":
-        raise SystemExit(f"the tag is {asked.tag}, the version {version()}")
-    wheel_file, sdist_file = files_in(asked.folder)
+    options = parser.parse_args()
+    if options.tag and options.tag != f"v{version()}":
+        raise SystemExit(f"the tag is {options.tag}, the version {version()}")
+    wheel_file, sdist_file = files_in(options.folder)
     with zipfile.ZipFile(wheel_file) as wheel:
         wrong = {wheel_file: problems_of_wheel(wheel.namelist())}
     with tarfile.open(sdist_file) as sdist:
         wrong[sdist_file] = problems_of_sdist(sdist.getnames())
-    told = [f"{file.name} {problem}" for file, found in wrong.items() for problem in found]
-    if told:
-        raise SystemExit("\n".join(told))
+    problems = [f"{file.name} {problem}" for file, found in wrong.items() for problem in found]
+    if problems:
+        raise SystemExit("\n".join(problems))
     for file in wrong:
         installed_and_run(file)
         size = file.stat().st_size // 1024

@@ -66,7 +66,7 @@ def disk(tmp_path: Path):
 
 @pytest.fixture
 def run(disk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    """The command as its own process runs it; its exit code and what it says beside the answer."""
+    """The command as its own process runs it; its exit code and messages besides the answer."""
     bench, pair = tmp_path / "bench.toml", tmp_path / "pair.toml"
     base = (CASES / "fgfbstts" / "installation_error.toml").as_posix()
     bench.write_text(BENCH.format(base=base), encoding="utf-8")
@@ -74,22 +74,22 @@ def run(disk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     places = {"BENCH": str(bench), "PAIR": str(pair)}
 
     def ran(*words: object) -> tuple[object, str]:
-        told = [places.get(str(w), str(w)).replace("DISK", str(disk)) for w in words]
+        given = [places.get(str(w), str(w)).replace("DISK", str(disk)) for w in words]
         with pytest.raises(SystemExit) as end:
-            main(told)
+            main(given)
         return end.value.code, capsys.readouterr().err
 
     return ran
 
 
 @pytest.mark.parametrize("words", mostly_slow([(w,) for w in WRITING], WRITING[:5]), ids=name_of)
-def test_a_full_disk_is_told_and_nothing_is_left(run, disk, words):
+def test_a_full_disk_is_reported_and_nothing_is_left(run, disk, words):
     fill(disk, 0)
-    code, said = run(*words)
+    code, output = run(*words)
     file = str(words[-1]).replace("DISK", str(disk))
     assert code == 2
-    assert said.strip().splitlines()[-1] == f"{file}: cannot be written: No space left on device"
-    assert "Traceback" not in said
+    assert output.strip().splitlines()[-1] == f"{file}: cannot be written: No space left on device"
+    assert "Traceback" not in output
     assert files(disk) == {}
 
 
@@ -101,9 +101,9 @@ def test_a_disk_that_fills_up_while_it_is_written_leaves_what_was_there(run, dis
     file = Path(str(words[-1]).replace("DISK", str(disk)))
     file.write_text("old", encoding="utf-8")
     fill(disk, pages * PAGE)
-    code, said = run(*words)
+    code, output = run(*words)
     assert code == 2
-    assert f"{file}: cannot be written" in said
+    assert f"{file}: cannot be written" in output
     assert files(disk) == {file.name: b"old"}
 
 
@@ -112,10 +112,10 @@ def test_each_file_of_an_analysis_is_whole_or_not_there(run, disk, monkeypatch, 
     whole = run("ltca", "PAIR", "--positions", 1, "-o", tmp_path / "whole")
     assert whole[0] == 0
     fill(disk, 2 * PAGE)
-    code, said = run("ltca", "PAIR", "--positions", 1, "-o", "DISK/pair")
+    code, output = run("ltca", "PAIR", "--positions", 1, "-o", "DISK/pair")
     assert code == 2
-    assert f"{disk / 'pair'}" in said
-    assert "cannot be written: No space left on device" in said
+    assert f"{disk / 'pair'}" in output
+    assert "cannot be written: No space left on device" in output
     left = files(disk / "pair")
     assert 0 < len(left) < len(files(tmp_path / "whole"))
     for name, content in left.items():
@@ -130,9 +130,9 @@ def test_a_batch_names_each_file_that_has_no_room(run, disk):
     assert len(whole) == 1
     (disk / "ballast").unlink()
     fill(disk, 0)
-    code, said = run("batch", CASES / "star", "-o", "DISK/more", "-j", 1)
+    code, output = run("batch", CASES / "star", "-o", "DISK/more", "-j", 1)
     assert code == 2
-    assert f"{disk / 'more' / 'summary.json'}: cannot be written" in said
+    assert f"{disk / 'more' / 'summary.json'}: cannot be written" in output
 
 
 def test_a_batch_without_room_goes_on_when_there_is_some(run, disk):
@@ -146,10 +146,10 @@ def test_a_batch_without_room_goes_on_when_there_is_some(run, disk):
 @pytest.mark.parametrize("pages", [0, 2])
 def test_a_tolerance_study_names_its_part_and_goes_on_when_there_is_room(run, disk, pages):
     fill(disk, pages * PAGE)
-    code, said = run(*TOLERANCE)
+    code, output = run(*TOLERANCE)
     assert code == 2
-    assert said.strip().splitlines()[-1].startswith(str(disk / "study"))
-    assert "cannot be written: No space left on device" in said
+    assert output.strip().splitlines()[-1].startswith(str(disk / "study"))
+    assert "cannot be written: No space left on device" in output
     assert not [name for name in files(disk) if "part-" in name]
     (disk / "ballast").unlink()
     assert run(*TOLERANCE)[0] == 0
@@ -175,7 +175,7 @@ def test_compiled_code_that_finds_no_room_is_used_all_the_same(disk, tmp_path):
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device")
 @pytest.mark.parametrize("words", [("run", SUN), ("schema",), ("--help",), ("--version",)])
-def test_a_full_disk_behind_standard_output_is_told(words):
+def test_a_full_disk_behind_standard_output_is_reported(words):
     with Path("/dev/full").open("wb") as full:
         done = subprocess.run(
             [sys.executable, "-m", "loadshare", *map(str, words)],
@@ -190,7 +190,7 @@ def test_a_full_disk_behind_standard_output_is_told(words):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there are no such limits")
-def test_a_limit_on_the_size_of_files_is_told(tmp_path):
+def test_a_limit_on_the_size_of_files_is_reported(tmp_path):
     script = f"""
 import resource, signal
 resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))

@@ -1,4 +1,4 @@
-"""Answers do not hang on language and encoding; what a stream cannot show is a question mark."""
+"""Answers do not depend on language and encoding; what a stream cannot show is a question mark."""
 
 import json
 import subprocess
@@ -20,13 +20,13 @@ SETTINGS = {
 
 def ran(*words: object, before: str = "", **settings: str) -> subprocess.CompletedProcess[bytes]:
     start = f"{before}\nfrom loadshare.cli.main import main; main()"
-    told = plain_environment(**settings)
-    told.pop("LC_ALL", None) if "LC_ALL" not in settings else None
+    environment = plain_environment(**settings)
+    environment.pop("LC_ALL", None) if "LC_ALL" not in settings else None
     return subprocess.run(
         [sys.executable, "-c", start, *map(str, words)],
         capture_output=True,
         check=False,
-        env=told,
+        env=environment,
     )
 
 
@@ -76,7 +76,7 @@ except SystemExit:
 
 
 def test_a_locale_with_decimal_commas_changes_no_figure(wanted, tmp_path):
-    """Where the system has one; libraries that print by the locale are asked through it."""
+    """Where the system has one; libraries that print by the locale are called through it."""
     import locale
 
     before = "import locale; locale.setlocale(locale.LC_ALL, {name!r})"

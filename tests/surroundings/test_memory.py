@@ -1,4 +1,4 @@
-"""Too little memory is told in words, with exit code 2."""
+"""Too little memory is reported in words, with exit code 2."""
 
 import subprocess
 import sys
@@ -11,7 +11,7 @@ from loadshare.cli import main as entry
 from loadshare.cli.batch import work as pool
 
 RING = CASES / "fgfbstts" / "limit_ring.toml"
-TOLD = "There is not enough memory"
+MESSAGE = "There is not enough memory"
 UNDER_A_LIMIT = f"""
 import resource
 from contextlib import suppress
@@ -29,7 +29,7 @@ main(words)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="there are no such limits")
-def test_a_limit_on_memory_is_told():
+def test_a_limit_on_memory_is_reported():
     done = subprocess.run(
         [sys.executable, "-c", UNDER_A_LIMIT],
         capture_output=True,
@@ -38,22 +38,22 @@ def test_a_limit_on_memory_is_told():
         env=plain_environment(OPENBLAS_NUM_THREADS="1"),
     )
     assert done.returncode == 2
-    assert done.stderr.startswith(f"{TOLD} (Unable to allocate 8.00 GiB")
+    assert done.stderr.startswith(f"{MESSAGE} (Unable to allocate 8.00 GiB")
     assert "Traceback" not in done.stderr
 
 
 @pytest.mark.parametrize(
-    ("error", "told"),
+    ("error", "message"),
     [
-        (MemoryError(), f"{TOLD}."),
-        (OSError(12, "Cannot allocate memory"), f"{TOLD} ([Errno 12] Cannot allocate memory)"),
+        (MemoryError(), f"{MESSAGE}."),
+        (OSError(12, "Cannot allocate memory"), f"{MESSAGE} ([Errno 12] Cannot allocate memory)"),
         (
             ImportError("lib.so: failed to map segment from shared object"),
-            f"{TOLD} (a library could not be loaded)",
+            f"{MESSAGE} (a library could not be loaded)",
         ),
     ],
 )
-def test_want_of_memory_is_told_however_it_shows(monkeypatch, capsys, error, told):
+def test_lack_of_memory_is_reported_however_it_shows(monkeypatch, capsys, error, message):
     def fails(*_: object, **__: object) -> None:
         raise error
 
@@ -61,7 +61,7 @@ def test_want_of_memory_is_told_however_it_shows(monkeypatch, capsys, error, tol
     with pytest.raises(SystemExit) as end:
         entry.main(["run"])
     assert end.value.code == 2
-    assert capsys.readouterr().err.startswith(told)
+    assert capsys.readouterr().err.startswith(message)
 
 
 @pytest.mark.parametrize("error", [ImportError("no module"), OSError(5, "Input/output error")])
@@ -82,4 +82,4 @@ def test_a_case_too_large_for_memory_costs_the_others_nothing(monkeypatch, tmp_p
     task = pool.Task(RING, "ring", tmp_path / "ring.json", "auto", "newton", 1e-9, False, {})
     found = pool.work(task)
     assert found.outcome == "crashed"
-    assert found.messages[0].startswith(f"{TOLD} (Unable to allocate 8.00 GiB)")
+    assert found.messages[0].startswith(f"{MESSAGE} (Unable to allocate 8.00 GiB)")

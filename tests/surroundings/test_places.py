@@ -33,12 +33,12 @@ def ended(*words: object) -> object:
 
 def test_commands_answer_where_nothing_can_be_written(read_only, tmp_path):  # noqa: F811
     out = tmp_path / "out"
-    said = answered(
+    output = answered(
         read_only,
         tmp_path,
         [("run", RING), SWEEP, ("batch", CASES / "star", "-o", out, "-j", 1)],
     )
-    assert "could not be kept" not in said
+    assert "could not be kept" not in output
     assert (out / "summary.json").exists()
 
 
@@ -47,29 +47,29 @@ def test_teeth_are_analysed_where_nothing_can_be_written(read_only, tmp_path):  
     """The tooth contact is compiled, which takes half a minute, and cannot be kept."""
     pair, out = tmp_path / "pair.toml", tmp_path / "out"
     pair.write_text(SPUR, encoding="utf-8")
-    said = answered(read_only, tmp_path, [("ltca", pair, "--positions", 1, "-o", out / "pair")])
-    # That is said, once.
-    assert said.count("NUMBA_CACHE_DIR") + said.count("could not be kept") == 1
+    output = answered(read_only, tmp_path, [("ltca", pair, "--positions", 1, "-o", out / "pair")])
+    # That is reported, once.
+    assert output.count("NUMBA_CACHE_DIR") + output.count("could not be kept") == 1
     assert (out / "pair" / "law.toml").exists()
 
 
-def answered(read_only, tmp_path, asked) -> str:  # noqa: F811
+def answered(read_only, tmp_path, commands) -> str:  # noqa: F811
     """What commands say of a user who may write into one folder only."""
     script = f"""
 from loadshare.cli.main import main
-for words in {[[str(w) for w in words] for words in asked]!r}:
+for words in {[[str(w) for w in words] for words in commands]!r}:
     try:
         main(words)
     except SystemExit as end:
         assert end.code == 0, (words, end.code)
 """
-    told = plain_environment(LOADSHARE_CACHE="", NUMBA_CACHE_DIR="") | read_only
+    environment = plain_environment(LOADSHARE_CACHE="", NUMBA_CACHE_DIR="") | read_only
     done = subprocess.run(
         [*as_a_user(), sys.executable, "-c", script],
         capture_output=True,
         text=True,
         check=False,
-        env=told,
+        env=environment,
         cwd=tmp_path / "home",
     )
     assert done.returncode == 0, done.stderr
@@ -78,7 +78,7 @@ for words in {[[str(w) for w in words] for words in asked]!r}:
     return done.stderr
 
 
-def test_an_output_folder_that_cannot_be_written_is_told(read_only, tmp_path):  # noqa: F811
+def test_an_output_folder_that_cannot_be_written_is_reported(read_only, tmp_path):  # noqa: F811
     home = read_only["HOME"]
     for words, file in (
         (("run", RING, "-o", f"{home}/a.json"), f"{home}/a.json"),
@@ -122,7 +122,7 @@ def test_without_a_home_laws_are_not_kept(no_home, tmp_path):
 
 
 def test_without_a_home_compiled_code_is_kept_nowhere_else(no_home, tmp_path, monkeypatch):
-    """Numba would make a folder named ~ where the user stands."""
+    """Numba would make a folder named ~ in the user's current folder."""
     from loadshare import code_cache
 
     def function(x: float) -> float:
@@ -139,7 +139,7 @@ def test_without_a_home_compiled_code_is_kept_nowhere_else(no_home, tmp_path, mo
     assert list(no_home.iterdir()) == []
 
 
-def test_samples_that_have_no_place_are_told(monkeypatch, tmp_path, capsys):
+def test_samples_that_have_no_place_are_reported(monkeypatch, tmp_path, capsys):
     import tempfile
 
     case = tmp_path / "case.toml"
@@ -151,7 +151,7 @@ def test_samples_that_have_no_place_are_told(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(tempfile, "mkdtemp", nowhere)
     for words in (("tolerance", case), ("study", case, "scatter")):
         assert ended(*words) == 2
-        told = capsys.readouterr().err
-        assert "no folder for temporary files (No usable temporary directory found)" in told
-        assert "--output" in told
+        message = capsys.readouterr().err
+        assert "no folder for temporary files (No usable temporary directory found)" in message
+        assert "--output" in message
     assert ended("tolerance", case, "--no-worst", "-o", tmp_path / "own") == 0

@@ -69,14 +69,14 @@ def test_a_replaced_case_shares_what_it_does_not_change_and_changes_nothing_else
     assert again.hash == changed.hash
 
 
-def test_a_new_gear_tells_anew_what_a_name_joins():
+def test_a_new_gear_changes_what_a_name_joins():
     """Of the gears a, b, a-b and c, the name a-b-c may join two pairs; before, it joined one."""
     text = {"base_radius": "50 mm", "centre": ["0 mm", "0 mm"]}
     gears = {name: {**text, "centre": [f"{100 * k} mm", "0 mm"]} for k, name in enumerate("abc")}
     case = shipped("fgfbstts/base")
-    told = {f"gears.{name}": gear for name, gear in gears.items()}
+    changes = {f"gears.{name}": gear for name, gear in gears.items()}
     with pytest.raises(ls.CaseError) as known:
         ls.Case({**case.to_dict(), "gears": {**case.to_dict()["gears"], **gears}})
     with pytest.raises(ls.CaseError) as found:
-        case.replace(told)
+        case.replace(changes)
     assert [p.message for p in found.value.problems] == [p.message for p in known.value.problems]

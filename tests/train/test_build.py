@@ -177,7 +177,7 @@ def test_the_teeth_of_any_gear_of_the_first_stage_tell_the_cycle_of_the_input(ge
 
 
 def test_teeth_of_a_later_stage_alone_make_its_tooth_the_cycle():
-    """Nothing tells the teeth of stage I: gear 4 is the first on the way whose teeth are known."""
+    """Nothing gives the teeth of stage I: gear 4 is the first on the way whose teeth are known."""
     case = shipped("fgfbstts/base")
     train = build_train(case.replace({"gears.10.teeth": 227}))
     assert train.cycle == "4"

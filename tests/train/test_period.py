@@ -1,4 +1,4 @@
-"""The common period of several stages: closed forms, and a march written by hand.
+"""The common period of several stages: closed forms, and a march written explicitly.
 
 Source: formulation, section 13.
 """
@@ -126,9 +126,9 @@ def test_a_gearbox_of_planetary_stages_has_a_common_period() -> None:
         stage = 3 if name == "wheel-pinion" else int(name.split("_")[1][0])
         assert cycles == expected[stage] * period.revolutions
     assert math.gcd(*period.cycles.values()) == 1
-    # All its teeth share no factor: the way is too long to be kept, and is told.
-    told = rf"after {period.cycles[period.fastest]} cycles of mesh wheel-pinion"
-    with pytest.raises(CaseError, match=told):
+    # All its teeth share no factor: the way is too long to be kept, and is reported.
+    message = rf"after {period.cycles[period.fastest]} cycles of mesh wheel-pinion"
+    with pytest.raises(CaseError, match=message):
         build_train(case.replace({"operating.cycle": "common"}))
 
 
@@ -163,7 +163,7 @@ def test_places_are_those_of_fractions() -> None:
 
 
 @pytest.mark.parametrize(
-    ("positions", "change", "told"),
+    ("positions", "change", "message"),
     [
         (
             1000,
@@ -180,10 +180,10 @@ def test_places_are_those_of_fractions() -> None:
         ),
     ],
 )
-def test_what_cannot_be_is_told(positions, change, told) -> None:
+def test_what_cannot_be_is_reported(positions, change, message) -> None:
     with pytest.raises(CaseError) as caught:
         build_train(split_path(positions).replace(change))
-    assert told in str(caught.value)
+    assert message in str(caught.value)
 
 
 def test_stiffness_lists_fit_the_positions_of_a_cycle_still() -> None:

@@ -76,7 +76,7 @@ def test_planets_follow_one_another_as_parker_and_lin_have_it(sun, planet, angle
 
 
 def test_a_gear_train_of_idlers_keeps_step() -> None:
-    """The flanks of the idler, drawn by hand, pass its two pitch points one after the other."""
+    """The flanks of the idler, drawn explicitly, pass its two pitch points one after the other."""
     case = Case(
         operating={
             "input": "a",
@@ -113,19 +113,19 @@ def test_a_gear_train_of_idlers_keeps_step() -> None:
         assert apart(to_c - from_a, expected) < 1e-9
 
 
-def test_sets_that_cannot_be_put_together_are_told_where_they_would_fit() -> None:
+def test_sets_that_cannot_be_assembled_are_reported_with_the_angles_that_fit() -> None:
     case = planetary(18, 36, 90, ["0 deg", "120 deg", "241 deg"])
     with pytest.raises(CaseError) as caught:
         ls.solve(case, positions=[1])
-    told = str(caught.value)
-    assert "p3-ring" in told
-    assert "miss each other by 0.3 of a pitch" in told
-    assert "3.33333 deg apart" in told
-    assert "divides 108" in told
+    message = str(caught.value)
+    assert "p3-ring" in message
+    assert "miss each other by 0.3 of a pitch" in message
+    assert "3.33333 deg apart" in message
+    assert "divides 108" in message
 
 
 @pytest.mark.parametrize(("ring", "parts"), [(-70, 40), (0, 60)])
-def test_planets_in_pairs_are_told_where_they_would_fit(ring: int, parts: int) -> None:
+def test_planets_in_pairs_are_reported_with_the_angles_that_fit(ring: int, parts: int) -> None:
     """To a ring the two gears run alike and their difference counts; to a second sun, the sum."""
     last = {"teeth": abs(ring or 30), "type": "internal" if ring else "external"}
     gears: dict[str, Any] = {
@@ -154,9 +154,9 @@ def test_planets_in_pairs_are_told_where_they_would_fit(ring: int, parts: int) -
     )
     with pytest.raises(CaseError) as caught:
         ls.solve(case)
-    told = str(caught.value)
-    assert "cannot be put together" in told
-    assert f"divides {parts}." in told
+    message = str(caught.value)
+    assert "cannot be put together" in message
+    assert f"divides {parts}." in message
 
 
 def test_a_law_is_read_at_each_meshs_own_place() -> None:
@@ -187,7 +187,7 @@ def test_in_a_march_meshes_of_a_set_pass_by_the_relative_speed() -> None:
             assert train.mesh_positions(index)[name] == place
 
 
-def test_a_phase_that_contradicts_the_teeth_is_told_with_the_one_that_follows():
+def test_a_phase_that_contradicts_the_teeth_is_reported_with_the_one_that_follows():
     case = shipped("planetary/four_planets").replace({"operating.positions": 4})
     laid = {"operating.phases": "layout"}
     train = build_train(case.replace(laid))

@@ -96,7 +96,7 @@ FAST: dict[str, tuple] = {
     "gears.6.support [N/m]": (everything, 1e8, 9e8),
 }
 PREPARED = {'meshes."4-7".normal_backlash [um]': {'meshes."4-7".normal_backlash': "1 um"}}
-"""What a key needs to stand in the case before it can be an array."""
+"""What a key needs to be in the case before it can be an array."""
 
 
 def drawn(key: str, count: int, seed: int = 0) -> np.ndarray:
@@ -185,7 +185,7 @@ SLOW = {
 
 @pytest.mark.parametrize("key", SLOW)
 def test_a_key_that_changes_the_machine_groups_the_samples(key):
-    """Samples with the same value share a train; fast keys beside it stay arrays."""
+    """Samples with the same value share a train; fast keys next to it stay arrays."""
     case = everything()
     floats = [1.0, 2.0, 3.0]
     groups = samples_of(case, {key: SLOW[key], "rings.5.float [um]": floats})
@@ -242,11 +242,11 @@ WRONG = {
 
 
 @pytest.mark.parametrize("what", WRONG)
-def test_what_cannot_be_used_is_told(what):
-    samples, told = WRONG[what]
+def test_what_cannot_be_used_is_reported(what):
+    samples, message = WRONG[what]
     with pytest.raises(CaseError) as error:
         samples_of(everything(), samples)
-    assert told in str(error.value)
+    assert message in str(error.value)
     ring = "rings" if samples else ""
     assert any(ring in problem.key or "44" in problem.key for problem in error.value.problems)
 
@@ -268,7 +268,7 @@ def test_whatever_has_columns_is_read_alike(samples):
         np.testing.assert_allclose(column.in_si("m"), [1e-6, 2e-6], rtol=1e-15)
 
 
-def test_what_has_no_columns_is_told():
+def test_what_has_no_columns_is_reported():
     for samples in (None, [[1.0, 2.0]], np.ones((2, 2))):
         with pytest.raises(CaseError, match="no table of values by key"):
             columns_of(samples)
@@ -276,7 +276,7 @@ def test_what_has_no_columns_is_told():
         samples_of(everything(), {4: [1.0]})
 
 
-def test_all_problems_are_told_at_once():
+def test_all_problems_are_reported_at_once():
     samples = {"rings..4": [1.0], "rings.4.float [um]": [np.nan], "rings.5.float [um]": [1.0, 2.0]}
     with pytest.raises(CaseError) as error:
         columns_of(samples)

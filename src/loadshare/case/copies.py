@@ -118,11 +118,11 @@ def _angle(given: object) -> float | None:
 
 def _ends(name: str, element: Any, keys: tuple[str, ...], gears: list[str]) -> tuple[str, ...]:
     """The two gears of a mesh or shaft, as far as they are known."""
-    told = [element.get(key) for key in keys] if isinstance(element, Mapping) else [None]
-    if len(keys) == 1 and isinstance(told[0], list):
-        told = told[0]
+    given = [element.get(key) for key in keys] if isinstance(element, Mapping) else [None]
+    if len(keys) == 1 and isinstance(given[0], list):
+        given = given[0]
     by_name = ends_of(name, gears) or (None, None)
-    ends = [t if t is not None else n for t, n in zip([*told, None][:2], by_name, strict=True)]
+    ends = [t if t is not None else n for t, n in zip([*given, None][:2], by_name, strict=True)]
     return tuple(end for end in ends if isinstance(end, str))
 
 

@@ -18,12 +18,12 @@ from loadshare.case.element import Element, elements_in
 
 
 def description(model: type[Element], field: str) -> str:
-    """Return what is said of a field of an element; empty where nothing is."""
-    return next((told[field] for m in model.__mro__ if field in (told := _told(m))), "")
+    """Return the description of a field of an element; empty where there is none."""
+    return next((texts[field] for m in model.__mro__ if field in (texts := _texts(m))), "")
 
 
 def schema_of(model: type[Element], **settings: Any) -> dict[str, Any]:
-    """Return the JSON Schema of an element, with what is said of its fields and theirs.
+    """Return the JSON Schema of an element, with the descriptions of its fields and theirs.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def _within(model: type[Element]) -> Iterator[type[Element]]:
 
 
 @cache
-def _told(model: type) -> dict[str, str]:
+def _texts(model: type) -> dict[str, str]:
     if not (issubclass(model, Element) and model is not Element):
         return {}
     (tree,) = ast.parse(textwrap.dedent(inspect.getsource(model))).body

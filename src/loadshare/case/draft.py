@@ -88,7 +88,7 @@ def read_draft(
     data : mapping
         A case as plain data.
     origin : Origin
-        Where its keys stand.
+        Where its keys are.
     before : (Sections, mapping), optional
         A case that was read, and its plain data: what of the two is the same object is not read
         again.
@@ -128,7 +128,7 @@ def as_data(given: Any, file: str = "case") -> Any:
         Elements, tables, lists, arrays, physical values; names may be numbers, None means left
         out.
     file : str
-        Where it stands, for messages.
+        Where it is, for messages.
 
     Returns
     -------
@@ -151,8 +151,8 @@ def _as_data(given: Any, path: Path, file: str) -> Any:
         return written(given)
     if isinstance(given, Mapping):
         if len(given) > ALLOWED.entries:
-            told = f"has {len(given)} entries", f"at most {ALLOWED.entries}"
-            raise CaseError([Problem(file, dotted(path), "", *told)])
+            message, allowed = f"has {len(given)} entries", f"at most {ALLOWED.entries}"
+            raise CaseError([Problem(file, dotted(path), "", message, allowed)])
         named = ((str(k), item) for k, item in given.items() if item is not None)
         return {key: _as_data(item, (*path, key), file) for key, item in named}
     given = as_text(given)
@@ -165,9 +165,9 @@ def _as_data(given: Any, path: Path, file: str) -> Any:
 
 
 def defaults() -> dict[str, Any]:
-    """Return what sections are where nothing is said; to find out so late costs more than to read.
+    """Return what sections are by default; to let Pydantic find out costs more than reading.
 
-    Pydantic looks at the signature of what makes each default.
+    It looks at the signature of what makes each default.
     """
     return {
         name: about.default if about.default_factory is None else {}
@@ -232,8 +232,8 @@ def _with_ends(draft: Draft, path: Path, item: Any) -> Any:
         draft.tell(path, "the name does not tell two gears", f"a name a-b, or {own} within")
         # The rest of the element is still worth reading.
         ends = ("", "")
-    told = dict(zip(keys, ends if len(keys) == 2 else (ends,), strict=True))
-    return {**told, **item}
+    named = dict(zip(keys, ends if len(keys) == 2 else (ends,), strict=True))
+    return {**named, **item}
 
 
 @cache

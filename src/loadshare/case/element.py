@@ -79,9 +79,9 @@ class Element(BaseModel):
         broken = [
             InitErrorDetails(
                 type=PydanticCustomError(
-                    "said",
-                    "{said}. {allowed} {hint}",
-                    {"said": rule.message, "allowed": rule.allowed, "hint": rule.hint},
+                    "message",
+                    "{message}. {allowed} {hint}",
+                    {"message": rule.message, "allowed": rule.allowed, "hint": rule.hint},
                 ),
                 loc=rule.path,
                 input=look_up(written(self), rule.path) if rule.path else None,

@@ -68,9 +68,9 @@ def example_file(name: str) -> Path:
         near = get_close_matches(wanted, known, n=3) or [
             other for other in known if wanted.rpartition("/")[2] == other.rpartition("/")[2]
         ]
-        told = f"Near it: {', '.join(near)}." if near else f"There are {', '.join(known)}."
+        hint = f"Near it: {', '.join(near)}." if near else f"There are {', '.join(known)}."
         message = "is no case of the package"
-        raise CaseError([Problem("examples", "", name, message, hint=told)])
+        raise CaseError([Problem("examples", "", name, message, hint=hint)])
     return _folder() / f"{wanted}.toml"
 
 
@@ -92,9 +92,9 @@ def example_text(name: str) -> str:
         for key in ("law_file", "geometry"):
             if getattr(law, key) is not None:
                 message = "reads another file, so it cannot be copied alone"
-                told = "Copy its folder from the source, or open it with ls.examples()."
+                hint = "Copy its folder from the source, or open it with ls.examples()."
                 at = f'meshes."{mesh}".{key}'
-                raise CaseError([Problem(name, at, "", message, hint=told)])
+                raise CaseError([Problem(name, at, "", message, hint=hint)])
     return case.to_toml()
 
 

@@ -58,7 +58,7 @@ OF_TEETH = (
     "outside_diameter",
     "ovalisation",
 )
-"""Keys of a gear that say more of its teeth, beside their number and module."""
+"""Keys of a gear that say more of its teeth, besides their number and module."""
 OF_A_GEAR = ("base_radius", "inner_radius", "outer_radius", "teeth", "module", *OF_TEETH)
 """Keys of a gear that a carrier does not have."""
 STEEL_EXPANSION = 11.5e-6

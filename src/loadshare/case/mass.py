@@ -17,7 +17,7 @@ def mass_of(gear: Gear) -> float | None:
     Rings of the face width: an external gear reaches from its bore to its reference circle, an
     internal one from its reference circle to the outside of its `rim` below the root. Of a gear
     with a thin web only the rim has the face width, and the web its own thickness. Teeth are as
-    much above the reference circle as they leave below it, but for the profile shift and the
+    much above the reference circle as they leave below it, except for the profile shift and the
     clearance at the root; hubs, shafts and holes are not seen.
 
     Parameters

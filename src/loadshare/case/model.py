@@ -63,7 +63,7 @@ class Case(Content):
         self._take(as_data({**(content or {}), **sections}, origin.file), origin, name, None)
 
     def _take(self, data: dict[str, Any], origin: Origin, name: str, before: Case | None) -> None:
-        """Read plain data, but for what it shares with a case before, and check all of it."""
+        """Read plain data, except what it shares with an earlier case, and check all of it."""
         data, origin = with_copies(data, origin)
         draft = read_draft(data, origin, None if before is None else (before, before._data))
         problems = [*draft.problems, *check(draft)]

@@ -162,8 +162,8 @@ class Dimension:
             return self._problem(f"the unit {unit} is not known", hint=hint)
         apart = written_apart(unit, self.unit)
         if apart is None:
-            meant = ((written_apart(unit, si), kind) for kind, si in KINDS.items())
-            other, kind = next(((text, kind) for text, kind in meant if text), (None, ""))
+            others = ((written_apart(unit, si), kind) for kind, si in KINDS.items())
+            other, kind = next(((text, kind) for text, kind in others if text), (None, ""))
             if other is not None:
                 return self._problem(f"{unit} would be {other}, {kind}; {self.kind} is needed")
         fitting = [known for known in COMMON if si_factor(known, self.unit) is not None]
@@ -173,8 +173,8 @@ class Dimension:
     def _problem(
         self, message: str, *, hint: str = "", number: str | None = None
     ) -> PydanticCustomError:
-        said = {"said": message, "allowed": self._allowed(number), "hint": hint}
-        return PydanticCustomError("said", "{said}. Allowed: {allowed}. {hint}", said)
+        context = {"message": message, "allowed": self._allowed(number), "hint": hint}
+        return PydanticCustomError("message", "{message}. Allowed: {allowed}. {hint}", context)
 
     def __get_pydantic_core_schema__(
         self, source: Any, handler: GetCoreSchemaHandler

@@ -92,7 +92,7 @@ def what_folder_is(folder: Path) -> str:
 
 
 def near_names(path: Path) -> str:
-    """Return a sentence that proposes a file beside one that is not there, or nothing."""
+    """Return a sentence that proposes a file next to one that is not there, or nothing."""
     try:
         names = [file.name for file in path.parent.iterdir() if file.suffix == path.suffix]
     except OSError:

@@ -26,9 +26,9 @@ def revise(
     Parameters
     ----------
     data : mapping
-        A case as plain data; left as it is, and shared but for the tables that change.
+        A case as plain data; left as it is, and shared except for the tables that change.
     origin : Origin
-        Where its keys stand.
+        Where its keys are.
     changes : mapping of str to object
         New values by dotted key path; None removes the key.
 
@@ -70,7 +70,7 @@ def revise(
 
 
 def _own(data: dict[str, Any], path: Path, owned: set[int]) -> None:
-    """Put copies in place of the tables and lists above a key, but for those that are copies."""
+    """Put copies in place of the tables and lists above a key, except for those that are copies."""
     holder: Any = data
     for step in path[:-1]:
         below = look_up(holder, (step,))
@@ -138,7 +138,7 @@ def differing(before: Any, after: Any, above: Path = ()) -> Iterator[tuple[Path,
 
 
 def nearest(data: Mapping[str, Any], path: Path) -> str:
-    """Return a hint at what a path that does not exist could have meant.
+    """Return a hint at which path was intended in place of one that does not exist.
 
     Parameters
     ----------

@@ -65,15 +65,15 @@ def tooth_counts(
         queue = deque([source])
         while queue:
             here = queue.popleft()
-            told, density = settled[here]
+            origin, density = settled[here]
             for other in partners[here]:
                 if other in settled:
                     continue
                 expected = density * radii[other]
                 count = counts.setdefault(other, expected)
                 if abs(count - expected) > TEETH_TOLERANCE * expected:
-                    misfits.append(Misfit(other, told, expected))
+                    misfits.append(Misfit(other, origin, expected))
                 follows = given[other] is None
-                settled[other] = (told, density) if follows else (other, count / radii[other])
+                settled[other] = (origin, density) if follows else (other, count / radii[other])
                 queue.append(other)
     return counts, tuple(misfits)

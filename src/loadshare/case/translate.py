@@ -70,7 +70,7 @@ def hint_at(key: object, model: type[Element] | None, known: Iterable[str]) -> s
     Returns
     -------
     str
-        Which key was meant, or where in a case it belongs; empty if it is like none.
+        Which key was intended, or where in a case it belongs; empty if it is like none.
     """
     from loadshare.case.content import Content
 
@@ -98,8 +98,8 @@ def hint_at(key: object, model: type[Element] | None, known: Iterable[str]) -> s
     if not places:
         return ""
     *others, last = places
-    told = f"{', '.join(others)} or {last}" if others else last
-    return f"{name} belongs in {told}."
+    where = f"{', '.join(others)} or {last}" if others else last
+    return f"{name} belongs in {where}."
 
 
 SINGLE = ("operating", "march")
@@ -125,7 +125,7 @@ def translate(error: ValidationError, model: type[Element]) -> list[Rule]:
     """
     # No element knows how many there are of its kind; each looks at all others.
     found = error.errors(include_url=False)[: ALLOWED.problems]
-    return [_told(one, model) for one in found if not _follows(one, found)]
+    return [_rule(one, model) for one in found if not _follows(one, found)]
 
 
 def _follows(one: ErrorDetails, found: list[ErrorDetails]) -> bool:
@@ -141,11 +141,11 @@ def _follows(one: ErrorDetails, found: list[ErrorDetails]) -> bool:
     return one["type"] == "too_short" and inner
 
 
-def _told(error: ErrorDetails, model: type[Element]) -> Rule:
+def _rule(error: ErrorDetails, model: type[Element]) -> Rule:
     path = tuple(step for step in error["loc"] if not str(step).startswith(MARK))
     kind, context = error["type"], error.get("ctx", {})
-    if kind == "said":
-        return Rule(context["said"], path, context["allowed"], context["hint"])
+    if kind == "message":
+        return Rule(context["message"], path, context["allowed"], context["hint"])
     if kind == "extra_forbidden":
         keys = list(map(str, _fields(model, path[:-1])))
         own = model if len(path) == 1 else None
@@ -156,8 +156,8 @@ def _told(error: ErrorDetails, model: type[Element]) -> Rule:
     if kind == "missing":
         holder = _table(model, path[:-1])
         names = {about.alias or n: n for n, about in holder.model_fields.items()} if holder else {}
-        said = description(holder, names[str(path[-1])]) if holder and path[-1] in names else ""
-        return Rule("is missing", path, hint=said.split("\n")[0])
+        text = description(holder, names[str(path[-1])]) if holder and path[-1] in names else ""
+        return Rule("is missing", path, hint=text.split("\n")[0])
     if kind == "literal_error":
         words = context["expected"].replace(" or ", ", ").replace("'", "").split(", ")
         hint = did_you_mean(error["input"], words)

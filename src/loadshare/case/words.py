@@ -29,7 +29,7 @@ def did_you_mean(word: object, known: Iterable[str]) -> str:
     word : object
         What was given.
     known : iterable of str
-        What could have been meant.
+        What could have been intended.
 
     Returns
     -------

@@ -1,7 +1,7 @@
 """Situations and claims as compiled code reads them: tuples of arrays of one kind.
 
 There is one such tuple of each: Numba takes two that are alike for the same, and looks at all types
-anew in every call that it took for the other.
+again in every call that it took for the other.
 """
 
 from __future__ import annotations

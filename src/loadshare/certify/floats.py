@@ -227,8 +227,8 @@ class Rests:
         )
         words = []
         for *on, settled in kinds.T.tolist():
-            told = " + ".join(found.names[b].split(": ")[-1] for b in on if b >= 0)
-            words.append(told or ("inside" if settled else "undetermined"))
+            label = " + ".join(found.names[b].split(": ")[-1] for b in on if b >= 0)
+            words.append(label or ("inside" if settled else "undetermined"))
         return np.array(words, dtype=str)[which.reshape(-1)]
 
     def stage(self, gear: str) -> NDArray[np.intp]:
@@ -262,7 +262,7 @@ class Rests:
             found[there & (radius >= start - near) & (force >= held + more)] = number
         return found
 
-    def stage_told(self, gear: str) -> NDArray[np.str_]:
+    def stage_name(self, gear: str) -> NDArray[np.str_]:
         """Stage of its spline in words, (S,); empty of a gear without one."""
         return np.array([*STAGES, ""])[self.stage(gear)]
 

@@ -40,7 +40,7 @@ from loadshare.train.equilibrium import Equilibrium
 from loadshare.train.situations import situation_of
 from loadshare.train.train import Spline, Train
 
-TOLD = {
+MEANINGS = {
     "convex": "only answer: the problem is convex",
     "least energy": "only answer of least energy: nothing that is not convex carries",
     "local": "locally unique",
@@ -56,7 +56,7 @@ class Uniqueness:
     Attributes
     ----------
     kind : str
-        A key of `TOLD`.
+        A key of `MEANINGS`.
     curvature : float or None
         κ, what arcs and friction take from the stiffness, in parts of it; None where a move that
         they drive is held by nothing.
@@ -69,16 +69,16 @@ class Uniqueness:
     where: str
 
     @property
-    def told(self) -> str:
+    def text(self) -> str:
         """The verdict as a sentence without its full stop."""
         if self.kind in ("convex", "least energy"):
-            return TOLD[self.kind]
+            return MEANINGS[self.kind]
         size = (
             "curvature without bound"
             if self.curvature is None
             else (f"curvature {self.curvature:.2g} of the stiffness")
         )
-        return f"{TOLD[self.kind]}: {size} ({self.where})"
+        return f"{MEANINGS[self.kind]}: {size} ({self.where})"
 
 
 def uniqueness(train: Train, answer: Equilibrium) -> Uniqueness:

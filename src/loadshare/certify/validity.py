@@ -19,7 +19,7 @@ neglects is estimated here from the answer alone, and so are the bounds:
   off by the angle by which the arm from the neighbour turns.
 
 Common shifts of gears, rotations and round rings neglect nothing; displacements over base radii,
-rotations, and shifts over backlashes are told without a bound.
+rotations, and shifts over backlashes are reported without a bound.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ from loadshare.train.train import Train
 
 Array = NDArray[np.float64]
 
-TOLD = {
+LABELS = {
     "centre": "centre displaced / base radius",
     "rotation": "rotation [rad]",
     "backlash": "shift in a mesh / backlash",
@@ -53,7 +53,7 @@ TOLD = {
     "approach": "approach neglected / deflection",
     "ring": "arm of a ring turned [rad]",
 }
-"""What is measured, each a pure number, in the order in which it is told."""
+"""What is measured, each a pure number, in the order in which it is reported."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,7 @@ class Measure:
     where : str
         Gear, mesh or ring that shows it.
     warning, refusal : float or None
-        Bounds; None where the figure is told only.
+        Bounds; None where the figure is only reported.
     """
 
     value: float
@@ -82,7 +82,7 @@ class Validity:
     Attributes
     ----------
     measures : mapping of str to Measure
-        Keys of `TOLD`; those that a train cannot have are left out.
+        Keys of `LABELS`; those that a train cannot have are left out.
     """
 
     measures: Mapping[str, Measure]
@@ -103,18 +103,18 @@ class Validity:
 
     @property
     def verdict(self) -> str:
-        """How it stands: "small", "large" (with a warning) or "meaningless" (refused)."""
+        """Its verdict: "small", "large" (with a warning) or "meaningless" (refused)."""
         return "meaningless" if self.refused else "large" if self.warned else "small"
 
 
-def refusal_told(refused: Mapping[str, Measure]) -> str:
+def refusal_text(refused: Mapping[str, Measure]) -> str:
     """Return why an answer is refused, from the figures beyond their bounds."""
-    told = "; ".join(
-        f"{TOLD[name]} {m.value:.3g} at {m.where} (allowed below {m.refusal:.3g})"
+    text = "; ".join(
+        f"{LABELS[name]} {m.value:.3g} at {m.where} (allowed below {m.refusal:.3g})"
         for name, m in refused.items()
     )
     return (
-        f"the displacements are too large for the geometry in which they were found: {told}; "
+        f"the displacements are too large for the geometry in which they were found: {text}; "
         "check the load, the stiffnesses and the clearances"
     )
 
@@ -255,7 +255,7 @@ class Measuring:
         for name, values in self.bounded(situations, answers, deflection).items():
             for k in np.flatnonzero(values.max(axis=0) >= self.bounds[name][1]).tolist():
                 beyond.setdefault(k, {})[name] = self._largest(name, values[:, k])
-        return {k: refusal_told(found) for k, found in beyond.items()}
+        return {k: refusal_text(found) for k, found in beyond.items()}
 
     def _largest(self, name: str, values: Array) -> Measure:
         at = first_of_largest(values)
@@ -288,7 +288,7 @@ class Measuring:
             size = np.hypot(of.pushing @ shifts, self.across @ shifts)
             found["backlash"] = np.where(some, size / np.where(some, backlash, 1.0), -1.0)
         found |= self.bounded(situations, answers, deflection)
-        return {name: found[name] for name in TOLD if name in found}
+        return {name: found[name] for name in LABELS if name in found}
 
     def one(
         self, situation: Situations, answers: Equilibria, deflection: float

@@ -42,7 +42,7 @@ def check(
     for path in found:
         wrong: tuple[Problem, ...] = ()
         try:
-            told = _result(path) if path.suffix in RESULTS else _case(path, change)
+            note = _result(path) if path.suffix in RESULTS else _case(path, change)
         except (CaseError, ResultError) as error:
             bad += 1
             wrong = error.problems
@@ -50,7 +50,7 @@ def check(
             if not json:
                 echo(str(error), err=True)
         else:
-            say(f"OK  {path}{told}", whole=True)
+            say(f"OK  {path}{note}", whole=True)
             if teeth and path.suffix not in RESULTS:
                 _print_teeth(path, change)
         record.append({"file": str(path), "ok": not wrong, "problems": [asdict(p) for p in wrong]})
@@ -58,8 +58,8 @@ def check(
         echo(document_text({"ok": not bad, "files": record}), nl=False)
     if bad:
         noun = "file" if any(path.suffix in RESULTS for path in found) else "case"
-        told = f"{counted(problems, 'problem')} in {bad} of {counted(len(found), noun)}."
-        fail([told], UNUSABLE)
+        summary = f"{counted(problems, 'problem')} in {bad} of {counted(len(found), noun)}."
+        fail([summary], UNUSABLE)
 
 
 def _case(path: Path, change: list[str] | None) -> str:

@@ -61,14 +61,14 @@ class Command(TyperCommand):
         hush(machine or bool(ctx.params.get("quiet")))
         for note in notes:
             tell_note(note)
-        asked = [
+        outputs = [
             (p.opts[-1], file)
             for p in self.params
             if p.metavar == OUTPUT
             for file in _files(ctx.params.get(p.name))
         ]
-        ask_for(asked)
-        clear(file for _, file in asked if file != STANDARD)
+        ask_for(outputs)
+        clear(file for _, file in outputs if file != STANDARD)
         return left
 
     def invoke(self, ctx: Any) -> Any:
@@ -89,7 +89,7 @@ class Command(TyperCommand):
 
 
 class Group(TyperGroup):
-    """The commands together; a word that is none leads to the one that was meant."""
+    """The commands together; an unknown word leads to the intended one."""
 
     def main(self, *args: Any, **kwargs: Any) -> Any:
         """Run a command; what it notes (outputs, ``--quiet``) ends with it."""
@@ -108,15 +108,15 @@ class Group(TyperGroup):
             return super().resolve_command(ctx, args)
         from loadshare.case.words import did_you_mean
 
-        meant = did_you_mean(word, [*self.commands, *MEANT])
-        for other, name in MEANT.items():
-            meant = meant.replace(f" {other}?", f" {name}?")
-        if not meant and Path(word).suffix == ".toml":
-            meant = f"To solve a case: loadshare run {word}"
-        raise UsageError(f"No such command {word!r}. {meant}".strip(), ctx)
+        hint = did_you_mean(word, [*self.commands, *OTHER_NAMES])
+        for other, name in OTHER_NAMES.items():
+            hint = hint.replace(f" {other}?", f" {name}?")
+        if not hint and Path(word).suffix == ".toml":
+            hint = f"To solve a case: loadshare run {word}"
+        raise UsageError(f"No such command {word!r}. {hint}".strip(), ctx)
 
 
-MEANT = {
+OTHER_NAMES = {
     **dict.fromkeys(("solve", "simulate", "calculate"), "run"),
     **dict.fromkeys(("validate", "verify", "lint"), "check"),
     **dict.fromkeys(("init", "create"), "new"),

@@ -1,4 +1,4 @@
-"""Where text goes: stdout for answers, stderr for progress and beside a file on stdout.
+"""Where text goes: stdout for answers, stderr for progress and next to a file on stdout.
 
 With ``--quiet``, and with ``--json``, there are neither answers nor progress in words.
 """
@@ -50,7 +50,7 @@ def stand() -> tuple[int, int]:
 
 
 def under_way() -> str:
-    """Return how far the command has come, as the middle of a sentence; empty if not begun."""
+    """Return how far the command has come, as the middle of a sentence; empty if not started."""
     known = _at.get()
     if known is None:
         return ""
@@ -62,7 +62,7 @@ def under_way() -> str:
 def console(*, stderr: bool = False) -> Console:
     """Return a console that prints titles and units as they are: brackets are no markup here.
 
-    Where a file goes to stdout, all that is said goes to stderr.
+    Where a file goes to stdout, all text goes to stderr.
     """
     from rich.console import Console
 
@@ -70,11 +70,11 @@ def console(*, stderr: bool = False) -> Console:
     return Console(stderr=stderr or is_stdout_taken(), markup=False, emoji=False, highlight=False)
 
 
-def say(*told: object, style: str | None = None, whole: bool = False) -> None:
+def say(*parts: object, style: str | None = None, whole: bool = False) -> None:
     """Print an answer; `whole` leaves its lines to be broken by the terminal, as paths need."""
     if is_hushed():
         return
-    console().print(*told, style=style, soft_wrap=whole)
+    console().print(*parts, style=style, soft_wrap=whole)
 
 
 def say_all(lines: Iterable[str], *, whole: bool = False) -> None:
@@ -100,7 +100,7 @@ def progress(what: str, total: int | None, *, rated: bool = False) -> Iterator[T
     total : int or None
         How many there are; None if that is not known beforehand.
     rated : bool
-        Whether the bar tells a rate, for what comes by the thousands.
+        Whether the bar shows a rate, for what comes by the thousands.
     """
     known = _Stand(what, total=total)
     _at.set(known)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from loadshare.cli.changes import open_case, read_changes
-from loadshare.cli.exits import UNUSABLE, fail, problems_told
+from loadshare.cli.exits import UNUSABLE, fail, reporting_problems
 from loadshare.cli.forms import Output, outputs, write_all
 from loadshare.cli.options import CaseFile, Changes
 from loadshare.errors import CaseError, Problem
@@ -33,13 +33,13 @@ def draw(
 
     A case that cannot be used is drawn as far as it can be read.
     """
-    with problems_told():
+    with reporting_problems():
         figure, problems = _drawn(case, change or ())
     makers = {form: partial(figure.content, form) for form in FORMS}
     write_all(file or [Output("svg", Path("drawing.svg"))], makers, err=False)
     if problems:
-        told = f"{counted(len(problems), 'problem')}; the drawing shows what could be read."
-        fail([*map(str, problems), told], UNUSABLE)
+        summary = f"{counted(len(problems), 'problem')}; the drawing shows what could be read."
+        fail([*map(str, problems), summary], UNUSABLE)
 
 
 def _drawn(file: Path, settings: Sequence[str]) -> tuple[Figure, list[Problem]]:

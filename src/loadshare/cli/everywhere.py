@@ -47,8 +47,8 @@ def taking(command: Command, *names: str) -> Command:
 
     @wraps(command)
     def with_options(*given: Any, **named: Any) -> None:
-        asked = {name: named.pop(name, False) for name in names}
-        with _outside(asked.get("allow_outside", False)):
+        options = {name: named.pop(name, False) for name in names}
+        with _outside(options.get("allow_outside", False)):
             command(*given, **named)
 
     own = inspect.signature(command, eval_str=True)

@@ -42,13 +42,13 @@ def fail(lines: Iterable[str], code: int) -> NoReturn:
 
 
 @contextmanager
-def problems_told() -> Iterator[None]:
+def reporting_problems() -> Iterator[None]:
     """Turn an invalid case into its list of problems, one per line and their count last."""
     try:
         yield
     except CaseError as error:
-        told = [str(problem) for problem in error.problems]
-        fail([*told, f"{counted(len(told), 'problem')}; nothing was solved."], UNUSABLE)
+        lines = [str(problem) for problem in error.problems]
+        fail([*lines, f"{counted(len(lines), 'problem')}; nothing was solved."], UNUSABLE)
 
 
 @contextmanager
@@ -75,7 +75,7 @@ def out_of_memory(what: str) -> str:
 
 
 @contextmanager
-def room_told() -> Iterator[None]:
+def reporting_lack_of_room() -> Iterator[None]:
     """Turn a lack of room, on a disk or in memory, into a message and an exit code.
 
     Raises
@@ -87,11 +87,11 @@ def room_told() -> Iterator[None]:
     try:
         yield
     except (MemoryError, OSError, ImportError) as error:
-        told = _want_of_room(error)
-        if told is None:
+        message = _want_of_room(error)
+        if message is None:
             raise
         with suppress(OSError):
-            echo(told, err=True)
+            echo(message, err=True)
         raise SystemExit(UNUSABLE) from None
 
 
@@ -108,7 +108,7 @@ def _want_of_room(error: MemoryError | OSError | ImportError) -> str | None:
     if isinstance(error, MemoryError):
         return out_of_memory(str(error))
     if isinstance(error, ImportError):
-        unmapped = any(told in str(error) for told in NOT_MAPPED)
+        unmapped = any(text in str(error) for text in NOT_MAPPED)
         return out_of_memory("a library could not be loaded") if unmapped else None
     if error.errno == errno.ENOMEM:
         return out_of_memory(str(error))
@@ -124,6 +124,6 @@ def _want_of_room(error: MemoryError | OSError | ImportError) -> str | None:
 
 
 def _let_go() -> None:
-    """Drop what waits to be printed: at its end, Python would try again and tell that it failed."""
+    """Drop what waits to be printed: at its end, Python would try again and report a failure."""
     with suppress(OSError, ValueError):
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

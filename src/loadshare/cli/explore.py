@@ -9,7 +9,7 @@ import typer
 
 from loadshare.cli.changes import open_case
 from loadshare.cli.console import say
-from loadshare.cli.exits import UNUSABLE, fail, problems_told
+from loadshare.cli.exits import UNUSABLE, fail, reporting_problems
 from loadshare.cli.options import CaseFile, Changes
 
 LOCAL = "127.0.0.1"
@@ -56,7 +56,7 @@ def explore(
         if (error.name or "").partition(".")[0] not in ("uvicorn", "starlette"):
             raise
         fail([MISSING], UNUSABLE)
-    with problems_told():
+    with reporting_problems():
         loaded = open_case(case, change)
     listening = _listening(host, port)
     port = listening.getsockname()[1]

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from loadshare.cli.changes import open_case
-from loadshare.cli.exits import REFUSED, fail, problems_told
+from loadshare.cli.exits import REFUSED, fail, reporting_problems
 from loadshare.cli.files import keep_inputs, save_text, tell_written
 from loadshare.cli.options import CaseFile, Changes, output
 
@@ -27,7 +27,7 @@ def export(
     from loadshare.job import solve
 
     keep_inputs([unit])
-    with problems_told():
+    with reporting_problems():
         loaded = open_case(case, change)
         try:
             text = export_rexs(solve(loaded), unit)

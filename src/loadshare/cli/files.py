@@ -36,8 +36,8 @@ _written: ContextVar[tuple[Path, ...]] = ContextVar("written", default=())
 
 def kept() -> str:
     """Return what a command that is stopped leaves behind, and how to go on."""
-    told = ", ".join(map(str, _written.get()))
-    return f"{f'Kept: {told}.' if told else 'Nothing is kept.'} The same command starts again."
+    files = ", ".join(map(str, _written.get()))
+    return f"{f'Kept: {files}.' if files else 'Nothing is kept.'} The same command starts again."
 
 
 def write_document(path: Path, document: dict[str, Any]) -> None:
@@ -50,18 +50,18 @@ def document_text(document: dict[str, Any]) -> str:
     return json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
-_asked: ContextVar[tuple[tuple[str, Path], ...]] = ContextVar("outputs", default=())
+_outputs: ContextVar[tuple[tuple[str, Path], ...]] = ContextVar("outputs", default=())
 
 
 def ask_for(outputs: Iterable[tuple[str, Path]]) -> None:
     """Note which files the command at hand is to write, by the names of their options."""
-    _asked.set(tuple(outputs))
+    _outputs.set(tuple(outputs))
     _written.set(())
 
 
 def is_stdout_taken() -> bool:
     """Return whether a file goes to stdout."""
-    return any(file == STANDARD for _, file in _asked.get())
+    return any(file == STANDARD for _, file in _outputs.get())
 
 
 def keep_inputs(read: Iterable[Path], written: Iterable[tuple[str, Path]] = ()) -> None:
@@ -71,16 +71,16 @@ def keep_inputs(read: Iterable[Path], written: Iterable[tuple[str, Path]] = ()) 
     ----------
     read : iterable of Path
     written : iterable of (str, Path)
-        Files that are written beside those that were asked for by name, with their options.
+        Files that are written besides those that were asked for by name, with their options.
 
     Raises
     ------
     typer.BadParameter
         Naming the option and the file.
     """
-    asked = [(option, file) for option, file in (*_asked.get(), *written) if file.exists()]
-    for path in read if asked else ():
-        for option, file in asked:
+    outputs = [(option, file) for option, file in (*_outputs.get(), *written) if file.exists()]
+    for path in read if outputs else ():
+        for option, file in outputs:
             if path.exists() and file.samefile(path):
                 raise typer.BadParameter(
                     f"{file}: is read by this command; write to another file", param_hint=option

@@ -1,4 +1,4 @@
-"""Which case files are meant by files, folders and patterns."""
+"""The case files in files, folders and patterns."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from loadshare.settings import ALLOWED
 
 
 def find_cases(given: Iterable[Path]) -> list[Path]:
-    """Return the case files that are meant, each once, in the order given.
+    """Return the case files in what is given, each once, in the order given.
 
     Parameters
     ----------
     given : iterable of Path
-        Files; folders, searched with their subfolders for ``*.toml`` but for pair and law files;
+        Files; folders, searched with their subfolders for ``*.toml`` except pair and law files;
         patterns, for shells that leave them alone.
 
     Returns
@@ -36,9 +36,9 @@ def find_cases(given: Iterable[Path]) -> list[Path]:
     """
     found: dict[Path, Path] = {}
     for path in given:
-        here = _meant_by(path)
+        here = _files_of(path)
         if not here:
-            echo(f"{path}: {_told_of(path)}", err=True)
+            echo(f"{path}: {_no_case_text(path)}", err=True)
         for file in here:
             found.setdefault(real(file), file)
     if not found:
@@ -47,7 +47,7 @@ def find_cases(given: Iterable[Path]) -> list[Path]:
     return list(found.values())
 
 
-def _meant_by(path: Path) -> list[Path]:
+def _files_of(path: Path) -> list[Path]:
     try:
         if path.is_dir():
             files = (file for file in sorted(path.rglob("*.toml")) if not _hidden(file, path))
@@ -58,12 +58,12 @@ def _meant_by(path: Path) -> list[Path]:
         return [path]
     if pattern:
         matches = sorted(Path(path.anchor).glob(str(path.relative_to(path.anchor))))
-        return [file for match in matches for file in _meant_by(match)]
+        return [file for match in matches for file in _files_of(match)]
     return [path]
 
 
-def _told_of(path: Path) -> str:
-    """Return what is said of a folder or pattern that means no case."""
+def _no_case_text(path: Path) -> str:
+    """Return the message for a folder or pattern without a case."""
     from loadshare.case.recognise import what_folder_is
 
     tables = path.is_dir() and any(path.glob("*.csv"))

@@ -39,7 +39,7 @@ FORMS = {
     "rexs": "REXS file",
     "folder": "folder",
 }
-"""Endings of files and what they hold; "folder" stands for a place of many."""
+"""Endings of files and what they hold; "folder" is a place for many."""
 FIGURES = ("svg", "png", "pdf", "html")
 """Of a picture; as a page it shows figures under the pointer."""
 TABLES = ("csv", "parquet", "xlsx", "json", "nc")
@@ -65,22 +65,22 @@ class Output:
 
 
 def read_output(text: str, forms: Sequence[str]) -> Output:
-    """Return the file that is meant by ``FILE`` or ``FORM:FILE``.
+    """Return the file that is named by ``FILE`` or ``FORM:FILE``.
 
     Parameters
     ----------
     text : str
     forms : sequence of str
-        What the command writes; the first goes to standard output if nothing else is said.
+        What the command writes; the first goes to standard output if no form is given.
 
     Raises
     ------
     typer.BadParameter
         If the ending, or none, is none of the forms.
     """
-    told, colon, rest = text.partition(":")
-    if colon and told in FORMS:
-        form, file = told, Path(rest)
+    prefix, colon, rest = text.partition(":")
+    if colon and prefix in FORMS:
+        form, file = prefix, Path(rest)
     else:
         file = Path(text)
         ending = file.suffix.lower().removeprefix(".")
@@ -137,7 +137,7 @@ def outputs(*forms: str, what: str = "Write what was found") -> Any:
     )
 
 
-def write_all(asked: Iterable[Output] | None, makers: Makers, *, err: bool = True) -> None:
+def write_all(wanted: Iterable[Output] | None, makers: Makers, *, err: bool = True) -> None:
     """Write what was asked for, each file whole or not at all, and report it on stderr or stdout.
 
     Raises
@@ -145,7 +145,7 @@ def write_all(asked: Iterable[Output] | None, makers: Makers, *, err: bool = Tru
     typer.Exit
         If one cannot be made or written.
     """
-    for output in asked or ():
+    for output in wanted or ():
         try:
             with writing(output.file):
                 content = makers[output.form]()
@@ -171,7 +171,7 @@ def tables_of(name: str, frame: Callable[[], pd.DataFrame], **about: object) -> 
     frame : callable
         Makes the table.
     **about
-        Stands in the JSON file before the rows.
+        Written in the JSON file before the rows.
     """
 
     def workbook() -> bytes:

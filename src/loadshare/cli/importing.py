@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from loadshare.cli.console import say
-from loadshare.cli.exits import UNUSABLE, fail, problems_told
+from loadshare.cli.exits import UNUSABLE, fail, reporting_problems
 from loadshare.cli.files import keep_inputs, save_text, tell_written
 from loadshare.cli.options import Force, output
 from loadshare.input import real
@@ -41,7 +41,7 @@ def import_machine(
     if target != STANDARD and target.exists() and not force:
         fail([f"{target}: exists already; --force overwrites it"], UNUSABLE)
     keep_inputs([unit])
-    with problems_told():
+    with reporting_problems():
         imported = import_tables(unit) if is_spreadsheet(unit) else import_rexs(unit)
     save_text(target, imported.text)
     if target != STANDARD:
@@ -53,6 +53,6 @@ def import_machine(
         imported.case(str(target))
     except CaseError as error:
         tell_written(target, ". It is no case yet:", err=True)
-        told = [str(problem) for problem in error.problems]
-        fail([*told, f"{counted(len(told), 'problem')}."], UNUSABLE)
+        problems = [str(problem) for problem in error.problems]
+        fail([*problems, f"{counted(len(problems), 'problem')}."], UNUSABLE)
     tell_written(target, f". Solve it with: loadshare run {quote(str(target))}")

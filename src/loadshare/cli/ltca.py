@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from loadshare.cli.console import progress, say
-from loadshare.cli.exits import REFUSED, fail, problems_told, writing
+from loadshare.cli.exits import REFUSED, fail, reporting_problems, writing
 from loadshare.cli.files import keep_inputs, save_text
 from loadshare.cli.forms import FOLDER, Output, outputs, write_all
-from loadshare.cli.refusal import told
+from loadshare.cli.refusal import refusal_lines
 from loadshare.cli.tables.table import show, table
 from loadshare.errors import Refused
 from loadshare.output import csv_of
@@ -64,24 +64,24 @@ def ltca(
     from loadshare.tooth.pair.file import load_pair
 
     load = _torque(torque)
-    with problems_told():
-        asked = load_pair(pair).revised(torque=load, positions=positions, compliance=compliance)
-    written = file or [Output(FOLDER, Path(asked.name))]
+    with reporting_problems():
+        pair_file = load_pair(pair).revised(torque=load, positions=positions, compliance=compliance)
+    written = file or [Output(FOLDER, Path(pair_file.name))]
     folders = [output.file for output in written if output.form == FOLDER]
     keep_inputs([pair], [("--output", folder / LAW) for folder in folders])
-    _print_heading(asked, pair)
+    _print_heading(pair_file, pair)
     try:
-        with progress("positions", asked.analysis.positions) as tick:
-            found = asked.analyse(tick)
+        with progress("positions", pair_file.analysis.positions) as tick:
+            found = pair_file.analyse(tick)
     except Refused as refusal:
-        fail([f"REFUSED  {line}" for line in told(refusal)], REFUSED)
-    law = kept_law(asked, found)
+        fail([f"REFUSED  {line}" for line in refusal_lines(refusal)], REFUSED)
+    law = kept_law(pair_file, found)
     _print_positions(found, law)
-    _print_summary(asked, found)
+    _print_summary(pair_file, found)
     for finding in law.findings:
         say(f"Note: {finding}", whole=True)
     for folder in folders:
-        wrote = list(_written(folder, asked, found, law))
+        wrote = list(_written(folder, pair_file, found, law))
         say(f"Wrote {', '.join(file.name for file in wrote)} to {wrote[0].parent}", whole=True)
     makers = {
         "toml": lambda: law_text(law),
@@ -101,8 +101,8 @@ def _torque(text: str | None) -> float | None:
     try:
         return float(TypeAdapter(Load).validate_python(text))
     except ValidationError as error:
-        said = error.errors(include_url=False)[0]["msg"].rstrip()
-        raise typer.BadParameter(f"{text!r} {said}", param_hint="--torque") from None
+        message = error.errors(include_url=False)[0]["msg"].rstrip()
+        raise typer.BadParameter(f"{text!r} {message}", param_hint="--torque") from None
 
 
 def _print_heading(pair: PairFile, file: Path) -> None:

@@ -22,7 +22,7 @@ from loadshare.cli.check import check
 from loadshare.cli.command import Command, Group
 from loadshare.cli.draw import draw
 from loadshare.cli.everywhere import taking
-from loadshare.cli.exits import room_told
+from loadshare.cli.exits import reporting_lack_of_room
 from loadshare.cli.explore import explore
 from loadshare.cli.exporting import export
 from loadshare.cli.importing import import_machine
@@ -112,7 +112,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if isinstance(stream, TextIOWrapper):
             # A stream that cannot show Ω shall show a question mark and go on.
             stream.reconfigure(errors="replace")
-    with room_told():
+    with reporting_lack_of_room():
         _built()(arguments, prog_name="loadshare")
 
 

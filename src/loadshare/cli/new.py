@@ -41,8 +41,8 @@ def new(
     from loadshare.case.words import did_you_mean
 
     if kind not in KINDS:
-        told = f"{kind!r} is none of {', '.join(KINDS)}. {did_you_mean(kind, KINDS)}"
-        raise typer.BadParameter(told.strip(), param_hint="--kind")
+        message = f"{kind!r} is none of {', '.join(KINDS)}. {did_you_mean(kind, KINDS)}"
+        raise typer.BadParameter(message.strip(), param_hint="--kind")
     title = Path(name.removesuffix(".toml")).name
     if not title:
         raise typer.BadParameter("a case needs a name", param_hint="NAME")

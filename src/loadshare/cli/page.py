@@ -90,9 +90,9 @@ def _with_studies(chapters: list[Chapter], named: dict[str, Path | None]) -> lis
 
     held = {name for one in chapters if one.case for name in one.case.study}
     if unknown := [name for name in named if name not in held]:
-        told = f"{', '.join(unknown)}: no such study"
+        message = f"{', '.join(unknown)}: no such study"
         allowed = f"Allowed: {', '.join(sorted(held))}" if held else "The cases hold none"
-        raise typer.BadParameter(f"{told}. {allowed}.", param_hint="--study")
+        raise typer.BadParameter(f"{message}. {allowed}.", param_hint="--study")
     made = []
     for one in chapters:
         case = one.case

@@ -1,4 +1,4 @@
-"""What is said and written when an answer is refused."""
+"""What is printed and written when an answer is refused."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from loadshare.report.numbers import runs
 _PLACED = re.compile(r"position (\d+): (.*)")
 
 
-def told(refusal: Refused) -> list[str]:
+def refusal_lines(refusal: Refused) -> list[str]:
     """Return the lines of a refusal, positions that were refused for the same reason together."""
     positions: dict[str, list[int]] = {}
     for line in str(refusal).splitlines():
@@ -47,6 +47,6 @@ def refused_document(refusal: Refused, case: str) -> dict[str, Any]:
     """
     none: dict[str, Any] = {"case": case, "version": __version__, "positions": [], "omega": {}}
     document = none if refusal.partial is None else refusal.partial.to_dict()
-    # JSON knows no infinity; a figure that is none is told as null.
+    # JSON knows no infinity; a figure that is none is written as null.
     figures = {n: v if math.isfinite(v) else None for n, v in refusal.figures.items()}
     return document | {"refused": {"message": str(refusal), "figures": figures}}

@@ -10,11 +10,11 @@ import typer
 
 from loadshare.cli.changes import open_case
 from loadshare.cli.console import progress, say
-from loadshare.cli.exits import REFUSED, fail, problems_told
+from loadshare.cli.exits import REFUSED, fail, reporting_problems
 from loadshare.cli.files import document_text, save_text, tell_written
 from loadshare.cli.forms import FOLDER, Output, figure_of, outputs, tables_of, write_all
 from loadshare.cli.options import CaseFile, Changes, Method, Positions, Solver, Tolerance
-from loadshare.cli.refusal import refused_document, told
+from loadshare.cli.refusal import refusal_lines, refused_document
 from loadshare.errors import Refused
 from loadshare.output import clear
 
@@ -81,16 +81,16 @@ def run(
 ) -> None:
     """Solve a case and print load sharing, floats and certificate."""
     from loadshare.cli.tables.result import print_heading, print_result
-    from loadshare.report.words import period_told
+    from loadshare.report.words import period_text
     from loadshare.train import build_train
 
-    with problems_told():
+    with reporting_problems():
         loaded = open_case(case, change)
         train = build_train(loaded)
     wanted = _wanted(position, train.count)
     print_heading(loaded, str(case), train.count, wanted, change or ())
     if train.period is not None:
-        say(period_told(train.period, train.input), whole=True)
+        say(period_text(train.period, train.input), whole=True)
     how = {"solver": solver, "method": method, "reduce": not no_reduce, "tolerance": tolerance}
     result, refusal = _solved(loaded, wanted, how)
     if result is not None:
@@ -123,7 +123,7 @@ def _print_search(case: Case, positions: Sequence[int]) -> None:
     from loadshare.job.search import search
 
     for index in positions:
-        say(f"Position {index}: {search(case, index).told}", whole=True)
+        say(f"Position {index}: {search(case, index).text}", whole=True)
 
 
 def _print_explanations(case: Case, positions: Sequence[int], how: dict[str, Any]) -> None:
@@ -139,11 +139,11 @@ def _print_explanations(case: Case, positions: Sequence[int], how: dict[str, Any
 
 
 def _end_refused(refusal: Refused, case: str, files: Sequence[Output]) -> NoReturn:
-    """Write the refusal as JSON, tell it, and which files were not written."""
+    """Write the refusal as JSON, and print it with the files that were not written."""
     written = [output for output in files if output.form == "json"]
     document = document_text(refused_document(refusal, case))
     write_all(written, {"json": lambda: document})
-    lines = [f"REFUSED  {line}" for line in told(refusal)]
+    lines = [f"REFUSED  {line}" for line in refusal_lines(refusal)]
     others = [output.file for output in files if output not in written]
     fail([*lines, *(f"{f}: not written, for want of an answer" for f in others)], REFUSED)
 
@@ -189,7 +189,7 @@ def _write(
 def _tables(result: Result) -> dict[str, str]:
     from loadshare.exchange.spreadsheet import export_tables
 
-    with problems_told():
+    with reporting_problems():
         return export_tables(result)
 
 

@@ -25,14 +25,14 @@ class Stop:
 
     Attributes
     ----------
-    asked : bool
-        Whether the command was stopped, and nothing more is to be begun.
+    requested : bool
+        Whether the command was stopped, and nothing more is to be started.
     code : int
         Exit code of a command that was stopped.
     """
 
     def __init__(self, gently: Callable[[], None] | None = None) -> None:
-        self.gently, self.asked, self.code = gently, False, INTERRUPTED
+        self.gently, self.requested, self.code = gently, False, INTERRUPTED
         self._over = self._thrown = False
         self._before: dict[int, Any] = {}
 
@@ -45,7 +45,7 @@ class Stop:
         return self
 
     def __exit__(self, kind: object, error: object, _: object) -> None:
-        if self.asked:
+        if self.requested:
             # A process that was stopped has nothing left to do but to end. Where it was met in a
             # text that exec() runs, as dataclasses do, CPython under -m would end it by SIGINT in
             # place of its exit code; the next text makes it forget that.
@@ -67,14 +67,14 @@ class Stop:
         Raises
         ------
         KeyboardInterrupt
-            If the command is to end where it stands.
+            If the command is to end at once.
         """
         if self._over:
             return
-        if number == signal.SIGINT and self.gently is not None and not self.asked:
-            self.asked = True
+        if number == signal.SIGINT and self.gently is not None and not self.requested:
+            self.requested = True
             self.gently()
             return
-        self.asked = self._over = self._thrown = True
+        self.requested = self._over = self._thrown = True
         self.code = TERMINATED if number == signal.SIGTERM else INTERRUPTED
         raise KeyboardInterrupt

@@ -53,7 +53,7 @@ _line: list[_Line] = []
 
 @contextmanager
 def waiting() -> Iterator[None]:
-    """Show on a terminal that libraries are being loaded, until something is said or done."""
+    """Show on a terminal that libraries are being loaded, until something is printed or done."""
     if sys.stderr.isatty() and not is_hushed():
         _line[:] = [_Line()]
     try:
@@ -63,7 +63,7 @@ def waiting() -> Iterator[None]:
 
 
 def speak() -> None:
-    """Make room on the terminal for what is said now."""
+    """Make room on the terminal for what is printed now."""
     while _line:
         _line.pop().erase()
 

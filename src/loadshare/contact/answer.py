@@ -1,4 +1,4 @@
-"""Contact problems that are written by hand: solved, and judged from the arrays alone."""
+"""Contact problems that are written explicitly: solved, and judged from the arrays alone."""
 
 from __future__ import annotations
 

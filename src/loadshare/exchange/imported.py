@@ -26,7 +26,7 @@ class Imported:
         The case file, headed by what was assumed and left out.
     taken, assumed, left_out : tuple of str
     places : mapping of key path to str
-        Where keys stood, where that is to be told.
+        Where keys were found, where messages are to name that.
     """
 
     data: Data
@@ -55,7 +55,7 @@ class Imported:
 def commented(data: Data, assumed: Iterable[str], left: Iterable[str]) -> str:
     """Return the case file, headed by what was assumed and left out."""
     lines = []
-    for title, told in (("Assumed:", list(assumed)), ("Left out:", list(left))):
-        if told:
-            lines += [f"# {title}", *(f"#   {' '.join(line.split())}" for line in told)]
+    for title, notes in (("Assumed:", list(assumed)), ("Left out:", list(left))):
+        if notes:
+            lines += [f"# {title}", *(f"#   {' '.join(line.split())}" for line in notes)]
     return "\n".join([*lines, "", toml_text(data)])

@@ -1,1 +1,1 @@
-"""A live page of one case: its inputs as sliders, the certified answer beside them."""
+"""A live page of one case: its inputs as sliders, the certified answer next to them."""

@@ -41,7 +41,7 @@ def setting_of(inputs: Inputs, given: Setting) -> Case:
 
 
 def invalid(error: CaseError) -> Plain:
-    """Return what is said of a setting that makes no case."""
+    """Return the messages on a setting that makes no case."""
     return {"status": INVALID, "messages": [str(problem) for problem in error.problems]}
 
 
@@ -69,7 +69,7 @@ def answer_of(inputs: Inputs, given: Setting, position: int) -> Plain:
     if result is None:
         return {"status": REFUSED} | found
     shown = next((p for p in result.positions if p.position == position), None)
-    found |= {"status": PARTLY if messages else CERTIFIED, "bound": _bound_told(result, count)}
+    found |= {"status": PARTLY if messages else CERTIFIED, "bound": _bound_text(result, count)}
     found |= {
         "tables": [plain(t) for t in verdict_tables(result)],
         "bars": list(_bars(result, shown)),
@@ -115,7 +115,7 @@ def _solved(case: Case, positions: list[int] | None) -> tuple[Result | None, lis
         return refusal.partial, str(refusal).splitlines()
 
 
-def _bound_told(result: Result, count: int) -> str:
+def _bound_text(result: Result, count: int) -> str:
     """How good an answer is, in a sentence: what was proved when it was judged."""
     done = len(result.positions)
     where = f"{done} of {count} positions" if count > 1 else "the answer"
@@ -188,8 +188,8 @@ def _states(shown: Position) -> Iterator[Record]:
     for name, mesh in train.meshes.items():
         flanks = {drive: force[mesh.flank_name(drive)] for drive in mesh.flanks}
         closed = {("drive" if drive else "coast"): f for drive, f in flanks.items() if f > least}
-        told = " and ".join(closed) + (" flanks" if len(closed) > 1 else " flank")
-        state = f"{told} closed" if closed else "open"
+        flanks_closed = " and ".join(closed) + (" flanks" if len(closed) > 1 else " flank")
+        state = f"{flanks_closed} closed" if closed else "open"
         yield row(f"mesh {name}", state, sum(closed.values()))
     for found in floats:
         touching = [touch for touch in found.boundaries if touch.touching]
@@ -256,7 +256,7 @@ def tied(inputs: Inputs) -> list[tuple[str, tuple[str, ...]]]:
 
 
 def angles(case: Case) -> list[float] | None:
-    """Return how far the input gear has turned at each position [deg]; None if it stands."""
+    """Return how far the input gear has turned at each position [deg]; None if it does not turn."""
     train = prepared(case)[1].train
     if train.count > EXPLORE.most_points:
         return None

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from starlette.requests import Request
 
-from loadshare.explore.asked import Unasked
+from loadshare.explore.request import RequestError
 from loadshare.processes import Worker
 from loadshare.settings import EXPLORE
 
@@ -42,11 +42,11 @@ class Crew:
 
         Raises
         ------
-        Unasked
+        RequestError
             If too many wait already, or nobody does any more.
         """
         if self.waiting >= self.count * EXPLORE.waiting:
-            raise Unasked(503, "too many studies are waiting; try again in a while")
+            raise RequestError(503, "too many studies are waiting; try again in a while")
         # A task of its own: whoever waits may be cancelled, and the worker is put in order all
         # the same.
         lent = asyncio.create_task(self._lent(request, work, item))
@@ -59,7 +59,7 @@ class Crew:
         try:
             async with self.turn:
                 if gone.done():
-                    raise Unasked(499, "nobody waits for this any more")
+                    raise RequestError(499, "nobody waits for this any more")
                 return await self._by_one(gone, work, item)
         finally:
             self.waiting -= 1
@@ -71,19 +71,19 @@ class Crew:
         worker = self.free.pop()
         finished = False
         try:
-            begun = await asyncio.to_thread(worker.begin, work, item)
-            found: asyncio.Future[Found] = asyncio.wrap_future(begun)
+            pending = await asyncio.to_thread(worker.begin, work, item)
+            found: asyncio.Future[Found] = asyncio.wrap_future(pending)
             either: set[asyncio.Future[Any]] = {found, gone}
             await asyncio.wait(either, return_when=asyncio.FIRST_COMPLETED)
             finished = found.done()
             if not finished:
                 # Not cancelled: its process is killed, and that is its answer.
                 found.add_done_callback(_looked_at)
-                raise Unasked(499, "nobody waits for this any more")
+                raise RequestError(499, "nobody waits for this any more")
             return found.result()
         finally:
             if not finished:
-                # At work for nobody, or never begun.
+                # At work for nobody, or never started.
                 await asyncio.to_thread(worker.end)
             self.free.append(worker)
 

@@ -45,7 +45,7 @@ def case_file(inputs: Inputs, given: Mapping[str, object], file: Path | None) ->
 
 
 def _apart(base: Mapping[str, Any], changed: Mapping[str, Any]) -> dict[str, Any] | None:
-    """Return what tables have to say beside those they extend; None where keys are gone."""
+    """Return what tables have to say besides those they extend; None where keys are gone."""
     if set(base) - set(changed):
         return None
     found: dict[str, Any] = {}

@@ -42,11 +42,11 @@ def hosts_of(host: str, port: int, names: Iterable[str] = ()) -> frozenset[str]:
         Further names by which it is reached, with a port where that is another.
     """
     own = f"[{host}]" if ":" in host else host
-    told = {*LOCAL, own} - {"0.0.0.0", "[::]"}
-    found = {f"{name}:{port}" for name in told}
+    own_names = {*LOCAL, own} - {"0.0.0.0", "[::]"}
+    found = {f"{name}:{port}" for name in own_names}
     for name in names:
         found |= {name.lower(), f"{name.lower()}:{port}"}
-    return frozenset(found | (told if port in (80, 443) else set()))
+    return frozenset(found | (own_names if port in (80, 443) else set()))
 
 
 class Guard:

@@ -22,7 +22,7 @@ from loadshare.settings import EXPLORE
 from loadshare.study.parameter import Value, leaves, matches, read_value, split_outside
 
 PAGE = "page"
-"""Stands for the file of what a page asks for."""
+"""Named in messages in place of the file, for what a page asks for."""
 VECTORS = {
     "installation": ("amount", "direction"),
     "eccentricity": ("amount", "direction", "phase"),
@@ -205,7 +205,7 @@ class Inputs:
         value = read_value(given)
         if value is None or (isinstance(given, str) and not value.unit):
             return None
-        about, dimension = _told(path)
+        about, dimension = _described(path)
         whole, turning = isinstance(given, int), value.unit != "" and path[-1] in ANGLES
         low, high = _reach(path, value, dimension, turning)
         return Input(
@@ -238,10 +238,10 @@ def _polar(given: list[Any]) -> dict[str, str]:
     return {"amount": f"{amount!r} {x.unit}", "direction": f"{direction!r} deg"}
 
 
-def _told(path: Path) -> tuple[str, Dimension | None]:
+def _described(path: Path) -> tuple[str, Dimension | None]:
     """Return what an input is in words, and what it must measure."""
     model: Any = Content
-    told, dimension = "", None
+    words, dimension = "", None
     for step in path:
         fields = {
             about.alias or name: (name, about)
@@ -250,14 +250,14 @@ def _told(path: Path) -> tuple[str, Dimension | None]:
         if step in fields:
             name, field = fields[str(step)]
             lines = description(model, name).splitlines()
-            told = lines[0] if lines else told
+            words = lines[0] if lines else words
             # Where a field may hold several elements, the one that knows the next step.
             models = list(elements_in(field.annotation))
             following = path[path.index(step) + 1 :]
             model = _knowing(models, following)
             parts = [*field.metadata, *_parts(field.annotation)]
             dimension = next((p for p in parts if isinstance(p, Dimension)), dimension)
-    return told, dimension
+    return words, dimension
 
 
 def _knowing(models: list[type[Element]], steps: Path) -> Any:
@@ -298,7 +298,7 @@ def _reach(
         low = dimension.above / factor + 0.05 * abs(number)
     if low >= high:
         high = low + abs(low or 1.0)
-    # From a multiple of the step on, so that a slider stands at round values.
+    # From a multiple of the step on, so that a slider stops at round values.
     step = _step(high - low)
     low = min(math.ceil(low / step - 1e-9) * step, number)
     return float(f"{low:.12g}"), float(f"{high:.12g}")

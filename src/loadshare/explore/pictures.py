@@ -56,14 +56,14 @@ def float_shapes(result: Result, shown: Position) -> Iterator[Plain]:
             "here": _point(shown.displacement[gear]),
             "reaction": [v / size for v in rest.reaction] if size > 0.0 else None,
             "force": f"{significant(force.of(size))} {force.name}" if size > 0.0 else "",
-            "told": journey.told[:-1],
+            "told": journey.subtitle[:-1],
         }
 
 
 def train_shapes(case: Case) -> Plain | None:
     """Return the train to scale, seen along the axis of most gears and from the side, in mm.
 
-    None where no gear stands anywhere.
+    None where no gear has a place.
     """
     try:
         train = build_train(case)

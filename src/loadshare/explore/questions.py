@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 from loadshare.case import Case
 from loadshare.explore.answer import setting_of
-from loadshare.explore.asked import Unasked, number, setting, text
 from loadshare.explore.inputs import Inputs
+from loadshare.explore.request import RequestError, number, setting, text
 from loadshare.settings import ALLOWED, EXPLORE
 
 
@@ -44,7 +44,7 @@ class Along(NamedTuple):
         return f"{number!r} {self.unit}" if self.unit else number
 
     def stretches(self, at: float) -> list[Along]:
-        """Return its parts, those about a value first: what happens there is asked most."""
+        """Return its parts, those about a value first: what happens there is of most interest."""
         count = EXPLORE.stretches
         ends = [self.low + (self.high - self.low) * k / count for k in range(count)] + [self.high]
         parts = [self._replace(low=a, high=b) for a, b in pairwise(ends)]
@@ -81,7 +81,7 @@ def along(inputs: Inputs, body: Mapping[str, Any]) -> Along:
 
     Raises
     ------
-    Unasked
+    RequestError
         If it is none.
     CaseError
         If a key or the setting cannot be used.
@@ -89,7 +89,7 @@ def along(inputs: Inputs, body: Mapping[str, Any]) -> Along:
     keys = inputs.keys(text(body, "name"))
     low, high = (finite(body, end) for end in ("low", "high"))
     if not low < high:
-        raise Unasked(400, f"low {low:g} is not below high {high:g}")
+        raise RequestError(400, f"low {low:g} is not below high {high:g}")
     return Along(
         by_parts(inputs, keys, setting(body)),
         keys,
@@ -105,7 +105,7 @@ def slopes(inputs: Inputs, body: Mapping[str, Any]) -> Slopes:
     """Return the inputs by which a page wants to differentiate; raises as `along` does."""
     wanted = body.get("keys")
     if not isinstance(wanted, list) or not 0 < len(wanted) <= EXPLORE.keys:
-        raise Unasked(400, f"keys is no list of 1 to {EXPLORE.keys} inputs")
+        raise RequestError(400, f"keys is no list of 1 to {EXPLORE.keys} inputs")
     keys = tuple(dict.fromkeys(key for name in wanted for key in inputs.keys(str(name))))
     reaches = tuple(0.1 * (inputs.every[key].high - inputs.every[key].low) for key in keys)
     return Slopes(by_parts(inputs, keys, setting(body)), keys, reaches, place(body))
@@ -129,5 +129,5 @@ def finite(body: Mapping[str, Any], name: str, default: float = math.nan) -> flo
     """Return a number of a request."""
     given = body.get(name, default)
     if isinstance(given, bool) or not isinstance(given, int | float) or not math.isfinite(given):
-        raise Unasked(400, f"{name} is no number")
+        raise RequestError(400, f"{name} is no number")
     return float(given)

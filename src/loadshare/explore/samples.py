@@ -16,10 +16,10 @@ from loadshare.case import Case
 from loadshare.case.keys import dotted
 from loadshare.case.writer import toml_text
 from loadshare.explore.answer import plain
-from loadshare.explore.asked import Unasked, number, setting, text
 from loadshare.explore.inputs import Input, Inputs
 from loadshare.explore.questions import by_parts, finite, place
-from loadshare.explore.studies import Plain, told
+from loadshare.explore.request import RequestError, number, setting, text
+from loadshare.explore.studies import Plain, reporting_errors
 from loadshare.job.engines import at_hand
 from loadshare.job.positions import prepared
 from loadshare.report.numbers import interval
@@ -31,7 +31,7 @@ from loadshare.study.tolerance.figures import KINDS, SYSTEM
 from loadshare.study.tolerance.job import SAMPLES, known_job
 from loadshare.study.tolerance.omegas import apart_kinds, omega_statistics
 from loadshare.study.tolerance.result import OmegaStatistics
-from loadshare.study.tolerance.study import asked_job
+from loadshare.study.tolerance.study import requested_job
 
 SHOWN = "explorer"
 """Name of a study in which what the page shows scatters."""
@@ -40,7 +40,7 @@ EVENLY = ("m", "rad", "")
 DEVIATION, CUT = 0.02, 3.0
 """Of all else: standard deviation over the value, and where the distribution is cut off."""
 PROBLEMS = 3
-"""Reasons for refusals that are told."""
+"""Reasons for refusals that are shown."""
 
 
 class Scatter(NamedTuple):
@@ -64,7 +64,7 @@ def scatter(inputs: Inputs, body: Mapping[str, Any]) -> Scatter:
 
     Raises
     ------
-    Unasked
+    RequestError
         If it is none.
     CaseError
         If a key or the setting cannot be used.
@@ -76,7 +76,7 @@ def scatter(inputs: Inputs, body: Mapping[str, Any]) -> Scatter:
         name, case = text(body, "study"), by_parts(inputs, (), given)
         table = case.to_dict().get("study", {}).get(name, {})
         if table.get("kind") != "tolerance":
-            raise Unasked(400, "there is no such tolerance study")
+            raise RequestError(400, "there is no such tolerance study")
     table["samples"] = number(body, "samples", TOLERANCE.samples, 1, EXPLORE.samples)
     table["seed"] = number(body, "seed", 0, 0, 2**53)
     if body.get("limit") is not None:
@@ -89,13 +89,13 @@ def _of_shown(
 ) -> tuple[Case, dict[str, Any]]:
     ranges = body.get("ranges")
     if not isinstance(ranges, dict) or not ranges:
-        raise Unasked(400, "ranges is no object of [low, high] by input")
+        raise RequestError(400, "ranges is no object of [low, high] by input")
     spreads: dict[str, Any] = {}
     every: list[str] = []
     for name, ends in ranges.items():
         keys = inputs.keys(name)
         if not isinstance(ends, list) or len(ends) != 2:
-            raise Unasked(400, f"the range of {name} is no [low, high]")
+            raise RequestError(400, f"the range of {name} is no [low, high]")
         low, high = (finite({name: end}, name) for end in ends)
         spreads["=".join(keys)] = _spread(inputs.every[keys[0]], given, low, high)
         every += keys
@@ -107,7 +107,7 @@ def _of_shown(
 
 
 def _spread(one: Input, given: Mapping[str, object], low: float, high: float) -> dict[str, Any]:
-    """Return how an input scatters of which the case does not say it."""
+    """Return how an input scatters where the case does not say."""
     now, unit = read_value(given.get(one.key, one.text)), one.unit
     if Value(1.0, unit).si_unit in EVENLY or now is None or now.number == 0.0:
         kind, numbers = "uniform", {"low": low, "high": high}
@@ -120,13 +120,13 @@ def _spread(one: Input, given: Mapping[str, object], low: float, high: float) ->
     return {"distribution": kind, **given_numbers}
 
 
-@told
-def begun(asked: Scatter) -> Plain:
+@reporting_errors
+def start_study(question: Scatter) -> Plain:
     """Check a study, and return what each of its parts needs and what the page says of it."""
     # Nobody in front of a page waits for a compiler.
     engine = "compiled" if at_hand() else "vectorised"
-    case = asked.case.replace({dotted(("study", asked.name)): asked.table})
-    job, block = asked_job(case, asked.name, {}, engine=engine)
+    case = question.case.replace({dotted(("study", question.name)): question.table})
+    job, block = requested_job(case, question.name, {}, engine=engine)
     settings = job.settings
     # The compiled engine solves a whole block in a moment; NumPy would keep the page waiting.
     rows = JOB.block if engine == "compiled" else EXPLORE.part // len(settings["positions"])
@@ -139,7 +139,7 @@ def begun(asked: Scatter) -> Plain:
         "samples": settings["samples"],
         "replicated": settings["sampling"] == "sobol",
         "told": {
-            "name": asked.name,
+            "name": question.name,
             "samples": settings["samples"],
             "seed": settings["seed"],
             "sampling": settings["sampling"],
@@ -147,7 +147,7 @@ def begun(asked: Scatter) -> Plain:
             "limit": block.limit,
             "engine": engine,
             "inputs": [[one.name, str(one.distribution)] for one in job.inputs.every],
-            "toml": toml_text({"study": {asked.name: asked.table}}),
+            "toml": toml_text({"study": {question.name: question.table}}),
         },
     }
 
@@ -181,7 +181,7 @@ class Growing:
     Attributes
     ----------
     study : mapping
-        What `begun` returned.
+        What `start_study` returned.
     """
 
     study: Mapping[str, Any]
@@ -202,7 +202,7 @@ class Growing:
         """Return a figure by sample, NaN where there is no answer."""
         return np.concatenate(self.columns[name])
 
-    def told(self) -> Plain:
+    def statistics(self) -> Plain:
         """Return the statistics so far."""
         study, refused = self.study, self.refused.total()
         every = list(

@@ -22,13 +22,13 @@ from starlette.routing import Route
 from loadshare.case import Case
 from loadshare.errors import CaseError
 from loadshare.explore.answer import answer_of, case_of, invalid, whole_of
-from loadshare.explore.asked import Unasked, asked, setting, text
 from loadshare.explore.crew import Crew
 from loadshare.explore.files import case_file
 from loadshare.explore.guard import Guard
 from loadshare.explore.inputs import Inputs
 from loadshare.explore.questions import along, finite, place, slopes
-from loadshare.explore.samples import Growing, Part, begun, samples, scatter
+from loadshare.explore.request import RequestError, body_of, setting, text
+from loadshare.explore.samples import Growing, Part, samples, scatter, start_study
 from loadshare.explore.studies import criticals, rates, trace
 
 log = logging.getLogger("loadshare")
@@ -93,7 +93,7 @@ class Explorer:
         """One of its files."""
         known = assets().get(name or request.path_params["name"])
         if known is None:
-            raise Unasked(404, "There is no such file.")
+            raise RequestError(404, "There is no such file.")
         content, kind = known
         return Response(content, headers={"content-type": kind})
 
@@ -103,26 +103,26 @@ class Explorer:
 
     async def answer(self, request: Request) -> Response:
         """A setting, solved."""
-        body = await asked(request)
+        body = await body_of(request)
         work = partial(answer_of, self.inputs, setting(body), place(body))
         return JSONResponse(await self.solved(work))
 
     async def whole(self, request: Request) -> Response:
         """The same at all positions, and how far it is to be trusted."""
-        body = await asked(request)
+        body = await body_of(request)
         return JSONResponse(await self.solved(partial(whole_of, self.inputs, setting(body))))
 
     async def keys(self, request: Request) -> Response:
         """The inputs that a name means: one with a star, or several joined."""
-        return JSONResponse({"keys": self.inputs.keys(text(await asked(request), "name"))})
+        return JSONResponse({"keys": self.inputs.keys(text(await body_of(request), "name"))})
 
     async def study(self, request: Request) -> Response:
         """A study by the name of the path: a line of JSON after every part of it."""
         parts = self.studies.get(request.path_params["name"])
         if parts is None:
-            raise Unasked(404, "there is no such study")
-        lines = parts(request, await asked(request))
-        # What is asked wrongly is told before anything is sent.
+            raise RequestError(404, "there is no such study")
+        lines = parts(request, await body_of(request))
+        # Mistakes in the request are reported before anything is sent.
         first = await anext(lines)
         return StreamingResponse(_lines(first, lines), media_type="application/x-ndjson")
 
@@ -154,7 +154,7 @@ class Explorer:
     async def tolerance(self, request: Request, body: Body) -> Parts:
         """A tolerance study: what it is, then its statistics after every part."""
         question = await self.solved(partial(scatter, self.inputs, body))
-        study = await self.crew.done(request, begun, question)
+        study = await self.crew.done(request, start_study, question)
         if "job" not in study:
             yield study
             return
@@ -164,11 +164,11 @@ class Explorer:
             part = Part(study["job"], growing.done, study["rows"])
             found = await self.crew.done(request, samples, part)
             growing.take(found)
-            yield await asyncio.to_thread(growing.told)
+            yield await asyncio.to_thread(growing.statistics)
 
     async def toml(self, request: Request) -> Response:
         """A setting as a case file."""
-        given = setting(await asked(request))
+        given = setting(await body_of(request))
         return JSONResponse(await self.solved(partial(case_file, self.inputs, given, self.file)))
 
 
@@ -178,8 +178,8 @@ async def _lines(first: dict[str, Any], others: Parts) -> AsyncIterator[str]:
     try:
         async for one in others:
             yield f"{json.dumps(one)}\n"
-    except Exception as error:  # noqa: BLE001 -- told, as everything is
-        yield f"{json.dumps(_told(error, 'a study')[0])}\n"
+    except Exception as error:  # noqa: BLE001 -- reported, as everything is
+        yield f"{json.dumps(_failure(error, 'a study')[0])}\n"
 
 
 def _safely(handler: Handler) -> Handler:
@@ -188,21 +188,21 @@ def _safely(handler: Handler) -> Handler:
     async def answered(request: Request) -> Response:
         try:
             return await handler(request)
-        except Exception as error:  # noqa: BLE001 -- told, as everything is
-            return JSONResponse(*_told(error, request.url.path))
+        except Exception as error:  # noqa: BLE001 -- reported, as everything is
+            return JSONResponse(*_failure(error, request.url.path))
 
     return answered
 
 
-def _told(error: Exception, what: str) -> tuple[dict[str, Any], int]:
-    """Return what is said of an error, and its status."""
+def _failure(error: Exception, what: str) -> tuple[dict[str, Any], int]:
+    """Return the message for an error, and its status."""
     if isinstance(error, CaseError):
         return invalid(error), 200
-    if isinstance(error, Unasked):
+    if isinstance(error, RequestError):
         return {"status": "failed", "messages": [str(error)]}, error.status
     log.error("%s failed", what, exc_info=error)
-    told = f"the server failed: {type(error).__name__}; its log says more"
-    return {"status": "failed", "messages": [told]}, 500
+    message = f"the server failed: {type(error).__name__}; its log says more"
+    return {"status": "failed", "messages": [message]}, 500
 
 
 def application(case: Case, hosts: Iterable[str], file: Path | None = None) -> Guard:

@@ -18,7 +18,7 @@ Plain = dict[str, Any]
 Item = TypeVar("Item")
 
 
-def told(work: Callable[[Item], Plain]) -> Callable[[Item], Plain]:
+def reporting_errors(work: Callable[[Item], Plain]) -> Callable[[Item], Plain]:
     """Return what was found, or as messages why nothing was."""
 
     @wraps(work)
@@ -35,21 +35,21 @@ def told(work: Callable[[Item], Plain]) -> Callable[[Item], Plain]:
     return answered
 
 
-@told
-def criticals(asked: Along) -> Plain:
+@reporting_errors
+def criticals(question: Along) -> Plain:
     """Every change of the active set along an input, with its exact value."""
     from loadshare.study.critical import critical
 
-    ends = asked.text(asked.low), asked.text(asked.high)
-    found = critical(asked.case, asked.keys, *ends, positions=[asked.position])
+    ends = question.text(question.low), question.text(question.high)
+    found = critical(question.case, question.keys, *ends, positions=[question.position])
     happens: dict[float, dict[str, None]] = {}
     for event in found.events:
-        happens.setdefault(event.value, {})[event_told(event)] = None
+        happens.setdefault(event.value, {})[event_text(event)] = None
     events = [
         {
             "value": value,
-            "text": asked.text(value),
-            "told": f"{'; '.join(words)} at {significant(value, 4)} {asked.unit}".strip(),
+            "text": question.text(value),
+            "told": f"{'; '.join(words)} at {significant(value, 4)} {question.unit}".strip(),
         }
         for value, words in happens.items()
     ]
@@ -57,7 +57,7 @@ def criticals(asked: Along) -> Plain:
     return {"events": events, "gaps": gaps, "confirmed": all(e.confirmed for e in found.events)}
 
 
-def event_told(event: Event) -> str:
+def event_text(event: Event) -> str:
     """Return what happens, as an engineer says it: ``gear 5 leaves its ring (upper stop)``."""
     if event.gear and event.kind.startswith("float "):
         verb = event.kind.split()[1]
@@ -66,13 +66,13 @@ def event_told(event: Event) -> str:
     return f"{f'gear {event.gear}' if event.gear else event.element}: {event.kind}"
 
 
-@told
-def trace(asked: Along) -> Plain:
+@reporting_errors
+def trace(question: Along) -> Plain:
     """Ω of every stage and the places of all floats along an input; gaps where there is none."""
     from loadshare.study.sweep import sweep
 
-    values = f"{asked.text(asked.low)}:{asked.text(asked.high)}:{asked.points}"
-    found = sweep(asked.case, {asked.keys: values}, positions=[asked.position])
+    values = f"{question.text(question.low)}:{question.text(question.high)}:{question.points}"
+    found = sweep(question.case, {question.keys: values}, positions=[question.position])
     lines: dict[str, list[float | None]] = {}
     places: dict[str, list[list[float]]] = {}
     results = [point.result for point in found.points]
@@ -92,13 +92,13 @@ def trace(asked: Along) -> Plain:
     }
 
 
-@told
-def rates(asked: Slopes) -> Plain:
+@reporting_errors
+def rates(question: Slopes) -> Plain:
     """How the largest Ω of the system moves with inputs: rows, with the effect that ranks them."""
     from loadshare.study.sensitivity import sensitivity
 
-    found = sensitivity(asked.case, list(asked.keys), positions=[asked.position])
-    reach = dict(zip(asked.keys, asked.reaches, strict=True))
+    found = sensitivity(question.case, list(question.keys), positions=[question.position])
+    reach = dict(zip(question.keys, question.reaches, strict=True))
     rows = []
     for item in found.inputs:
         cells = {}

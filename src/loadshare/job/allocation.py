@@ -1,8 +1,8 @@
 """Memory of a block is kept for the next one (glibc).
 
 Blocks fill and drop a hundred MiB of arrays. glibc hands what is given back to the system at once;
-to fetch it anew, page by page, took up to a tenth of a batch. How much it keeps for itself is told
-it by mallopt(3), once in a process.
+to fetch it again, page by page, took up to a tenth of a batch. How much it keeps for itself is set
+by mallopt(3), once in a process.
 """
 
 from __future__ import annotations

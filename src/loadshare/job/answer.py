@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from loadshare.certify import Certificate
-from loadshare.certify.validity import Validity, refusal_told, validity
+from loadshare.certify.validity import Validity, refusal_text, validity
 from loadshare.errors import Refused
 from loadshare.later import known
 from loadshare.results.result import Effort
@@ -110,8 +110,8 @@ class Answer(Viewed):
         beyond = {} if self.small else self.validity.refused
         if not beyond:
             return None
-        told = f"position {self.index}: {refusal_told(beyond)}"
-        return Refused(told, {name: m.value for name, m in beyond.items()})
+        text = f"position {self.index}: {refusal_text(beyond)}"
+        return Refused(text, {name: m.value for name, m in beyond.items()})
 
     def _view(self) -> View:
         from loadshare.job.views import answer_view

@@ -15,7 +15,7 @@ from functools import cache, partial
 from typing import NamedTuple
 
 from loadshare.certify import Certificate, certify
-from loadshare.certify.validity import TOLD, Validity, refusal_told
+from loadshare.certify.validity import LABELS, Validity, refusal_text
 from loadshare.contact.findings import Work
 from loadshare.errors import Refused
 from loadshare.job.answer import Answer
@@ -201,21 +201,21 @@ def _under_less(train: Train, index: int, tolerance: float) -> _Part | None:
 def _refuse_if_too_large(index: int, part: _Part | None) -> None:
     """Refuse a position whose displacements have no meaning under a part of its load."""
     if part is not None and part.displaced.refused:
-        told = refusal_told(part.displaced.refused)
-        raise Refused(f"position {index}: under {part.share:.0%} of the load, {told}")
+        text = refusal_text(part.displaced.refused)
+        raise Refused(f"position {index}: under {part.share:.0%} of the load, {text}")
 
 
 def _with_large(refusal: Refused, part: _Part | None) -> Refused:
     """Add to a refusal what a part of the load displaces too far for the geometry already."""
     if part is None or not part.displaced.warned:
         return refusal
-    told = "; ".join(
-        f"{TOLD[name]} {m.value:.3g} at {m.where} (warning above {m.warning:.3g})"
+    text = "; ".join(
+        f"{LABELS[name]} {m.value:.3g} at {m.where} (warning above {m.warning:.3g})"
         for name, m in part.displaced.warned.items()
     )
     return Refused(
         f"{refusal}; under {part.share:.0%} of the load displacements are large for the "
-        f"geometry already: {told}; check the load and the stiffnesses",
+        f"geometry already: {text}; check the load and the stiffnesses",
         refusal.figures,
     )
 
@@ -223,14 +223,14 @@ def _with_large(refusal: Refused, part: _Part | None) -> Refused:
 def uncertified(index: int, certificate: Certificate) -> Refused:
     """Return the refusal of an answer whose certificate does not pass."""
     failing = certificate.failing
-    told = "; ".join(
+    text = "; ".join(
         f"{name.replace('_', ' ')} {r.value:.3g} {r.unit} at {r.where} "
         f"({r.scaled:.1e} of the case, allowed {certificate.tolerance:.0e})"
         for name, r in failing.items()
     )
     figures = {name: r.scaled for name, r in failing.items()}
     if failing:
-        return Refused(f"position {index}: the answer is not an equilibrium: {told}", figures)
+        return Refused(f"position {index}: the answer is not an equilibrium: {text}", figures)
     error, allowed = certificate.proved, certificate.tolerance
     proved = "not proved at all" if math.isinf(error) else f"proved to {error:.1e} only"
     return Refused(

@@ -201,12 +201,12 @@ class Machine:
             self.structure, loading, iterate, engine, states, only=~found.solved if found else None
         )
         found = found.completed(more) if found else more
-        begun = bool(starts) or beside is not None
+        started = bool(starts) or beside is not None
         left = ~found.solved
         quick = engine is not vectorised.settle
         numpy = vectorised.settle
         attempts = (engine, False), (numpy, False), (numpy, True)
-        tries = np.full(loading.count, 2 - begun - quick)
+        tries = np.full(loading.count, 2 - started - quick)
         searched = np.zeros(loading.count, dtype=bool)
         while True:
             found = found.without(left)

@@ -74,7 +74,7 @@ def solve(
     engine : {"auto", "vectorised", "compiled"}
         Of the hot path: NumPy, or Numba, which takes a minute to compile the first time. "auto" is
         Numba once it was used in this process, or 300 positions were solved and it is kept on
-        disk. Answers are the same but for round-off.
+        disk. Answers are the same except for round-off.
     progress : Progress, optional
         Called after every position.
 
@@ -114,10 +114,10 @@ def solve(
             answers.append(found)
         if progress is not None:
             progress(done, len(wanted))
-    asked = replace(options, solver=solver)
+    requested = replace(options, solver=solver)
     result = None
     if answers:
-        result = result_of(case, machine.train, answers, asked, tolerance, wanted)
+        result = result_of(case, machine.train, answers, requested, tolerance, wanted)
     if refusals or result is None:
         raise _together(refusals, result)
     return result
@@ -259,14 +259,14 @@ def wanted_positions(train: Train, positions: Iterable[int] | None) -> list[int]
         return list(there)
     allowed = f"this case has positions 1 to {train.count}"
     if not isinstance(positions, Iterable) or isinstance(positions, str | bytes):
-        told = f"positions {positions!r}: not a list of positions; {allowed}"
-        raise ValueError(told)  # noqa: TRY004 -- one kind of error for all that no position is
+        message = f"positions {positions!r}: not a list of positions; {allowed}"
+        raise ValueError(message)  # noqa: TRY004 -- one kind of error for all that no position is
     wanted = list(positions)
     # A position out of an array is an integer of NumPy; a result and its file hold plain ones.
     wrong = [k for k in wanted if not isinstance(k, Integral) or k is True or k not in there]
     if wrong or not wanted:
-        told = ", ".join(map(str, wrong)) or "none given"
-        raise ValueError(f"positions {told}: {allowed}")
+        given = ", ".join(map(str, wrong)) or "none given"
+        raise ValueError(f"positions {given}: {allowed}")
     twice = sorted(k for k, times in Counter(wanted).items() if times > 1)
     if twice:
         raise ValueError(f"positions {', '.join(map(str, twice))}: given more than once")

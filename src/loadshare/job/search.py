@@ -59,7 +59,7 @@ class Search(Viewed):
         return {True: "leads to the same", False: "leads elsewhere", None: "broke off"}[self.path]
 
     @property
-    def told(self) -> str:
+    def text(self) -> str:
         """What was done and found, as a sentence."""
         found = (
             "no other answer"

@@ -89,8 +89,8 @@ EACH = {
 def _refused(where: tuple[int, int], why: str) -> str:
     """Return a line that says why a sample has no answer at a position."""
     sample, position = where
-    told = " ".join(why.splitlines()).removeprefix(f"position {position}: ")
-    return f"sample {sample}, position {position}: {told}"
+    reason = " ".join(why.splitlines()).removeprefix(f"position {position}: ")
+    return f"sample {sample}, position {position}: {reason}"
 
 
 def _frames(train: Train) -> Array:

@@ -18,8 +18,8 @@ def warm() -> str | None:
     str or None
         Why nothing could be compiled or kept; None where all is there.
     """
-    # Nothing is asked beforehand: what is there is read in a moment, and all that a batch calls has
-    # to be there.
+    # Nothing is checked beforehand: what is there is read in a moment, and all that a batch calls
+    # has to be there.
     case = Case(tomllib.loads(starter_case("warm", "split-path")))
     assert case.operating is not None
     torque = case.operating.input_torque[0]

@@ -41,7 +41,7 @@ CONFIG: dict[str, Any] = {
         "subtitleColor": SOFT,
         "subtitleFontSize": 11,
         "offset": 8,
-        # From the plot's own frame, so that the titles of neighbouring panels stand in line.
+        # From the plot's own frame, so that the titles of neighbouring panels line up.
         "frame": "group",
     },
     "axis": {
@@ -55,7 +55,7 @@ CONFIG: dict[str, Any] = {
         "tickColor": SOFT,
         "labelLimit": 220,
     },
-    # Every figure stands below its tick, and none runs into the next.
+    # Every figure is written below its tick, and none runs into the next.
     "axisQuantitative": {"labelFlush": False, "labelOverlap": True, "labelSeparation": 6},
     "legend": {
         "labelColor": INK,

@@ -24,8 +24,8 @@ def _(found: Sweep) -> list[str]:
     failed = [p for p in found.points if p.status != "certified"]
     if not failed:
         return []
-    told = dict.fromkeys(f"{p.status}: {p.message.splitlines()[0]}" for p in failed)
-    return [*told, f"{counted(len(failed), 'point')} of {len(found.points)} not certified."]
+    reasons = dict.fromkeys(f"{p.status}: {p.message.splitlines()[0]}" for p in failed)
+    return [*reasons, f"{counted(len(failed), 'point')} of {len(found.points)} not certified."]
 
 
 @left_open.register

@@ -118,7 +118,7 @@ def palette_of(result: Result) -> Palette:
 
 
 def ends_from_names(meshes: Iterable[str], gears: Iterable[str]) -> dict[str, tuple[str, str]]:
-    """Driver and driven gear of the meshes whose names, a-b, tell them."""
+    """Driver and driven gear of the meshes whose names, a-b, give them."""
     known = set(gears)
-    told = {mesh: ends_of(mesh, known) for mesh in meshes}
-    return {mesh: ends for mesh, ends in told.items() if ends and set(ends) <= known}
+    found = {mesh: ends_of(mesh, known) for mesh in meshes}
+    return {mesh: ends for mesh, ends in found.items() if ends and set(ends) <= known}

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from loadshare.case import Case
-from loadshare.certify.validity import TOLD
+from loadshare.certify.validity import LABELS
 from loadshare.report.numbers import NONE, decimals, fixed, micrometres, omega, significant, small
 from loadshare.results import Position, Result
-from loadshare.results.laws import laws_told
+from loadshare.results.laws import law_lines
 
 FOLDED = 24
 """Rows from which a table is shown only when asked for."""
@@ -109,7 +109,7 @@ def table(
     return Table(title, columns, cells, list(notes), folded=len(cells) > most)
 
 
-def load_told(case: Case) -> str:
+def load_text(case: Case) -> str:
     """Load of a case, and where it enters and leaves, in words."""
     operating = case.operating
     low, high = min(operating.input_torque), max(operating.input_torque)
@@ -140,7 +140,7 @@ def reached(shares: Shares, meshes: Sequence[str]) -> str:
     ----------
     shares : sequence of (position, mapping of mesh to float or None)
     meshes : sequence of str
-        Of the stage; none for the whole system, of which nothing is told.
+        Of the stage; none for the whole system, for which nothing is named.
     """
     found = [(s[m], m, k) for k, s in shares for m in meshes]
     known = [(v, m, k) for v, m, k in found if v is not None]
@@ -199,11 +199,11 @@ def torque_notes(result: Result, rows: Iterable[Record]) -> list[str]:
     """Notes below the torques of the meshes."""
     notes = []
     if len(result.positions) > 1:
-        told = "The same at all positions.", "Ω is the largest over the positions."
-        notes.append(told[0] if alike(result) else told[1])
+        sentences = "The same at all positions.", "Ω is the largest over the positions."
+        notes.append(sentences[0] if alike(result) else sentences[1])
     if any(row["Ω pair"].text == NONE for row in rows):
         notes.append(f"{NONE}: not in a stage, or without load.")
-    return notes + laws_told(result.laws)
+    return notes + law_lines(result.laws)
 
 
 def largest(shares: Iterable[float | None]) -> Cell:
@@ -276,7 +276,7 @@ def yielding(result: Result) -> Iterator[Record]:
         }
 
 
-def error_told(result: Result) -> str:
+def error_text(result: Result) -> str:
     """How much the transmission error at the input varies, in a sentence."""
     errors = [p.elastic.transmission_error["input"] for p in result.positions]
     span = significant(1e6 * (max(errors) - min(errors)), 4)
@@ -313,7 +313,7 @@ def measures(result: Result) -> Iterator[Record]:
         nowhere = measure.value == 0.0
         bounds = {"warning": measure.warning, "refusal": measure.refusal}
         yield {
-            "figure": Cell(TOLD[name]),
+            "figure": Cell(LABELS[name]),
             "value": Cell(small(measure.value), measure.value),
             **{k: Cell(NONE if b is None else significant(b, 3), b) for k, b in bounds.items()},
             "where": Cell(NONE if nowhere else measure.where),

@@ -122,7 +122,7 @@ def _tolerances(case: Case) -> Iterator[Record]:
         found = tolerances_of(gear)
         if found is None:
             continue
-        lengths = {told: getattr(found, name) for name, told in TOLERANCES.items()}
+        lengths = {column: getattr(found, name) for name, column in TOLERANCES.items()}
         yield {
             "gear": Cell(gear_name),
             "class": Cell(str(gear.tolerance_class), gear.tolerance_class),

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from loadshare.certify import FloatState
-from loadshare.certify.validity import TOLD
+from loadshare.certify.validity import LABELS
 from loadshare.report.numbers import runs, significant
 from loadshare.report.units import engineering
 from loadshare.results import Position, Result
@@ -17,7 +17,7 @@ ALONG = 1e-9
 """How far a direction may be from an axis and still be called by its name."""
 
 
-def period_told(period: Period, driving: str) -> str:
+def period_text(period: Period, driving: str) -> str:
     """Return how long the common period of all meshes is.
 
     Parameters
@@ -33,7 +33,7 @@ def period_told(period: Period, driving: str) -> str:
     )
 
 
-def rest_told(rests: Sequence[FloatState], positions: Sequence[int]) -> list[str]:
+def rest_lines(rests: Sequence[FloatState], positions: Sequence[int]) -> list[str]:
     """Return where a float rests over the positions, its margin or reaction, in a line or two.
 
     Parameters
@@ -46,7 +46,7 @@ def rest_told(rests: Sequence[FloatState], positions: Sequence[int]) -> list[str
     if len(where) == 1:
         lines = [next(iter(where))]
     else:
-        lines = [f"{told} at {count} of {len(rests)}" for told, count in where.most_common(3)]
+        lines = [f"{place} at {count} of {len(rests)}" for place, count in where.most_common(3)]
         if len(where) > 3:
             lines.append(f"and {len(where) - 3} other ways")
     margins = [r.margin for r in rests if r.state == "inside" and r.margin is not None]
@@ -80,23 +80,23 @@ def boundary_name(name: str) -> str:
     return name.rpartition(": ")[2] if ": " in name else "ring"
 
 
-def spline_told(rests: Sequence[FloatState]) -> list[str]:
+def spline_lines(rests: Sequence[FloatState]) -> list[str]:
     """Return the stage of a float's spline over the positions and its force; none without one."""
     stages = Counter(rest.spline for rest in rests if rest.spline)
     if not stages:
         return []
     most = max(rest.spline_force for rest in rests)
     unit = engineering([most], "N")
-    told = ", ".join(
+    text = ", ".join(
         stage if len(stages) == 1 else f"{stage} at {count}" for stage, count in stages.items()
     )
-    return [f"spline: {told}; force up to {significant(unit.of(most))} {unit.name}"]
+    return [f"spline: {text}; force up to {significant(unit.of(most))} {unit.name}"]
 
 
-def places_told(numbers: Sequence[int]) -> str:
+def places_text(numbers: Sequence[int]) -> str:
     """Return whole numbers in short: ``1–3, 7``; many runs are cut off with an ellipsis."""
-    told = runs(numbers)
-    return ", ".join(told[:3]) + (" …" if len(told) > 3 else "")
+    parts = runs(numbers)
+    return ", ".join(parts[:3]) + (" …" if len(parts) > 3 else "")
 
 
 def direction_name(vector: Iterable[float]) -> str:
@@ -112,22 +112,22 @@ DIGITS = 5
 """Significant digits of a range's ends."""
 
 
-def undetermined_told(positions: Sequence[Position]) -> list[str]:
+def undetermined_lines(positions: Sequence[Position]) -> list[str]:
     """Return a line for every range, with the coordinates that have it; none if all is determined.
 
-    Over several positions a coordinate is told from the least to the largest of all its values.
+    Over several positions a coordinate is given from the least to the largest of all its values.
     """
     groups: dict[str, list[str]] = {}
     for name in dict.fromkeys(name for p in positions for name in p.undetermined):
         ranges = [p.undetermined[name] for p in positions if name in p.undetermined]
-        told = range_told(name, min(r[0] for r in ranges), max(r[1] for r in ranges))
+        text = range_text(name, min(r[0] for r in ranges), max(r[1] for r in ranges))
         if len(ranges) < len(positions):
-            told += f", at {len(ranges)} of {len(positions)} positions"
-        groups.setdefault(told, []).append(name)
-    return [f"{', '.join(names)}: not determined, {told}" for told, names in groups.items()]
+            text += f", at {len(ranges)} of {len(positions)} positions"
+        groups.setdefault(text, []).append(name)
+    return [f"{', '.join(names)}: not determined, {text}" for text, names in groups.items()]
 
 
-def range_told(name: str, low: float, high: float) -> str:
+def range_text(name: str, low: float, high: float) -> str:
     """Return a coordinate's range: ``−50 … 50 µm``, ``from −12 µrad on``, ``without limit``."""
     unit = engineering((low, high), "rad" if name.endswith("rotation") else "m")
     least, largest = (significant(unit.of(end), DIGITS).replace("-", "−") for end in (low, high))
@@ -146,9 +146,9 @@ def advice(result: Result) -> str:
     if not names:
         return ""
     where = ", ".join(runs(p.position for p in result.positions if p.validity.warned))
-    told = "; ".join(TOLD[name] for name in names)
+    reasons = "; ".join(LABELS[name] for name in names)
     noun = "positions" if len(result.positions) > 1 else "position"
     return (
         f"displacements are large for the geometry in which they were found ({noun} {where}: "
-        f"{told}); figures may be off by some per cent"
+        f"{reasons}); figures may be off by some per cent"
     )

@@ -30,7 +30,7 @@ class Variable:
     Attributes
     ----------
     dims : tuple of str
-        Beside the position. The first names elements.
+        Besides the position. The first names elements.
     units, long_name : str
     """
 
@@ -113,12 +113,12 @@ def dataset(result: Result) -> xr.Dataset:
     import xarray as xr
 
     parts, stamp = result.figures, result.stamp
-    # A train that is placed may have a shift to tell at some positions only.
+    # A train that is placed may have a shift to report at some positions only.
     measures = list(dict.fromkeys(m for part in parts for m in part.measured))
     names = {**parts[0].names, "measure": measures}
     data = {}
     for name, variable in VARIABLES.items():
-        values = np.concatenate([part.told(name, names) for part in parts])
+        values = np.concatenate([part.as_numbers(name, names) for part in parts])
         values.flags.writeable = False
         data[name] = variable.labelled(values, "position")
     return xr.Dataset(
@@ -142,7 +142,7 @@ def array_differences(expected: xr.Dataset, found: xr.Dataset) -> Iterator[tuple
     Yields
     ------
     tuple of (str, str, str)
-        Variable or attribute, what stands there, and what is wrong with it.
+        Variable or attribute, what is written there, and what is wrong with it.
     """
     for name, value in expected.attrs.items():
         if found.attrs.get(name) != value:
@@ -179,8 +179,8 @@ def frame(result: Result) -> pd.DataFrame:
 
 def with_units(table: pd.DataFrame, arrays: xr.Dataset) -> pd.DataFrame:
     """Return a table of arrays with the unit of each column in ``attrs``."""
-    told = {name: arrays[name].attrs.get("units") for name in table if name in arrays.data_vars}
-    known = {name: unit for name, unit in told.items() if unit is not None}
+    units = {name: arrays[name].attrs.get("units") for name in table if name in arrays.data_vars}
+    known = {name: unit for name, unit in units.items() if unit is not None}
     table.attrs["units"] = {**known, "worst_residual": "1"} if "worst_residual" in table else known
     return table
 

@@ -1,4 +1,4 @@
-"""Two documents compared leaf by leaf: what a file says against what was computed anew."""
+"""Two documents compared leaf by leaf: what a file says against what was computed again."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ DIGITS = 1e-9
 their kind have lost some digits, but not nine."""
 JUDGED = ("certificate", "residuals")
 """Figures of a certificate are round-off themselves and another machine's are others: the file's
-are for readers, and those that were computed anew take their place."""
+are for readers, and those that were computed again take their place."""
 
 
 def differences(
@@ -75,7 +75,7 @@ def _compare(
             if key in found:
                 yield from _compare(value, found[key], (*path, key), names, sizes)
             else:
-                yield (*path, key), "", "is missing", _told(value)
+                yield (*path, key), "", "is missing", _text(value)
         for key in found:
             if key not in expected:
                 yield (*path, key), "", "is not known", ""
@@ -86,7 +86,7 @@ def _compare(
             yield from _compare(one, other, (*path, at), names, sizes)
     elif not _agree(expected, found, path, names, sizes):
         message = "does not follow from the case and the claims of this file"
-        yield path, _told(found), message, _told(expected)
+        yield path, _text(found), message, _text(expected)
 
 
 def _agree(
@@ -108,7 +108,7 @@ def _is_judged(path: Path) -> bool:
     return len(path) > 2 and path[0] == "positions" and path[2] in JUDGED
 
 
-def _told(value: Any) -> str:
+def _text(value: Any) -> str:
     if value is None:
         return "null"
     return "a table" if isinstance(value, Mapping) else as_given(value)

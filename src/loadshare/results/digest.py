@@ -14,8 +14,8 @@ _SEAL = b"\nloadshare sha256 "
 
 def digest_of(document: Mapping[str, Any]) -> str:
     """Return the SHA-256 of a document without its own digest, however it is laid out."""
-    told = {key: value for key, value in document.items() if key != DIGEST}
-    text = json.dumps(told, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
+    content = {key: value for key, value in document.items() if key != DIGEST}
+    text = json.dumps(content, sort_keys=True, separators=(",", ":"), ensure_ascii=False)
     return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 

@@ -8,7 +8,7 @@ from dataclasses import fields, is_dataclass
 from typing import TYPE_CHECKING, Any
 
 from loadshare.results.digest import DIGEST, digest_of
-from loadshare.results.laws import laws_told
+from loadshare.results.laws import law_lines
 
 if TYPE_CHECKING:
     from loadshare.certify import Certificate
@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 FORMAT = 5
 """Of the files that are written; it changes with what a file holds."""
 OLDER = {4: ("elastic",)}
-"""Forms that are read as well, with what their positions do not tell."""
-_TOLD = (
+"""Forms that are read as well, with what their positions lack."""
+_FIELDS = (
     "position",
     "torque",
     "coast_torque",
@@ -53,7 +53,7 @@ def to_document(result: Result, form: int = FORMAT) -> dict[str, Any]:
     form : int
         One that is read.
     """
-    untold = OLDER.get(form, ())
+    lacking = OLDER.get(form, ())
     document = {
         "format": form,
         "case": result.stamp.case,
@@ -63,13 +63,13 @@ def to_document(result: Result, form: int = FORMAT) -> dict[str, Any]:
         "frames": as_data(result.frames),
         "stages": as_data(result.stages),
         "positions": [
-            {key: told for key, told in _told(p).items() if key not in untold}
+            {key: value for key, value in _position_document(p).items() if key not in lacking}
             for p in result.positions
         ],
         "omega": dict(result.omega),
         "pair_omega": dict(result.pair_omega),
     }
-    if laws_told(result.laws):
+    if law_lines(result.laws):
         document["laws"] = as_data(result.laws)
     return document | {DIGEST: digest_of(document)}
 
@@ -85,14 +85,14 @@ def as_data(given: Any) -> Any:
     return None if isinstance(given, float) and math.isinf(given) else given
 
 
-def _told(p: Position) -> dict[str, Any]:
+def _position_document(p: Position) -> dict[str, Any]:
     """What is written of a position; the parts of its certificate side by side."""
-    told = {name: as_data(getattr(p, name)) for name in _TOLD}
-    told["validity"] = {"verdict": p.validity.verdict} | as_data(p.validity)
-    told["uniqueness"] = as_data(p.uniqueness) | {"told": p.uniqueness.told}
-    told["loads"] = {name: as_data(getattr(p.loads, name)) for name in _LOADS}
-    told["elastic"] = {name: as_data(getattr(p.elastic, name)) for name in _ELASTIC}
-    return told | _judged(p.certificate)
+    document = {name: as_data(getattr(p, name)) for name in _FIELDS}
+    document["validity"] = {"verdict": p.validity.verdict} | as_data(p.validity)
+    document["uniqueness"] = as_data(p.uniqueness) | {"told": p.uniqueness.text}
+    document["loads"] = {name: as_data(getattr(p.loads, name)) for name in _LOADS}
+    document["elastic"] = {name: as_data(getattr(p.elastic, name)) for name in _ELASTIC}
+    return document | _judged(p.certificate)
 
 
 def _judged(certificate: Certificate) -> dict[str, Any]:

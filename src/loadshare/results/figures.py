@@ -1,4 +1,4 @@
-"""Everything that answers tell, as arrays: the claims of many, or of one, worked out at once."""
+"""Everything that answers say, as arrays: the claims of many, or of one, worked out at once."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ Array = NDArray[np.float64]
 COMPONENTS = ("x", "y")
 """Of a displacement in the gear's transverse frame."""
 SIDES = ("input", "output")
-"""To which what is told of the whole train is referred."""
+"""To which figures of the whole train are referred."""
 
 
 class Figures:
-    """What S answers of a train tell; every array has them as its first axis.
+    """What S answers of a train say; every array has them as its first axis.
 
-    Elements stand in the order of the train; what there is not is not a number.
+    Elements are in the order of the train; what does not exist is not a number.
 
     Parameters
     ----------
     train : Train
-        As the answers stand: placed, and remembering, where it is.
+        As the answers are: placed, and remembering, where it is.
     situations : Situations
     answers : Equilibria
         At their places of least norm.
@@ -99,7 +99,7 @@ class Figures:
 
     @cached_property
     def mesh_position(self) -> Array:
-        """Position at which every mesh stands in its own cycle, from 1, (S, meshes)."""
+        """Position at which every mesh is in its own cycle, from 1, (S, meshes)."""
         index = np.broadcast_to(self.situations.index, self.count)
         every = self.train.mesh_positions(index).values()
         return np.array([at + 1 for at in every]).reshape(-1, self.count).T
@@ -273,7 +273,7 @@ class Figures:
     @cached_property
     def spline(self) -> NDArray[np.str_]:
         """Stage of every float's spline, (S, floats); empty without one."""
-        words = [self._rests.stage_told(gear) for gear in self.train.floating]
+        words = [self._rests.stage_name(gear) for gear in self.train.floating]
         return np.array(words, dtype=str).reshape(-1, self.count).T
 
     @cached_property
@@ -314,7 +314,7 @@ class Figures:
         """Return a figure of the first answer, by the names along an axis."""
         return dict(zip(self.names[dim], getattr(self, name)[0].tolist(), strict=True))
 
-    def told(self, name: str, names: Mapping[str, Sequence[str]]) -> Array:
+    def as_numbers(self, name: str, names: Mapping[str, Sequence[str]]) -> Array:
         """Return a figure by its name as numbers; sizes of displacements in the order of names."""
         if name != "validity":
             return np.asarray(getattr(self, name), dtype=float)

@@ -1,4 +1,4 @@
-"""Results from disk: JSON and netCDF, certified anew."""
+"""Results from disk: JSON and netCDF, certified again."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def load_result(path: str | Path) -> Result:
 
     The case in the file is built again, every position's claimed displacements and forces
     are certified against it, and all other figures are computed from them. The file must agree with
-    what was computed but for round-off.
+    what was computed except for round-off.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def _unread(path: Path, why: str = "holds no result of loadshare") -> ResultErro
 
 
 def _read_netcdf(path: Path, content: bytes) -> Result:
-    """Load the result, and compare the arrays beside it with its own."""
+    """Load the result, and compare the arrays next to it with its own."""
     import xarray as xr
 
     if not is_sealed(content):
@@ -78,7 +78,7 @@ def _read_netcdf(path: Path, content: bytes) -> Result:
     if not isinstance(text, str):
         raise _unread(path)
     result = read_document(text, f"{path}: {DOCUMENT}")[0]
-    problems = [Problem(str(path), *told) for told in array_differences(result.dataset, arrays)]
+    problems = [Problem(str(path), *words) for words in array_differences(result.dataset, arrays)]
     if problems:
         raise ResultError(problems)
     return result

@@ -1,4 +1,4 @@
-"""What positions tell that were certified one by one."""
+"""Figures of positions that were certified one by one."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 
 def figures_of(positions: Sequence[Position]) -> list[Figures]:
-    """Return what positions tell, those of one train together."""
+    """Return the figures of positions, those of one train together."""
     groups: list[list[Position]] = []
     for position in positions:
         if not (groups and groups[-1][0].train is position.train):
@@ -53,6 +53,6 @@ class _Judged(Figures):
 
     @cached_property
     def torque_bound(self) -> Array:
-        """Bounds of torques as the certificates have them; not a number where none is told."""
+        """Bounds of torques as the certificates have them; not a number where there is none."""
         bounds = [p.certificate.bound.torque for p in self._positions]
         return np.array([[b.get(mesh, np.nan) for mesh in self.train.meshes] for b in bounds])

@@ -28,9 +28,9 @@ class LawUse:
         Least and largest torque at the driver over the positions, without its sign [N·m].
     line_load : float or None
         Largest tangential force at the reference circle per face width [N/m]; None where the case
-        does not tell teeth and face widths.
+        does not give teeth and face widths.
     note : str
-        That the load lies beside what the law holds for; empty where it does not.
+        That the load lies outside what the law holds for; empty where it does not.
     """
 
     basis: str
@@ -67,7 +67,7 @@ def laws_of(case: Case, torques: Sequence[Mapping[str, float]]) -> dict[str, Law
     return found
 
 
-def laws_told(laws: Mapping[str, LawUse]) -> list[str]:
+def law_lines(laws: Mapping[str, LawUse]) -> list[str]:
     """Lines that say what laws are from and where they are stretched; none if all are given."""
     if all(use.basis == GIVEN and not use.note for use in laws.values()):
         return []
@@ -113,5 +113,5 @@ def _named(names: Sequence[str], every: int) -> str:
         return f"mesh {names[0]}"
     if len(names) == every:
         return "all meshes"
-    told = names if len(names) <= MOST else [*names[: MOST - 1], f"{len(names) - MOST + 1} more"]
-    return f"meshes {', '.join(told)}"
+    shown = names if len(names) <= MOST else [*names[: MOST - 1], f"{len(names) - MOST + 1} more"]
+    return f"meshes {', '.join(shown)}"

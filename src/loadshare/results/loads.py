@@ -8,7 +8,7 @@ from typing import TypeVar
 from loadshare.results.figures import Figures
 
 Pair = tuple[float, float]
-Told = TypeVar("Told")
+Value = TypeVar("Value")
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Loads:
         found = zip(self.figures.train.gears, self.figures.bearing_force[0].tolist(), strict=True)
         return self._of_bodies({name: (x, y) for name, (x, y) in found})
 
-    def _of_bodies(self, found: dict[str, Told]) -> dict[str, Told]:
+    def _of_bodies(self, found: dict[str, Value]) -> dict[str, Value]:
         """Without the harmonics of rims."""
         gears = self.figures.train.gears
         return {name: value for name, value in found.items() if gears[name].rim_of is None}

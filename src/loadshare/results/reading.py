@@ -1,4 +1,4 @@
-"""A result read back: what it claims is certified anew, the rest is computed and compared."""
+"""A result read back: what it claims is certified again, the rest is computed and compared."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from loadshare.case.origin import Origin
 from loadshare.case.words import as_given
 from loadshare.certify import Certificate, certify
 from loadshare.certify.tolerance import checked_tolerance
-from loadshare.certify.validity import refusal_told
+from loadshare.certify.validity import refusal_text
 from loadshare.errors import CaseError, Problem, ResultError
 from loadshare.later import known
 from loadshare.results.claim import Claim, misnamed
@@ -43,7 +43,7 @@ AGAIN = "Solve the case again: loadshare run CASE.toml -o FILE.json."
 
 @dataclass(frozen=True, slots=True)
 class _Position:
-    """What is read of a position; all else in it is computed anew, and compared."""
+    """What is read of a position; all else in it is computed again, and compared."""
 
     position: int
     claim: Claim
@@ -95,7 +95,7 @@ def read_document(text: str, file: str) -> tuple[Result, dict[str, Any]]:
     Raises
     ------
     ResultError
-        If the text is not what :func:`to_document` tells of a result that passes.
+        If the text is not what :func:`to_document` returns for a result that passes.
     """
     document = _parsed(text, file)
     given = _read(text, file)
@@ -109,9 +109,9 @@ def read_document(text: str, file: str) -> tuple[Result, dict[str, Any]]:
     _raise(_loosened(positions, train), file)
     stamp = replace(given.stamp, title=case.title, case_hash=case.hash)
     result = result_from(case, train, positions, known(stamp))
-    # The digest is of the very digits that stand there, whichever processor computed them.
-    told = to_document(result, document.get("format", 1)) | {DIGEST: document.get(DIGEST)}
-    _raise(differences(told, document, names=_elements(given, train)), file)
+    # The digest is of the very digits that are written there, whichever processor computed them.
+    expected = to_document(result, document.get("format", 1)) | {DIGEST: document.get(DIGEST)}
+    _raise(differences(expected, document, names=_elements(given, train)), file)
     _raise(_altered(document), file)
     return result, document
 
@@ -122,7 +122,7 @@ Wrong = tuple[Path, str, str, str]
 
 def _raise(wrong: Iterable[Wrong], file: str) -> None:
     problems = [
-        Problem(file, dotted(path), *told) for path, *told in islice(wrong, ALLOWED.problems)
+        Problem(file, dotted(path), *words) for path, *words in islice(wrong, ALLOWED.problems)
     ]
     if problems:
         raise ResultError([*problems[:-1], replace(problems[-1], hint=AGAIN)])
@@ -135,8 +135,8 @@ def _fail(file: str, message: str, hint: str = AGAIN, key: Path = (), given: str
 def _altered(document: dict[str, Any]) -> Iterator[Wrong]:
     """Yield that a digit or a word was changed of which no figure follows."""
     if document.get(DIGEST) != digest_of(document):
-        told = "is not that of what this file holds: it was changed after it was written"
-        yield (DIGEST,), as_given(document.get(DIGEST)), told, ""
+        message = "is not that of what this file holds: it was changed after it was written"
+        yield (DIGEST,), as_given(document.get(DIGEST)), message, ""
 
 
 def _parsed(text: str, file: str) -> dict[str, Any]:
@@ -188,7 +188,7 @@ def _read(text: str, file: str) -> _File:
         return _reader().validate_json(text, strict=True)
     except ValidationError as error:
         if error.error_count() > ALLOWED.problems:
-            # Each of them told takes a thousand times its room in the file.
+            # Each of them reported takes a thousand times its room in the file.
             _fail(file, f"holds {error.error_count()} values that cannot stand there")
         raise ResultError(
             Problem(
@@ -228,11 +228,11 @@ def _tolerance(given: _File, file: str) -> float:
 
 def _wrong_positions(given: _File, train: Train) -> Iterator[Wrong]:
     """Yield positions that are missing, there twice, or no position of the case."""
-    asked, there = given.stamp.positions, [p.position for p in given.positions]
-    if not asked:
+    requested, there = given.stamp.positions, [p.position for p in given.positions]
+    if not requested:
         yield ("stamp", "positions"), "[]", "is empty", "the positions that were asked for"
     wanted: set[int] = set()
-    for at, index in enumerate(asked):
+    for at, index in enumerate(requested):
         if index in wanted:
             yield ("stamp", "positions", at), f"{index}", "appears twice", ""
         wanted.add(index)
@@ -244,11 +244,11 @@ def _wrong_positions(given: _File, train: Train) -> Iterator[Wrong]:
         elif index in found:
             yield path, f"{index}", "appears twice", ""
         found.add(index)
-    for told, some in (
-        ("is missing", [k for k in asked if k not in found]),
+    for what, some in (
+        ("is missing", [k for k in requested if k not in found]),
         ("was not asked for", [k for k in dict.fromkeys(there) if k not in wanted]),
     ):
-        yield from ((("positions",), "", f"position {k} {told}", "") for k in some)
+        yield from ((("positions",), "", f"position {k} {what}", "") for k in some)
 
 
 def _wrong_names(given: _File, train: Train) -> Iterator[Wrong]:
@@ -279,7 +279,7 @@ def _uncertified(positions: Iterable[Position]) -> Iterator[Wrong]:
             message = f"position {p.position} is no equilibrium of the case under input: {failing}"
             yield path, "", message, ""
         elif p.validity.refused:
-            yield path, "", f"position {p.position}: {refusal_told(p.validity.refused)}", ""
+            yield path, "", f"position {p.position}: {refusal_text(p.validity.refused)}", ""
 
 
 def _forgotten(train: Train, positions: Iterable[Position]) -> Iterator[Wrong]:
@@ -300,8 +300,8 @@ def _forgotten(train: Train, positions: Iterable[Position]) -> Iterator[Wrong]:
         for gear, slip in before.items():
             off = float(np.abs(np.array(slip) - after[gear]).max())
             if off > ROUND_OFF * size + DIGITS * float(np.abs(after[gear]).max()):
-                told = "is not the slip at the end of the step before"
-                yield (*path, gear), as_given(list(slip)), told, as_given(after[gear].tolist())
+                message = "is not the slip at the end of the step before"
+                yield (*path, gear), as_given(list(slip)), message, as_given(after[gear].tolist())
         after = {
             gear: train.slip_seen_next(gear, slip_of(spline, p.equilibrium), p.position)
             for gear, spline in train.splines.items()

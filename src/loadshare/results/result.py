@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from loadshare.certify import Certificate, FloatState
-from loadshare.certify.uniqueness import TOLD, Uniqueness, uniqueness
+from loadshare.certify.uniqueness import MEANINGS, Uniqueness, uniqueness
 from loadshare.certify.validity import Measure, Validity, validity
 from loadshare.pictures import picture
 from loadshare.results.claim import Claim, Pair, claim_of
@@ -187,7 +187,7 @@ class Position(Viewed):
 
     @cached_property
     def figures(self) -> Figures:
-        """All that it tells, as arrays of one answer."""
+        """All its figures, as arrays of one answer."""
         (found,) = figures_of([self])
         return found
 
@@ -287,10 +287,10 @@ class Result:
 
     def __repr__(self) -> str:
         """Tell what was solved, how good the answer is, and how load is shared."""
-        done, asked = len(self.positions), len(self.stamp.positions)
+        done, requested = len(self.positions), len(self.stamp.positions)
         omega = ", ".join(f"{s} {'–' if v is None else f'{v:.4f}'}" for s, v in self.omega.items())
         return (
-            f"Result of {self.stamp.case}: {done} of {asked} positions certified, "
+            f"Result of {self.stamp.case}: {done} of {requested} positions certified, "
             f"worst residual {self.certificate.worst:.1e}\nlargest Ω: {omega}"
         )
 
@@ -323,7 +323,7 @@ class Result:
     @property
     def uniqueness(self) -> Uniqueness:
         """The weakest of the positions' verdicts, whether the answer is the only one."""
-        order = list(TOLD)
+        order = list(MEANINGS)
         return max(
             (p.uniqueness for p in self.positions),
             key=lambda u: (order.index(u.kind), math.inf if u.curvature is None else u.curvature),
@@ -341,7 +341,7 @@ class Result:
 
     @cached_property
     def figures(self) -> list[Figures]:
-        """All that it tells, as arrays over the positions; those of one train together."""
+        """All its figures, as arrays over the positions; those of one train together."""
         return figures_of(self.positions)
 
     @property

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
 
 def result_view(result: Result) -> View:
     """Tell how good an answer is, how load is shared, where floats rest, and the torques."""
-    stamp, asked = result.stamp, len(result.stamp.positions)
+    stamp, requested = result.stamp, len(result.stamp.positions)
     done = sum(p.certificate.passed for p in result.positions)
     facts = (
         ("title", stamp.title),
         (
             "certified",
-            f"{done} of {asked} positions, worst residual {result.certificate.worst:.1e}",
+            f"{done} of {requested} positions, worst residual {result.certificate.worst:.1e}",
         ),
         ("largest Ω over the stage", by_name(result.omega)),
         ("largest Ω over the group", by_name(result.pair_omega)),
@@ -56,9 +56,9 @@ def position_view(found: Position) -> View:
 
 def rest_facts(certificate: Certificate, found: Equilibrium) -> tuple[tuple[str, str], ...]:
     """Tell how good an answer is, where its floats rest, and what forces leave open."""
-    said = "certified" if certificate.passed else "not certified"
+    verdict = "certified" if certificate.passed else "not certified"
     return (
-        (said, f"worst residual {certificate.worst:.1e}"),
+        (verdict, f"worst residual {certificate.worst:.1e}"),
         ("floats", _floats(certificate.floats)),
         ("undetermined", listed(tuple(found.undetermined))),
     )

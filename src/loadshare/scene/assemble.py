@@ -104,7 +104,7 @@ def _source(
         arrays = here.round_radius, here.round_stiffness, here.round_power
         reach, stiffness, power = (float(v[0, k]) for v in arrays)
         if power != 1.0:
-            return RollingLaw(reach, stiffness, power, LAWS.begun * structure.force)
+            return RollingLaw(reach, stiffness, power, LAWS.wall_start * structure.force)
         return round_ring_law(reach, stiffness)
     spline = _spline(train.splines[radial.gear], *here.spline[0, k].tolist())
     parts: dict[str, FollowingLaw] = {

@@ -29,7 +29,7 @@ class Loading:
     load : ndarray, shape (S or 1, n)
         f.
     gap : ndarray, shape (S or 1, m)
-        g; for an arc its clearance does not stand here but in `clearance`.
+        g; for an arc its clearance is not here but in `clearance`.
     bending, hertz : ndarray, shape (S or 1, m)
         b and c of every scalar element.
     tabulated : ndarray of int, shape (m,)

@@ -9,7 +9,7 @@ class Allowed(NamedTuple):
     """What a case file may hold: far more than any machine needs, and no more than can be read."""
 
     bytes: int = 4 * 2**20
-    """Size of a file: read in five seconds, whatever stands in it."""
+    """Size of a file: read in five seconds, whatever is in it."""
     other_bytes: int = 16 * 2**20
     """Size of another program's file: a gear unit, a workbook."""
     result_bytes: int = 2**30
@@ -23,7 +23,7 @@ class Allowed(NamedTuple):
     entries: int = 10_000
     """Entries of a table, and of a list that names keys."""
     problems: int = 1000
-    """Problems of a case that are told."""
+    """Problems of a case that are reported."""
     options: int = 200
     """Names among which the nearest one to a slip is looked for."""
     name: int = 200

@@ -135,7 +135,7 @@ class Bound(NamedTuple):
     """The same over any force: sums of many terms."""
     wider_lines: tuple[float, float] = (2.0, 10.0)
     """Times the error without it, over which the turn of lines is bounded."""
-    sets_told_apart: int = 1000
+    sets_distinguished: int = 1000
     """Sets of elements that are distinguished in a batch."""
     sets_together: int = 64
     """Sets whose figures are found at a time, so that memory is bounded."""
@@ -164,7 +164,7 @@ class Bound(NamedTuple):
     up."""
     margin: float = 1e-6
     """How far the place of a gear whose spline has used up its friction may lie beyond the slip,
-    over the clearance: small for the forces, and large beside their errors."""
+    over the clearance: small for the forces, and large compared with their errors."""
     rank: float = 1e-11
     """Singular value of the directions, relative to the largest, that counts as zero. Directions
     are cosines and ratios of radii; what geometry makes dependent is so to some 1e-16."""

@@ -10,7 +10,7 @@ class Laws(NamedTuple):
 
     written: float = 1e-6
     """Relative excess of K_w S1 over F_m that the digits of a written S1 explain: six are usual."""
-    begun: float = 1e-12
+    wall_start: float = 1e-12
     """Force, in those of the problem, at which the wall of a bearing that begins without stiffness
     is taken to begin."""
 
@@ -25,11 +25,11 @@ class Contact(NamedTuple):
     iterations: int = 120
     """Passes of the outer loop before the other method is tried."""
     interior: float = 1e-11
-    """Gap and residuals that interior-point methods are asked for; the exact solve follows."""
+    """Gap and residuals that interior-point methods must reach; the exact solve follows."""
     interior_steps: int = 200
     """Their steps."""
     splitting: float = 1e-9
-    """Residuals that operator splitting is asked for, before it is polished."""
+    """Residuals that operator splitting must reach, before it is polished."""
     splitting_steps: int = 100_000
     """Its steps."""
     refined: int = 3

@@ -80,7 +80,7 @@ class Abreast(NamedTuple):
     widest: int = 256
     """How many at a time."""
     rounds: int = 4
-    """Times that samples begin again beside those that took as long."""
+    """Times that samples begin again together with those that took as long."""
     few: float = 0.125
     """Share of the samples that is not waited for, but in the last round."""
     fewest: int = 4

@@ -33,7 +33,7 @@ class Job(NamedTuple):
     allocated: int = 32 * 2**20
     """Bytes of an array up to which its memory is used again: the most that glibc allows."""
     kept: int = 256 * 2**20
-    """Bytes that are kept from block to block: with less, pages are fetched anew."""
+    """Bytes that are kept from block to block: with less, pages are fetched again."""
     workers: int = 2
     """Threads; the compiled passes hold no lock."""
     recent: int = 16

@@ -145,7 +145,7 @@ class Sensitivity(NamedTuple):
     tie: float = 1e-9
     """Shares that differ by no more are both the largest."""
     beside: float = 1e-6
-    """Change of an input, relative to its value, within which a step of the answer is told."""
+    """Change of an input, relative to its value, within which a step of the answer is reported."""
     least_value: float = 1e-3
     """Value [SI] from which the first step of an input that is zero is taken."""
 
@@ -180,9 +180,9 @@ class March(NamedTuple):
 class Fit(NamedTuple):
     """Inputs fitted to what was measured."""
 
-    told_apart: float = 1e-6
-    """Singular value of the scaled sensitivities, over the largest, below which inputs are not told
-    apart; and part of an input in what is left open, below which it is round-off."""
+    separable: float = 1e-6
+    """Singular value of the scaled sensitivities, over the largest, below which inputs cannot be
+    told apart; and part of an input in what is left open, below which it is round-off."""
     felt: float = 1e-6
     """Standard deviations by which the figures must change over the range of an input that they
     determine."""

@@ -20,7 +20,7 @@ class Teeth(NamedTuple):
     round_off: float = 16.0 * EPS
     """Part of a gap that counts as nothing."""
     exchanges: int = 40
-    """Exchanges in one pass before the solver interface is asked instead."""
+    """Exchanges in one pass before the solver interface is used instead."""
     band: float = 1e-13
     """Violation of a sign, in loads and deflections, that counts as round-off."""
     faint: float = 1e-12

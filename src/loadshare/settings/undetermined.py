@@ -16,7 +16,7 @@ class Places(NamedTuple):
     smaller."""
     play: float = 1e-9
     """Range, in lengths of the case, below which a place counts as determined: what contacts that
-    carry nothing leave between them but for round-off."""
+    carry nothing leave between them except for round-off."""
     renewals: int = 12
     """Passes that renew the faces of arcs."""
     inside: float = 1e-12
@@ -24,7 +24,7 @@ class Places(NamedTuple):
     almost: float = 1e-6
     """Distance to a bound, in sizes of the region, at which an interior-point answer reaches it."""
     far: float = 1e6
-    """Distance, in sizes of the region, from which on nothing is said to limit a place."""
+    """Distance, in sizes of the region, from which on nothing is taken to limit a place."""
     passes: int = 20
     """Newton passes on the bounds that are reached."""
     arrived: float = 1e-14

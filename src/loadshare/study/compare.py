@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from loadshare.report.figure import Figure
 
 MEANS = ("torque", "share", "pair_share")
-"""Quantities of a mesh: without a position, their mean over all positions is meant."""
+"""Quantities of a mesh: without a position, their mean over all positions is taken."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +121,7 @@ class Comparison(Viewed):
         return pd.DataFrame(rows)
 
     def to_dataframe(self) -> pd.DataFrame:
-        """The table of `to_frame`, with the unit of each figure beside it."""
+        """The table of `to_frame`, with the unit of each figure next to it."""
         table = self.to_frame()
         return table.assign(unit=[d.target.unit or "1" for d in self.deviations])
 

@@ -113,7 +113,7 @@ class Fit(Viewed):
         return {u.parameter.name: Value(u.value, u.parameter.unit).text for u in self.unknowns}
 
     def to_dataframe(self) -> pd.DataFrame:
-        """The fitted inputs as a table, one row each, in the unit given beside them."""
+        """The fitted inputs as a table, one row each, in the unit given next to them."""
         import pandas as pd
 
         rows = [
@@ -327,7 +327,7 @@ class _Problem:
         _, sizes, right = np.linalg.svd(jacobian, full_matrices=True)
         full = np.zeros(len(self.parameters))
         full[: len(sizes)] = sizes
-        loose = full <= max(FIT.told_apart * float(full.max(initial=0.0)), FIT.felt)
+        loose = full <= max(FIT.separable * float(full.max(initial=0.0)), FIT.felt)
         known = right[~loose]
         covariance = known.T @ np.diag(full[~loose] ** -2.0) @ known
         names = [p.name for p in self.parameters]
@@ -388,8 +388,8 @@ def _groups(loose: Array) -> list[list[int]]:
 
     shared = np.abs(loose.T @ loose)
     # However small its part, an input that has one is not determined: another can move it.
-    left_open = np.flatnonzero(np.diag(shared) > FIT.told_apart**2)
+    left_open = np.flatnonzero(np.diag(shared) > FIT.separable**2)
     count, group = connected_components(
-        shared[np.ix_(left_open, left_open)] > FIT.told_apart, directed=False
+        shared[np.ix_(left_open, left_open)] > FIT.separable, directed=False
     )
     return sorted((left_open[group == g].tolist() for g in range(count)), key=max)

@@ -222,7 +222,7 @@ def _slip(answer: Answer, gear: str, before: Vector, after: Vector) -> Slip:
     friction = np.asarray(answer.equilibrium.radial_reaction[spline.name])
     stage = answer.certificate.floats[gear].spline or ""
     if stage == "stick" and after is not before:
-        # Friction that is next to nothing can be told from none by what has slipped only.
+        # Friction that is next to nothing differs from none only by what has slipped.
         stage = "slip"
     work = max(float(-friction @ (after - before)), 0.0)
     return Slip(

@@ -137,7 +137,7 @@ def _broyden(inverse: Array, step: Array, change: Array) -> Array:
 def _searched(train: Train, index: int) -> Answer | None:
     """Return a certified answer by the proximal search, if there is one.
 
-    It knows friction with fixed bounds only, as elements of their own beside a shaft that bends.
+    It knows friction with fixed bounds only, as elements of their own next to a shaft that bends.
     """
     if any(spline.friction_force is None for spline in train.splines.values()):
         return None

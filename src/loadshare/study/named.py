@@ -73,30 +73,30 @@ def run_study(case: Case | str | Path, name: str, *, progress: Progress | None =
 
 
 _ARGUMENTS: dict[str, Callable[[Study, str], dict[str, Any]]] = {
-    "sweep": lambda asked, _: {
+    "sweep": lambda block, _: {
         "parameters": {
             key: list(values) if isinstance(values, tuple) else values
-            for key, values in (asked.over or {}).items()
+            for key, values in (block.over or {}).items()
         },
-        "positions": asked.positions,
+        "positions": block.positions,
     },
-    "critical": lambda asked, _: {
-        "key": asked.keys or (),
-        "start": asked.start,
-        "stop": asked.stop,
-        "positions": asked.positions,
+    "critical": lambda block, _: {
+        "key": block.keys or (),
+        "start": block.start,
+        "stop": block.stop,
+        "positions": block.positions,
     },
-    "sensitivity": lambda asked, _: {"inputs": asked.keys, "positions": asked.positions},
-    "march": lambda asked, _: {
-        "gear": asked.gear,
-        "revolutions": asked.revolutions,
-        "steps": asked.steps,
+    "sensitivity": lambda block, _: {"inputs": block.keys, "positions": block.positions},
+    "march": lambda block, _: {
+        "gear": block.gear,
+        "revolutions": block.revolutions,
+        "steps": block.steps,
     },
     "compare": lambda *_: {},
-    "fit": lambda asked, _: {
-        "unknowns": dict((asked.unknowns or {}).items()),
-        "starts": asked.starts,
-        "seed": asked.seed,
+    "fit": lambda block, _: {
+        "unknowns": dict((block.unknowns or {}).items()),
+        "starts": block.starts,
+        "seed": block.seed,
     },
     "tolerance": lambda _, name: {"study": name},
 }

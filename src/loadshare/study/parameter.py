@@ -248,7 +248,7 @@ def grid(given: object, place: str, allowed: str = GRID) -> tuple[tuple[float, .
         ``"0 um:12 um:61"`` (first, last, how many), or values: physical ones or plain numbers. The
         unit is that of the first value that has one.
     place, allowed : str
-        What is read, and what may stand there; for messages.
+        What is read, and what may be there; for messages.
 
     Returns
     -------

@@ -71,7 +71,7 @@ def sweep_dataset(sweep: Sweep) -> xr.Dataset:
 
 @dataclass(frozen=True, eq=False)
 class _Filled:
-    """Figures of all points: arrays over points, positions and the names of what is told of."""
+    """Figures of all points: arrays over points, positions, and the names of what they describe."""
 
     positions: tuple[int, ...]
     names: dict[str, list[str]]
@@ -92,7 +92,7 @@ def _filled(sweep: Sweep, wanted: Sequence[str]) -> _Filled:
         at = np.array(sweep.usable)[rows], np.searchsorted(positions, index)
         for name in wanted:
             words = name in WORDS
-            values = getattr(part.figures, name) if words else part.figures.told(name, names)
+            values = getattr(part.figures, name) if words else part.figures.as_numbers(name, names)
             if name not in arrays:
                 shape = len(sweep.points), len(positions), *values.shape[1:]
                 none, kind = ("", object) if words else (np.nan, None)

@@ -59,7 +59,7 @@ def critical_view(found: Critical) -> View:
 def sensitivity_view(found: Sensitivity) -> View:
     """Show the largest derivatives of Ω of the system, and what a reader must know of them."""
 
-    def told(key: str, side: str, factor: float) -> str:
+    def cell(key: str, side: str, factor: float) -> str:
         rate = found.omega[key, side].get("system")
         error = found.omega_error[key, side].get("system", 0.0)
         if rate is None or rate != rate:
@@ -72,7 +72,7 @@ def sensitivity_view(found: Sensitivity) -> View:
 
     order = sorted(found.inputs, key=lambda i: -size(i.key, i.value.factor))
     rows = tuple(
-        (i.key, *(told(i.key, s, i.value.factor) for s in found.sides), f"per {i.value.unit or 1}")
+        (i.key, *(cell(i.key, s, i.value.factor) for s in found.sides), f"per {i.value.unit or 1}")
         for i in order
     )
     facts = (

@@ -8,7 +8,7 @@ they push, and changes the machine itself.
 from __future__ import annotations
 
 from loadshare import case as spec
-from loadshare.case.checks.meshing import turning_told
+from loadshare.case.checks.meshing import turning_is_given
 from loadshare.train.columns import Column
 
 _LENGTH = "m"
@@ -58,7 +58,7 @@ def array_unit(case: spec.Case, column: Column) -> str | None:
             return _LENGTH
         case ("errors", _, "eccentricity", "amount"):
             # Where it is not known how far gears turn, only an eccentricity of 0 has an answer.
-            return _LENGTH if turning_told(case.operating, case.march, case.gears) else None
+            return _LENGTH if turning_is_given(case.operating, case.march, case.gears) else None
         case ("errors", _, "eccentricity", "direction" | "phase"):
             return "rad"
         case ("rings", gear, "float") | ("rings", gear, "float", "up" | "down"):

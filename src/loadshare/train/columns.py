@@ -91,8 +91,8 @@ class Column:
         try:
             return np.array([float(reader.read(str(v))) for v in self.values])
         except PydanticCustomError as error:
-            told = (error.context or {}).get("said", str(error))
-            problem = Problem("samples", dotted(self.path), "", f"holds a value that {told}")
+            message = (error.context or {}).get("message", str(error))
+            problem = Problem("samples", dotted(self.path), "", f"holds a value that {message}")
             raise CaseError([problem]) from error
 
 
@@ -113,8 +113,8 @@ def columns_of(samples: Columns) -> list[Column]:
     columns: list[Column] = []
     problems = []
     if not hasattr(samples, "items"):
-        told = "is no table of values by key", "a mapping or a data frame"
-        raise CaseError([Problem("samples", "", "", *told)])
+        message, allowed = "is no table of values by key", "a mapping or a data frame"
+        raise CaseError([Problem("samples", "", "", message, allowed)])
     for name, given in samples.items():
         key = str(name)
         match = _UNIT.fullmatch(key)
@@ -154,7 +154,7 @@ def _values(given: object) -> NDArray[np.generic]:
 
 
 def _fault(column: Column, before: list[Column]) -> str:
-    """What is wrong with a column beside those before it; empty where nothing is."""
+    """What is wrong with a column, given those before it; empty where nothing is."""
     values = column.values
     if values.ndim != 1 or not len(values):
         return "is not a list of values"

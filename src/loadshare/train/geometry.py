@@ -130,9 +130,10 @@ def _period(case: spec.Case, gears: Mapping[str, Gear]) -> Period:
     if steps > most:
         cycles = found.cycles[found.fastest]
         message = (
-            f"the meshes come round together after {_told(cycles)} cycles of mesh {found.fastest} "
-            f"({_told(found.revolutions)} revolutions of gear {operating.input}), with "
-            f"{count(operating.positions, 'position')} in each {_told(steps)} positions"
+            f"the meshes come round together after {_number_text(cycles)} cycles of mesh "
+            f"{found.fastest} ({_number_text(found.revolutions)} revolutions of gear "
+            f"{operating.input}), with {count(operating.positions, 'position')} in each "
+            f"{_number_text(steps)} positions"
         )
         fewer = f" or operating.positions = {most // cycles}" if most >= cycles else ""
         hint = f"Give a march over a part of it{fewer}."
@@ -144,7 +145,7 @@ def _period(case: spec.Case, gears: Mapping[str, Gear]) -> Period:
     return found
 
 
-def _told(number: Fraction | int) -> str:
+def _number_text(number: Fraction | int) -> str:
     """A number of which only the size matters where it is large."""
     return f"{float(number):.6g}" if number < 10**300 else "more than 10^300"
 
@@ -169,19 +170,19 @@ def _in_phase(case: spec.Case, pairs: Mapping[str, Pair]) -> dict[str, Pair]:
         for name, p in pairs.items()
     }
     found, misfits = phases(meetings)
-    told = [
-        _misfit_told(case, pairs, m)
+    problems = [
+        _misfit_problem(case, pairs, m)
         for m in misfits
         if all(case.gears[g].tooth is not None for g in case.meshes[m.mesh].ends)
     ]
-    told += _phases_against(case, found)
-    if told:
-        raise CaseError(told)
+    problems += _phases_against(case, found)
+    if problems:
+        raise CaseError(problems)
     return {name: replace(pair, phase=found.get(name, 0.0)) for name, pair in pairs.items()}
 
 
 def _phases_against(case: spec.Case, found: Mapping[str, float]) -> Iterator[Problem]:
-    """Yield phases that are given beside a layout from which others follow."""
+    """Yield phases that are given although there is a layout from which others follow."""
     if case.operating.phases != "layout":
         return
     for name, layout in found.items():
@@ -192,17 +193,17 @@ def _phases_against(case: spec.Case, found: Mapping[str, float]) -> Iterator[Pro
             yield case.problem(path, "contradicts the teeth and their places", allowed, hint)
 
 
-def _misfit_told(case: spec.Case, pairs: Mapping[str, Pair], misfit: Misfit) -> Problem:
+def _misfit_problem(case: spec.Case, pairs: Mapping[str, Pair], misfit: Misfit) -> Problem:
     """Say by how much teeth miss each other, and where a planet between two gears would fit."""
     pair = pairs[misfit.mesh]
     message = (
         f"cannot be put together: its teeth miss each other by {abs(misfit.pitches):.2g} of a "
         "pitch where all others meet"
     )
-    return case.problem(("meshes", misfit.mesh), message, hint=_spacing_told(case, pairs, pair))
+    return case.problem(("meshes", misfit.mesh), message, hint=_spacing_hint(case, pairs, pair))
 
 
-def _spacing_told(case: spec.Case, pairs: Mapping[str, Pair], pair: Pair) -> str:
+def _spacing_hint(case: spec.Case, pairs: Mapping[str, Pair], pair: Pair) -> str:
     """Say how far apart planets fit that lead from one gear to another about the same axis.
 
     A planet that is turned on from one to the next by its pitch shifts the two gears against each

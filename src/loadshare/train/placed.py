@@ -1,9 +1,9 @@
 """Trains that are placed again at every position, since their surroundings are uneven.
 
 As long as what holds a planetary set is the same in all directions, the set is seen from its
-carrier and looks the same at all positions but for errors and loads. Where it is not, the planets
-are placed where the carrier has taken them, and the train is placed as the housing sees it. What is
-given along a gear's `plane` is as seen from the carrier either way.
+carrier and looks the same at all positions except for errors and loads. Where it is not, the
+planets are placed where the carrier has taken them, and the train is placed as the housing sees it.
+What is given along a gear's `plane` is as seen from the carrier either way.
 """
 
 from __future__ import annotations

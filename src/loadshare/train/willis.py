@@ -95,8 +95,8 @@ class Links:
             # What has no part in the contradiction fits exactly.
             parts = [*self.names, *(f"{names[k]} (held)" for k in fixed)]
             holding = [part for part, off in zip(parts, left[:-1], strict=True) if off > LOCKED**2]
-            told = f"{', '.join(holding[:-1])} and {holding[-1]}" if holding[1:] else holding[0]
-            raise ValueError(f"cannot turn, the train would lock: {told} hold one another")
+            text = f"{', '.join(holding[:-1])} and {holding[-1]}" if holding[1:] else holding[0]
+            raise ValueError(f"cannot turn, the train would lock: {text} hold one another")
         still = np.abs(found) <= NOISE
         speeds = np.where(still, 0.0, found / found[names.index(driving)]).tolist()
         return dict(zip(names, speeds, strict=True)), bool(rank == len(names))

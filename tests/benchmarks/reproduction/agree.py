@@ -1,4 +1,4 @@
-"""Two texts that tell the same, numbers to within one unit of the last digit shown."""
+"""Two texts that say the same, numbers to within one unit of the last digit shown."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is asked of the seed paper's figures, on the figures that the page is made of."""
+"""What is required of the seed paper's figures, on the figures that the page is made of."""
 
 from __future__ import annotations
 

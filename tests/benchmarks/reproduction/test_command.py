@@ -32,7 +32,7 @@ def test_page_and_pictures_are_the_same_bytes_every_time(run, seed, limited, tmp
         assert one == two
 
 
-def test_a_folder_without_cases_is_told_and_nothing_is_written(run, tmp_path):
+def test_a_folder_without_cases_is_reported_and_nothing_is_written(run, tmp_path):
     done = run("--cases", tmp_path / "nowhere", "-o", tmp_path / "out", "--quiet")
     assert done.exit_code == 2
     assert "--cases names the folder of the shipped cases" in " ".join(done.output.split())

@@ -1,4 +1,4 @@
-"""The committed page tells what is computed now."""
+"""The committed page shows what is computed now."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 Source: formulation, sections 7 and 11. Both end in a dense solve on an identified active set, by
 different formulas (forces here, displacements there); what is left is round-off times the condition
-of the case. 1e-9 of the largest figure is asked for, as between the back-ends.
+of the case. 1e-9 of the largest figure is required, as between the back-ends.
 """
 
 import pytest

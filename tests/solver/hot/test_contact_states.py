@@ -58,7 +58,7 @@ def graph(
 
 
 def force(law: at.Graph, radius: float) -> float:
-    """Force of the chain that the five numbers tell, away from its steps."""
+    """Force of the chain that the five numbers give, away from its steps."""
     first, stick, bound, reach, last = (float(v[0]) for v in law[:5])
     if radius <= stick:
         return first * radius
@@ -112,7 +112,7 @@ def test_a_round_ring_is_the_chain_that_the_train_writes(radius, stiffness):
 
 @settings(TRAINS, max_examples=60)
 @given(stiffnesses, lengths, lengths, st.floats(0.0, 3.0))
-def test_a_law_without_meaning_is_told(stiffness, stick, clearance, share):
+def test_a_law_without_meaning_is_reported(stiffness, stick, clearance, share):
     """Where the chain would drop, or S2 lies inside S1, the train raises; the hot path refuses."""
     friction = stiffness * stick * share
     assume(abs(share - 1.0) > 1e-5)

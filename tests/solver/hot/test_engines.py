@@ -1,8 +1,8 @@
 """NumPy for all samples of a set, Numba for samples side by side: the same passes.
 
-Each is the other's check: every formula stands in both. They may take another number of passes, as
+Each is the other's check: every formula is in both. They may take another number of passes, as
 NumPy ends when the last sample of a set has settled; so they differ by round-off, and 1e-12 of the
-largest figure is asked for. The elements that act are the same, but for those that neither carry a
+largest figure is required. The elements that act are the same, except those that neither carry a
 force nor leave a gap: it depends on the way there whether they count.
 """
 

@@ -44,7 +44,7 @@ def test_discs_that_one_move_closes_both_are_met():
     assert share == pytest.approx(nearest.x, abs=1e-5)
 
 
-def test_no_room_is_told():
+def test_no_room_is_reported():
     rows, rooms = np.array([[1.0], [-1.0]]), np.array([1.0, -2.0])
     assert rest(rows, rooms, [], 1.0) is None
 

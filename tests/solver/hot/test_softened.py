@@ -58,7 +58,7 @@ def test_between_two_kinks_the_tangents_are_those_of_the_forces(name, seed):
         forces = laws.forces(near)
         compliance, stiffness = laws.tangents(near[1], forces[1])
         two = np.einsum("jab,jb->ja", stiffness, way[scalar:].reshape(-1, 2)).ravel()
-        told = np.concatenate([way[:scalar] / compliance, two])
+        tangent = np.concatenate([way[:scalar] / compliance, two])
         seen = (forces[2] - forces[0]) / (2.0 * step)
         rounding = 1e-12 * np.abs(forces).max() / step
-        assert told == pytest.approx(seen, rel=1e-4, abs=1e-9 * np.abs(told).max() + rounding)
+        assert tangent == pytest.approx(seen, rel=1e-4, abs=1e-9 * np.abs(tangent).max() + rounding)

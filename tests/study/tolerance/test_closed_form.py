@@ -45,16 +45,16 @@ def test_moments_and_probability(slope, sampling):
     assert found.residual < 1e-9
     one = found.of("II")
     room = 4.5 / math.sqrt(found.samples) * (0.1 if sampling == "sobol" else 1.0)
-    told = one.summary
-    assert told.mean.value == pytest.approx(1.0 + slope * MEAN, abs=room * slope * DEVIATION)
-    assert told.deviation == pytest.approx(slope * DEVIATION, rel=room)
+    figures = one.summary
+    assert figures.mean.value == pytest.approx(1.0 + slope * MEAN, abs=room * slope * DEVIATION)
+    assert figures.deviation == pytest.approx(slope * DEVIATION, rel=room)
     above = 1.0 - special.ndtr(1.0)
     assert one.exceedance.value == pytest.approx(above, abs=room * math.sqrt(above))
     assert one.exceedance.low < above < one.exceedance.high
-    for level, quantile in told.quantiles.items():
+    for level, quantile in figures.quantiles.items():
         truth = 1.0 + slope * (MEAN + DEVIATION * special.ndtri(level))
         assert quantile.low <= truth <= quantile.high, level
-    assert told.counts.sum() == found.samples
+    assert figures.counts.sum() == found.samples
 
 
 def test_every_sample_is_the_linear_answer(slope):
@@ -106,22 +106,22 @@ def test_the_worst_case_is_at_the_vertex(slope):
 
 
 def test_the_worst_case_is_not_sought_again(slope, tmp_path, monkeypatch):
-    """It is kept with its study, and sought anew where the file is of no use."""
-    asked = {"samples": 64, "worst": True, "out": tmp_path / "study"}
-    first = study(**asked).worst
-    asked_for = []
+    """It is kept with its study, and sought again where the file is of no use."""
+    options = {"samples": 64, "worst": True, "out": tmp_path / "study"}
+    first = study(**options).worst
+    searches = []
     search = room.sought
-    monkeypatch.setattr(room, "sought", lambda *a: asked_for.append(a) or search(*a))
-    assert study(**asked).worst == first
-    assert asked_for == []
+    monkeypatch.setattr(room, "sought", lambda *a: searches.append(a) or search(*a))
+    assert study(**options).worst == first
+    assert searches == []
     file = tmp_path / "study" / "worst.json"
     kept = file.read_text(encoding="utf-8")
     other = kept.replace(study(samples=64, out=tmp_path / "study").folder.job.hash, "another")
     for useless in (other, kept[:-20], kept.replace('"solved"', '"seen"')):
         file.write_text(useless, encoding="utf-8")
-        assert study(**asked).worst == first
+        assert study(**options).worst == first
         assert file.read_text(encoding="utf-8") == kept
-    assert len(asked_for) == 3
+    assert len(searches) == 3
 
 
 def test_the_worst_phase_is_between(slope):

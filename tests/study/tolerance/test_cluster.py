@@ -1,4 +1,4 @@
-"""Studies on a Dask cluster, with its own commands: what is lost, what is told, what is kept."""
+"""Studies on a Dask cluster, with its own commands: what is lost, reported and kept."""
 
 import os
 import re
@@ -91,7 +91,7 @@ def test_a_cluster_that_is_lost_leaves_what_is_done(reference, tmp_path):
 
 @pytest.mark.slow
 def test_the_commands_of_the_documentation(tmp_path):
-    """Given as they stand, but for a port that is free, the folder, and fewer samples."""
+    """Given as written, except for a port that is free, the folder, and fewer samples."""
     page = (ROOT / "docs" / "studies.md").read_text(encoding="utf-8")
     (block,) = re.findall(r"```sh\n(dask scheduler.*?)```", page, re.DOTALL)
     with socket.socket() as free:
@@ -148,8 +148,8 @@ def test_a_worker_with_another_version_gets_nothing(tmp_path):
     variables = {"PYTHONPATH": str(other.parent)}
     with cluster(tmp_path, 1, variables=variables) as started:
         await_workers(started.address, 1)
-        told = f"loadshare 9.9 there, {re.escape(__version__)} here"
-        with pytest.raises(ls.LoadshareError, match=rf"tcp://[\d.:]+: {told}"):
+        message = f"loadshare 9.9 there, {re.escape(__version__)} here"
+        with pytest.raises(ls.LoadshareError, match=rf"tcp://[\d.:]+: {message}"):
             run(tmp_path / "study", samples=64, scheduler=started.address)
     assert not list((tmp_path / "study").glob("part-*"))
 
@@ -171,10 +171,10 @@ def test_a_worker_that_came_late_looks_at_the_version_itself():
 
 def test_a_scheduler_without_workers_is_not_waited_for(tmp_path, monkeypatch):
     monkeypatch.setattr(room, "JOIN", 0.2)
-    with cluster(tmp_path, 0) as started, pytest.raises(ls.LoadshareError) as told:
+    with cluster(tmp_path, 0) as started, pytest.raises(ls.LoadshareError) as caught:
         run(tmp_path / "study", samples=64, scheduler=started.address)
     assert f"{started.address}: no worker is connected. Start one with `dask worker" in str(
-        told.value
+        caught.value
     )
 
 

@@ -41,11 +41,11 @@ deviation = "0.1 mrad"
     return path
 
 
-def test_a_study_is_told_and_written(command, scattering, tmp_path):
+def test_a_study_is_reported_and_written(command, scattering, tmp_path):
     out = tmp_path / "found"
-    told = command("tolerance", scattering, "clocking", "-o", out)
-    assert told.exit_code == 0, told.output
-    for said in (
+    done = command("tolerance", scattering, "clocking", "-o", out)
+    assert done.exit_code == 0, done.output
+    for line in (
         "128 random samples, seed 5, 1 position",
         "normal mean 1.2, deviation 0.1 mrad",
         "P(Ω > 1.06)",
@@ -54,12 +54,12 @@ def test_a_study_is_told_and_written(command, scattering, tmp_path):
         "there may be a worse one",
         "Intervals in brackets: 95 %.",
     ):
-        assert said in told.output, said
-    assert "group" not in told.output
+        assert line in done.output, line
+    assert "group" not in done.output
     files = ["indices", "part-000000.parquet", "study.json", "worst.json"]
     assert sorted(p.name for p in out.iterdir()) == files
     again = command("tolerance", scattering, "--output", out)
-    assert again.stdout == told.stdout
+    assert again.stdout == done.stdout
     other = command("tolerance", scattering, "-o", out, "--seed", 6, "--samples", 64)
     assert other.exit_code == 2
     assert "samples: 128 there, 64 asked" in other.output
@@ -68,9 +68,9 @@ def test_a_study_is_told_and_written(command, scattering, tmp_path):
 
 def test_study_runs_it_by_name(command, scattering):
     assert command("study", scattering).output == "clocking: tolerance\n"
-    told = command("study", scattering, "clocking")
-    assert told.exit_code == 0, told.output
-    assert told.stdout == command("tolerance", scattering).stdout
+    done = command("study", scattering, "clocking")
+    assert done.exit_code == 0, done.output
+    assert done.stdout == command("tolerance", scattering).stdout
 
 
 def test_refused_samples_end_with_a_code(command, scattering):
@@ -92,15 +92,15 @@ inputs = {{ "operating.power" = {{ distribution = "uniform", low = "20 kW", high
 """,
         encoding="utf-8",
     )
-    told = command("tolerance", path, "--no-worst")
-    assert told.exit_code == 1
-    assert "REFUSED" in told.output
-    assert "would drop" in told.output
-    assert "of 24 not certified" in told.output
-    assert "Worst case" not in told.output
+    done = command("tolerance", path, "--no-worst")
+    assert done.exit_code == 1
+    assert "REFUSED" in done.output
+    assert "would drop" in done.output
+    assert "of 24 not certified" in done.output
+    assert "Worst case" not in done.output
 
 
-def test_what_cannot_be_used_is_told(command, scattering, tmp_path):
+def test_what_cannot_be_used_is_reported(command, scattering, tmp_path):
     wrong = command("tolerance", scattering, "other")
     assert wrong.exit_code == 2
     assert "is no tolerance study of the case" in wrong.output

@@ -142,7 +142,7 @@ def test_a_star_in_a_group():
 
 
 @pytest.mark.parametrize(
-    ("correlation", "inputs", "said"),
+    ("correlation", "inputs", "message"),
     [
         (1.0, None, "not positive definite"),
         (-0.6, None, "not positive definite"),
@@ -153,18 +153,18 @@ def test_a_star_in_a_group():
         (0.5, ("errors.6.installation[0]", "rings.4.float"), "is not drawn"),
     ],
 )
-def test_a_group_that_cannot_be_is_told(correlation, inputs, said):
+def test_a_group_that_cannot_be_is_reported(correlation, inputs, message):
     every = (
         "errors.6.installation[0]",
         "errors.6.installation[1]",
         "errors.9.installation[1]",
     )
     case = correlated(correlation, inputs=inputs or every)
-    with pytest.raises(ls.CaseError, match=said):
+    with pytest.raises(ls.CaseError, match=message):
         read_inputs(case, "t")
 
 
-def test_all_that_is_wrong_is_told_at_once():
+def test_all_that_is_wrong_is_reported_at_once():
     case = shipped("fgfbstts/limit_ring")
     inputs = {
         "rings.4.flot": {"distribution": "uniform", "low": "1 um", "high": "2 um"},
@@ -191,8 +191,8 @@ def test_all_that_is_wrong_is_told_at_once():
     }
     with pytest.raises(ls.CaseError) as caught:
         ls.tolerance(case, inputs, samples=100, sampling="sobol")
-    told = str(caught.value)
-    for said in (
+    message = str(caught.value)
+    for part in (
         "Did you mean float",
         "matches no key of the case",
         "is not positive",
@@ -206,11 +206,11 @@ def test_all_that_is_wrong_is_told_at_once():
         "too close for its deviation",
         "does not share out among 16",
     ):
-        assert said in told, said
-    assert "study.tolerance.inputs" in told
+        assert part in message, part
+    assert "study.tolerance.inputs" in message
 
 
-def test_what_the_case_reader_finds_is_told_at_once():
+def test_what_the_case_reader_finds_is_reported_at_once():
     case = shipped("fgfbstts/limit_ring")
     with pytest.raises(ls.CaseError) as caught:
         ls.tolerance(
@@ -222,15 +222,15 @@ def test_what_the_case_reader_finds_is_told_at_once():
             groups=[{"inputs": ["rings.4.float"], "correlation": 1.5}],
             limit=-1.0,
         )
-    told = str(caught.value)
-    for said in (
+    message = str(caught.value)
+    for part in (
         "Did you mean normal",
         "is missing",
         "does not apply to a uniform",
         "at most 1",
         "above 0",
     ):
-        assert said in told, said
+        assert part in message, part
 
 
 def test_a_study_must_be_found():
@@ -288,7 +288,7 @@ def test_runout_of_the_class_bounds_an_eccentricity():
 
 
 @pytest.mark.parametrize(
-    ("key", "said"),
+    ("key", "message"),
     [
         ("errors.planet*.eccentricity.amount", "gears.planet3 has no tolerance_class"),
         ("errors.planet2.pin.tangential", "does not follow from a tolerance class"),
@@ -298,8 +298,8 @@ def test_runout_of_the_class_bounds_an_eccentricity():
         ),
     ],
 )
-def test_a_class_that_tells_nothing_is_told(key: str, said: str):
-    with pytest.raises(ls.CaseError, match=said) as caught:
+def test_a_class_that_tells_nothing_is_reported(key: str, message: str):
+    with pytest.raises(ls.CaseError, match=message) as caught:
         read_inputs(
             with_class(**{key: {"distribution": "uniform", "low": "0 um", "high": "class"}}), "t"
         )

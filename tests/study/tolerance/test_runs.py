@@ -35,7 +35,7 @@ INPUTS = {
     for path in "AB"
 }
 BLOCKS = 5
-ASKED = {
+SETTINGS = {
     "samples": BLOCKS * 4096 - 96,
     "indices": 0,
     "seed": 3,
@@ -52,7 +52,7 @@ def processes(monkeypatch):
 
 
 def run(out: Path, **settings):
-    return ls.tolerance(shipped(PATHS), INPUTS, out=out, **{**ASKED, **settings})
+    return ls.tolerance(shipped(PATHS), INPUTS, out=out, **{**SETTINGS, **settings})
 
 
 def bits(out: Path) -> dict[str, bytes]:
@@ -76,11 +76,11 @@ def reference(tmp_path_factory) -> Path:
 
 
 def test_worker_processes_change_no_bit(reference, tmp_path, processes):
-    told = []
-    found = run(tmp_path / "study", workers=2, chunk=2, progress=lambda *d: told.append(d))
+    reported = []
+    found = run(tmp_path / "study", workers=2, chunk=2, progress=lambda *d: reported.append(d))
     assert len(found.parts) == -(-BLOCKS // 2)
-    assert told[0] == (0, found.samples)
-    assert told[-1] == (found.samples, found.samples)
+    assert reported[0] == (0, found.samples)
+    assert reported[-1] == (found.samples, found.samples)
     assert bits(tmp_path / "study") == bits(reference)
 
 
@@ -95,14 +95,14 @@ import loadshare as ls
 from loadshare.study.tolerance import study
 study.TOLERANCE = study.TOLERANCE._replace(small=0)
 ls.tolerance(
-    ls.load_case({case!r}), {inputs!r}, out={out!r}, workers=2, **{asked!r}
+    ls.load_case({case!r}), {inputs!r}, out={out!r}, workers=2, **{options!r}
 )
 """
 
 
-def text_of(out: Path, asked: dict) -> str:
+def text_of(out: Path, options: dict) -> str:
     return SCRIPT.format(
-        case=str(CASES / f"{PATHS}.toml"), inputs=INPUTS, out=str(out), asked=asked
+        case=str(CASES / f"{PATHS}.toml"), inputs=INPUTS, out=str(out), options=options
     )
 
 
@@ -112,7 +112,7 @@ def environment(**more: str) -> dict[str, str]:
 
 
 def script(out: Path) -> subprocess.Popen:
-    text = text_of(out, {**ASKED, "chunk": 1})
+    text = text_of(out, {**SETTINGS, "chunk": 1})
     return subprocess.Popen([sys.executable, "-c", text], env=environment(), stderr=subprocess.PIPE)
 
 
@@ -134,7 +134,7 @@ def test_killed_and_resumed(reference, tmp_path):
     (out / ".part-000004.parquet.0123456789abcdef").write_bytes(b"PAR1 half")
     found = run(out, chunk=1)
     assert {file: file.stat().st_mtime_ns for file in kept} == kept
-    assert found.samples == ASKED["samples"]
+    assert found.samples == SETTINGS["samples"]
     assert bits(out) == bits(reference)
     assert sorted(p.name for p in out.iterdir()) == [
         *(f"part-{k:06d}.parquet" for k in range(BLOCKS)),
@@ -158,11 +158,11 @@ def test_memory_does_not_grow_with_the_samples(tmp_path):
     Each further part that was kept would be 3 MB or more. Allocators leave some MB open. A column
     of the study takes 8 bytes a sample; fifteen at once are allowed.
     """
-    told = "import json, resource as r\nprint(json.dumps([r.getrusage(w).ru_maxrss for w in {}]))"
+    tail = "import json, resource as r\nprint(json.dumps([r.getrusage(w).ru_maxrss for w in {}]))"
     peaks = []
     for parts in (4, 24):
-        asked = {**ASKED, "samples": parts * 8 * 4096, "chunk": 8}
-        text = text_of(tmp_path / f"{parts}", asked) + told.format(
+        options = {**SETTINGS, "samples": parts * 8 * 4096, "chunk": 8}
+        text = text_of(tmp_path / f"{parts}", options) + tail.format(
             "(r.RUSAGE_SELF, r.RUSAGE_CHILDREN)"
         )
         done = subprocess.run(
@@ -185,7 +185,7 @@ def test_a_damaged_part_is_solved_again(reference, tmp_path):
     parquet.write_table(parquet.read_table(sorted(reference.glob("*.parquet"))[0]), second)
     found = run(out, chunk=3)
     assert bits(out) == whole == bits(reference)
-    assert found.samples == ASKED["samples"]
+    assert found.samples == SETTINGS["samples"]
 
 
 @pytest.mark.parametrize(
@@ -202,7 +202,7 @@ def test_a_damaged_part_is_solved_again(reference, tmp_path):
     ],
 )
 def test_a_doctored_part_is_refused_by_name(reference, tmp_path, column, change, caplog):
-    """Whoever makes its digest anew has its samples solved again; without, all of it is."""
+    """Whoever recomputes its digest has its samples solved again; without, all of it is."""
     out = tmp_path / "study"
     shutil.copytree(reference, out)
     file = sorted(out.glob("part-*.parquet"))[1]
@@ -233,9 +233,9 @@ def test_rounding_of_a_force_is_no_difference(tmp_path, added, is_refused):
     """
     name = "boundary_force.4 [N]"
     floats = {"rings.*.float": {"distribution": "uniform", "low": "90 um", "high": "99 um"}}
-    asked = {**ASKED, "samples": 2, "positions": [1], "out": tmp_path / "study"}
+    options = {**SETTINGS, "samples": 2, "positions": [1], "out": tmp_path / "study"}
     case = shipped("fgfbstts/limit_ring")
-    ls.tolerance(case, floats, **asked)
+    ls.tolerance(case, floats, **options)
     (file,) = (tmp_path / "study").glob("part-*.parquet")
     table = parquet.read_table(file)
     forces = table.column(name).to_numpy()
@@ -244,10 +244,10 @@ def test_rounding_of_a_force_is_no_difference(tmp_path, added, is_refused):
     about = {**table.schema.metadata, PART_DIGEST: digest(made)}
     parquet.write_table(made.replace_schema_metadata(about), file)
     if not is_refused:
-        assert ls.tolerance(case, floats, **asked).samples == 2
+        assert ls.tolerance(case, floats, **options).samples == 2
         return
     with pytest.raises(ls.ResultError, match="is not what sample") as caught:
-        ls.tolerance(case, floats, **asked)
+        ls.tolerance(case, floats, **options)
     assert caught.value.problems[0].key == name
 
 
@@ -267,9 +267,9 @@ def test_a_study_that_was_killed_before_it_began_begins_anew(tmp_path):
 
 
 def test_a_worst_case_that_is_none_is_refused_by_name(tmp_path):
-    asked = {"samples": 64, "chunk": 1, "worst": True}
-    found = run(tmp_path / "study", **asked)
-    assert run(tmp_path / "study", **asked).worst == found.worst
+    options = {"samples": 64, "chunk": 1, "worst": True}
+    found = run(tmp_path / "study", **options)
+    assert run(tmp_path / "study", **options).worst == found.worst
     file = tmp_path / "study" / "worst.json"
     good = json.loads(file.read_text(encoding="utf-8"))
     omega = good["worst"][0]["omega"]
@@ -280,17 +280,17 @@ def test_a_worst_case_that_is_none_is_refused_by_name(tmp_path):
         {"inputs": {**good["worst"][0]["inputs"], some: 0.0}},
         {"changes": {}},
     ):
-        spoilt = {**good, "worst": [{**good["worst"][0], **change}]}
-        file.write_text(json.dumps({**spoilt, DIGEST: digest_of(spoilt)}), encoding="utf-8")
+        altered = {**good, "worst": [{**good["worst"][0], **change}]}
+        file.write_text(json.dumps({**altered, DIGEST: digest_of(altered)}), encoding="utf-8")
         with pytest.raises(ls.ResultError, match=r"worst\.json: worst\.stage\.omega"):
-            run(tmp_path / "study", **asked)
+            run(tmp_path / "study", **options)
     # With its old digest it is no worst case, and one is sought again.
-    file.write_text(json.dumps(spoilt), encoding="utf-8")
-    assert run(tmp_path / "study", **asked).worst == found.worst
+    file.write_text(json.dumps(altered), encoding="utf-8")
+    assert run(tmp_path / "study", **options).worst == found.worst
     assert json.loads(file.read_text(encoding="utf-8")) == good
 
 
-def test_other_settings_are_told(tmp_path):
+def test_other_settings_are_reported(tmp_path):
     out = tmp_path / "study"
     few = {"samples": 64, "chunk": 1}
     run(out, **few, limit=1.05)
@@ -302,12 +302,12 @@ def test_other_settings_are_told(tmp_path):
             shipped(PATHS).replace({"operating.torque": "300 N*m"}),
             other,
             out=out,
-            **{**ASKED, **few, "seed": 4},
+            **{**SETTINGS, **few, "seed": 4},
         )
-    told = str(caught.value)
-    for said in ("seed: 3 there, 4 asked", "case_hash", "normal mean 0 deviation 1 mrad there"):
-        assert said in told, said
-    assert "samples:" not in told
+    message = str(caught.value)
+    for part in ("seed: 3 there, 4 asked", "case_hash", "normal mean 0 deviation 1 mrad there"):
+        assert part in message, part
+    assert "samples:" not in message
     about = json.loads((out / "study.json").read_text(encoding="utf-8"))
     assert about["settings"]["seed"] == 3
     assert ls.Case(tomllib.loads(about["text"])).hash == about["settings"]["case_hash"]
@@ -367,18 +367,20 @@ def test_a_worker_that_dies_again_ends_the_study(tmp_path, monkeypatch, processe
 
 
 @pytest.mark.slow
-def test_what_a_worker_cannot_write_is_told(tmp_path, processes):
+def test_what_a_worker_cannot_write_is_reported(tmp_path, processes):
     out = tmp_path / "study"
     (part,) = run(out, samples=64).parts
     part.unlink()
     part.mkdir()
-    told = r"part 0 of samples: .*part-000000\.parquet cannot be written: Is a directory\. 0 of 1"
-    with pytest.raises(ls.LoadshareError, match=told):
+    message = (
+        r"part 0 of samples: .*part-000000\.parquet cannot be written: Is a directory\. 0 of 1"
+    )
+    with pytest.raises(ls.LoadshareError, match=message):
         run(out, samples=64)
 
 
 @pytest.mark.slow
-def test_refused_samples_are_counted_and_told():
+def test_refused_samples_are_counted_and_reported():
     """Under little torque the law of a spline with a stick limit drops: no unique equilibrium."""
     case = shipped("fgfbstts/full_float").replace(
         {
@@ -470,18 +472,18 @@ def test_a_study_that_is_stopped_says_what_is_kept(scatter, tmp_path, sent, code
         for _ in range(3):
             process.send_signal(sent)
         # Workers hold the other end of this pipe: when it is read to its end, they are gone.
-        _, told = process.communicate(timeout=120.0)
+        _, err = process.communicate(timeout=120.0)
     finally:
         with suppress(ProcessLookupError):
             os.killpg(process.pid, signal.SIGKILL)
         process.wait()
     assert process.returncode == code
-    assert "Traceback" not in told
-    found = re.search(r"Interrupted: ([\d,]+) of 400,000 samples are kept in .*study\.", told)
-    assert found is not None, told
+    assert "Traceback" not in err
+    found = re.search(r"Interrupted: ([\d,]+) of 400,000 samples are kept in .*study\.", err)
+    assert found is not None, err
     kept = len(list(out.glob("part-*.parquet")))
     assert int(found[1].replace(",", "")) <= 4096 * kept < 400_000
-    assert "The same command continues from there." in told
+    assert "The same command continues from there." in err
 
 
 def test_a_second_study_in_a_folder_does_nothing(tmp_path):

@@ -47,8 +47,8 @@ def test_intervals_of_quantile_and_mean_cover_the_truth():
         values = rng.standard_normal(300)
         found = quantile(np.sort(values), level, None)
         inside["quantile"] += found.low <= special.ndtri(level) <= found.high
-        told = summary(values, (level,), replicated=False)
-        inside["mean"] += told.mean.low <= 0.0 <= told.mean.high
+        figures = summary(values, (level,), replicated=False)
+        inside["mean"] += figures.mean.low <= 0.0 <= figures.mean.high
     assert all(358 <= hits <= 400 for hits in inside.values()), inside
 
 
@@ -60,8 +60,8 @@ def test_intervals_of_replicates_cover_the_truth():
         shift = 0.1 * rng.standard_normal(TOLERANCE.sequences)
         # Within a sequence nothing scatters but what adds up to nothing.
         ramp = np.linspace(-1.0, 1.0, 8)[:, None]
-        told = summary((ramp + shift).reshape(-1), (0.5,), replicated=True)
-        inside += told.mean.low <= 0.0 <= told.mean.high
+        figures = summary((ramp + shift).reshape(-1), (0.5,), replicated=True)
+        inside += figures.mean.low <= 0.0 <= figures.mean.high
     assert 358 <= inside <= 400
 
 
@@ -76,8 +76,8 @@ def test_what_no_sequence_tells_falls_back_on_wilson():
 
 def test_samples_without_a_figure_are_in_no_statistic():
     values = np.array([1.0, np.nan, 3.0])
-    told = summary(values, (0.5,), replicated=False)
-    assert (told.count, told.mean.value, told.lowest, told.highest) == (2, 2.0, 1.0, 3.0)
+    found = summary(values, (0.5,), replicated=False)
+    assert (found.count, found.mean.value, found.lowest, found.highest) == (2, 2.0, 1.0, 3.0)
     assert exceedance(values, 2.0, replicated=False).value == 0.5
     assert summary(np.array([np.nan]), (0.5,), replicated=False) is None
     assert exceedance(np.array([np.nan]), 2.0, replicated=False) is None

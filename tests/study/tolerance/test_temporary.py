@@ -1,4 +1,4 @@
-"""Samples that nobody asked to keep: gone after SIGTERM, and after SIGKILL with the next study."""
+"""Samples that are not to be kept: gone after SIGTERM, and after SIGKILL with the next study."""
 
 import os
 import signal
@@ -47,8 +47,8 @@ def made(place, name: str, *held: str, age: float = 2.0 * NEW):
 def test_it_is_there_as_long_as_the_answer(place):
     floats = {"rings.*.float": {"distribution": "uniform", "low": "0 um", "high": "12 um"}}
     case = CASES / "fgfbstts" / "limit_ring.toml"
-    asked = {"samples": 16, "indices": 0, "positions": [1], "worst": False}
-    found = ls.tolerance(case, floats, **asked)
+    options = {"samples": 16, "indices": 0, "positions": [1], "worst": False}
+    found = ls.tolerance(case, floats, **options)
     (folder,) = place.iterdir()
     remove_left(place)
     assert (folder / INSIDE / "study.json").is_file()
@@ -101,9 +101,9 @@ def test_sigterm_leaves_nothing(tmp_path, words):
     while not any(place.glob(f"{PREFIX}*/{INSIDE}/study.json")) and time.monotonic() < end:
         time.sleep(0.01)
     process.send_signal(signal.SIGTERM)
-    _, told = process.communicate(timeout=120.0)
-    assert process.returncode == 143, told
-    assert "Interrupted" in told
-    assert "othing is kept" in told
-    assert "Traceback" not in told
+    _, err = process.communicate(timeout=120.0)
+    assert process.returncode == 143, err
+    assert "Interrupted" in err
+    assert "othing is kept" in err
+    assert "Traceback" not in err
     assert list(place.glob(f"{PREFIX}*")) == []

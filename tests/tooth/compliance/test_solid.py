@@ -50,7 +50,7 @@ def tip_deflection(poisson, **mesh):
 
 @pytest.mark.parametrize("slender", [4.0, 8.0])
 def test_timoshenko_beam(slender):
-    """PL³/3EI + PL/κGA with ν = 0, where beam and solid share their assumptions but for the
+    """PL³/3EI + PL/κGA with ν = 0, where beam and solid share their assumptions except for the
     clamped end and the spread of the load: 0.5 %.
     """
     t, b = 5e-3, 4e-3

@@ -110,7 +110,7 @@ def test_compliance_is_symmetric_and_semidefinite(model):
 
 
 def test_the_skew_part_is_small():
-    """Read at a depth, Betti's symmetry holds but for a few percent of the largest entry."""
+    """Read at a depth, Betti's symmetry holds except for a few percent of the largest entry."""
     influence = finite()._influence
     largest = np.abs(influence[0]).max()
     assert np.abs(influence[0] - influence[0].T).max() < 0.05 * largest
@@ -206,7 +206,7 @@ def test_slices_converge_over_the_width():
     parts = [Slices(BODY, 1, width_degree=n).bulk((points,)) for n in (8, 13, 18)]
     steps = [np.abs(a - b).max() for a, b in pairwise(parts)]
     assert steps[1] < steps[0]
-    # What an even load does needs no degree at all but for Poisson's bending across.
+    # What an even load does needs no degree at all except for Poisson's bending across.
     means = [p.mean() for p in parts]
     np.testing.assert_allclose(means, means[-1], rtol=1e-3)
 
@@ -221,7 +221,7 @@ def test_compliance_scales_with_the_inverse_of_modulus_and_length(model):
     np.testing.assert_allclose(bulks[1] * 2.5 * 0.5, bulks[0], rtol=1e-6, atol=1e-18)
 
 
-def test_a_model_that_cannot_be_built_is_told():
+def test_a_model_that_cannot_be_built_is_reported():
     with pytest.raises(ValueError, match="allowed: odd numbers below the 25 teeth"):
         FiniteElements(BODY, 1, teeth=4)
     with pytest.raises(ValueError, match="allowed: even"):

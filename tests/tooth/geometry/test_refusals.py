@@ -1,4 +1,4 @@
-"""What cannot be built is told with the dimension that causes it; what is doubtful is a finding."""
+"""What cannot be built is refused, naming the dimension at fault; what is doubtful is a finding."""
 
 import math
 
@@ -22,12 +22,12 @@ PINION = HelicoidGear(6.35e-3, 25, 90e-3, math.radians(25.0), tip_radius=0.3)
 
 
 def keys(build):
-    with pytest.raises(CaseError) as told:
+    with pytest.raises(CaseError) as caught:
         build()
-    for problem in told.value.problems:
+    for problem in caught.value.problems:
         assert problem.message
         assert problem.allowed
-    return {problem.key for problem in told.value.problems}
+    return {problem.key for problem in caught.value.problems}
 
 
 @pytest.mark.parametrize(("teeth", "least"), [(10, 0.4151), (12, 0.2981), (14, 0.1812)])
@@ -43,9 +43,9 @@ def test_undercut_by_the_rack(teeth, least):
 
 def test_pointed_teeth():
     made = gear(20, addendum=1.6)
-    with pytest.raises(CaseError) as told:
+    with pytest.raises(CaseError) as caught:
         helicoid_pair(made, gear(53))
-    (problem,) = told.value.problems
+    (problem,) = caught.value.problems
     assert problem.key == "driver.addendum"
     largest = float(problem.allowed.split()[2])
     # At the limit the tip land vanishes.
@@ -107,17 +107,17 @@ def test_tips_of_internal_pairs_meet_when_the_tooth_counts_are_close():
     outcomes = set()
     for teeth in range(28, 60):
         ring = gear(teeth, internal=True, addendum=0.45, dedendum=1.2, tip_radius=0.1)
-        told = None
+        message = None
         try:
             mesh = helicoid_pair(pinion, ring)
         except CaseError as error:
-            told = str(error)
-            if "meet beside the line of action" not in told:
+            message = str(error)
+            if "meet beside the line of action" not in message:
                 continue
             base = ring.base_radius - pinion.base_radius
             mesh = HelicoidPair(pinion, ring, base / math.cos(pinion.transverse_angle))
-        assert corners_collide(mesh) == (told is not None), teeth
-        outcomes.add(told is not None)
+        assert corners_collide(mesh) == (message is not None), teeth
+        outcomes.add(message is not None)
     assert outcomes == {True, False}
 
 
@@ -152,15 +152,15 @@ def test_no_contact_at_a_position():
 
 
 @pytest.mark.parametrize(
-    ("name", "value", "told"),
+    ("name", "value", "message"),
     [
         ("pinion_shift", 0.12, r"misses .* by 18\.8 mm at the driven outer end"),
         ("pinion_shift", -0.12, "nowhere near one another"),
         ("gear_shift", -0.02, r"misses .* by 0\.663 mm at the driven tip"),
     ],
 )
-def test_a_misalignment_that_parts_the_teeth_is_named_with_the_edge(name, value, told):
-    with pytest.raises(CaseError, match=rf"misalignment\.{name} = .*{told}"):
+def test_a_misalignment_that_parts_the_teeth_is_named_with_the_edge(name, value, message):
+    with pytest.raises(CaseError, match=rf"misalignment\.{name} = .*{message}"):
         face_pair(28, FaceMisalignment(**{name: value}))
     off = {name: value, "offset": 1e-6}
     with pytest.raises(CaseError, match="misalignment: no pair of teeth is in contact at phase"):
@@ -178,10 +178,10 @@ def test_contact_at_the_end_of_the_teeth_is_a_finding():
 
 
 def test_a_pinion_like_the_shaper_and_thin_tips_are_findings():
-    told = {problem.key for problem in findings(face_pair(28), 2)}
-    assert told == {"driven.shaper.teeth", "driven.outer"}
-    told = {problem.key for problem in findings(face_pair(28, FaceMisalignment(offset=1e-4)), 2)}
-    assert "driven.outer_end" in told
+    named = {problem.key for problem in findings(face_pair(28), 2)}
+    assert named == {"driven.shaper.teeth", "driven.outer"}
+    named = {problem.key for problem in findings(face_pair(28, FaceMisalignment(offset=1e-4)), 2)}
+    assert "driven.outer_end" in named
     assert findings(face_pair(25, outer=0.54), 2) == ()
     thin = findings(helicoid_pair(gear(profile_shift=1.15), gear(53, addendum=0.9)), 2)
     assert "driver.addendum" in {problem.key for problem in thin}

@@ -179,7 +179,7 @@ def test_back_ends_exchange_and_nnls_agree(solver):
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_an_exchange_that_goes_in_a_circle_is_told(solver):
+def test_an_exchange_that_goes_in_a_circle_is_reported(solver):
     """It closes and opens the same points of this definite matrix for ever; a solver does not."""
     matrix = np.array(
         [[91.5, 21, -25, 81], [21, 34.5, 28, 11], [-25, 28, 50.5, -31], [81, 11, -31, 75.5]]

@@ -59,7 +59,7 @@ def test_certified_and_in_balance_with_the_torque(kind):
             float(np.sum(np.cross(one.line.points, one.line.normals)[:, 2] * one.force))
             for one in row[-1]
         )
-        # The normal's arm about the driver's axis is r_b cos β_b but for what the gap's own
+        # The normal's arm about the driver's axis is r_b cos β_b except for what the gap's own
         # normals lean.
         assert pair.helices * about_axis == pytest.approx(torque, rel=1e-3)
     assert np.all(found.law.b >= 0.0)

@@ -188,7 +188,7 @@ def test_mesh_and_points_at_the_default():
     assert np.all(steps[1] < 0.02)
 
 
-def test_no_contact_and_bad_input_are_told():
+def test_no_contact_and_bad_input_are_reported():
     apart = replace(DRIVER, addendum=0.2), replace(DRIVEN, addendum=0.2)
     with pytest.raises(Refused, match=r"no pair of teeth meets at phase 0\.5"):
         ltca(SpurPair(*apart), TORQUE, [0.5], compliance=pair_compliance(PLAIN, "slices"))
@@ -202,10 +202,10 @@ def test_no_contact_and_bad_input_are_told():
         analysed().secant(0.33)
 
 
-def test_progress_is_told():
-    told = []
-    ltca(PLAIN, TORQUE, 3, compliance="slices", points=5, progress=lambda *n: told.append(n))
-    assert told == [(1, 3), (2, 3), (3, 3)]
+def test_progress_is_reported():
+    reported = []
+    ltca(PLAIN, TORQUE, 3, compliance="slices", points=5, progress=lambda *n: reported.append(n))
+    assert reported == [(1, 3), (2, 3), (3, 3)]
 
 
 def test_fit_finds_the_law_and_bounds_it():

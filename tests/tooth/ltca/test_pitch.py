@@ -157,7 +157,7 @@ def test_a_face_gear_takes_them(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("said", "told"),
+    ("entry", "message"),
     [
         ('single = ["1 um"]', "driver.pitch.single = .*has 1 value. Allowed: 25, one per tooth"),
         ("first_tooth = 2", "takes one list. Allowed: single or cumulative"),
@@ -166,7 +166,7 @@ def test_a_face_gear_takes_them(tmp_path):
         ('cumulative = ["1 um"]\nfirst_tooth = 26', "is no tooth. Allowed: 1 to 25"),
     ],
 )
-def test_lists_that_do_not_fit_are_told(tmp_path, said, told):
-    text = SPUR + f"\n[driver.pitch]\n{said}\n".replace("'", '"')
-    with pytest.raises(CaseError, match=told):
+def test_lists_that_do_not_fit_are_reported(tmp_path, entry, message):
+    text = SPUR + f"\n[driver.pitch]\n{entry}\n".replace("'", '"')
+    with pytest.raises(CaseError, match=message):
         load_pair(written(tmp_path, text))

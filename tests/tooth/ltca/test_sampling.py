@@ -1,4 +1,4 @@
-"""Means over parts of the mesh cycle: the law's mean does not hang on the number of positions."""
+"""Means over parts of the mesh cycle: the law's mean does not depend on the number of positions."""
 
 import math
 
@@ -68,10 +68,12 @@ def test_the_mean_does_not_hang_on_the_positions(name):
     wanted = ltca(PAIRS[name], 100.0, 401, (1.0,), "slices").angle[:, -1].mean()
     for count in (1, 2, 5, 10):
         found = ltca(PAIRS[name], 100.0, count, (1.0,), "slices", means=True)
-        assert found.told[:, -1].mean() == pytest.approx(wanted, rel=5e-4)
+        assert found.law_angle[:, -1].mean() == pytest.approx(wanted, rel=5e-4)
         # So is the law's, at the loads of its fit.
         fit = found.law.angle(90.0).mean()
-        assert fit == pytest.approx(found.told[:, np.isclose(found.torque, 90.0)].mean(), rel=1e-9)
+        assert fit == pytest.approx(
+            found.law_angle[:, np.isclose(found.torque, 90.0)].mean(), rel=1e-9
+        )
 
 
 def test_five_points_alias_a_spur_pair():
@@ -86,7 +88,7 @@ def test_five_points_alias_a_spur_pair():
 def test_the_shape_converges(name):
     """Order 1 or better on average over the cycle: only the part about a jump keeps its error."""
     course = {
-        count: ltca(PAIRS[name], 100.0, count, (1.0,), "slices", means=True).told[:, -1]
+        count: ltca(PAIRS[name], 100.0, count, (1.0,), "slices", means=True).law_angle[:, -1]
         for count in (5, 15, 45, 135)
     }
     finest = course.pop(135)

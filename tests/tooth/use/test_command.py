@@ -69,7 +69,7 @@ def test_options_change_the_pair(command, spur, tmp_path):
     assert [float(row["phase"]) for row in rows] == pytest.approx([0.0, 1 / 3, 2 / 3])
 
 
-def test_wrong_use_is_told(command, spur, tmp_path):
+def test_wrong_use_is_reported(command, spur, tmp_path):
     wrong = command("ltca", spur, "--torque", "5 kg")
     assert wrong.exit_code == 2
     assert "is a mass, a torque is needed" in wrong.stderr
@@ -80,7 +80,7 @@ def test_wrong_use_is_told(command, spur, tmp_path):
     assert "2 problems; nothing was solved." in bad.stderr
 
 
-def test_misalignment_and_edges_are_told(command, tmp_path):
+def test_misalignment_and_edges_are_reported(command, tmp_path):
     off = written(tmp_path, SPUR + '[misalignment]\ndeviation = "0.2 mrad"\n')
     result = command("ltca", off, "-o", tmp_path / "out")
     assert "Note: driver.face" in result.stdout

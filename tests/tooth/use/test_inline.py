@@ -141,14 +141,14 @@ def test_it_is_the_law_of_a_pair_file_bit_for_bit(case, tmp_path, word, model):
     by_file = load_case(written(tmp_path, text, "by_file.toml"))
     own = case.replace({'meshes."a-b".law': word})
     assert coefficients(own) == coefficients(by_file)
-    told = [resolve(one).meshes["a-b"].law.basis.partition(";")[0] for one in (own, by_file)]
-    assert told == [f"LTCA, {model}, means over the cycle"] * 2
+    stated = [resolve(one).meshes["a-b"].law.basis.partition(";")[0] for one in (own, by_file)]
+    assert stated == [f"LTCA, {model}, means over the cycle"] * 2
 
 
 def test_it_is_computed_once_for_all_planets(planetary, monkeypatch):
-    told = []
-    found = resolve(planetary, lambda *now: told.append(now))
-    assert told[-1] == (6, 6)  # sun and planet, planet and ring, three positions each
+    reported = []
+    found = resolve(planetary, lambda *now: reported.append(now))
+    assert reported[-1] == (6, 6)  # sun and planet, planet and ring, three positions each
     laws = [found.meshes[f"s-p{k}"].law for k in (1, 2, 3)]
     assert laws[0] == laws[1] == laws[2] != found.meshes["p1-r"].law
 
@@ -200,9 +200,9 @@ def test_the_rated_torque_does_not_hang_on_the_load(case):
     assert coefficients(other) == coefficients(case)
 
 
-def test_what_is_assumed_is_told(case):
-    said = resolve(case).meshes["a-b"].law.basis
-    assert said.endswith("assumed: tip radius of the rack 0.38, steel, unmodified flanks")
+def test_what_is_assumed_is_reported(case):
+    basis = resolve(case).meshes["a-b"].law.basis
+    assert basis.endswith("assumed: tip radius of the rack 0.38, steel, unmodified flanks")
     bare = case.replace({'meshes."a-b".rated_torque': None, "gears.b.bore": None})
     found = resolve(bare)
     assert "rim of driven gear 1.5 tooth heights, rated for 50 N per mm" in (
@@ -251,7 +251,7 @@ def test_a_result_says_what_its_laws_are_from(case, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("word", "torque", "said"),
+    ("word", "torque", "start"),
     [
         ("iso", "70 N*m", "70 N·m lies below the 75.74 N·m from which the law holds; it"),
         ("iso", "80 N*m", ""),
@@ -260,13 +260,13 @@ def test_a_result_says_what_its_laws_are_from(case, tmp_path):
         ("ltca", "120 N*m", "120 N·m lies above the 112.5 N·m up to which the law holds"),
     ],
 )  # fmt: skip
-def test_loads_beside_what_a_law_holds_for_are_told(case, word, torque, said):
+def test_loads_outside_the_range_of_a_law_are_reported(case, word, torque, start):
     """ISO 6336-1 from F_t/b = 100 N/mm: 75.74 N·m on 37.87 mm and 20 mm."""
     changes = {"operating.torque": torque, 'meshes."a-b".law': word}
     if word == "iso":
         changes['meshes."a-b".rated_torque'] = None
     note = ls.solve(case.replace(changes)).laws["a-b"].note
-    assert note.startswith(said) if said else note == ""
+    assert note.startswith(start) if start else note == ""
 
 
 def test_iso_says_its_factors(case):
@@ -280,9 +280,9 @@ def test_iso_says_its_factors(case):
 
 def test_the_basis_is_no_part_of_the_mechanics(case):
     by_law = resolve(case)
-    said = by_law.replace({'meshes."a-b".law.basis': "measured in 1999"})
-    assert said.hash == by_law.hash
-    assert ls.solve(said).laws["a-b"].basis == "measured in 1999"
+    measured = by_law.replace({'meshes."a-b".law.basis': "measured in 1999"})
+    assert measured.hash == by_law.hash
+    assert ls.solve(measured).laws["a-b"].basis == "measured in 1999"
 
 
 def test_the_table_and_the_report_tell_it(case, tmp_path):
@@ -291,8 +291,8 @@ def test_the_table_and_the_report_tell_it(case, tmp_path):
     from loadshare.cli.main import app
 
     file = tmp_path / "case.toml"
-    told = CliRunner(env={"COLUMNS": "200"}).invoke(app, ["run", str(file)])
-    assert "Law of mesh a-b: LTCA, slices, means over the cycle; assumed: tip" in told.stdout
+    done = CliRunner(env={"COLUMNS": "200"}).invoke(app, ["run", str(file)])
+    assert "Law of mesh a-b: LTCA, slices, means over the cycle; assumed: tip" in done.stdout
     for word in ("check", "draw"):
         out = ["-o", str(tmp_path / "train.svg")] if word == "draw" else []
         assert CliRunner().invoke(app, [word, str(file), *out]).exit_code == 0

@@ -31,7 +31,7 @@ def test_a_law_file_holds_the_law_bit_for_bit(spur, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("change", "key", "said"),
+    ("change", "key", "message"),
     [
         (('kind = "law"', 'kind = "laws"'), "kind", "is no law file"),
         (("rad/(N*m)^(2/3)", "rad/(N*m)"), "c[0]", "is "),
@@ -39,14 +39,14 @@ def test_a_law_file_holds_the_law_bit_for_bit(spur, tmp_path):
         (("misfit", "missfit"), "missfit", "unknown key"),
     ],
 )
-def test_a_wrong_law_file_is_told(spur, tmp_path, change, key, said):
+def test_a_wrong_law_file_is_reported(spur, tmp_path, change, key, message):
     pair = load_pair(spur)
     text = law_text(law_of(pair, pair.analyse()))
     file = written(tmp_path, text.replace(*change), "law.toml")
     with pytest.raises(CaseError) as caught:
         load_law(file)
     problems = {problem.key: problem for problem in caught.value.problems}
-    assert said in problems[key].message
+    assert message in problems[key].message
     assert problems[key].file == str(file)
 
 

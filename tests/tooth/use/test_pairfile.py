@@ -1,4 +1,4 @@
-"""Pair files: what they give, and how what is wrong with them is told."""
+"""Pair files: what they give, and how their mistakes are reported."""
 
 import math
 
@@ -14,7 +14,7 @@ from loadshare.tooth.pair.file import load_pair
 from loadshare.tooth.pair.model import CONTENTS
 
 
-def told(path):
+def problems_in(path):
     with pytest.raises(CaseError) as caught:
         load_pair(path)
     assert all(problem.file == str(path) for problem in caught.value.problems)
@@ -77,10 +77,10 @@ def test_a_face_gear_is_cut_by_a_shaper_of_its_pinion(tmp_path):
     assert shaper.pressure_angle == pair.pinion.pressure_angle
 
 
-def test_all_problems_are_told_at_once(tmp_path):
+def test_all_problems_are_reported_at_once(tmp_path):
     text = SPUR.replace('"3 mm"', '"3 kg"').replace("[driven]\nteeth = 50", "[driven]\nteth = 50")
     text = text.replace('"slices"', '"slice"').replace('"100 N*m"', '"-1 N*m"')
-    problems = told(written(tmp_path, text))
+    problems = problems_in(written(tmp_path, text))
     assert set(problems) == {
         "driver.module",
         "driven.teeth",
@@ -94,7 +94,7 @@ def test_all_problems_are_told_at_once(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("change", "key", "said"),
+    ("change", "key", "message"),
     [
         (('kind = "helicoid"', ""), "kind", "is missing"),
         (('"helicoid"', '"helicoids"'), "kind", "is not a kind of pair"),
@@ -108,20 +108,20 @@ def test_all_problems_are_told_at_once(tmp_path):
         (('title = "', 'assumed = ["driver.modul"]\ntitle = "'), "assumed[0]", "matches no key"),
     ],
 )
-def test_a_wrong_file_is_told(tmp_path, change, key, said):
-    problems = told(written(tmp_path, SPUR.replace(*change)))
-    assert said in problems[key].message
+def test_a_wrong_file_is_reported(tmp_path, change, key, message):
+    problems = problems_in(written(tmp_path, SPUR.replace(*change)))
+    assert message in problems[key].message
 
 
 def test_problems_of_the_geometry_stand_where_they_were_written(tmp_path):
     text = SPUR.replace("teeth = 25", "teeth = 12\nprofile_shift = -0.1")
-    problem = told(written(tmp_path, text))["driver.profile_shift"]
+    problem = problems_in(written(tmp_path, text))["driver.profile_shift"]
     assert problem.given == "-0.1"
     assert "undercuts" in problem.message
 
 
-def test_a_default_that_does_not_fit_is_told_with_its_value(tmp_path):
-    problem = told(written(tmp_path, SPUR.replace('"20 deg"', '"28 deg"')))
+def test_a_default_that_does_not_fit_is_reported_with_its_value(tmp_path):
+    problem = problems_in(written(tmp_path, SPUR.replace('"20 deg"', '"28 deg"')))
     assert problem["driver.tip_radius"].given == "0.38"
 
 
@@ -164,8 +164,8 @@ def test_points_follow_the_model_where_the_file_does_not_tell_them(tmp_path):
     assert exact.revised(compliance="slices").hash == fast.hash
     found = there.revised(compliance="slices").analyse()
     assert len(found.positions[0].lines[0].length) == 16
-    told = load_pair(written(tmp_path, SPUR)).revised(compliance="finite elements")
-    assert told.analysis.points == 8
+    revised = load_pair(written(tmp_path, SPUR)).revised(compliance="finite elements")
+    assert revised.analysis.points == 8
 
 
 def test_options_of_the_finite_elements_reach_them(tmp_path):

@@ -61,9 +61,9 @@ def test_the_positions_are_those_of_the_case(case):
 
 
 def test_what_was_computed_is_not_computed_again(case, monkeypatch):
-    told = []
-    first = resolve(case, lambda done, total: told.append((done, total)))
-    assert told == [(1, 2), (2, 2)]
+    reported = []
+    first = resolve(case, lambda done, total: reported.append((done, total)))
+    assert reported == [(1, 2), (2, 2)]
 
     def fail(*_):
         raise AssertionError("computed again")
@@ -79,12 +79,12 @@ def test_meshes_that_share_a_pair_are_computed_once(spur, tmp_path):
     text += '[meshes."a-c"]\npressure_angle = "20 deg"\ngeometry = "spur.toml"\n'
     text = text.replace('output = "b"', 'output = "b"\nexternal = { c = "-10 N*m" }')
     text = text.replace('[gears.d]\ncentre = ["-112.5 mm", "0 mm"]\nbase_radius = "5 mm"\n', "")
-    told = []
+    reported = []
     found = resolve(
         load_case(written(tmp_path, text, "case.toml")),
-        lambda done, total: told.append((done, total)),
+        lambda done, total: reported.append((done, total)),
     )
-    assert told == [(1, 2), (2, 2)]
+    assert reported == [(1, 2), (2, 2)]
     assert found.meshes["a-b"].law == found.meshes["a-c"].law
 
 
@@ -110,7 +110,7 @@ def test_what_is_assumed_stays_assumed(case):
     assert found.is_assumed('meshes."a-b".law.b')
 
 
-def test_contradictions_are_told_with_both_values(case):
+def test_contradictions_are_reported_with_both_values(case):
     changed = case.replace(
         {
             "gears.a.base_radius": "35.38 mm",
@@ -134,13 +134,13 @@ def test_contradictions_are_told_with_both_values(case):
     assert found['meshes."a-b".pressure_angle'].allowed == "20 deg"
 
 
-def test_another_kind_of_gear_is_told(case, tmp_path):
+def test_another_kind_of_gear_is_reported(case, tmp_path):
     written(tmp_path, FACE, "face.toml")
     found = problems_of(case.replace({'meshes."a-b".geometry': str(tmp_path / "face.toml")}))
     assert found["gears.b.type"].message == "face has a gear of type face"
 
 
-def test_files_that_are_wrong_are_told(case, spur, tmp_path):
+def test_files_that_are_wrong_are_reported(case, spur, tmp_path):
     key = 'meshes."a-b".geometry'
     missing = problems_of(case.replace({key: str(tmp_path / "none.toml")}))
     assert missing[key].message == "there is no such file"
@@ -148,7 +148,7 @@ def test_files_that_are_wrong_are_told(case, spur, tmp_path):
     assert "driver.teeth" in problems_of(case.replace({key: str(bad)}))
 
 
-def test_a_law_of_other_positions_is_told(case, spur, tmp_path):
+def test_a_law_of_other_positions_is_reported(case, spur, tmp_path):
     resolve(case)
     file = written(tmp_path, law_text(known_law(load_pair(spur))), "law.toml")
     key = 'meshes."a-b".law_file'
@@ -177,7 +177,7 @@ def test_a_case_built_in_python_counts_from_the_working_folder(case, spur, tmp_p
 
 @pytest.mark.slow
 def test_the_seeds_ranges():
-    """Fig. 7 of the paper. What is left of the difference is told on the page; this keeps it."""
+    """Fig. 7 of the paper. The remaining difference is given on the page; this keeps it."""
     case = load_case(PAIRS.parent / "from_geometry.toml")
     found = resolve(case)
     ranges = {"1-2": (7.46e5, 9.27e5), "4-6": (3.77e6, 4.78e6), "6-10": (6.17e6, 6.68e6)}

@@ -1,4 +1,4 @@
-"""How far a law hangs on rims and sampling, told with the law."""
+"""How far a law depends on rims and sampling, reported with the law."""
 
 import re
 
@@ -26,7 +26,7 @@ def test_a_thinner_rim_is_stiffer_and_a_thicker_one_softer(text, tmp_path):
 
 
 def test_the_effect_is_that_of_another_pair_file(tmp_path):
-    """The second way: the pair with that rim, analysed as it stands, over 40 positions."""
+    """The second way: the pair with that rim, analysed as it is, over 40 positions."""
     effect = rim_effects(load_pair(written(tmp_path, BORED)))["driven"]
     root = 71.25  # of 50 teeth of module 3 mm
     assert effect.thickness[1] == pytest.approx((root - 60.0) * 1e-3)
@@ -46,18 +46,18 @@ def test_a_shaft_pinion_is_tried_half_way_to_solid(tmp_path):
     assert effect.thickness[2] == pytest.approx(0.5 * (root - 6e-3 + root))
 
 
-def test_positions_that_alias_are_told(spur):
+def test_positions_that_alias_are_reported(spur):
     pair = load_pair(spur)  # two positions
     found = pair.analyse()
     many = ltca(pair.geometry, pair.torque, 401, (1.0,), "slices", points=8)
     missed = found.approach[:, -1].mean() / many.approach[:, -1].mean()
     assert sampled_deflection(pair) == pytest.approx(missed, rel=5e-3)
-    said = law_of(pair, found).findings[-1]
-    assert re.search(r"Sampled at 2 positions, .* is \+7\.\d % off", said)
+    finding = law_of(pair, found).findings[-1]
+    assert re.search(r"Sampled at 2 positions, .* is \+7\.\d % off", finding)
 
 
-def test_means_are_asked_for_in_the_pair_file(tmp_path):
-    """The law's mean no longer hangs on the positions, and nothing is told of them."""
+def test_means_are_requested_in_the_pair_file(tmp_path):
+    """The law's mean no longer depends on the positions, and nothing is reported about them."""
     laws = {}
     for count in (2, 7):
         text = SPUR.replace("positions = 2", f'positions = {count}\nsampling = "means"')

@@ -103,9 +103,9 @@ def check_idle_inputs(draft: Draft) -> Iterator[Problem]:
         if helical and not mesh.given("backlash", "normal_backlash"):
             message = "turns a normal backlash into the transverse plane, but"
             path = ("meshes", name, "helix_angle")
-            told = f'meshes."{name}".normal_backlash is missing'
+            cause = f'meshes."{name}".normal_backlash is missing'
             hint = "Give it, or drop the angle."
-            yield draft.problem(path, f"{message} {told}", hint=hint)
+            yield draft.problem(path, f"{message} {cause}", hint=hint)
     for name, ring in draft.rings.items():
         if ring.radius is not None and "measured" in ring.model_fields_set:
             path = ("rings", name, "measured")

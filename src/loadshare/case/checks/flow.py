@@ -80,12 +80,12 @@ def check_pressed_flanks(draft: Draft) -> Iterator[Problem]:
     if not _known(draft) or draft.operating is None:
         return
     against = against_the_names(draft.operating, draft.gears, draft.meshes, draft.shafts)
-    told = {n for n, m in draft.meshes.items() if m.given("backlash", "normal_backlash")}
-    if not any(against) or (all(against) and not told):
+    given = {n for n, m in draft.meshes.items() if m.given("backlash", "normal_backlash")}
+    if not any(against) or (all(against) and not given):
         return
     for name in draft.meshes:
-        if name not in told:
-            why = "other meshes have one" if told else "it presses the usual flanks elsewhere"
+        if name not in given:
+            why = "other meshes have one" if given else "it presses the usual flanks elsewhere"
             message = f"is missing: the torque runs against the meshes' names, and {why}"
             hint = "How much play the mesh has decides when its other flank carries."
             yield draft.problem(("meshes", name, "backlash"), message, LENGTH.allowed, hint)

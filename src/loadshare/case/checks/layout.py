@@ -160,11 +160,11 @@ class _Clash:
 
 
 def check_neighbours(draft: Draft) -> Iterator[Problem]:
-    """Yield gears that mesh with the same one and stand in each other's way beside it."""
+    """Yield gears that mesh with the same one and stand in each other's way next to it."""
     centres = draft.centres()
     meshing = {frozenset(mesh.ends) for mesh in draft.meshes.values()}
     shafts = {frozenset(shaft.ends) for shaft in draft.shafts.values()}
-    told: set[frozenset[str]] = set()
+    reported: set[frozenset[str]] = set()
     for middle in sorted(draft.gears.keys() & centres.keys()):
         others = set().union(*(pair for pair in meshing if middle in pair)) - {middle}
         clashes = [
@@ -174,9 +174,9 @@ def check_neighbours(draft: Draft) -> Iterator[Problem]:
             and clash.pair not in meshing
             and (clash.apart or clash.pair not in shafts)
         ]
-        if clashes and not any(clash.pair in told for clash in clashes):
+        if clashes and not any(clash.pair in reported for clash in clashes):
             yield _in_the_way(draft, middle, max(clashes, key=lambda c: c.over), centres)
-        told |= {clash.pair for clash in clashes}
+        reported |= {clash.pair for clash in clashes}
 
 
 def _clash(draft: Draft, one: str, two: str, centres: Mapping[str, Vector]) -> _Clash | None:

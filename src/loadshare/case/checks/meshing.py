@@ -52,7 +52,7 @@ def check_turning(draft: Draft) -> Iterator[Problem]:
     operating = draft.operating
     if operating is None or not draft.sound("gears"):
         return
-    if turning_told(operating, draft.march, draft.gears):
+    if turning_is_given(operating, draft.march, draft.gears):
         return
     for name, errors in draft.errors.items():
         if errors.eccentricity is not None and errors.eccentricity.amount.si:
@@ -68,7 +68,7 @@ def check_turning(draft: Draft) -> Iterator[Problem]:
             yield draft.problem(("errors", name, "eccentricity"), message, hint=hint)
 
 
-def turning_told(operating: Operating, march: March | None, gears: Mapping[str, Gear]) -> bool:
+def turning_is_given(operating: Operating, march: March | None, gears: Mapping[str, Gear]) -> bool:
     """Tell whether it is known how far gears turn from position to position, if at all."""
     if march is not None or operating.positions == 1 or operating.rotation == "neglected":
         return True

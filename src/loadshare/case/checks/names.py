@@ -58,13 +58,13 @@ def check_about_circles(draft: Draft) -> Iterator[Problem]:
         for name, gear in draft.gears.items()
         if isinstance(gear.centre, Polar) and gear.centre.about is not None
     }
-    told: set[str] = set()
+    reported: set[str] = set()
     for name in about:
         chain = [name]
         while (pole := about.get(chain[-1])) is not None and pole not in chain:
             chain.append(pole)
-        if pole == name and name not in told:
-            told.update(chain)
+        if pole == name and name not in reported:
+            reported.update(chain)
             circle = " → ".join((*chain, name))
             yield draft.problem(("gears", name, "centre", "about"), f"closes a circle: {circle}")
 
@@ -99,8 +99,8 @@ def _gears_named(draft: Draft) -> Iterator[tuple[Path, str]]:
                 path: Path = (section, name, key)
                 given = look_up(draft.data, path) is not None
                 if name in valid:
-                    told = getattr(valid[name], key)
-                    for gear in (told,) if isinstance(told, str) else told:
+                    named = getattr(valid[name], key)
+                    for gear in (named,) if isinstance(named, str) else named:
                         if gear or given:
                             yield path if given else path[:-1], gear
                 elif given:

@@ -27,7 +27,7 @@ def is_covered(columns: Columns) -> bool:
 
 
 class Judged(NamedTuple):
-    """What is told of S claims; not a number where it is for NumPy to tell.
+    """What is found of S claims; not a number where it is left to NumPy.
 
     Attributes
     ----------

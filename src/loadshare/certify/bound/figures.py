@@ -30,7 +30,7 @@ class Found(NamedTuple):
     residual: Array  # largest one of balance [N]
     rounding: Array  # of that [N]
     width: Array  # rounding of lengths [m]
-    reach: Array  # error of a force up to which laws of contacts are what is said of them [N]
+    reach: Array  # error of a force up to which laws of contacts hold as assumed [N]
     room: Array  # smallest gap of what does not act [m]
     aside: Array  # largest torque of what is put aside [N·m]
     turned: Array  # largest turn of an arc's line

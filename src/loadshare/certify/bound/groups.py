@@ -130,10 +130,10 @@ class Plan:
 
     def sets(self) -> Sets:
         """Return room for sets of elements."""
-        size = (BOUND.sets_told_apart, len(self.contacts) + len(self.springs) + len(self.pulls))
+        size = (BOUND.sets_distinguished, len(self.contacts) + len(self.springs) + len(self.pulls))
         first, key = (
-            np.empty(BOUND.sets_told_apart, dtype=np.intp),
-            np.empty(BOUND.sets_told_apart, dtype=np.uint64),
+            np.empty(BOUND.sets_distinguished, dtype=np.intp),
+            np.empty(BOUND.sets_distinguished, dtype=np.uint64),
         )
         return Sets(first, key, np.full(size, np.inf), np.zeros(size))
 
@@ -264,7 +264,7 @@ class Plan:
         of, contacts = self.layout, len(self.contacts)
         flanks, pulls, arcs = len(of.arm), self._rows - 2 * len(self.pulls), len(of.apart)
         passes, sizes = np.abs(found.particular), np.sqrt((found.root**2).sum(axis=1))
-        # What radial elements yield is told by every claim itself.
+        # What radial elements yield is given by every claim itself.
         soft[:, pulls:] = 0.0
         some = acts[:, contacts - arcs : contacts] != OPEN
         across = np.tensordot(some, self.across, 1)

@@ -54,7 +54,7 @@ class Bounds:
 
 
 def _torques(columns: Columns, force: Array, claimed: Array) -> Array:
-    """Errors of the torques of all flanks, as they are told, (…, flanks) [N·m].
+    """Errors of the torques of all flanks, as they are reported, (…, flanks) [N·m].
 
     From the errors of all columns' forces and the claimed forces of the flanks: a torque is itself
     rounded.
@@ -246,7 +246,7 @@ def _with_open_slips(claim: Claim, scale: Array) -> tuple[Array, Array]:
 
 
 def _without(claim: Claim, gears: Mapping[str, float | Array], scale: Array) -> Box:
-    """Bound what is left of a single claim when some gears stand where they are, but for a play."""
+    """Bound what is left of a single claim when some gears stay in place, except for a play."""
     whole = claim.columns
     found = Box.unproved(claim, first_acts(claim))
     if gears:
@@ -284,7 +284,7 @@ def _without_rounding(claim: Claim, scale: Array) -> tuple[Array, Array]:
 
 
 def _with_light_friction(claim: Claim, scale: Array) -> tuple[Array, Array]:
-    """Bound a single claim with friction put aside that is light beside what is certified.
+    """Bound a single claim with friction put aside that is light compared with what is certified.
 
     With memory, so is the friction of splines that are pressed to the end of their clearance: there
     a slip can only turn, which the stop hardly lets it.

@@ -272,10 +272,10 @@ class _Group:
             self.is_covered = self._is_idle(free_moves(known.moves, opening))
             if len(opening):
                 # What may open bears what nothing else does, as balance alone determines.
-                self.held, is_told = held_moves(
+                self.held, is_determined = held_moves(
                     known.moves, self.directions[left], self.claim.columns.force_at_end
                 )
-                self.is_covered &= is_told or self._bears_none(self.held)
+                self.is_covered &= is_determined or self._bears_none(self.held)
             if self.is_covered:
                 self.particular = np.zeros(self.particular.shape)
                 self.particular[~left] = known.particular

@@ -51,7 +51,7 @@ class Part:
         """Find the torques over splines [N·m], and what follows them.
 
         Along the line of each pair a level [1/m] and a room [1/N] per torque, (rows, pairs, 2);
-        where next to no torque decides the sense nothing is said to follow. Where nothing follows,
+        where next to no torque decides the sense nothing is taken to follow. Where nothing follows,
         no torques are looked at.
         """
         columns, found, where = self.claim.columns, self.found, np.ix_(self.rows, self.pairs)

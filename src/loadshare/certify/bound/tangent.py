@@ -8,7 +8,7 @@ line and what is across. With rows A, compliances D and a load f,
 
 P and N those of the statics (see `Statics`). The compliance of a load is the work that it does,
 :math:`F^T D F`: F makes it least, so that an error of F enters it squared and no figure is lost
-where stiff parts act beside soft ones. Friction that follows the torque t over a spline adds what
+where stiff parts act next to soft ones. Friction that follows the torque t over a spline adds what
 the torque pushes by, and what it takes of the room up to a stop. Source: formulation, sections 3, 5
 and 6.
 """

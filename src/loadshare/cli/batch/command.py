@@ -80,16 +80,16 @@ def batch(
             ordered = [done[task.name] for task in tasks if task.name in done]
             waiting = [str(task.case) for task in tasks if task.name not in done]
             settings = {"solver": solver, "method": method, "tolerance": tolerance}
-            # First, so that it is told also where nothing can be written.
+            # First, so that it is printed even where nothing can be written.
             print_summary(ordered)
             document = summary_document(ordered, settings, waiting)
             with writing(summary):
                 write_document(summary, document)
             if json:
                 echo(document_text(document), nl=False)
-            if stop.asked:
-                told = f"Interrupted: {len(ordered)} of {len(tasks)} cases done."
-                fail([told, "The same command goes on; what is certified is kept."], stop.code)
+            if stop.requested:
+                message = f"Interrupted: {len(ordered)} of {len(tasks)} cases done."
+                fail([message, "The same command goes on; what is certified is kept."], stop.code)
     except LoadshareError as error:
         fail([str(error)], UNUSABLE)
     if any(outcome.outcome == UNWRITTEN for outcome in ordered):
@@ -103,16 +103,16 @@ def _done(tasks: Sequence[Task], jobs: int, stop: Stop) -> dict[str, Outcome]:
     done: dict[str, Outcome] = {}
     try:
         with progress("cases", len(tasks)) as tick:
-            for outcome in outcomes(tasks, jobs, lambda: stop.asked):
+            for outcome in outcomes(tasks, jobs, lambda: stop.requested):
                 done[outcome.name] = outcome
                 tick(len(done), len(tasks))
         stop.over()
     except KeyboardInterrupt:
-        stop.asked = True
+        stop.requested = True
     return done
 
 
 def _stopping() -> None:
     # Past the buffers of stderr: a signal may come while they are written to.
-    told = "Stopping; the cases under way are finished first. Ctrl-C again leaves them.\n"
-    os.write(2, told.encode())
+    message = "Stopping; the cases under way are finished first. Ctrl-C again leaves them.\n"
+    os.write(2, message.encode())

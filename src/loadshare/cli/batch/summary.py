@@ -44,8 +44,8 @@ def print_summary(outcomes: Sequence[Outcome]) -> None:
 def counts(outcomes: Sequence[Outcome]) -> str:
     """Return how many cases came to which outcome, in words."""
     found = Counter(done.outcome for done in outcomes)
-    told = ", ".join(f"{number} {outcome}" for outcome, number in found.most_common())
-    return f"{len(outcomes)} cases: {told}" if len(outcomes) != 1 else f"1 case: {told}"
+    text = ", ".join(f"{number} {outcome}" for outcome, number in found.most_common())
+    return f"{len(outcomes)} cases: {text}" if len(outcomes) != 1 else f"1 case: {text}"
 
 
 def summary_document(

@@ -91,7 +91,7 @@ def work(task: Task) -> Outcome:
 
     Nothing but an interruption is raised.
     """
-    begun = time.perf_counter()
+    start = time.perf_counter()
     outcome, result = "crashed", None
     messages: tuple[str, ...] = ()
     try:
@@ -106,7 +106,7 @@ def work(task: Task) -> Outcome:
         name=task.name,
         case=str(task.case),
         outcome=outcome,
-        seconds=time.perf_counter() - begun,
+        seconds=time.perf_counter() - start,
         positions=len(result.positions) if result else 0,
         omega=result.omega["system"] if result else None,
         worst=result.certificate.worst if result else None,
@@ -117,7 +117,7 @@ def work(task: Task) -> Outcome:
 def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
     from loadshare.case import load_case
     from loadshare.cli.files import write_document
-    from loadshare.cli.refusal import refused_document, told
+    from loadshare.cli.refusal import refusal_lines, refused_document
     from loadshare.job import solve
     from loadshare.tooth import resolve
     from loadshare.train import build_train
@@ -134,7 +134,7 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
         return "invalid", None, tuple(map(str, error.problems))
     except Refused as refusal:
         write_document(task.target, refused_document(refusal, task.case.stem))
-        return "refused", refusal.partial, tuple(told(refusal))
+        return "refused", refusal.partial, tuple(refusal_lines(refusal))
     result.to_json(task.target)
     return "certified", result, (*notes, *_warnings(result))
 
@@ -142,8 +142,8 @@ def _attempt(task: Task) -> tuple[str, Result | None, tuple[str, ...]]:
 def _warnings(result: Result) -> tuple[str, ...]:
     from loadshare.report.words import advice
 
-    told = advice(result)
-    return (f"warning: {told}",) if told else ()
+    warning = advice(result)
+    return (f"warning: {warning}",) if warning else ()
 
 
 def _kept(task: Task, case: Case, count: int) -> tuple[Result | None, tuple[str, ...]]:
@@ -172,9 +172,9 @@ def _kept(task: Task, case: Case, count: int) -> tuple[Result | None, tuple[str,
     stamp = result.stamp
     # Of the cases, not of their hashes: a result shows titles, sources and assumptions as well.
     found = (result.case, stamp.version, stamp.solver, stamp.method, stamp.tolerance)
-    asked = (case, __version__, task.solver, task.method, task.tolerance)
+    wanted = (case, __version__, task.solver, task.method, task.tolerance)
     whole = stamp.positions == tuple(range(1, count + 1)) and stamp.reduce
-    return (result if whole and found == asked else None), ()
+    return (result if whole and found == wanted else None), ()
 
 
 SUMMARY = "summary"
@@ -219,12 +219,12 @@ def outcomes(tasks: Sequence[Task], jobs: int, stopped: Callable[[], bool]) -> I
     jobs : int
         Processes; with one, everything is done in this process.
     stopped : callable
-        Whether nothing more is to be begun; what is under way is then finished.
+        Whether nothing more is to be started; what is under way is then finished.
 
     Yields
     ------
     Outcome
-        One per task that was begun. A process that dies costs one more try of its case; a case
+        One per task that was started. A process that dies costs one more try of its case; a case
         on which two die has crashed.
     """
     if jobs == 1:

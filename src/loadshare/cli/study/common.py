@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from loadshare.cli.changes import open_case
 from loadshare.cli.console import Tick, progress
-from loadshare.cli.exits import REFUSED, UNUSABLE, fail, problems_told
-from loadshare.cli.refusal import told
+from loadshare.cli.exits import REFUSED, UNUSABLE, fail, reporting_problems
+from loadshare.cli.refusal import refusal_lines
 from loadshare.errors import LoadshareError, Refused
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def asked(
+def running_study(
     file: Path,
     change: list[str] | None,
     what: str,
@@ -46,10 +46,10 @@ def asked(
 def answered() -> Iterator[None]:
     """Turn an unusable case, wrong positions and a refused answer into messages and exit codes."""
     try:
-        with problems_told():
+        with reporting_problems():
             yield
     except Refused as refusal:
-        fail([f"REFUSED  {line}" for line in told(refusal)], REFUSED)
+        fail([f"REFUSED  {line}" for line in refusal_lines(refusal)], REFUSED)
     except LoadshareError as error:
         fail([str(error)], UNUSABLE)
     except ValueError as error:

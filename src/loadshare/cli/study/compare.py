@@ -16,7 +16,7 @@ from loadshare.cli.forms import (
     write_all,
 )
 from loadshare.cli.options import CaseFile, Changes
-from loadshare.cli.study.common import asked
+from loadshare.cli.study.common import running_study
 from loadshare.cli.tables.table import show, table
 from loadshare.report.numbers import counted
 
@@ -32,7 +32,7 @@ def compare(
     """Compare what was measured with what is computed."""
     from loadshare.study.compare import compare as compared
 
-    with asked(case, change, "positions") as (loaded, tick):
+    with running_study(case, change, "positions") as (loaded, tick):
         found = compared(loaded, progress=tick)
     show_comparison(found)
     write_all(file, made_of_comparison(found))
@@ -45,7 +45,7 @@ def made_of_comparison(found: Comparison) -> Makers:
 
 
 def show_comparison(found: Comparison) -> None:
-    """Print every measured figure beside the computed one."""
+    """Print every measured figure next to the computed one."""
     words = ("measured", "of", "at")
     heads = (*words, "figure", "±", "computed", "difference", "in ±")
     show("Measured against computed", table(heads, map(_row, found.deviations), words))

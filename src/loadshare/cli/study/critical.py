@@ -18,8 +18,8 @@ from loadshare.cli.forms import (
     write_all,
 )
 from loadshare.cli.options import OVER, CaseFile, Changes, Positions, over, ranges_of
-from loadshare.cli.refusal import ranges as numbers_told
-from loadshare.cli.study.common import asked, end
+from loadshare.cli.refusal import ranges as numbers_text
+from loadshare.cli.study.common import end, running_study
 from loadshare.cli.tables.table import show, table
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def critical(
     from loadshare.study.critical import critical as found_along
 
     along, low, high = _range(ranges, key, start, stop)
-    with asked(case, change, "positions") as (loaded, tick):
+    with running_study(case, change, "positions") as (loaded, tick):
         found = found_along(loaded, along, low, high, positions=position, progress=tick)
     show_critical(found)
     write_all(file, made_of_critical(found))
@@ -96,7 +96,7 @@ def show_critical(found: Critical) -> None:
         alike.setdefault(row, []).append(e.position)
     words = ("element", "event", "below", "above", *(["confirmed"] if doubtful else []), "at")
     ordered = sorted(alike.items(), key=lambda item: float(item[0][0]))
-    rows = ((*row, numbers_told(positions)) for row, positions in ordered)
+    rows = ((*row, numbers_text(positions)) for row, positions in ordered)
     made = table((f"{found.parameter.name}{unit}", *words), rows, words)
     made.columns[0].no_wrap = False
     title = f"Events from {found.start:g} to {found.stop:g}{unit}"

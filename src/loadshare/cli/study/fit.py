@@ -19,7 +19,7 @@ from loadshare.cli.forms import (
     write_all,
 )
 from loadshare.cli.options import CaseFile, Changes, over, ranges_of
-from loadshare.cli.study.common import asked
+from loadshare.cli.study.common import running_study
 from loadshare.cli.study.compare import show_comparison
 from loadshare.cli.tables.table import show, table
 
@@ -52,7 +52,7 @@ def fit(
     from loadshare.study.fit import fit as fitted
 
     unknowns = ranges_of(unknown, "KEY=LOW:HIGH")
-    with asked(case, change, "starting points", starts) as (loaded, tick):
+    with running_study(case, change, "starting points", starts) as (loaded, tick):
         found = fitted(loaded, unknowns, starts=starts, seed=seed, progress=tick)
     show_fit(found)
     write_all(file, made_of_fit(found))

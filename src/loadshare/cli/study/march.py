@@ -19,7 +19,7 @@ from loadshare.cli.forms import (
     write_all,
 )
 from loadshare.cli.options import CaseFile, Changes, Gear
-from loadshare.cli.study.common import asked
+from loadshare.cli.study.common import running_study
 from loadshare.cli.tables.table import show, table
 from loadshare.output import netcdf_of
 
@@ -40,7 +40,7 @@ def march(
     """March through revolutions; spline friction depends on the slip before."""
     from loadshare.study.march import march as marched
 
-    with asked(case, change, "steps") as (loaded, tick):
+    with running_study(case, change, "steps") as (loaded, tick):
         found = marched(loaded, gear=gear, revolutions=revolutions, steps=steps, progress=tick)
     show_march(found)
     write_all(file, made_of_march(found))

@@ -17,7 +17,7 @@ from loadshare.cli.forms import (
     write_all,
 )
 from loadshare.cli.options import CaseFile, Changes, Positions, keys
-from loadshare.cli.study.common import asked
+from loadshare.cli.study.common import running_study
 from loadshare.cli.tables.table import show, table
 from loadshare.output import netcdf_of
 
@@ -47,7 +47,7 @@ def sensitivity(
     """Compute how torques, Ω and floats change with each input."""
     from loadshare.study.sensitivity import sensitivity as differentiated
 
-    with asked(case, change, "inputs") as (loaded, tick):
+    with running_study(case, change, "inputs") as (loaded, tick):
         found = differentiated(loaded, key or None, positions=position, progress=tick)
     show_sensitivity(found)
     write_all(file, made_of_sensitivity(found))

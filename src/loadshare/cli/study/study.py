@@ -93,15 +93,15 @@ def study(
         rated = kind == "tolerance"
         with progress(*(("samples", None) if rated else (name, 1)), rated=rated) as tick:
             found = run_study(loaded, name, progress=tick)
-    asked = KINDS[kind]
-    makers = asked.makers(found)
+    chosen = KINDS[kind]
+    makers = chosen.makers(found)
     for output in file or ():
         if output.form not in makers:
             can = ", ".join(f".{form}" for form in makers)
             raise typer.BadParameter(
                 f"{output.file}: a {kind} can write {can}", param_hint="--output"
             )
-    asked.show(found)
+    chosen.show(found)
     write_all(file, makers)
     end(found)
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from loadshare.cli.forms import FIGURES, Makers, Output, figure_of, outputs, tables_of, write_all
 from loadshare.cli.options import CaseFile, Changes, Positions, over, split_setting
-from loadshare.cli.study.common import asked, end
+from loadshare.cli.study.common import end, running_study
 from loadshare.cli.tables.table import show, table
 from loadshare.output import netcdf_of
 from loadshare.report.numbers import omega
@@ -39,7 +39,7 @@ def sweep(
 
     form = "KEY=GRID, as in rings.4.float='0 um:12 um:61'"
     parameters = dict(split_setting(text, form) for text in grids)
-    with asked(case, change, "points") as (loaded, tick):
+    with running_study(case, change, "points") as (loaded, tick):
         found = swept(loaded, parameters, positions=position, progress=tick)
     show_sweep(found)
     write_all(file, made_of_sweep(found))

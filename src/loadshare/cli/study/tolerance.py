@@ -26,7 +26,7 @@ from loadshare.cli.forms import (
 )
 from loadshare.cli.options import CaseFile, Changes, Positions, over, ranges_of
 from loadshare.cli.stop import Stop
-from loadshare.cli.study.common import asked, end
+from loadshare.cli.study.common import end, running_study
 from loadshare.cli.tables.table import show, table
 from loadshare.output import netcdf_of
 from loadshare.report.numbers import NONE, counted, interval
@@ -96,7 +96,7 @@ def tolerance(
         for keys, (low, high) in ranges_of(ranges, "KEY=LOW:HIGH").items()
     }
     stop = Stop()
-    with asked(case, change, "samples", None, rated=True) as (loaded, tick):
+    with running_study(case, change, "samples", None, rated=True) as (loaded, tick):
         try:
             with stop:
                 found = studied(
@@ -128,8 +128,8 @@ def _kept(out: Path | None, done: int, total: int) -> str:
     if done == total > 0:
         kept = f"all {total:,} samples are kept in {out}."
         return f"{kept} The same command looks for the worst case again."
-    told = f"{done:,} of {total:,} samples are" if total else "what was there is"
-    return f"{told} kept in {out}. The same command continues from there."
+    part = f"{done:,} of {total:,} samples are" if total else "what was there is"
+    return f"{part} kept in {out}. The same command continues from there."
 
 
 def made_of_tolerance(found: Tolerance) -> Makers:
@@ -186,8 +186,8 @@ def show_tolerance(found: Tolerance) -> None:
     refusals = list(found.messages.items())[:SHOWN]
     say_all(f"REFUSED  {count}×  {text}" for text, count in refusals)
     if found.design_refused:
-        told = counted(found.design_refused, "sample")
-        say(f"WARNING  {told} for the shares of variance refused; their rows are left out")
+        refused = counted(found.design_refused, "sample")
+        say(f"WARNING  {refused} for the shares of variance refused; their rows are left out")
 
 
 def _show_first(

@@ -11,7 +11,7 @@ from loadshare.cli.tables.table import show, table
 from loadshare.contact.plan import Role
 from loadshare.job.answer import Answer
 from loadshare.report.numbers import counted, fixed, small
-from loadshare.report.words import range_told
+from loadshare.report.words import range_text
 from loadshare.solver import Record
 
 
@@ -54,14 +54,14 @@ def _print_facts(answer: Answer) -> None:
         **how,
         "coordinates": ", ".join(record.coordinates),
         "undetermined": "; ".join(
-            f"{name} {range_told(name, *ends)}"
+            f"{name} {range_text(name, *ends)}"
             for name, ends in answer.equilibrium.undetermined.items()
         )
         or "none",
     }
     made = Table.grid(padding=(0, 2))
-    for fact, told in facts.items():
-        made.add_row(fact, told)
+    for fact, text in facts.items():
+        made.add_row(fact, text)
     say(made)
 
 

@@ -16,7 +16,7 @@ from loadshare.cli.tables.table import fits, show, table, texts
 from loadshare.report import records
 from loadshare.report.numbers import NONE, counted, decimals, fixed, significant, small
 from loadshare.report.records import Cell
-from loadshare.report.words import advice, undetermined_told
+from loadshare.report.words import advice, undetermined_lines
 from loadshare.results import Position, Result
 
 MOST = 6
@@ -79,7 +79,7 @@ def print_cycle(result: Result) -> None:
     title = "Transmission error [µrad] and stiffness [N·m/rad] of the train"
     show(title, texts(rows, rows[0], words=()))
     if len(rows) > 1:
-        say(records.error_told(result))
+        say(records.error_text(result))
     fields = ("mesh", "position", "cycle point", "Ω stage", "error", "stiffness", "at the driver")
     title = "Meshes: transmission error [µm], stiffness [N/µm] and at the driver [N·m/rad]"
     show(title, texts(records.meshes(result), fields, words=("mesh",)))
@@ -94,9 +94,9 @@ def print_validity(result: Result) -> None:
         row["value"] = Cell(text, value)
     made = texts(rows, _fields(result, "figure", "value", "warning", "refusal", "where"), WORDS)
     show("Displacements: the largest, and the bounds of the geometry", made)
-    told = advice(result)
-    if told:
-        say(Text.assemble(("WARNING", "bold yellow"), f"  {told}"))
+    warning = advice(result)
+    if warning:
+        say(Text.assemble(("WARNING", "bold yellow"), f"  {warning}"))
 
 
 def print_certificate(result: Result, wanted: int) -> None:
@@ -115,8 +115,8 @@ def print_certificate(result: Result, wanted: int) -> None:
             f"{small(result.certificate.worst)}, allowed {result.stamp.tolerance:.0e}",
         )
     )
-    told = result.uniqueness.told
-    say(f"{told[0].upper()}{told[1:]}.")
+    verdict = result.uniqueness.text
+    say(f"{verdict[0].upper()}{verdict[1:]}.")
 
 
 def _fields(result: Result, *fields: str) -> tuple[str, ...]:
@@ -152,7 +152,7 @@ def print_heading(
     say(file, whole=True)
     for change in changes:
         say(f"changed: {change}", whole=True)
-    say(f"{records.load_told(case)}; {solved}")
+    say(f"{records.load_text(case)}; {solved}")
     turning = any(errors.eccentricity is not None for errors in case.errors.values())
     if turning and case.march is None and count > 1 and case.operating.rotation == "neglected":
         say("Gears do not rotate over the mesh cycle: eccentricities keep their first direction")
@@ -189,9 +189,9 @@ def print_floats(result: Result) -> None:
     """Print where the floats rest, and what the forces leave open of that and of rotations."""
     if result.positions[0].floats:
         _print_rests(result.positions)
-    told = undetermined_told(result.positions)
+    lines = undetermined_lines(result.positions)
     note = "Of what is not determined, the least displacement is given."
-    say_all([*told, *([note] if told else [])])
+    say_all([*lines, *([note] if lines else [])])
 
 
 def _print_rests(positions: tuple[Position, ...]) -> None:

@@ -65,7 +65,7 @@ def _parts(made: Table, width: int) -> list[Table]:
     """Return a table as tables that are at most so wide, each with the first column."""
     least = [_least(column) for column in made.columns]
     for column, need in zip(made.columns[1:], least[1:], strict=True):
-        # A header that does not even fit beside the first column is folded.
+        # A header that does not even fit next to the first column is folded.
         column.no_wrap &= least[0] + GAP + need <= width
     least = [_least(column) for column in made.columns]
     for column, need in zip(made.columns, least, strict=True):

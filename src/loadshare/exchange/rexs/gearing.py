@@ -161,9 +161,9 @@ class Gearing:
         return self._reference(body) is not None
 
     def _reference(self, body: Component) -> Component | None:
-        told = body.attributes.get("reference_component_for_position")
-        number = isinstance(told, float) and told.is_integer()
-        other = self.model.components.get(f"{told:.0f}" if number else str(told))
+        reference = body.attributes.get("reference_component_for_position")
+        number = isinstance(reference, float) and reference.is_integer()
+        other = self.model.components.get(f"{reference:.0f}" if number else str(reference))
         return None if other is None or other is body or other.type == "gear_unit" else other
 
     def axis(self, body: Component) -> Vector:

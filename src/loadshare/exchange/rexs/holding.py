@@ -62,14 +62,14 @@ def holding_of(
         assumed.append("supports: each gear by the bearings of its shaft, as a rigid beam")
     rigid = held is None or held >= STIFF
     bearings = [bearing for bearing, *_ in found]
-    told_by = ("operating_radial_bearing_clearance", "radial_clearance")
-    gaps = [bearing.number(*told_by) or 0.0 for bearing in bearings]
+    clearance_keys = ("operating_radial_bearing_clearance", "radial_clearance")
+    gaps = [bearing.number(*clearance_keys) or 0.0 for bearing in bearings]
     offset = _offset(bearings)
     gap = sum(gaps) / len(gaps)
     if gap > 0.0:
         assumed.append(f"{name}: half of its bearings' mean radial clearance to every side")
-        told = "rigid" if rigid else f"{held:.12g} N/m"
-        return Holding({}, {"clearance": f"{0.5e6 * gap:.12g} um", "stiffness": told}, offset)
+        text = "rigid" if rigid else f"{held:.12g} N/m"
+        return Holding({}, {"clearance": f"{0.5e6 * gap:.12g} um", "stiffness": text}, offset)
     return Holding({"support": "rigid" if rigid else f"{held:.12g} N/m"}, {}, offset)
 
 

@@ -70,7 +70,7 @@ class _Importer:
         data: Data = {
             "title": f"{self.path.stem}, from REXS {self.of.model.version}",
             "source": f"REXS file {self.path.name}",
-            "notes": "; ".join(self._told_names()),
+            "notes": "; ".join(self._name_notes()),
             "operating": {
                 "input": first,
                 "output": last,
@@ -310,9 +310,9 @@ class _Importer:
                     made[f"{what}_{gear}"] = {"meshes": branches}
         return made
 
-    # What is told ---------------------------------------------------------------------------------
+    # Notes and problems ---------------------------------------------------------------------------
 
-    def _told_names(self) -> list[str]:
+    def _name_notes(self) -> list[str]:
         bodies = [*self.of.gears, *self.of.carriers]
         return [
             f"{self.of.names[b.id]} is {' '.join(b.name.split())[:80]}" for b in bodies if b.name

@@ -100,7 +100,7 @@ def read_model(path: Path) -> Model:
     return model
 
 
-class _NoRexs(Exception):  # noqa: N818 -- told as a problem, never raised to a user
+class _NoRexs(Exception):  # noqa: N818 -- reported as a problem, never raised to a user
     """Why a text is no REXS."""
 
 
@@ -275,9 +275,9 @@ def tables(given: Any) -> list[dict[str, Any]]:
 def _json_component(given: Mapping[str, Any]) -> Component:
     attributes = {}
     for attribute in tables(given.get("attributes")):
-        told = [v for k, v in attribute.items() if k not in ("id", "unit")]
+        values = [v for k, v in attribute.items() if k not in ("id", "unit")]
         unit = attribute.get("unit", "none")
-        value = _json_value(told[0]) if len(told) == 1 else ""
+        value = _json_value(values[0]) if len(values) == 1 else ""
         attributes[str(attribute.get("id", ""))] = _in_si(value, str(unit))
     return Component(
         str(given.get("id", "")), str(given.get("type", "")), str(given.get("name", "")), attributes

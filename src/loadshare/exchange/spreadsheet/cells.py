@@ -1,6 +1,6 @@
 """Cells: what a key takes decides how the text of a cell is read, and what a value is written as.
 
-``;`` stands between the entries of a list, ``|`` between lists of a list. A unit in the head of a
+``;`` separates the entries of a list, ``|`` the lists of a list. A unit in the head of a
 column belongs to every number below it.
 """
 
@@ -58,7 +58,7 @@ def taken(path: Path) -> list[Schema]:
 def head_of(text: str, above: Path) -> tuple[Path, str]:
     """Return the key that a head names, below that of its section, and its unit.
 
-    A space in a key stands for ``_``, as nobody writes ``face_width`` in a spreadsheet.
+    A space in a key means ``_``, as nobody writes ``face_width`` in a spreadsheet.
 
     Raises
     ------

@@ -37,7 +37,7 @@ def export_tables(result: Result) -> dict[str, str]:
     Raises
     ------
     CaseError
-        If a name or text of the case cannot stand in a cell, as one with a semicolon in a list.
+        If a name or text of the case cannot be put in a cell, as one with a semicolon in a list.
     """
     from loadshare.results.dataset import frames
 
@@ -66,8 +66,8 @@ def workbook_of(tables: Mapping[str, str]) -> bytes:
         sheet = book.create_sheet(name)
         for row in csv.reader(StringIO(text, newline="")):
             cells = []
-            for told in row:
-                cell = WriteOnlyCell(sheet, _figure(told) if name.startswith(FOUND) else told)
+            for value in row:
+                cell = WriteOnlyCell(sheet, _figure(value) if name.startswith(FOUND) else value)
                 if isinstance(cell.value, str):
                     # A text that begins like a formula is none.
                     cell.data_type = "s"
@@ -141,12 +141,12 @@ def _column(path: Path, values: list[Any], above: Path) -> tuple[str, list[str]]
     head = f"{dotted(path)} [{unit}]" if unit else dotted(path)
     texts = iter([text_of(value) for value in shown])
     cells = ["" if value is None else next(texts) for value in values]
-    read, told = head_of(head, above)
+    read, read_unit = head_of(head, above)
     options = taken(read)
     for value, cell in zip(values, cells, strict=True):
         # An empty text is as good as none.
         if value not in (None, "") and (
-            (read, told) != ((*above, *path), unit) or value_of(cell, unit, options) != value
+            (read, read_unit) != ((*above, *path), unit) or value_of(cell, unit, options) != value
         ):
             what = "cannot stand in a cell as it is"
             where = dotted((above[0], "…", *path) if len(above) > 1 else (*above, *path))

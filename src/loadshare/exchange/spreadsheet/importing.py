@@ -18,13 +18,13 @@ from loadshare.output import FORMULA
 from loadshare.settings import ALLOWED
 
 ABOUT = "case"
-"""Sheet of what a file says beside its tables, such as its title."""
+"""Sheet of what a file says besides its tables, such as its title."""
 ALONE = ("operating", "march")
 """Sections that are one element."""
 FOUND = "result_"
-"""With which the names of sheets begin that tell a result."""
+"""Beginning of the names of sheets that hold a result."""
 FILES = ("law_file", "geometry")
-"""Keys that name files, which lie beside the case file."""
+"""Keys that name files, which are next to the case file."""
 
 
 def is_spreadsheet(path: FilePath) -> bool:
@@ -36,7 +36,7 @@ def import_tables(path: str | FilePath) -> Imported:
     """Import a case from a folder of CSV files, or a workbook.
 
     Every sheet is a section of the case file: tables by name, whose head is ``name`` and keys, and
-    for the operating point, the march and what stands outside of all tables (sheet ``case``) the
+    for the operating point, the march and what is outside of all tables (sheet ``case``) the
     columns ``key`` and ``value``.
 
     Parameters
@@ -50,7 +50,7 @@ def import_tables(path: str | FilePath) -> Imported:
     Raises
     ------
     CaseError
-        If a sheet cannot be read; problems tell sheet, row and column.
+        If a sheet cannot be read; problems name sheet, row and column.
     """
     path = FilePath(path)
     reader = _Reader()
@@ -60,13 +60,13 @@ def import_tables(path: str | FilePath) -> Imported:
         raise CaseError(reader.problems)
     sections = [name for name in Content.model_fields if name in reader.data]
     data: Data = {name: reader.data[name] for name in sections}
-    told = tuple(
+    counts = tuple(
         f"{len(data[name])} {name}"
         for name in sections
         if isinstance(data[name], Mapping) and name not in ALONE
     )
     left = tuple(dict.fromkeys(reader.left_out))
-    return Imported(data, commented(data, (), left), told, (), left, reader.places)
+    return Imported(data, commented(data, (), left), counts, (), left, reader.places)
 
 
 @dataclass

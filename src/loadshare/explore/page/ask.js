@@ -15,11 +15,11 @@ export class Latest {
     if (this.busy) return;
     this.busy = true;
     while (this.waiting) {
-      const asked = this.waiting;
+      const question = this.waiting;
       this.waiting = null;
       let found;
-      try { found = await post(this.name, asked); } catch (error) { found = failed(error); }
-      try { this.show(asked, found); } catch (error) { console.error(error); }
+      try { found = await post(this.name, question); } catch (error) { found = failed(error); }
+      try { this.show(question, found); } catch (error) { console.error(error); }
     }
     this.busy = false;
   }

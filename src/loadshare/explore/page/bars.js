@@ -23,10 +23,10 @@ export function drawBars(figure, bars, pinned) {
     svg.append(shape("text", { x: 4, y: y + 13, "font-weight": 600 }, cut(`Stage ${stage}: Kγ = ${largest.text}`, 52)));
     y += ROW;
     for (const bar of own) {
-      const told = shape("title", {}, `mesh ${bar.mesh}: Ω ${bar.text}${bar.here === null ? "" : `, here ${bar.here.toFixed(4)}`}`);
+      const title = shape("title", {}, `mesh ${bar.mesh}: Ω ${bar.text}${bar.here === null ? "" : `, here ${bar.here.toFixed(4)}`}`);
       const length = Math.max(0, at(bar.most || 0) - LEFT);
       svg.append(shape("text", { x: LEFT - 6, y: y + 13, "text-anchor": "end" }, cut(bar.mesh, 14)));
-      svg.append(shape("rect", { x: LEFT, y: y + 3, width: length, height: ROW - 6, fill: bar.colour, opacity: 0.8 }, told));
+      svg.append(shape("rect", { x: LEFT, y: y + 3, width: length, height: ROW - 6, fill: bar.colour, opacity: 0.8 }, title));
       if (bar.here !== null && bar.here !== bar.most)
         svg.append(path([[at(bar.here), y + 1], [at(bar.here), y + ROW - 1]], { stroke: INK, "stroke-width": 2 }));
       for (const [name, values] of pinned) {
@@ -67,10 +67,10 @@ export function drawLines(figure, name, { x, lines, title, unit = "", point = nu
     svg.append(path([[u, foot], [u, foot + 4]], { stroke: SOFT }));
     svg.append(shape("text", { x: Math.min(Math.max(u, left + 8), right - 10), y: foot + 16, "text-anchor": "middle", "font-size": 10 }, text));
   }
-  for (const [value, told] of marks) {
+  for (const [value, text] of marks) {
     const [u] = at(value, low);
     svg.append(path([[u, 12], [u, foot]], { stroke: WARNING, "stroke-dasharray": "4 3" }));
-    svg.lastChild.append(shape("title", {}, told));
+    svg.lastChild.append(shape("title", {}, text));
   }
   let k = 0;
   for (const [label, values] of lines) {

@@ -18,7 +18,7 @@ export function written(input, number) {
   return input.unit ? `${text} ${input.unit}` : Number(text);
 }
 
-// What stands in a field as the server takes it: plain numbers of plain inputs are numbers.
+// What is in a field as the server takes it: plain numbers of plain inputs are numbers.
 export function given(input, text) {
   const plain = text.trim();
   if (input.unit) return plain;
@@ -54,12 +54,12 @@ export class Control {
       "aria-label": `${this.name}, slider`, oninput: () => this.slid() });
     this.ticks = element("div", { class: "ticks", role: "group", "aria-label": `critical values of ${this.name}` });
     this.events = element("ul", { class: "events" });
-    this.told = element("p", { class: "small", role: "status" });
+    this.status = element("p", { class: "small", role: "status" });
     const ends = ["low", "high"].map((end) => element("input", { value: input[end], "aria-label": `${end === "low" ? "least" : "largest"} value of the slider of ${this.name}`,
       inputmode: "decimal", onchange: (event) => this.reach(end, Number(event.target.value), event.target) }));
     this.ends = ends;
     const about = `${this.keys.length > 1 ? `${this.keys.length} inputs take this value. ` : ""}${input.about}${input.assumed ? " Assumed." : ""}`;
-    const button = (text, told, action) => element("button", { type: "button", "aria-label": `${told} ${this.name}`, onclick: action }, text);
+    const button = (text, label, action) => element("button", { type: "button", "aria-label": `${label} ${this.name}`, onclick: action }, text);
     this.critical = button("Critical values", "critical values of", () => this.actions.critical(this));
     this.sweep = button("Trace", "trace of a sweep over", () => this.actions.sweep(this));
     const bar = element("div", {}, this.slider, this.ticks);
@@ -69,7 +69,7 @@ export class Control {
       element("div", { class: "row" }, this.critical, this.sweep,
         button("Case", "value of the case for", () => this.actions.back(this)),
         button("✕", "remove the slider of", () => this.actions.remove(this))),
-      this.told, this.events,
+      this.status, this.events,
       element("details", {}, element("summary", {}, "range and meaning"), element("p", { class: "small" }, about),
         element("p", {}, "slider from ", ends[0], " to ", ends[1], ` ${input.unit}`)));
   }
@@ -161,7 +161,7 @@ export function listFound(inputs, tied, take) {
   const all = found(inputs, tied, words);
   const rows = all.slice(0, SHOWN).map(([name, about]) => element("li", {},
     element("button", { type: "button", onclick: () => take(name) }, name, element("small", {}, about))));
-  const told = all.length ? all.length > SHOWN && `and ${all.length - SHOWN} more` : "No input has these words; keys joined by = or with a * are taken as they stand: press Enter.";
-  if (told) rows.push(element("li", {}, element("small", {}, told)));
+  const rest = all.length ? all.length > SHOWN && `and ${all.length - SHOWN} more` : "No input has these words; keys joined by = or with a * are taken as they stand: press Enter.";
+  if (rest) rows.push(element("li", {}, element("small", {}, rest)));
   list.replaceChildren(...rows);
 }

@@ -26,10 +26,10 @@ export function shape(name, attributes = {}, ...children) {
   return made;
 }
 
-export function picture(width, height, told) {
+export function picture(width, height, title) {
   const made = shape("svg", { xmlns: SVG, width, height, viewBox: `0 0 ${width} ${height}`, role: "img",
     "font-family": FONT, "font-size": SIZE, fill: INK });
-  made.append(shape("title", {}, told), shape("rect", { width, height, fill: "#fff" }));
+  made.append(shape("title", {}, title), shape("rect", { width, height, fill: "#fff" }));
   return made;
 }
 
@@ -92,7 +92,7 @@ export function arrow([x, y], [u, v], head) {
     [u - head * (a + 0.5 * b), v - head * (b - 0.5 * a)]];
 }
 
-// An arrow as an outline, as wide as asked; its head is wider than any shaft.
+// An arrow as an outline, as wide as requested; its head is wider than any shaft.
 export function broadArrow([x, y], [u, v], width) {
   const size = Math.hypot(u - x, v - y) || 1, a = (u - x) / size, b = (v - y) / size;
   const half = width / 2, wing = half + 4, neck = Math.max(size - 1.6 * wing, 0);

@@ -1,4 +1,4 @@
-// The page: what is set, what was asked, what is shown; they are told apart by a number.
+// The page: what is set, what was requested, what is shown; they are distinguished by a number.
 import { byId, card, element, table } from "./dom.js";
 import { Latest, Lines, post } from "./ask.js";
 import { Control, listFound, read } from "./controls.js";
@@ -14,7 +14,7 @@ const IDLE = 350; // milliseconds without a change after which the rest is worke
 const FIRST = 6; // controls at the beginning
 const MOVES = /^(gears|meshes|errors)\./;
 
-const page = { case: null, inputs: new Map(), setting: new Map(), controls: [], position: 1, asked: 0, shown: null, pins: [] };
+const page = { case: null, inputs: new Map(), setting: new Map(), controls: [], position: 1, number: 0, shown: null, pins: [] };
 const latest = new Latest("answer", show), whole = new Lines("whole");
 let resting = 0, ofCase = null;
 
@@ -73,18 +73,18 @@ const actions = {
   },
 };
 
-// --- What is asked
+// --- Requests
 
 function ask(keys = null) {
-  page.asked += 1;
+  page.number += 1;
   studies.forget(keys, page.controls);
   samples.forget(view());
   const { body } = document;
-  body.dataset.asked = page.asked;
+  body.dataset.number = page.number;
   body.dataset.state = "asking";
   tell("solving", page.shown ? "what is shown is of the setting before" : "");
   forget();
-  latest.ask({ asked: page.asked, changes: Object.fromEntries(page.setting), position: page.position });
+  latest.ask({ number: page.number, changes: Object.fromEntries(page.setting), position: page.position });
 }
 
 // What belongs to one setting alone, and is not there yet for the next.
@@ -95,12 +95,12 @@ function forget() {
   byId("cycle").hidden = true;
 }
 
-const rest = (asked) => whole.ask({ changes: Object.fromEntries(page.setting) }, (found) => { if (asked === page.asked) trusted(found); });
+const rest = (number) => whole.ask({ changes: Object.fromEntries(page.setting) }, (found) => { if (number === page.number) trusted(found); });
 
 function trusted(found) {
   if (found.trust) {
-    byId("trust").replaceChildren(element("dl", {}, ...Object.entries(found.trust).flatMap(([name, told]) =>
-      [element("dt", {}, name), element("dd", {}, told)])));
+    byId("trust").replaceChildren(element("dl", {}, ...Object.entries(found.trust).flatMap(([name, text]) =>
+      [element("dt", {}, name), element("dd", {}, text)])));
   } else byId("trust").replaceChildren(element("p", { class: "note" }, (found.messages || ["no answer"]).join(" ")));
   if (found.cycle) {
     const lines = new Map(Object.entries(found.cycle.omega).map(([stage, values]) => [`stage ${stage}`, values]));
@@ -112,14 +112,14 @@ function trusted(found) {
 
 // --- What is shown
 
-function tell(state, told, outcome = "") {
+function tell(state, text, outcome = "") {
   byId("state").textContent = state;
-  byId("told").textContent = told;
+  byId("note").textContent = text;
   document.body.dataset.outcome = outcome;
 }
 
-function show(asked, answer) {
-  const present = asked.asked === page.asked;
+function show(request, answer) {
+  const present = request.number === page.number;
   if (!answer.tables) {
     if (!present) return;
     empty();
@@ -128,9 +128,9 @@ function show(asked, answer) {
     say(answer.messages);
     return;
   }
-  page.shown = { ...asked, answer };
-  byId("answer").dataset.of = asked.asked;
-  byId("of").textContent = settingTold(asked);
+  page.shown = { ...request, answer };
+  byId("answer").dataset.of = request.number;
+  byId("of").textContent = settingText(request);
   byId("summary").textContent = summary(answer.bars);
   byId("tables").replaceChildren(...answer.tables.map(card));
   byId("states").replaceChildren(...(answer.states ? table(answer.states) : []));
@@ -140,7 +140,7 @@ function show(asked, answer) {
   tell(answer.status, answer.bound, answer.status);
   say(answer.messages);
   place(answer.count);
-  resting = setTimeout(() => rest(asked.asked), IDLE);
+  resting = setTimeout(() => rest(request.number), IDLE);
 }
 
 // K_γ of every stage: what stays in sight while sliders move.
@@ -165,7 +165,7 @@ function draw() {
   drawForces(answer.forces);
   studies.drawTrace(valueOf, answer);
   byId("pins").hidden = !page.pins.length;
-  byId("compared").replaceChildren(...comparison(page.pins, page.shown, settingTold, unpin));
+  byId("compared").replaceChildren(...comparison(page.pins, page.shown, settingText, unpin));
 }
 
 const redraw = () => page.shown && draw();
@@ -185,13 +185,13 @@ function say(messages) {
   byId("messages").replaceChildren(...(messages || []).map((message) => element("li", {}, message)));
 }
 
-function changesTold({ changes }) {
-  const told = Object.entries(changes).map(([key, value]) => `${key} = ${value}`);
-  const more = told.length > 5 ? `, and ${told.length - 5} more` : "";
-  return `${told.length ? `Setting: ${told.slice(0, 5).join(", ")}${more}` : "As the case has it"}.`;
+function changesText({ changes }) {
+  const parts = Object.entries(changes).map(([key, value]) => `${key} = ${value}`);
+  const more = parts.length > 5 ? `, and ${parts.length - 5} more` : "";
+  return `${parts.length ? `Setting: ${parts.slice(0, 5).join(", ")}${more}` : "As the case has it"}.`;
 }
 
-const settingTold = (one) => `${page.case.positions > 1 ? `Pictures at position ${one.position}. ` : ""}${changesTold(one)}`;
+const settingText = (one) => `${page.case.positions > 1 ? `Pictures at position ${one.position}. ` : ""}${changesText(one)}`;
 
 // --- Position
 
@@ -203,18 +203,18 @@ function place(count) {
   holder.replaceChildren();
   if (count < 2) return;
   const angles = page.case.angles?.length === count ? page.case.angles : null;
-  const told = element("span", { class: "small" });
+  const text = element("span", { class: "small" });
   const slider = element("input", { type: "range", id: "position-slider", min: 1, max: count, step: 1 });
   const label = () => {
     const angle = angles ? `, input turned by ${angles[page.position - 1]}°` : "";
-    told.textContent = `${page.position} of ${count}${angle}`;
-    slider.setAttribute("aria-valuetext", told.textContent);
+    text.textContent = `${page.position} of ${count}${angle}`;
+    slider.setAttribute("aria-valuetext", text.textContent);
   };
   slider.addEventListener("input", () => { page.position = Number(slider.value); label(); ask(); });
   slider.value = page.position;
   label();
   holder.append(element("div", { class: "control" }, element("div", { class: "head" },
-    element("label", { class: "key", for: "position-slider" }, "Position shown"), told), slider));
+    element("label", { class: "key", for: "position-slider" }, "Position shown"), text), slider));
 }
 
 // --- Pins
@@ -259,9 +259,9 @@ async function begin() {
   for (const [key, value] of Object.entries(link.changes)) page.setting.set(key, value);
   if (link.position <= page.case.positions) page.position = link.position;
   const names = link.names.length ? link.names : [...new Set(firstNames())].slice(0, FIRST);
-  const asked = ask();
+  const request = ask();
   for (const name of names) await take(name);
-  return asked;
+  return request;
 }
 
 const search = byId("search");
@@ -277,10 +277,10 @@ search.addEventListener("keydown", (event) => {
 });
 const view = () => ({ changes: Object.fromEntries(page.setting), names: page.controls.map((one) => one.name), position: page.position });
 byId("slopes").addEventListener("click", () => studies.slopes({ ...view(), keys: [...new Set([...page.controls.flatMap((one) => one.keys), ...mattering()])] }));
-byId("tolerance").addEventListener("click", () => samples.begin(view(), page.controls, changesTold));
+byId("tolerance").addEventListener("click", () => samples.begin(view(), page.controls, changesText));
 byId("reset").addEventListener("click", reset);
 byId("pin").addEventListener("click", pin);
 byId("link").addEventListener("click", () => copyLink(view()));
 byId("toml").addEventListener("click", () => saveText(view()));
-for (const kind of ["svg", "png"]) byId(kind).addEventListener("click", () => savePicture(kind, page, settingTold));
+for (const kind of ["svg", "png"]) byId(kind).addEventListener("click", () => savePicture(kind, page, settingText));
 begin().catch((error) => { document.body.dataset.state = "none"; tell("failed", `The page could not begin: ${error.message}`, "failed"); });

@@ -1,4 +1,4 @@
-// Pinned settings beside the present one, figure by figure.
+// Pinned settings next to the present one, figure by figure.
 import { element, table } from "./dom.js";
 
 export const pinnedBars = (pins) => pins.map((pin) => [pin.name, new Map(pin.answer.bars.map((bar) => [bar.mesh, bar.most]))]);
@@ -24,7 +24,7 @@ function changed(from, to) {
   return `${((100 * (to - from)) / Math.abs(from)).toPrecision(3)} %`.replace("-", "−");
 }
 
-export function comparison(pins, shown, told, unpin) {
+export function comparison(pins, shown, describe, unpin) {
   if (!pins.length) return [];
   const settings = [...pins.map((pin) => [pin.name, pin]), ["now", shown]];
   const known = settings.map(([, one]) => figures(one.answer));
@@ -34,7 +34,7 @@ export function comparison(pins, shown, told, unpin) {
     const cells = known.map((one) => one.get(key) || ["–", null]);
     return [key, ...cells.map(([text]) => text), changed(cells[0][1], cells.at(-1)[1])];
   });
-  const notes = pins.map((pin) => element("li", {}, `${pin.name}: ${told(pin)} `,
+  const notes = pins.map((pin) => element("li", {}, `${pin.name}: ${describe(pin)} `,
     element("button", { type: "button", "aria-label": `unpin ${pin.name}`, onclick: () => unpin(pin.name) }, "unpin")));
   return [element("ul", {}, ...notes), ...table({ columns, rows, notes: [] })];
 }

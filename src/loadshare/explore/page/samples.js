@@ -23,7 +23,7 @@ export function offer(studies) {
 
 const numbers = () => Object.fromEntries(FIELDS.map(([name]) => [name, byId(name).value.trim()]).filter(([, text]) => text !== "").map(([name, text]) => [name, Number(text)]));
 
-export async function begin(view, controls, told) {
+export async function begin(view, controls, describe) {
   const study = byId("scatter").value, status = byId("sampled");
   const ranges = Object.fromEntries(controls.map((one) => [one.name, [one.input.low, one.input.high]]));
   of = setting(view);
@@ -36,7 +36,7 @@ export async function begin(view, controls, told) {
   const whole = await asking.ask({ ...view, ...numbers(), ...(study === SHOWN ? { ranges } : { study }) }, (found) => {
     if (found.begun) {
       ({ samples, limit } = found.begun);
-      about(found.begun, told(view));
+      about(found.begun, describe(view));
     } else if (found.done) {
       status.textContent = `${found.done} of ${samples} samples${found.done < samples ? " …" : ""}`;
       show(found, limit);
@@ -61,16 +61,16 @@ export function forget(view) {
   byId("earlier").hidden = !other;
 }
 
-function about(begun, told) {
+function about(study, text) {
   byId("growing").hidden = false;
   byId("growing").dataset.earlier = false;
   byId("earlier").hidden = true;
-  byId("sampled-of").textContent = told;
-  const where = begun.positions.length === 1 ? `position ${begun.positions[0]}` : `${begun.positions.length} positions`;
-  const slow = begun.engine === "compiled" ? "" : " Solved by NumPy, which is slow: “loadshare warm” compiles what is fast.";
-  byId("drawn").textContent = `${begun.samples} ${begun.sampling} samples, seed ${begun.seed}, ${where}.${slow}`;
-  byId("scattering").replaceChildren(...table({ columns: [["input", false], ["scatters", false]], rows: begun.inputs }));
-  byId("scatter-toml").textContent = begun.toml;
+  byId("sampled-of").textContent = text;
+  const where = study.positions.length === 1 ? `position ${study.positions[0]}` : `${study.positions.length} positions`;
+  const slow = study.engine === "compiled" ? "" : " Solved by NumPy, which is slow: “loadshare warm” compiles what is fast.";
+  byId("drawn").textContent = `${study.samples} ${study.sampling} samples, seed ${study.seed}, ${where}.${slow}`;
+  byId("scattering").replaceChildren(...table({ columns: [["input", false], ["scatters", false]], rows: study.inputs }));
+  byId("scatter-toml").textContent = study.toml;
 }
 
 function show(found, limit) {

@@ -4,7 +4,7 @@ import { failed, post } from "./ask.js";
 
 const NAMES = 200;
 
-const done = (told) => { byId("done").textContent = told; };
+const done = (text) => { byId("done").textContent = text; };
 
 // What a link says; what is not of its form is left out, and the server checks the rest.
 export function linked(inputs) {
@@ -56,7 +56,7 @@ export async function saveText(view) {
 const GAP = 16, WIDE = 1000, HEAD = 58;
 
 // All pictures of the view on one sheet, with what it is of.
-function sheet(page, told) {
+function sheet(page, describe) {
   const made = shape("svg", { xmlns: "http://www.w3.org/2000/svg", "font-family": "Helvetica, Arial, sans-serif" });
   let x = GAP, y = HEAD, tall = 0, wide = 0;
   for (const svg of document.querySelectorAll("#answer figure:not([hidden]) > svg")) {
@@ -70,15 +70,15 @@ function sheet(page, told) {
   const width = Math.max(wide, 420), height = y + tall + GAP;
   for (const [name, value] of [["width", width], ["height", height], ["viewBox", `0 0 ${width} ${height}`]]) made.setAttribute(name, value);
   const letters = Math.floor(width / 7);
-  const lines = [page.case.title, told(page.shown), byId("told").textContent].map((t) => (t.length > letters ? `${t.slice(0, letters - 1)}…` : t));
+  const lines = [page.case.title, describe(page.shown), byId("note").textContent].map((t) => (t.length > letters ? `${t.slice(0, letters - 1)}…` : t));
   made.prepend(shape("rect", { width, height, fill: "#fff" }));
   lines.forEach((line, k) => made.append(shape("text", { x: GAP, y: 18 + 15 * k, "font-size": k ? 11 : 13, "font-weight": k ? 400 : 600, fill: "#1f2933" }, line)));
   return made;
 }
 
-export async function savePicture(kind, page, told) {
+export async function savePicture(kind, page, describe) {
   if (document.body.dataset.state !== "present") { done("There is no answer for this setting to be drawn."); return; }
-  const svg = sheet(page, told), text = new XMLSerializer().serializeToString(svg);
+  const svg = sheet(page, describe), text = new XMLSerializer().serializeToString(svg);
   const name = `${page.case.name || "case"}.${kind}`.replace(/[^\w.-]+/g, "_");
   if (kind === "svg") { download(text, "image/svg+xml", name); return; }
   const image = new Image(), url = URL.createObjectURL(new Blob([text], { type: "image/svg+xml" }));

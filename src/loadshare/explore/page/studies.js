@@ -13,14 +13,14 @@ const range = (control, view) => ({ name: control.name, low: control.input.low, 
 
 // Along an input these hold until anything else changes.
 export async function critical(control, view, redraw) {
-  if (searched) searched.marks([]), searched.told.textContent = "";
+  if (searched) searched.marks([]), searched.status.textContent = "";
   searched = control;
   control.marks([]);
-  control.told.textContent = "looking for critical values …";
+  control.status.textContent = "looking for critical values …";
   const known = new Map(), gaps = [];
   let confirmed = true;
   const whole = await asking.critical.ask({ ...range(control, view), at: Number(control.slider.value) }, (found) => {
-    if (!found.events) { control.told.textContent = why(found); return; }
+    if (!found.events) { control.status.textContent = why(found); return; }
     // What happens where two stretches meet is found by both.
     for (const event of found.events) known.set(event.told, event);
     gaps.push(...found.gaps);
@@ -29,20 +29,20 @@ export async function critical(control, view, redraw) {
     redraw();
     const count = `${known.size || "no"} critical value${known.size === 1 ? "" : "s"}`;
     const doubt = gaps.length ? `not proved in ${gaps.length} grey stretch${gaps.length === 1 ? "" : "es"}` : confirmed ? "proved, there are no others" : "not all confirmed";
-    control.told.textContent = found.done < found.of ? `${count} so far, in ${found.done} of ${found.of} stretches of the slider …` : `${count} on the slider; ${doubt}`;
+    control.status.textContent = found.done < found.of ? `${count} so far, in ${found.done} of ${found.of} stretches of the slider …` : `${count} on the slider; ${doubt}`;
   });
   if (whole && searched === control) searched = null;
 }
 
 export async function sweep(control, view, redraw) {
-  control.told.textContent = "sweeping …";
+  control.status.textContent = "sweeping …";
   const whole = await asking.sweep.ask(range(control, view), (found) => {
-    control.told.textContent = !found.x ? why(found) : found.refused ? `${found.refused} points without an answer: ${why(found)}` : "";
+    control.status.textContent = !found.x ? why(found) : found.refused ? `${found.refused} points without an answer: ${why(found)}` : "";
     if (!found.x) return;
     traced = { ...found, control };
     redraw();
   });
-  if (!whole) control.told.textContent = "";
+  if (!whole) control.status.textContent = "";
 }
 
 export const traceOf = (gear) => traced?.places[gear] || [];
@@ -59,14 +59,14 @@ export function drawTrace(value, shown) {
 }
 
 export function slopes({ keys, changes, position }) {
-  const rows = [], notes = new Set(), told = byId("slopes-told");
-  told.textContent = `working out what ${keys.length} inputs do …`;
+  const rows = [], notes = new Set(), status = byId("slopes-status");
+  status.textContent = `working out what ${keys.length} inputs do …`;
   return asking.slopes.ask({ keys, changes, position }, (found) => {
-    if (!found.rows) { told.textContent = why(found); return; }
+    if (!found.rows) { status.textContent = why(found); return; }
     rows.push(...found.rows);
     rows.sort(([, a], [, b]) => b - a);
     for (const note of found.notes) notes.add(note);
-    told.textContent = found.done < found.of ? `${found.done} of ${found.of} inputs so far …` : "";
+    status.textContent = found.done < found.of ? `${found.done} of ${found.of} inputs so far …` : "";
     byId("mattering").replaceChildren(...table({ columns: HEADS, rows: rows.map(([row]) => row), notes: [...notes].slice(0, 3) }));
   });
 }
@@ -74,11 +74,11 @@ export function slopes({ keys, changes, position }) {
 // What belongs to one setting ends with it; what runs along an input ends with all others.
 export function forget(keys, controls) {
   asking.slopes.stop();
-  byId("slopes-told").textContent = "";
+  byId("slopes-status").textContent = "";
   byId("mattering").replaceChildren();
   const own = (control) => keys && control.keys.length === keys.length && control.keys.every((key) => keys.includes(key));
   if (searched && !own(searched)) asking.critical.stop(), searched = null;
   if (!controls.some(own)) asking.sweep.stop();
-  for (const control of controls) if (!own(control)) { control.marks([]); control.told.textContent = ""; }
+  for (const control of controls) if (!own(control)) { control.marks([]); control.status.textContent = ""; }
   if (traced && !own(traced.control)) traced = null;
 }

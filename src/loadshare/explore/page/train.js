@@ -65,16 +65,16 @@ export function drawForces(forces) {
       const force = (forces || {})[mesh.name];
       if (!force || !mesh.push || !largest) continue;
       const way = Math.sign(force), size = Math.hypot(...mesh.push);
-      const told = shape("title", {}, `mesh ${mesh.name}: ${force.toPrecision(4)} N`);
+      const title = shape("title", {}, `mesh ${mesh.name}: ${force.toPrecision(4)} N`);
       const [x, y] = one.at(mesh.at), stroke = WIDEST * Math.abs(force) / largest;
       if (size < 0.05) {
-        arrows.push(shape("circle", { cx: x, cy: y, r: Math.max(stroke / 2, 0.5) + 1, fill: WARNING }, told));
+        arrows.push(shape("circle", { cx: x, cy: y, r: Math.max(stroke / 2, 0.5) + 1, fill: WARNING }, title));
         continue;
       }
       const [u, v] = [way * mesh.push[0], -way * mesh.push[1]];
       const length = 0.11 * one.size, tip = [x + length * u, y + length * v], back = [x - 0.35 * length * u, y - 0.35 * length * v];
       const made = path(broadArrow(back, tip, Math.max(stroke, 0.5)), { fill: WARNING, opacity: 0.85, "data-mesh": mesh.name }, true);
-      made.append(told);
+      made.append(title);
       arrows.push(made);
     }
     one.forces.replaceChildren(...arrows);

@@ -168,8 +168,11 @@ def _figure(
         else:
             panel = _lines(own, looks, reading, hover)
         panels.append(panel.properties(title=heading(stage)))
-    told = [result.stamp.title or result.stamp.case, _same_everywhere(result, rows, reading.field)]
-    return marks.figure(name, marks.stages(panels), title, told)
+    subtitle = [
+        result.stamp.title or result.stamp.case,
+        _same_everywhere(result, rows, reading.field),
+    ]
+    return marks.figure(name, marks.stages(panels), title, subtitle)
 
 
 def _same_everywhere(result: Result, rows: Sequence[Row], field: str) -> str:
@@ -228,7 +231,7 @@ def _bars(
     )
     bars = chart(shown).mark_bar(height=13)
     layers = [bars.encode(y=y, x=x, x2=alt.X2("start:Q"), color=colours, tooltip=hover)]
-    # What is printed as the reference shall not stand on its other side by round-off.
+    # What is printed as the reference shall not appear on its other side by round-off.
     below = [round(row[reading.field], reading.places) < start for row in shown]
     for is_below, align, dx in ((True, "right", -5), (False, "left", 5)):
         part = [row for row, its in zip(shown, below, strict=True) if its is is_below]

@@ -63,11 +63,11 @@ def comparison(found: Comparison) -> Figure:
             ),
         ),
     ).properties(width=WIDTH, height=ROW * len(rows))
-    told = [
+    subtitle = [
         f"χ² = {found.chi_square:.4g} over {len(rows)} figures",
         f"grey: ±{EXPECTED:g} standard deviations of the measurement",
     ]
-    return marks.figure("comparison", drawing, "Measured against computed", told)
+    return marks.figure("comparison", drawing, "Measured against computed", subtitle)
 
 
 def _name(key: str, position: int | None) -> str:

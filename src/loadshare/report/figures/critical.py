@@ -54,8 +54,8 @@ def critical(found: Critical) -> Figure:
             for u in found.unproved
         ]
         ends = {"x": axis(alt.X, "start:Q", None, [found.start, found.stop]), "x2": "stop:Q"}
-        told = hover(("start:Q", "not proved from"), ("stop:Q", "to"), "position:Q", "why:N")
-        layers.append(chart(gaps).mark_rect(color=FAINT).encode(**ends, tooltip=told))
+        tooltip = hover(("start:Q", "not proved from"), ("stop:Q", "to"), "position:Q", "why:N")
+        layers.append(chart(gaps).mark_rect(color=FAINT).encode(**ends, tooltip=tooltip))
     colours = alt.Scale(domain=kinds, range=list(COLOURS[: len(kinds)]))
     shapes = alt.Scale(domain=kinds, range=[SHAPES[n % len(SHAPES)] for n in range(len(kinds))])
     legend = alt.Legend(title=None, orient="bottom", columns=2)

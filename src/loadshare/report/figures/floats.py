@@ -17,7 +17,7 @@ from loadshare.report.figures.region import Journey, Region
 from loadshare.report.numbers import significant
 from loadshare.report.palette import FAINT, INK, SOFT, WARNING, Look, palette_of
 from loadshare.report.units import MICROMETRE, engineering
-from loadshare.report.words import boundary_name, direction_name, places_told
+from loadshare.report.words import boundary_name, direction_name, places_text
 from loadshare.results import Result
 from loadshare.train import Train
 
@@ -59,15 +59,15 @@ def floats(result: Result, train: Train) -> Figure:
         )
     palette = palette_of(result)
     journeys = [Journey(result, train, gear) for gear in gears]
-    most = max(len(journey.told) for journey in journeys)
+    most = max(len(journey.subtitle) for journey in journeys)
     panels = [_Panel(journey, palette.gear(journey.gear)).chart(most) for journey in journeys]
-    told = [
+    subtitle = [
         result.stamp.title or result.stamp.case,
         "grey: where the centre may be; points: where it is, with the numbers of the positions; "
         "arrow: reaction of the ring on the gear where it is largest",
     ]
     grid = alt.concat(*panels, columns=3 if len(panels) != 4 else 2)
-    return marks.figure("floats", grid, "Where the floats rest", told)
+    return marks.figure("floats", grid, "Where the floats rest", subtitle)
 
 
 class _Panel(Panel):
@@ -100,8 +100,8 @@ class _Panel(Panel):
             # On top: what lies over a point would keep the pointer from it.
             *self._path(),
         ]
-        told = [*self.journey.told, *[" "] * (lines - len(self.journey.told))]
-        title = alt.TitleParams(text=f"Gear {self.journey.gear}", subtitle=told)
+        subtitle = [*self.journey.subtitle, *[" "] * (lines - len(self.journey.subtitle))]
+        title = alt.TitleParams(text=f"Gear {self.journey.gear}", subtitle=subtitle)
         return alt.layer(*layers).properties(width=SIDE, height=SIDE, title=title)
 
     def _here(self, points: list[Point]) -> list[Point]:
@@ -131,11 +131,11 @@ class _Panel(Panel):
         for boundary in region.boundaries:
             facts = _facts(boundary.name, touches.get(boundary.name))
             lines += path_rows(self._here(boundary.path), **facts)
-        told = hover(
+        tooltip = hover(
             "boundary:N", ("margin:Q", "margin [µm]", ".3f"), ("force:Q", "force [N]", ".2f")
         )
         area = self.line(outlines, "piece", clip=True, filled=True, color=FAINT, stroke=FAINT)
-        edges = self.line(lines, "boundary", told, clip=True, color=INK, strokeWidth=1.6)
+        edges = self.line(lines, "boundary", tooltip, clip=True, color=INK, strokeWidth=1.6)
         return [*area, *edges]
 
     def _circles(self) -> list[Any]:
@@ -159,7 +159,7 @@ class _Panel(Panel):
     def _path(self) -> list[Any]:
         journey = self.journey
         # Of points that fall together, the uppermost speaks for all of them.
-        called = {n: places_told(numbers) for _, numbers in self._spots() for n in numbers}
+        called = {n: places_text(numbers) for _, numbers in self._spots() for n in numbers}
         rows = [
             {
                 "x": x,
@@ -176,7 +176,7 @@ class _Panel(Panel):
                 zip(self.places, journey.positions, journey.rests, strict=True)
             )
         ]
-        told = hover(
+        tooltip = hover(
             ("called:N", "position"),
             ("x:Q", self.unit.title("x"), ".3f"),
             ("y:Q", self.unit.title("y"), ".3f"),
@@ -188,7 +188,7 @@ class _Panel(Panel):
         look = self.look
         return [
             *self.line(rows, clip=True, color=look.colour, strokeWidth=1, opacity=0.6),
-            *self.points(rows, told, filled=True, color=look.colour, shape=look.shape, size=55),
+            *self.points(rows, tooltip, filled=True, color=look.colour, shape=look.shape, size=55),
         ]
 
     def _shaft(self) -> list[Point]:
@@ -218,7 +218,7 @@ class _Panel(Panel):
         spots = self._spots() if len(self.places) > 1 else []
         for place, numbers in spots if len(spots) <= NUMBERED else spots[::5]:
             others = [other for other, _ in spots if other != place]
-            labels.place(places_told(numbers), [place], gap=7.0, others=others)
+            labels.place(places_text(numbers), [place], gap=7.0, others=others)
         found += labels.layers(self.x, self.y, INK)
         for boundary in journey.region.boundaries if journey.region else ():
             path = self._here(boundary.path)

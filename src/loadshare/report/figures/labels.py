@@ -1,6 +1,6 @@
 """Words placed where they cover least: each takes the best of some places around its point.
 
-What stands further away is led to its point by a thin line.
+What is further away is joined to its point by a thin line.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ class Labels:
         gap: float = 5.0,
         others: Sequence[Point] = (),
     ) -> None:
-        """Put a label beside the best of some points.
+        """Put a label next to the best of some points.
 
         Parameters
         ----------
@@ -114,19 +114,19 @@ class Labels:
         self.rows.append({"x": (left + right) / 2, "y": (low + high) / 2, "text": text})
 
     def layers(self, x: Any, y: Any, colour: str = SOFT, **style: Any) -> list[Drawing]:
-        """Return what was placed as layers, or none, and begin anew with the same obstacles."""
+        """Return what was placed as layers, or none, and start again with the same obstacles."""
         rows, self.rows = self.rows, []
         leaders, self._leaders = self._leaders, []
         if not rows:
             return []
         words = chart(rows).encode(x=x, y=y, text=alt.Text("text:N"))
-        told = rimmed(words, colour, fontSize=SIZE, baseline="middle", **style)
+        texts = rimmed(words, colour, fontSize=SIZE, baseline="middle", **style)
         if not leaders:
-            return told
+            return texts
         line = chart(leaders).mark_line(color=colour, strokeWidth=0.6)
         return [
             line.encode(x=x, y=y, order=alt.Order("order:Q"), detail=alt.Detail("label:N")),
-            *told,
+            *texts,
         ]
 
     def _around(

@@ -51,11 +51,11 @@ def law(result: Result, train: Train) -> Figure:
         looks = {mesh: palette.mesh(mesh) for mesh in meshes}
         panel = _panel(curves, shown, channels("mesh", looks, "mesh"), torque_unit, angle_unit)
         panels.append(panel.properties(title=heading(title)))
-    told = [
+    subtitle = [
         result.stamp.title or result.stamp.case,
         "grey: the law of a mesh at each meshing position; points: where it works",
     ]
-    return marks.figure("law", marks.stages(panels), "How the meshes yield", told)
+    return marks.figure("law", marks.stages(panels), "How the meshes yield", subtitle)
 
 
 def _working(result: Result, train: Train) -> Iterator[Row]:
@@ -111,7 +111,7 @@ def _panel(
     x = axis(alt.X, "torque:Q", title, [0.0, reach], tickCount=6)
     y = axis(alt.Y, "angle:Q", angle.title("deformation at the driver"), [0.0, top])
     lines = chart(curves).mark_line(color=SOFT, strokeWidth=1, opacity=0.7)
-    told = hover(
+    tooltip = hover(
         "mesh:N",
         "position:Q",
         ("cycle:Q", "position in the mesh cycle"),
@@ -121,5 +121,5 @@ def _panel(
     working = chart(points).mark_point(filled=True, size=44, opacity=0.9)
     return alt.layer(
         lines.encode(x=x, y=y, detail=alt.Detail("curve:N")),
-        working.encode(x=x, y=y, **by_mesh, tooltip=told),
+        working.encode(x=x, y=y, **by_mesh, tooltip=tooltip),
     ).properties(width=300, height=200)

@@ -41,13 +41,13 @@ def stiffness(found: Ltca, title: str) -> Figure:
     rated = values[_name(1.0)]
     unit = stiffness_unit(rated)
     panel = _panel(found.phase, values, unit, "mesh stiffness at the driver")
-    said = [
+    subtitle = [
         title,
         f"at T = {significant(found.rated)} N·m from {significant(unit.of(rated.min()))} to "
         f"{significant(unit.of(rated.max()))} {unit.name}, max/min "
         f"{rated.max() / rated.min():.3f}",
     ]
-    return marks.figure("stiffness", panel, "Mesh stiffness", said)
+    return marks.figure("stiffness", panel, "Mesh stiffness", subtitle)
 
 
 def stiffness_unit(values: np.ndarray) -> Unit:
@@ -79,12 +79,12 @@ def transmission_error(found: Ltca, title: str) -> Figure:
         _panel(found.phase, varying, MICRORADIAN, "the same less its mean"),
     )
     swing = np.ptp(values[_name(1.0)])
-    said = [
+    subtitle = [
         title,
         f"peak to peak {MICRORADIAN.of(np.ptp(found.unloaded_error)):.2f} µrad without load, "
         f"{MICRORADIAN.of(swing):.1f} µrad at T = {significant(found.rated)} N·m",
     ]
-    return marks.figure("transmission_error", both, "Transmission error", said)
+    return marks.figure("transmission_error", both, "Transmission error", subtitle)
 
 
 def _panel(phase: np.ndarray, values: Mapping[str, np.ndarray], unit: Unit, what: str) -> Drawing:
@@ -97,8 +97,8 @@ def _panel(phase: np.ndarray, values: Mapping[str, np.ndarray], unit: Unit, what
     title = unit.title(what)
     y = axis(alt.Y, "y:Q", title, padded(min(every), max(every), least))
     x = axis(alt.X, "x:Q", "phase of the mesh cycle", [0, 1])
-    told = hover(("name:N", "torque"), ("x:Q", "phase", ".3~f"), ("y:Q", title, ".5~g"))
-    drawn = curves(rows, "name", looks, "torque", x=x, y=y, tooltip=told)
+    tooltip = hover(("name:N", "torque"), ("x:Q", "phase", ".3~f"), ("y:Q", title, ".5~g"))
+    drawn = curves(rows, "name", looks, "torque", x=x, y=y, tooltip=tooltip)
     return alt.layer(*drawn).properties(width=WIDTH, height=HEIGHT)
 
 

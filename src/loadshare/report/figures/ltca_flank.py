@@ -70,7 +70,7 @@ def load_map(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
     Returns
     -------
     Figure
-        Every line where it stands at its position of the cycle; grey where it carries nothing.
+        Every line where it is at its position of the cycle; grey where it carries nothing.
     """
     lines = _lines(found)
     rows = [row for number, line in lines for row in _ribbon(planes[0], number, line)]
@@ -79,20 +79,20 @@ def load_map(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
     colour = alt.Color("value:Q", title=["load per length", "[N/mm]"], **_shades(top))
     bare = chart([row for row in rows if row["value"] == 0.0])
     loaded = chart([row for row in rows if row["value"] > 0.0])
-    told = hover("position:Q", ("pair:Q", "pair of teeth"), ("value:Q", "load [N/mm]", ".4~g"))
+    tooltip = hover("position:Q", ("pair:Q", "pair of teeth"), ("value:Q", "load [N/mm]", ".4~g"))
     ends = {**where, "x2": "x2:Q", "y2": "y2:Q"}
     # Thin enough that the lines of neighbouring positions stand apart.
     thick = float(np.clip(0.6 * HEIGHT / max(len(lines), 1), 2.0, 6.0))
     panel = alt.layer(
         bare.mark_rule(strokeWidth=1, color=SOFT, opacity=0.5).encode(**ends),
-        loaded.mark_rule(strokeWidth=thick).encode(**ends, color=colour, tooltip=told),
+        loaded.mark_rule(strokeWidth=thick).encode(**ends, color=colour, tooltip=tooltip),
     ).properties(width=WIDTH, height=HEIGHT)
-    said = [
+    subtitle = [
         title,
         f"contact lines of {len(found.positions)} positions on the driver's flank at "
         f"{significant(found.rated)} N·m; {BELOW} {significant(top, 3)} N/mm",
     ]
-    return marks.figure("load_map", panel, "Load on the flank", said)
+    return marks.figure("load_map", panel, "Load on the flank", subtitle)
 
 
 def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
@@ -107,7 +107,9 @@ def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
     """
     lines = [(number, line) for number, line in _lines(found) if line.loaded]
     top = _top([line.pressure for _, line in lines], lines, 1e-6)
-    told = hover("position:Q", ("pair:Q", "pair of teeth"), ("value:Q", "pressure [MPa]", ".4~g"))
+    tooltip = hover(
+        "position:Q", ("pair:Q", "pair of teeth"), ("value:Q", "pressure [MPa]", ".4~g")
+    )
     panels = []
     for which, (name, plane) in enumerate(zip(("driver", "driven gear"), planes, strict=True)):
         rows = [row for number, line in lines for row in _band(plane, number, line, which)]
@@ -117,17 +119,17 @@ def contact_pattern(found: Ltca, planes: Sequence[Plane], title: str) -> Figure:
             order=alt.Order("order:Q"),
             detail=alt.Detail("cell:N"),
             color=alt.Color("value:Q", title=["pressure", "[MPa]"], **_shades(top)),
-            tooltip=told,
+            tooltip=tooltip,
         )
         panels.append(
             shown.properties(width=WIDTH, height=HEIGHT, title=heading(f"flank of the {name}"))
         )
-    said = [
+    subtitle = [
         title,
         f"areas of contact at {len(found.positions)} positions and "
         f"{significant(found.rated)} N·m; {BELOW} {significant(top, 3)} MPa",
     ]
-    return marks.figure("contact_pattern", alt.vconcat(*panels), "Contact pattern", said)
+    return marks.figure("contact_pattern", alt.vconcat(*panels), "Contact pattern", subtitle)
 
 
 def _lines(found: Ltca) -> list[tuple[int, LineLoad]]:

@@ -18,7 +18,7 @@ from loadshare.report.palette import DASHES, INK, SHAPES, SOFT, WARNING, Look
 Drawing = Any
 Row = dict[str, Any]
 Point = tuple[float, float]
-Told = str | Sequence[str]
+Subtitle = str | Sequence[str]
 
 
 class _Encoding(alt.FacetedEncoding):
@@ -96,7 +96,7 @@ def dashed_lines(
 
 
 def distinct(looks: Mapping[str, Look]) -> list[Look]:
-    """Looks in order, those that stood before given another dash and shape."""
+    """Looks in order, those that occurred before given another dash and shape."""
     found: list[Look] = []
     for wanted in looks.values():
         use, number = wanted, 0
@@ -134,7 +134,7 @@ def curves(
         Of the legend.
     x, y : channel
     tooltip : list of channels
-        Told of each point.
+        Shown for each point.
     order : str, optional
         Channel along which the points are joined; by default from left to right.
     width : float
@@ -203,24 +203,24 @@ def padded(low: float, high: float, least: float, share: float = 0.08) -> list[f
     return [middle - half * (1 + 2 * share), middle + half * (1 + 2 * share)]
 
 
-def heading(title: str, subtitle: Told = "") -> alt.TitleParams:
+def heading(title: str, subtitle: Subtitle = "") -> alt.TitleParams:
     """Return the title of a picture or panel."""
     lines = [subtitle] if isinstance(subtitle, str) else list(subtitle)
     lines = [line for line in lines if line]
     return alt.TitleParams(text=title, subtitle=lines) if lines else alt.TitleParams(text=title)
 
 
-def figure(name: str, drawing: Drawing, title: str, told: Told = "") -> Figure:
+def figure(name: str, drawing: Drawing, title: str, subtitle: Subtitle = "") -> Figure:
     """Return a drawing as a figure under a title."""
-    return Figure(name, drawing.properties(title=heading(title, told)))
+    return Figure(name, drawing.properties(title=heading(title, subtitle)))
 
 
 def hover(*fields: str | tuple[str, ...]) -> list[alt.Tooltip]:
     """Return what the tooltip shows: fields by their own names, or (field, title, format)."""
-    told = [(f, f.partition(":")[0]) if isinstance(f, str) else f for f in fields]
+    named = [(f, f.partition(":")[0]) if isinstance(f, str) else f for f in fields]
     return [
         alt.Tooltip(field, title=title, format=form[0] if form else alt.Undefined)
-        for field, title, *form in told
+        for field, title, *form in named
     ]
 
 
@@ -256,7 +256,7 @@ def axis(
 
 
 def stages(panels: Sequence[Drawing]) -> Drawing:
-    """Return the panels of stages beside one another, each with its own legend."""
+    """Return the panels of stages side by side, each with its own legend."""
     grid = alt.concat(*panels, columns=2)
     return grid.resolve_scale(color="independent", shape="independent")
 
@@ -293,11 +293,11 @@ class Panel:
     ) -> list[Drawing]:
         """Return paths as a layer, one for each value of the field `by`; no layer without rows."""
         # Channels, not their short forms: to find out which is meant, Altair hashes its schema.
-        told: dict[str, Any] = {"order": alt.Order("order:Q")}
-        told |= {"detail": alt.Detail(f"{by}:N")} if by else {}
-        told |= {"tooltip": tooltip} if tooltip else {}
+        encoding: dict[str, Any] = {"order": alt.Order("order:Q")}
+        encoding |= {"detail": alt.Detail(f"{by}:N")} if by else {}
+        encoding |= {"tooltip": tooltip} if tooltip else {}
         drawn = chart(rows).mark_line(**style)
-        return [drawn.encode(x=self.x, y=self.y, **told)] if rows else []
+        return [drawn.encode(x=self.x, y=self.y, **encoding)] if rows else []
 
     def points(self, rows: Sequence[Row], tooltip: Any, **style: Any) -> list[Drawing]:
         """Return points as a layer; no layer without rows."""
@@ -311,7 +311,7 @@ BESIDE = {
 }
 """Styles of words that run along a rule, by their side of it."""
 BREADTH = 15.0
-"""Room that words along a rule need beside it [px]."""
+"""Room that words along a rule need next to it [px]."""
 LETTER = 4.5
 """Length of a letter of these words, on average [px]."""
 TOP = 4.0

@@ -19,7 +19,7 @@ from loadshare.contact.radial import spline_law
 from loadshare.report.figures.marks import Point, circle
 from loadshare.report.numbers import significant
 from loadshare.report.units import MICROMETRE
-from loadshare.report.words import boundary_name, rest_told, spline_told
+from loadshare.report.words import boundary_name, rest_lines, spline_lines
 from loadshare.results import Position, Result
 from loadshare.train import Train
 from loadshare.train.placed import standing
@@ -115,7 +115,7 @@ def region(
 def _disc(train: Train, ring: RoundRing) -> Region:
     x, y = (float(v) for v in train.gears[ring.gear].plane @ ring.offset)
     outline = circle((x, y), ring.radius)
-    # Named at the upper right, where neither axis stands.
+    # Named at the upper right, where neither axis is.
     outward = (math.sqrt(0.5), math.sqrt(0.5))
     return Region([outline], [Boundary(boundary_name(ring.name), outline, outward)])
 
@@ -265,15 +265,15 @@ class Journey:
         return ((lows[0] + highs[0]) / 2, (lows[1] + highs[1]) / 2), max(half, LEAST)
 
     @property
-    def told(self) -> list[str]:
+    def subtitle(self) -> list[str]:
         """Where the float rests, and how the picture is drawn, in words."""
         factor = MILLIMETRES / 1e3 / (2.0 * self.view[1])
         enlarged = float(f"{factor:.2g}")
         stages = [n if n in self.circles else f"{n} (not shown)" for n in self._stages]
         outside = ", ".join(self._outside)
         return [
-            *rest_told(self.rests, [p.position for p in self.positions]),
-            *spline_told(self.rests),
+            *rest_lines(self.rests, [p.position for p in self.positions]),
+            *spline_lines(self.rests),
             *([", ".join(stages)] if stages else []),
             *([f"outside the picture: {outside}"] if outside else []),
             f"enlarged about {enlarged:,.0f} : 1 at a width of {MILLIMETRES:g} mm",

@@ -101,8 +101,8 @@ def sensitivity(found: Sensitivity, stage: str = "system", over: Over = "stage")
     )
     left = len(found.inputs) - len(shown)
     name = "the system" if stage == "system" else f"stage {stage}"
-    told = [
+    subtitle = [
         f"first order, by the mean of the {over}",
         f"{left} inputs of less effect, or 0, are not shown" if left else "",
     ]
-    return marks.figure("sensitivity", drawing, f"What moves Ω of {name}", told)
+    return marks.figure("sensitivity", drawing, f"What moves Ω of {name}", subtitle)

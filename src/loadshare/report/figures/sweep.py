@@ -62,7 +62,7 @@ def sweep(
     data : xarray.Dataset
         As a sweep gives it. The dimensions of ``status`` are the parameters, one or two; their
         coordinates have the attribute ``units``. The variable shown has these dimensions, and
-        beside them any of ``position``, ``component`` (x, y: the size is shown), and one of
+        besides them any of ``position``, ``component`` (x, y: the size is shown), and one of
         ``stage``, ``mesh``, ``float``, ``gear`` with a line or map for each name; its attributes
         are ``units`` (SI) and ``long_name``. NaN marks what was not certified.
     show : str
@@ -92,13 +92,13 @@ def sweep(
             "dimensions of its variable status"
         )
     shown = _shown(data, parameters, show, names, position)
-    said = shown.axis
-    told = [str(data.attrs.get("title") or data.attrs.get("case", "")), _refused(data)]
+    title = shown.axis
+    subtitle = [str(data.attrs.get("title") or data.attrs.get("case", "")), _refused(data)]
     if len(parameters) == 1:
         drawing = _lines(data, shown, parameters[0], events)
     else:
         drawing = _maps(data, shown, parameters)
-    return marks.figure(f"sweep_{show}", drawing, f"{said[:1].upper()}{said[1:]}", told)
+    return marks.figure(f"sweep_{show}", drawing, f"{title[:1].upper()}{title[1:]}", subtitle)
 
 
 @dataclass(frozen=True)
@@ -138,7 +138,7 @@ def _shown(
             raise LoadshareError("no point of the sweep has an answer, so nothing can be drawn")
         raise LoadshareError(f"the sweep has no variable {show!r}. Allowed: {there}")
     variable = data[show]
-    told = str(variable.attrs.get("long_name", show))
+    title = str(variable.attrs.get("long_name", show))
     if "component" in variable.dims:
         variable = (variable**2).sum("component", skipna=False) ** 0.5
     if "position" in variable.dims:
@@ -146,10 +146,10 @@ def _shown(
             if position not in variable["position"].values:
                 raise LoadshareError(f"the sweep has no position {position}")
             variable = variable.sel(position=position)
-            told += f" at position {position}"
+            title += f" at position {position}"
         elif variable.sizes["position"] > 1:
             variable = variable.max("position")
-            told += ", largest over positions"
+            title += ", largest over positions"
         else:
             variable = variable.isel(position=0)
     by = next((d for d in NAMED_BY if d in variable.dims), None)
@@ -169,7 +169,7 @@ def _shown(
     wanted = [wanted[k] for k in keep]
     looks = _looks(data, by, wanted)
     least = LEAST.get(si, 1e-6) * unit.factor
-    return _Shown(wanted, by, values[keep] * unit.factor, unit, told, looks, least)
+    return _Shown(wanted, by, values[keep] * unit.factor, unit, title, looks, least)
 
 
 def _telling(
@@ -224,8 +224,8 @@ def _lines(data: xr.Dataset, shown: _Shown, name: str, events: Sequence[Event]) 
     ]
     y_axis = axis(alt.Y, "y:Q", shown.axis, shown.domain(0.08))
     x_axis = axis(alt.X, "x:Q", title, scale={"zero": False})
-    told = hover(("name:N", shown.by), ("x:Q", title), ("y:Q", shown.axis, ".6~g"))
-    layers = curves(rows, "name", shown.looks, shown.by, x=x_axis, y=y_axis, tooltip=told)
+    tooltip = hover(("name:N", shown.by), ("x:Q", title), ("y:Q", shown.axis, ".6~g"))
+    layers = curves(rows, "name", shown.looks, shown.by, x=x_axis, y=y_axis, tooltip=tooltip)
     if events:
         ends = [*grid, *(value for value, _ in events)]
         pixels = WIDTH / ((max(ends) - min(ends)) or 1.0)
@@ -233,8 +233,8 @@ def _lines(data: xr.Dataset, shown: _Shown, name: str, events: Sequence[Event]) 
             {"x": float(value), "text": text, "top": _clear(shown, grid, value, text, pixels)}
             for value, text in events
         ]
-        told = hover(("text:N", "event"), ("x:Q", title))
-        layers += rules(marked, x_axis, pixels, tooltip=told)
+        event_tooltip = hover(("text:N", "event"), ("x:Q", title))
+        layers += rules(marked, x_axis, pixels, tooltip=event_tooltip)
     return alt.layer(*layers).properties(width=WIDTH, height=HEIGHT)
 
 
@@ -271,7 +271,7 @@ def _maps(data: xr.Dataset, shown: _Shown, parameters: list[str]) -> Drawing:
         )
     }
     where = {**places, "x2": "x2:Q", "y2": "y2:Q"}
-    told = hover(("a:Q", x_title), ("b:Q", y_title), ("value:Q", shown.axis, ".6~g"))
+    tooltip = hover(("a:Q", x_title), ("b:Q", y_title), ("value:Q", shown.axis, ".6~g"))
     panels = []
     for name, values in zip(shown.names, shown.values, strict=True):
         certified: list[Row] = []
@@ -285,10 +285,10 @@ def _maps(data: xr.Dataset, shown: _Shown, parameters: list[str]) -> Drawing:
                 refused.append({**cell, "value": None})
         # Each cell reaches under the next ones: seams would look like lines of the map.
         cells = chart(certified).mark_rect(x2Offset=0.5, y2Offset=-0.5)
-        layers: list[Any] = [cells.encode(**where, color=colour, tooltip=told)]
+        layers: list[Any] = [cells.encode(**where, color=colour, tooltip=tooltip)]
         if refused:
             crossed = chart(refused).mark_rect(fillOpacity=0, stroke=WARNING, strokeDash=[2, 2])
-            layers.append(crossed.encode(**where, tooltip=told))
+            layers.append(crossed.encode(**where, tooltip=tooltip))
         panel = alt.layer(*layers).properties(width=MAP, height=MAP)
         called = name if name == "system" else f"{shown.by} {name}"
         panels.append(panel.properties(title=heading(called[:1].upper() + called[1:])))

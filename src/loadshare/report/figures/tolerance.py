@@ -67,17 +67,17 @@ def tolerance(data: xr.Dataset, stage: str = "system") -> Figure:
     parts: list[Any] = [alt.vconcat(found.bars(), found.cumulative(), spacing=14)]
     if "first_order" in one or "total_order" in one:
         parts.append(_inputs(one))
-    told = [
+    subtitle = [
         str(one.attrs.get("title") or one.attrs.get("case", "")),
         f"{int(found.counts.sum()):,} samples",
     ]
     if "over" in one.coords:
-        told.append(f"torque over the mean of its {one['over'].item()}")
+        subtitle.append(f"torque over the mean of its {one['over'].item()}")
     if limit is not None and "exceedance" in one:
-        told.append(_exceedance(one, float(limit)))
+        subtitle.append(_exceedance(one, float(limit)))
     name = "the system" if stage == "system" else f"stage {stage}"
     grid = alt.hconcat(*parts, spacing=40)
-    return drawn.figure("tolerance", grid, f"How Ω of {name} scatters", told)
+    return drawn.figure("tolerance", grid, f"How Ω of {name} scatters", subtitle)
 
 
 def _histogram(one: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
@@ -132,8 +132,8 @@ class _Distribution:
         low, high = min(every) - room, max(every) + room
         whole = {"zero": False}
         x = axis(alt.X, "x:Q", title, [low, high], scale=whole, tickCount=6, grid=False)
-        told = hover(("text:N", "mark"), ("x:Q", "Ω", ".5f"))
-        marked = rules(self.marks, x, WIDTH / (high - low), tooltip=told, words=words)
+        tooltip = hover(("text:N", "mark"), ("x:Q", "Ω", ".5f"))
+        marked = rules(self.marks, x, WIDTH / (high - low), tooltip=tooltip, words=words)
         layers = [bars.encode(x=x, y=y, **more), *marked]
         return alt.layer(*layers).properties(width=WIDTH, height=height)
 
@@ -144,13 +144,13 @@ class _Distribution:
             {"x": float(a), "x2": float(b), "share": float(v), "count": float(c)}
             for a, b, v, c in zip(self.edges[:-1], self.edges[1:], part, self.counts, strict=True)
         ]
-        told = hover(("x:Q", "Ω from", ".5f"), ("x2:Q", "to", ".5f"), ("share:Q", SHARE, ".4%"))
+        tooltip = hover(("x:Q", "Ω from", ".5f"), ("x2:Q", "to", ".5f"), ("share:Q", SHARE, ".4%"))
         bars = chart(rows).mark_rect(color=BAR, opacity=0.85, stroke="white", strokeWidth=0.3)
         # The names of the marks are above the bars.
         room = HEADROOM if self.marks else 1.0
         scale = alt.Scale(domain=[0.0, room * float(part.max())], nice=False)
         y = alt.Y("share:Q", title=SHARE, axis=PERCENT, scale=scale)
-        ends = {"x2": "x2:Q", "y2": alt.datum(0), "tooltip": told}
+        ends = {"x2": "x2:Q", "y2": alt.datum(0), "tooltip": tooltip}
         return self.panel(bars, None, y, HEIGHT, words=True, **ends)
 
     def cumulative(self) -> Drawing:
@@ -159,8 +159,8 @@ class _Distribution:
         rows = [{"x": float(v), "p": float(p)} for v, p in zip(self.edges, reached, strict=True)]
         line = chart(rows).mark_line(color=BAR, strokeWidth=1.8, point={"size": 12, "color": BAR})
         y = alt.Y("p:Q", title=BELOW, axis=PERCENT)
-        told = hover(("x:Q", "Ω", ".5f"), ("p:Q", BELOW, ".4%"))
-        return self.panel(line, "Ω", y, HEIGHT // 2, words=False, tooltip=told)
+        tooltip = hover(("x:Q", "Ω", ".5f"), ("p:Q", BELOW, ".4%"))
+        return self.panel(line, "Ω", y, HEIGHT // 2, words=False, tooltip=tooltip)
 
 
 def _inputs(one: xr.Dataset) -> Drawing:
@@ -180,7 +180,7 @@ def _inputs(one: xr.Dataset) -> Drawing:
     y = alt.Y("input:N", sort=shown, title=None, axis=alt.Axis(domain=False, ticks=False))
     base = chart(rows).encode(y=y, yOffset=alt.YOffset("order:N", sort=domain))
     bounds = [end for end in ("low", "high") if any(end in row for row in rows)]
-    told = hover(
+    tooltip = hover(
         "input:N",
         ("order:N", "share"),
         ("index:Q", "share of the variance", ".4f"),
@@ -191,7 +191,7 @@ def _inputs(one: xr.Dataset) -> Drawing:
         base.mark_bar(height=ROW * 0.36).encode(
             x=alt.X("index:Q", title="share of the variance of Ω", axis=alt.Axis(tickCount=5)),
             color=alt.Color("order:N", scale=scale, legend=alt.Legend(title=None)),
-            tooltip=told,
+            tooltip=tooltip,
         )
     ]
     if len(bounds) == 2:
@@ -202,8 +202,8 @@ def _inputs(one: xr.Dataset) -> Drawing:
 
 
 def _exceedance(one: xr.Dataset, limit: float) -> str:
-    told = f"P(Ω > {limit:g}) = {significant(float(one['exceedance']), 3)}"
+    text = f"P(Ω > {limit:g}) = {significant(float(one['exceedance']), 3)}"
     if "exceedance_low" in one and "exceedance_high" in one:
         low, high = float(one["exceedance_low"]), float(one["exceedance_high"])
-        told += f" (95 %: {significant(low, 3)} to {significant(high, 3)})"
-    return told
+        text += f" (95 %: {significant(low, 3)} to {significant(high, 3)})"
+    return text

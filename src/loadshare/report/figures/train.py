@@ -81,14 +81,14 @@ def train(case: Sections) -> Figure:
         views.append(_View(layout, palette, np.array([frame[0], axis]), plan=False))
     scale = min(view.scale for view in views)
     panels = [view.chart(scale) for view in views]
-    told = [
+    subtitle = [
         case.title,
         "full circles: pitch circles; dashed: base circles; bent arrows: running sense",
         "straight arrows: push on the driven gear, along the line of action",
         "centres: filled on a bearing, diamond on an elastic bearing, ring floating",
-        *(_misfit_told(pair) for pair in layout.pairs if not pair.fits),
+        *(_misfit_text(pair) for pair in layout.pairs if not pair.fits),
     ]
-    return marks.figure("train", alt.vconcat(*panels), "The train", told)
+    return marks.figure("train", alt.vconcat(*panels), "The train", subtitle)
 
 
 def _train_of(case: Sections) -> Train | None:
@@ -100,7 +100,7 @@ def _train_of(case: Sections) -> Train | None:
         return None
 
 
-def _misfit_told(pair: Pair) -> str:
+def _misfit_text(pair: Pair) -> str:
     have, need = (significant(MILLIMETRE.of(v), 6) for v in (pair.distance, pair.needed))
     return (
         f"mesh {pair.name} does not fit: the centres are {have} mm apart, the radii need {need} mm"
@@ -172,8 +172,8 @@ class _View(Panel):
                 rows: list[Row] = []
                 for what, radius in radii.items():
                     points = self._flat(body.circle(radius))
-                    told = f"gear {body.name}, {what}: radius {MILLIMETRE.of(radius):.4f} mm"
-                    rows += path_rows(points, circle=told)
+                    label = f"gear {body.name}, {what}: radius {MILLIMETRE.of(radius):.4f} mm"
+                    rows += path_rows(points, circle=label)
                     self.labels.avoid(points)
                 (tip,) = hover("circle:N")
                 layers += self.line(rows, "circle", tip, **stroke, **style)
@@ -195,7 +195,7 @@ class _View(Panel):
             kind = "fits" if pair.fits else "misfit"
             rows[kind] += path_rows(points, part=pair.name, **facts)
             self.labels.avoid(points)
-        told = hover(
+        tooltip = hover(
             "mesh:N",
             ("angle:Q", "pressure angle [deg]", ".4f"),
             ("distance:Q", "distance [mm]", ".4f"),
@@ -205,7 +205,7 @@ class _View(Panel):
             layer
             for kind, own in rows.items()
             for layer in self.line(
-                own, "part", None if kind == "shaft" else told, **CENTRE_LINES[kind]
+                own, "part", None if kind == "shaft" else tooltip, **CENTRE_LINES[kind]
             )
         ]
 
@@ -253,13 +253,13 @@ class _View(Panel):
         return layers
 
     def _centres(self) -> list[Any]:
-        told = hover("gear:N", "kind:N", ("centre:N", "centre [mm]"), "turns:N", "held:N")
+        tooltip = hover("gear:N", "kind:N", ("centre:N", "centre [mm]"), "turns:N", "held:N")
         layers: list[Any] = []
         for held, shape in HELD.items():
             rows = [self._centre(body) for body in self.bodies if body.held == held]
             # A floating centre is a ring; white inside, so that hovering finds it.
             style = {"fill": "white" if held == FLOATS else INK, "stroke": INK}
-            layers += self.points(rows, told, shape=shape, size=60, strokeWidth=1.4, **style)
+            layers += self.points(rows, tooltip, shape=shape, size=60, strokeWidth=1.4, **style)
         return layers
 
     def _centre(self, body: Body) -> Row:

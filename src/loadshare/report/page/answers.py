@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from loadshare.report import records
 from loadshare.report.numbers import small
 from loadshare.report.records import FOLDED, Cell, Table, table
-from loadshare.report.words import advice, places_told, rest_told, undetermined_told
+from loadshare.report.words import advice, places_text, rest_lines, undetermined_lines
 from loadshare.results import Result
 
 OMEGAS = dict.fromkeys(("over stage", "Ω stage"), "Ω over stage mean") | dict.fromkeys(
@@ -72,7 +72,7 @@ def yield_table(result: Result) -> Table:
     notes = [
         "How far the input turns beyond what its ratio to the output says, and the tangent of "
         "torque over rotation.",
-        records.error_told(result),
+        records.error_text(result),
     ]
     title = "Transmission error and stiffness of the train"
     return table(title, rows, (), list(rows[0]), YIELDING, notes, FOLDED)
@@ -85,11 +85,11 @@ def float_table(result: Result) -> Table:
     for gear in result.positions[0].floats:
         alike: dict[tuple[str, ...], tuple[records.Record, list[int]]] = {}
         for p in result.positions:
-            (rests, *_) = rest_told([p.floats[gear]], [p.position])
+            (rests, *_) = rest_lines([p.floats[gear]], [p.position])
             row = {"gear": Cell(gear), "rests": Cell(rests), **records.rest(p, gear, places)}
             same = alike.setdefault(tuple(cell.text for cell in row.values()), (row, []))
             same[1].append(p.position)
-        rows += [row | {"position": Cell(places_told(k), k[0])} for row, k in alike.values()]
+        rows += [row | {"position": Cell(places_text(k), k[0])} for row, k in alike.values()]
     units = {"x": "µm", "y": "µm", "margin": "µm", "reaction": "N"}
     return table(
         "Floating gears",
@@ -104,7 +104,7 @@ def float_table(result: Result) -> Table:
 
 def _undetermined(result: Result) -> list[str]:
     """Notes on what the forces leave open."""
-    notes = [f"{told[0].upper()}{told[1:]}." for told in undetermined_told(result.positions)]
+    notes = [f"{line[0].upper()}{line[1:]}." for line in undetermined_lines(result.positions)]
     return notes + (
         ["Of what is not determined, the least displacement is given."] if notes else []
     )
@@ -125,11 +125,11 @@ def load_table(result: Result) -> Table:
 
 def validity_table(result: Result) -> Table:
     """Largest figures of the displacements over the positions, and their bounds."""
-    told = advice(result)
+    warning = advice(result)
     notes = [
         "Lines of action and stops are taken where they stand before anything moves; this is how "
         "far that holds.",
-        *([f"Warning: {told}"] if told else []),
+        *([f"Warning: {warning}"] if warning else []),
     ]
     return table(
         "Displacements: the largest, and the bounds of the geometry",
@@ -154,12 +154,12 @@ def certificate_table(result: Result) -> Table:
             "Every torque lies within "
             f"{small(max(p.certificate.bound.relative for p in result.positions))} of the exact "
             "equilibrium's, as a part of the largest torque.",
-            f"{result.uniqueness.told[0].upper()}{result.uniqueness.told[1:]}.",
+            f"{result.uniqueness.text[0].upper()}{result.uniqueness.text[1:]}.",
         ],
     )
 
 
-def effort_told(result: Result) -> str:
+def effort_text(result: Result) -> str:
     """How the positions were solved, in a sentence."""
     efforts = [p.effort for p in result.positions]
     stamp = result.stamp

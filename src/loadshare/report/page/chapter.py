@@ -89,7 +89,7 @@ class Chapter:
     @property
     def load(self) -> str:
         """Load and positions in a sentence."""
-        return f"{records.load_told(self.case)}." if self.case else ""
+        return f"{records.load_text(self.case)}." if self.case else ""
 
     @property
     def commands(self) -> list[str]:

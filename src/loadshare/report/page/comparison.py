@@ -1,4 +1,4 @@
-"""Several cases beside each other: the inputs and the figures that differ."""
+"""Several cases side by side: the inputs and the figures that differ."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from loadshare.report.numbers import NONE, omega, significant
 from loadshare.report.page.inputs import written
 from loadshare.report.records import FOLDED, Cell, Column, Table
 from loadshare.report.units import engineering
-from loadshare.report.words import rest_told
+from loadshare.report.words import rest_lines
 from loadshare.results import Result
 
 SAME = 1e-9
@@ -150,9 +150,9 @@ def _differing_rests(names: Sequence[str], results: Sequence[Result]) -> Iterato
     gears = dict.fromkeys(g for result in results for g in result.positions[0].floats)
     rows = []
     for gear in gears:
-        told = [_rests(result, gear) for result in results]
-        if len(set(told)) > 1:
-            rows.append([Cell(gear), *map(Cell, told)])
+        texts = [_rests(result, gear) for result in results]
+        if len(set(texts)) > 1:
+            rows.append([Cell(gear), *map(Cell, texts)])
     if rows:
         yield Table("Floats that rest elsewhere", [Column("gear"), *map(Column, names)], rows)
 
@@ -161,4 +161,4 @@ def _rests(result: Result, gear: str) -> str:
     if gear not in result.positions[0].floats:
         return NONE
     rests = [p.floats[gear] for p in result.positions]
-    return rest_told(rests, [p.position for p in result.positions])[0]
+    return rest_lines(rests, [p.position for p in result.positions])[0]

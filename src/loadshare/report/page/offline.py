@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 OWN_SCRIPTS = "OWN_SCRIPTS"
-"""Stands in the policy of a page for the hashes of its scripts."""
+"""Placeholder in the policy of a page for the hashes of its scripts."""
 SCRIPT = re.compile("<script>(.*?)</script>", re.DOTALL)
 SCRIPTS = "scripts/{}.js"
 """Their place among the user's caches."""

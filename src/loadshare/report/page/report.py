@@ -12,7 +12,7 @@ from pathlib import Path
 from loadshare._version import __version__
 from loadshare.case import Case
 from loadshare.output import write_whole
-from loadshare.report.page.answers import effort_told
+from loadshare.report.page.answers import effort_text
 from loadshare.report.page.chapter import Chapter, chapter, chapter_of_file, overview
 from loadshare.report.page.comparison import comparison
 from loadshare.report.page.offline import render
@@ -44,7 +44,7 @@ def report_page(chapters: Iterable[Chapter], made: datetime | None = None) -> st
         differences=_differences(found),
         made=made.astimezone(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         versions=versions(),
-        effort_told=effort_told,
+        effort_text=effort_text,
     )
 
 

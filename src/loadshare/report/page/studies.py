@@ -73,7 +73,7 @@ def study_part(name: str, found: Viewed, case: Case) -> StudyPart:
     return StudyPart(
         name=name,
         title=f"{name}: {type(found).__name__.lower()}",
-        facts={what: told for what, told in view.facts if told},
+        facts={what: text for what, text in view.facts if text},
         figures=tuple(_figures(found, case)),
         tables=(*tables, *_more_tables(found)),
         problems=tuple(left_open(found)),

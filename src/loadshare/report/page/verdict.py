@@ -9,9 +9,9 @@ from loadshare.report import records
 from loadshare.report.numbers import NONE, significant, small
 from loadshare.report.records import Cell, Record, Table, table
 from loadshare.report.units import engineering
-from loadshare.report.words import advice, rest_told, spline_told, undetermined_told
+from loadshare.report.words import advice, rest_lines, spline_lines, undetermined_lines
 from loadshare.results import Result
-from loadshare.results.laws import laws_told
+from loadshare.results.laws import law_lines
 
 DIGITS = 4
 """Significant digits of forces and torques on the first screen."""
@@ -53,7 +53,7 @@ def resting(result: Result) -> Table:
         rows.append(
             {
                 "gear": Cell(gear),
-                "rests": Cell("; ".join([*rest_told(rests, numbers), *spline_told(rests)])),
+                "rests": Cell("; ".join([*rest_lines(rests, numbers), *spline_lines(rests)])),
                 "reaction": Cell(f"{significant(unit.of(most), DIGITS)} {unit.name}", most),
             }
         )
@@ -102,10 +102,10 @@ def trust(result: Result) -> Mapping[str, str]:
         "Residuals": f"at most {small(worst)} scaled; allowed {result.stamp.tolerance:.0e}",
         "Bound": f"every torque within {small(bound)} of the exact equilibrium's, "
         "as a part of the largest torque",
-        "Uniqueness": result.uniqueness.told,
+        "Uniqueness": result.uniqueness.text,
         "Displacements": advice(result) or "small for the geometry in which they were found",
-        "Not determined": "; ".join(undetermined_told(result.positions)),
+        "Not determined": "; ".join(undetermined_lines(result.positions)),
         "Assumed": assumed or "nothing is marked as assumed",
-        "Tooth laws": " ".join(laws_told(result.laws)),
+        "Tooth laws": " ".join(law_lines(result.laws)),
     }
-    return {name: told for name, told in found.items() if told}
+    return {name: text for name, text in found.items() if text}

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 def equilibria(structure: Structure, iterate: Iterate, compiled: bool = False) -> Equilibria:
     """Return displacements and forces of all samples in SI units.
 
-    With `compiled`, for many samples, products pass over zeros: the same but for round-off.
+    With `compiled`, for many samples, products pass over zeros: the same except for round-off.
     """
     names = Names(structure.train)
     to = _map(structure, names)

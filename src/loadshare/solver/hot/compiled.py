@@ -83,7 +83,7 @@ def _settle_all(floats, numbers, begins, sets, samples, given, ends, widest):  #
 
 @bare
 def _settle_set(s, work, given, waiting, widest):  # type: ignore[no-untyped-def]
-    """Settle samples of one set; those that take long wait, and begin again beside one another."""
+    """Settle samples of one set; those that take long wait, and begin again side by side."""
     set_apart()
     total = waiting.shape[0]
     for number in range(ABREAST.rounds):

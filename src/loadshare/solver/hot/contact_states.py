@@ -68,13 +68,15 @@ def graph(numbers: Array, torque: Array, radius: Array | float = 0.0) -> Graph:
         bound = np.where(np.isnan(fixed), per_torque * np.abs(torque), fixed)
         continuous = np.where(first > 0.0, bound / first, 0.0)
     stick = np.where(np.isnan(given), continuous, np.minimum(given, continuous))
-    asked = np.where(np.isnan(given), 0.0, given)
-    valid = (first * asked <= bound * (1.0 + LAWS.written)) & (np.isnan(given) | (reach >= stick))
+    given_or_zero = np.where(np.isnan(given), 0.0, given)
+    valid = (first * given_or_zero <= bound * (1.0 + LAWS.written)) & (
+        np.isnan(given) | (reach >= stick)
+    )
     throughout = (reach < stick) & np.isnan(given)
     stick = np.where(throughout, np.inf, stick)
     power = numbers[:, 6]
     if (power != 1.0).any():
-        begin, slope = tangent_wall(reach, last, power, radius + 0.0 * reach, LAWS.begun)
+        begin, slope = tangent_wall(reach, last, power, radius + 0.0 * reach, LAWS.wall_start)
         reach, last = (np.where(power != 1.0, v, w) for v, w in ((begin, reach), (slope, last)))
     found = (first, stick, bound, reach, last, valid)
     if any(v.shape != torque.shape for v in found):

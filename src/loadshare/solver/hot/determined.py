@@ -77,7 +77,7 @@ def _compiled(
     held: Flags,
     least: Array,
 ) -> Flags:
-    """The same with Numba; NumPy is asked of samples that touch something that may hold them."""
+    """The same with Numba; NumPy decides for samples that touch something that may hold them."""
     from loadshare.solver.hot.touching import Touching
 
     touching = Touching(structure, loading, iterate, states, held, least)

@@ -23,7 +23,7 @@ class Rows(NamedTuple):
 
 def rows_of(matrix: Array) -> Rows:
     """Return the entries of a matrix that are not zero."""
-    # Of one kind, whatever NumPy makes of them: code is compiled for each kind anew.
+    # Of one kind, whatever NumPy makes of them: code is compiled for each kind separately.
     rows, at = map(np.ascontiguousarray, np.nonzero(matrix))
     return Rows(np.searchsorted(rows, np.arange(len(matrix) + 1)), at, matrix[rows, at])
 

@@ -20,7 +20,7 @@ from loadshare.solver.hot.exchange import States
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rule:
-    """Sets that were met, and which of them each of some samples is told to begin with.
+    """Sets that were met, and which of them each of some samples is to begin with.
 
     Attributes
     ----------
@@ -64,14 +64,14 @@ def rule_of(loading: Loading, part: slice, states: States, share: Array) -> Rule
     mean, spread = taught.mean(axis=0), taught.std(axis=0)
     scaled = (taught - mean) / spread
     signs = np.where(met[kept] != 0, 1.0, -1.0)
-    told = (signs != signs[:1]).any(axis=0)
-    wanted = np.where(states[:, told] != 0, 1.0, -1.0)
+    differing = (signs != signs[:1]).any(axis=0)
+    wanted = np.where(states[:, differing] != 0, 1.0, -1.0)
     square = scaled.T @ scaled
     square[np.diag_indices(len(square))] += RULE.ridge * len(states)
     # Numbers are centred on the samples taught, so that the constant is the mean of the signs.
     by_number = np.linalg.solve(square, scaled.T @ wanted) / spread[:, None]
     constant = wanted.mean(axis=0) - mean @ by_number
-    signs = signs[:, told]
+    signs = signs[:, differing]
     fit = numbers @ (by_number @ signs.T) + constant @ signs.T
     shares = np.array([share[which == k].mean(axis=0) for k in kept])
     return Rule(met[kept], shares, fit.argmax(axis=1))

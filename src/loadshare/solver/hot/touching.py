@@ -108,12 +108,12 @@ class Touching:
         self.sets = self._carries[first[:sets]]
 
     def met(self, sets: Sequence[Sequence[int]]) -> NDArray[np.intp]:
-        """How many elements every sample touches, (S,), of those asked for of its set.
+        """How many elements every sample touches, (S,), of those wanted of its set.
 
         Elements are flanks and stops, then arcs, then radial elements.
         """
         start = np.cumsum([0, *map(len, sets)])
-        structure = np.array([e for asked in sets for e in asked], dtype=np.intp)
+        structure = np.array([e for elements in sets for e in elements], dtype=np.intp)
         found = np.zeros(len(self.number), dtype=np.intp)
         _touch_all(self._of, self._here, self.number, self._carries, start, structure, found)
         return found

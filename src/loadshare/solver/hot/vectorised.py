@@ -527,7 +527,7 @@ class _Passes:
                 self.x = before
                 return False
             self._move(this, share[None, :])
-            # What rolls along an arc ends beside the place that was sought.
+            # What rolls along an arc ends next to the place that was sought.
             if not len(self.arc) or float(np.abs(share).max()) <= HOT.sign * size:
                 break
         return True

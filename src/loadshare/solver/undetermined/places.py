@@ -67,7 +67,7 @@ def _ranges(free: FreeSet, parts: Sequence[_Part], x: Array) -> dict[str, Range]
         np.abs(x).max(initial=0.0)
     )
     ranges: dict[str, Range] = {}
-    for names, where, weights in _told(scene):
+    for names, where, weights in _reported(scene):
         low = high = float(weights @ x[where])
         for part in parts:
             along = (weights / free.norm.root[where]) @ part.moves[where]
@@ -80,7 +80,7 @@ def _ranges(free: FreeSet, parts: Sequence[_Part], x: Array) -> dict[str, Range]
     return ranges
 
 
-def _told(scene: Scene) -> Iterator[tuple[list[tuple[str, float, float]], list[int], Array]]:
+def _reported(scene: Scene) -> Iterator[tuple[list[tuple[str, float, float]], list[int], Array]]:
     """Yield what is reported: names with constant and rate, and coordinates that add up to it."""
     one = np.ones(1)
     turned = {

@@ -1,7 +1,7 @@
 """Bodies that nothing holds, moved to where they have most room.
 
 What floats may rest anywhere; a place on a limit would make its gauge vanish for no reason. Rooms
-are compared in deflections, and all points are asked in one linear programme, a block for each.
+are compared in deflections, and all points are found in one linear programme, a block for each.
 """
 
 from __future__ import annotations

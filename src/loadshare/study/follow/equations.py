@@ -119,7 +119,7 @@ class Equations:
     arcs, radials : range
         Their numbers in an active set.
     polar_at : mapping of switch to int or None
-        Arcs and radial elements that act, and where their unknown forces stand in z.
+        Arcs and radial elements that act, and where their unknown forces are in z.
     """
 
     def __init__(self, structure: Structure, active: WorkingSet, numbers: Numbers) -> None:

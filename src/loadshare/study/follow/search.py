@@ -368,7 +368,7 @@ class Search:
         if least[beyond[0] - 1].min() <= FOLLOW.verge:
             return float(values[beyond[0] - 1])
 
-        def asked(inner: Array) -> Array | None:
+        def due_gauges(inner: Array) -> Array | None:
             inner = inner if far.value > near.value else inner[::-1]
             found = self._sections(equations, inner, near.z)
             if found is None or len(found[0]) < len(inner):
@@ -376,7 +376,7 @@ class Search:
             here = found[1][:, due]
             return here if far.value > near.value else here[::-1]
 
-        return first_zero(asked, values, least, int(beyond[0]))
+        return first_zero(due_gauges, values, least, int(beyond[0]))
 
     def _sections(
         self, equations: Equations, values: Array, near: Array
@@ -390,7 +390,7 @@ class Search:
     # --- Cuts -----------------------------------------------------------------------------------
 
     def _cut(self, stretches: list[Stretch]) -> list[Stretch]:
-        """Cut stretches, beside an event where one is expected."""
+        """Cut stretches, next to an event where one is expected."""
         cuts: list[list[float]] = []
         for first, last in stretches:
             low, width = first.value, last.value - first.value

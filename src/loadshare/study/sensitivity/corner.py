@@ -108,7 +108,7 @@ class Corner:
             step, kinked = change.step, change.kinked
             slope = change.to(sign)
             if isinstance(slope, CaseError):
-                self._remark(key, side, f"cannot be {_word(side)}: {_told(slope)}")
+                self._remark(key, side, f"cannot be {_word(side)}: {_message(slope)}")
                 return self._nothing(), False
             if isinstance(slope, Slope) and self.neighbourhood.gives_way(slope, step):
                 try:
@@ -266,7 +266,7 @@ def _word(side: str) -> str:
     return "raised" if side == "rising" else "lowered"
 
 
-def _told(error: Exception) -> str:
-    """Return the first problem of a case, or what was said."""
+def _message(error: Exception) -> str:
+    """Return the first problem of a case, or the message of an error."""
     problems: list[Problem] = list(error.problems) if isinstance(error, CaseError) else []
     return problems[0].message if problems else str(error)

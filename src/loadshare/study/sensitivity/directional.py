@@ -42,7 +42,7 @@ class Varied(Protocol):
         """Return the certified equilibrium with the input moved by an amount [SI]."""
 
     def change(self, branch: Branch, z: Array) -> Derivative:
-        """Return the derivative of a branch's residual, and of what else is asked, at z."""
+        """Return the derivative of a branch's residual, and of what else is wanted, at z."""
 
 
 class Neighbourhood:
@@ -196,8 +196,8 @@ class Neighbourhood:
     ) -> tuple[tuple[int, int], ...] | None:
         """What is on the verge, in either state; None if anything moves across it.
 
-        It moves neither way but by round-off, or stands across by round-off and only comes back at
-        a distance from the value. With `later`, what moves across at a distance does not count.
+        It moves neither way except by round-off, or stands across by round-off and only comes back
+        at a distance from the value. With `later`, what moves across at a distance does not count.
         """
         if not verge:
             return ()

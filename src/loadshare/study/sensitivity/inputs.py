@@ -15,7 +15,7 @@ KEY = "an input that the case gives"
 
 
 def inputs_of(case: Case, wanted: str | Sequence[str] | None) -> list[Input]:
-    """Return the inputs meant; all numbers that are no counts by default.
+    """Return the inputs wanted; all numbers that are no counts by default.
 
     Parameters
     ----------
@@ -26,7 +26,7 @@ def inputs_of(case: Case, wanted: str | Sequence[str] | None) -> list[Input]:
     Raises
     ------
     CaseError
-        If nothing in the case is meant; all problems are listed.
+        If nothing in the case matches; all problems are listed.
     """
     data = case.to_dict()
     if wanted is None:
@@ -38,20 +38,20 @@ def inputs_of(case: Case, wanted: str | Sequence[str] | None) -> list[Input]:
             hint = "Derivatives by keys that take the same value add up."
             problems.append(Problem(STUDY, str(pattern), "", "is not one key", KEY, hint))
             continue
-        meant = [item for key in matches(case, pattern) for item in _meant(data, key)]
-        if not meant:
+        found = [item for key in matches(case, pattern) for item in _numbers_at(data, key)]
+        if not found:
             given = look_up(data, parse(pattern))
             what = "is not in the case" if given is None else "is no number with a unit"
             shown = "" if given is None else str(given)
             hint = did_you_mean(pattern, (item.key for item in _below(data, ())))
             problems.append(Problem(STUDY, pattern, shown, what, KEY, hint))
-        inputs += meant
+        inputs += found
     if problems:
         raise CaseError(problems)
     return list(dict.fromkeys(inputs))
 
 
-def _meant(data: object, key: str) -> list[Input]:
+def _numbers_at(data: object, key: str) -> list[Input]:
     """Return the number at a key, or all numbers below it."""
     path = parse(key)
     given = look_up(data, path)

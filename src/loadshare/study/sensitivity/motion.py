@@ -95,7 +95,7 @@ class Motion:
     error : ndarray, shape (size,)
         Bound on the error of the equations that the rate solves.
     change : Slope
-        Derivative of the residual and of what else was asked for, at z.
+        Derivative of the residual and of what else was wanted, at z.
     elements : tuple of str
         What is in another state than at the value itself.
     one_sided : bool

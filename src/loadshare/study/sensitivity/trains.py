@@ -24,7 +24,7 @@ class Trains:
     base : (Case, Geometry, Train)
         The case, its mesh laws computed, with its geometry and its train.
     case : Case
-        The same, but for laws that follow from the input.
+        The same, except for laws that follow from the input.
     item : Input
     positions : sequence of int
         1-based, at which they are looked at.

@@ -90,7 +90,7 @@ class Variation:
         return self._changes[key]
 
     def steps(self, sign: float, step: float) -> tuple[str, ...]:
-        """Meshes that pass to another place of their cycle right beside the value."""
+        """Meshes that pass to another place of their cycle right next to the value."""
         least = min(step, SENSITIVITY.beside * max(abs(self.value.si), step))
         for amount in (step, least):
             there = self._trains.at(self._number(sign * amount)).mesh_positions(self.position)

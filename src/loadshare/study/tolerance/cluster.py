@@ -150,7 +150,7 @@ def _check_workers(client: Client, address: str) -> None:
     except TimeoutError:
         raise LoadshareError(_without_workers(address)) from None
     apart = _apart("Python", _python(sys.version), _pythons(client))
-    # Code that is sent is of one Python, so the other version is asked only then.
+    # Code that is sent is of one Python, so the other version is queried only then.
     apart = apart or _apart("loadshare", __version__, client.run(_version(), on_error="return"))
     if apart:
         more = [f"  and {len(apart) - SHOWN} more"] if len(apart) > SHOWN else []
@@ -174,8 +174,8 @@ def _without_workers(address: str) -> str:
 
 
 def _pythons(client: Client) -> dict[str, str]:
-    told = client.get_versions()["workers"]
-    return {worker: _python(one["host"]["python"]) for worker, one in told.items()}
+    workers = client.get_versions()["workers"]
+    return {worker: _python(one["host"]["python"]) for worker, one in workers.items()}
 
 
 def _python(version: str) -> str:

@@ -21,7 +21,7 @@ def dataset(found: Tolerance) -> xr.Dataset:
     """Return the statistics of Ω.
 
     Dimensions are ``over`` ("stage", "group"), ``stage``, ``level`` of the quantiles, ``input`` and
-    ``bin``; intervals stand beside their figures as ``…_low`` and ``…_high``.
+    ``bin``; intervals are next to their figures as ``…_low`` and ``…_high``.
     """
     import xarray as xr
 

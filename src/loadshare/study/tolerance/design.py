@@ -58,7 +58,7 @@ class Drawn:
 class PickFreeze:
     """Saltelli's design: A, B, and A with one unit of inputs after another taken from B.
 
-    Row r of matrix m has the number m · count + r; the matrices stand in this order.
+    Row r of matrix m has the number m · count + r; the matrices are in this order.
 
     Attributes
     ----------

@@ -90,8 +90,8 @@ class Folder:
         if not self.lasting:
             return "Nothing is kept: the study has no folder (out, or --output)."
         done = sum(self.file(part).is_file() for part in self.all)
-        told = f"{done} of {len(self.all)} parts are kept in {self.path}"
-        return f"{told}: the same command continues from there."
+        text = f"{done} of {len(self.all)} parts are kept in {self.path}"
+        return f"{text}: the same command continues from there."
 
     def missing(self) -> list[Part]:
         """Return the parts that are not there, or not whole; the log names the latter."""
@@ -107,13 +107,13 @@ class Folder:
         file = self.file(part)
         try:
             # A part of the same name can stem from elsewhere: the stamp names study, number, rows.
-            told = parquet.read_metadata(file).metadata or {}
-            if told.get(STAMP) != self.job.stamp(part):
+            metadata = parquet.read_metadata(file).metadata or {}
+            if metadata.get(STAMP) != self.job.stamp(part):
                 return False
             table = parquet.read_table(file, page_checksum_verification=True)
         except (OSError, ValueError, pa.ArrowException):
             return False
-        return len(table) == part.rows and told.get(PART_DIGEST) == digest(table)
+        return len(table) == part.rows and metadata.get(PART_DIGEST) == digest(table)
 
     def write(self, part: Part, table: pa.Table) -> None:
         """Put a part in its place, whole or not at all."""
@@ -234,11 +234,11 @@ def _reading(file: Path) -> Iterator[None]:
         raise ResultError([Problem(str(file), "", "", why, hint=hint)]) from None
 
 
-def differing(known: dict[str, Any], asked: dict[str, Any]) -> list[str]:
+def differing(known: dict[str, Any], wanted: dict[str, Any]) -> list[str]:
     """Return a line for each setting that differs."""
     lines = []
-    for key in dict.fromkeys((*known, *asked)):
-        one, other = known.get(key), asked.get(key)
+    for key in dict.fromkeys((*known, *wanted)):
+        one, other = known.get(key), wanted.get(key)
         if one == other:
             continue
         if key == "inputs" and isinstance(one, list) and isinstance(other, list):
@@ -248,18 +248,18 @@ def differing(known: dict[str, Any], asked: dict[str, Any]) -> list[str]:
     return lines
 
 
-def _differing_inputs(known: Iterable[Any], asked: Iterable[Any]) -> list[str]:
+def _differing_inputs(known: Iterable[Any], wanted: Iterable[Any]) -> list[str]:
     there = {"=".join(one["keys"]): one for one in known}
-    here = {"=".join(one["keys"]): one for one in asked}
+    here = {"=".join(one["keys"]): one for one in wanted}
     lines = [
-        f"  input {name}: {_told(there.get(name))} there, {_told(here.get(name))} asked"
+        f"  input {name}: {_input_text(there.get(name))} there, {_input_text(here.get(name))} asked"
         for name in dict.fromkeys((*there, *here))
         if there.get(name) != here.get(name)
     ]
     return lines or ["  inputs: in another order"]
 
 
-def _told(one: dict[str, Any] | None) -> str:
+def _input_text(one: dict[str, Any] | None) -> str:
     if one is None:
         return "none"
     numbers = " ".join(f"{k} {v:.6g}" for k, v in one["numbers"].items())

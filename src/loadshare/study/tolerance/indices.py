@@ -63,7 +63,7 @@ def shares(figures: Array, units: tuple[str, ...], seed: int) -> tuple[Share, ..
     middle = base.mean()
     a, b, mixed = a - middle, b - middle, mixed - middle
     rows = len(a)
-    # Every estimate is a ratio of means over rows: a resample only weighs the rows anew.
+    # Every estimate is a ratio of means over rows: a resample only weighs the rows again.
     sums = np.concatenate([[a, b, a * a, b * b], b * (mixed - a), 0.5 * (a - mixed) ** 2])
     first, total = _ratios(sums.mean(axis=1)[:, None], len(units), still)
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(0, 2)))

@@ -218,7 +218,7 @@ class _Reader:
     ) -> Distribution | None:
         """Return a distribution whose end follows from the tolerance class of a gear."""
         if spread.high != CLASS:
-            return None  # told of already
+            return None  # reported already
         ends = set()
         for key in keys:
             match parse(key):

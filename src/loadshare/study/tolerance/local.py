@@ -51,7 +51,7 @@ def solve_there(path: str, job: str, part: Part) -> str:
         folder.write(part, folder.job.table(part))
     except NotWritten as error:
         return f"{error.filename} cannot be written: {error.strerror}"
-    except Exception as error:  # noqa: BLE001 -- told by the study; not everything can be pickled
+    except Exception as error:  # noqa: BLE001 -- reported by the study; not everything can be pickled
         return f"{type(error).__name__}: {error}"
     return ""
 

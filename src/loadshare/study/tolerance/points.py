@@ -46,5 +46,5 @@ def _sobol(seed: int, stream: tuple[int, ...], block: int, width: int) -> Array:
         if block:
             engine.fast_forward(block * each)
         points[:, r] = engine.random(each)
-    # Points stand on a grid of 2^-30, zero included; the middle of a cell is as good as its edge.
+    # Points are on a grid of 2^-30, zero included; the middle of a cell is as good as its edge.
     return points.reshape(JOB.block, width) + 2.0**-31

@@ -40,7 +40,7 @@ from loadshare.study.tolerance.worst import WorstCase, check_worst, worst_case
 from loadshare.train import build_train
 
 NAME = "tolerance"
-"""Of a study that is asked in Python alone."""
+"""Of a study that is requested in Python only."""
 
 
 def tolerance(
@@ -68,7 +68,7 @@ def tolerance(
 
     Every sample is a certified equilibrium at every position. Samples are drawn in blocks of 4096,
     each from its own seed: results are bit-identical whatever the workers and whatever was solved
-    before. A run that was killed goes on where it stood when it is asked again with the same `out`.
+    before. A run that was killed goes on where it stopped when called again with the same `out`.
 
     Parameters
     ----------
@@ -119,13 +119,13 @@ def tolerance(
     given |= {"samples": samples, "seed": seed, "sampling": sampling}
     given |= {"limit": limit, "indices": indices, "positions": positions}
     workers = whole("workers", workers)
-    job, block = asked_job(opened(case), study, given, chunk=chunk, engine=engine)
+    job, block = requested_job(opened(case), study, given, chunk=chunk, engine=engine)
     with _folder(out, job) as folder:
         _solve(folder, scheduler, workers, progress)
         return _Reader(folder, block).found(worst)
 
 
-def asked_job(
+def requested_job(
     case: Case,
     study: str | None,
     given: Mapping[str, Any],
@@ -133,7 +133,7 @@ def asked_job(
     chunk: int = CHUNK,
     engine: str = "auto",
 ) -> tuple[Job, Study]:
-    """Return a study as it is asked, checked: what its samples depend on, and its settings.
+    """Return a study as it is requested, checked: what its samples depend on, and its settings.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def asked_job(
     ValueError
         If a position or an engine does not exist.
     """
-    case, name = _asked(case, study, given)
+    case, name = _requested(case, study, given)
     case = loaded(case, case.study[name].inputs or ())
     return _job(case, name, chunk, engine), case.study[name]
 
@@ -162,7 +162,7 @@ def _folder(out: str | Path | None, job: Job) -> Iterator[Folder]:
     """Open a study's folder; one that nobody named is removed with the last who uses it."""
     if out is not None:
         path = Path(out)
-        # What stands in the way is told by the folder.
+        # What stands in the way is reported by the folder.
         with suppress(OSError):
             path.mkdir(parents=True, exist_ok=True)
         with alone_in(path):
@@ -178,13 +178,13 @@ def _folder(out: str | Path | None, job: Job) -> Iterator[Folder]:
     weakref.finalize(folder, place.remove)
 
 
-def _asked(case: Case, name: str | None, given: Mapping[str, Any]) -> tuple[Case, str]:
-    """Return the case with the study as it is asked, checked, and the study's name."""
+def _requested(case: Case, name: str | None, given: Mapping[str, Any]) -> tuple[Case, str]:
+    """Return the case with the study as it is requested, checked, and the study's name."""
     own = [key for key, block in case.study.items() if block.kind == NAME]
-    asked = {key: value for key, value in given.items() if value is not None}
+    settings = {key: value for key, value in given.items() if value is not None}
     if name is None:
-        if "inputs" in asked:
-            whole = {"kind": NAME, **asked}
+        if "inputs" in settings:
+            whole = {"kind": NAME, **settings}
             return case.replace({f"study.{NAME}": whole}), NAME
         if len(own) != 1:
             message = "has no tolerance study" if not own else "has several tolerance studies"
@@ -198,7 +198,7 @@ def _asked(case: Case, name: str | None, given: Mapping[str, Any]) -> tuple[Case
         raise CaseError([Problem(case.name, f"study.{name}", "", message, ", ".join(own))])
     from loadshare.case.keys import dotted
 
-    changes = {dotted(("study", name, key)): value for key, value in asked.items()}
+    changes = {dotted(("study", name, key)): value for key, value in settings.items()}
     return (case.replace(changes) if changes else case), name
 
 

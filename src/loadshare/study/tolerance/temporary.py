@@ -14,7 +14,7 @@ from loadshare.lock import LOCK, alone_in
 
 PREFIX = "loadshare-samples-"
 INSIDE = "samples"
-"""What holds the study; beside it stands the lock alone, so that nobody's own folder is taken for
+"""What holds the study; next to it is only the lock, so that nobody's own folder is taken for
 one of these."""
 NEW = 60.0
 """Seconds for which a lock that nobody holds is one that its process is about to take."""

@@ -265,10 +265,10 @@ def _line_loads(
     """The contacts under every load, line by line."""
     force = np.stack([contact.force for contact in contacts])
     distance = np.stack([contact.distance for contact in contacts])
-    told = []
+    by_line = []
     for line, strips, part in zip(position.lines, problem.lines, problem.parts, strict=True):
         own = force[:, part]
-        told.append(
+        by_line.append(
             [
                 LineLoad(line, *values)
                 for values in zip(
@@ -276,4 +276,4 @@ def _line_loads(
                 )
             ]
         )
-    return tuple(zip(*told, strict=True))
+    return tuple(zip(*by_line, strict=True))

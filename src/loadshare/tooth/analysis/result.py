@@ -163,8 +163,8 @@ class Ltca:
         return self.beside.cells.mean(every)
 
     @cached_property
-    def told(self) -> Array:
-        """Δφ (K, L) [rad at the driver] that the law gives: at the positions, or their means."""
+    def law_angle(self) -> Array:
+        """Δφ (K, L) [rad at the driver] that the law is fitted to: at positions, or their means."""
         lead = self.unloaded_error
         if self.beside is not None:
             every = np.array([p.transmission_error for p in self.beside.positions])
@@ -175,13 +175,13 @@ class Ltca:
     def law(self) -> LawFit:
         """a, b, c of every position, from 0.1, 0.5 and 0.9 of the rated torque."""
         fit = np.isclose(self.torque[:, None], self.rated * np.array(FIT_LOADS)).any(axis=1)
-        return fit_law(self.torque[fit], self.told[:, fit])
+        return fit_law(self.torque[fit], self.law_angle[:, fit])
 
     @cached_property
     def misfit(self) -> Array:
         """Law minus computed angle (K, L), over the elastic angle Δφ − a under that torque."""
         fitted = np.column_stack([self.law.angle(t) for t in self.torque])
-        return np.asarray((fitted - self.told) / (self.told - self.law.a[:, None]))
+        return np.asarray((fitted - self.law_angle) / (self.law_angle - self.law.a[:, None]))
 
     def secant(self, part: float = 1.0) -> Array:
         """K = T/(Δφ − a) (K,) [N·m/rad at the driver] under a computed part of the rated torque.
@@ -199,7 +199,7 @@ class Ltca:
                 f"{min(FIT_LOADS)} on, and a holds for these only; allowed: {min(FIT_LOADS)} or "
                 "more; tangent and increment hold for any load"
             )
-        return np.asarray(self.torque[k] / (self.told[:, k] - self.law.a))
+        return np.asarray(self.torque[k] / (self.law_angle[:, k] - self.law.a))
 
     def tangent(self, part: float = 1.0) -> Array:
         """dT/dΔφ (K,) [N·m/rad at the driver] under a computed part of the rated torque.
@@ -216,7 +216,9 @@ class Ltca:
     def increment(self, low: float, high: float) -> Array:
         """ΔT/ΔΔφ (K,) [N·m/rad at the driver] between two computed parts of the rated torque."""
         i, j = self._load(low), self._load(high)
-        return np.asarray((self.torque[j] - self.torque[i]) / (self.told[:, j] - self.told[:, i]))
+        return np.asarray(
+            (self.torque[j] - self.torque[i]) / (self.law_angle[:, j] - self.law_angle[:, i])
+        )
 
     @cached_property
     def contact_ratio(self) -> Array:

@@ -216,7 +216,7 @@ def _settle_one(strips, of, found, linear, limits, c, answered):  # type: ignore
 
 @compiled
 def _in_touch(distance, closed, yielded, gap, limits):  # type: ignore[no-untyped-def]
-    """Whether closed points touch and open ones do not press, but for round-off."""
+    """Whether closed points touch and open ones do not press, except for round-off."""
     missed, least = -np.inf, 0.0
     for i in range(len(gap)):
         missed = max(missed, abs(distance[i]) if closed[i] else -distance[i])

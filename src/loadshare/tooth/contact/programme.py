@@ -71,8 +71,8 @@ def solve_contact(
     solver: str = "clarabel",
 ) -> Contact:
     """Solve one contact under a load P [N] from `warm` (N,) [N]; see :func:`solve_contacts`."""
-    begun = None if warm is None else warm[None]
-    return solve_contacts(problem.alone, np.array([load]), begun, solver)[0]
+    start = None if warm is None else warm[None]
+    return solve_contacts(problem.alone, np.array([load]), start, solver)[0]
 
 
 def solve_contacts(
@@ -109,15 +109,15 @@ def solve_contacts(
         force = np.where(real, (load / batch.count)[:, None], 0.0)
     else:
         force = warm * (load / np.sum(warm, axis=1))[:, None]
-    found = _Found.begun(force, warm is not None)
+    found = _Found.initial(force, warm is not None)
     of, linear = _Batch(batch.which, load, batch.gap, batch.fixed), _Linear.empty(force.shape[1])
     circling = -1
     while (circling := _settle(batch.strips, of, found, linear, circling)) >= 0:
         try:
             linear.answer(batch.count[circling], load[circling], force[circling], solver)
         except Refused as refusal:
-            told = _called(batch.names[circling]) + str(refusal)
-            raise Refused(told, refusal.figures) from refusal
+            message = _called(batch.names[circling]) + str(refusal)
+            raise Refused(message, refusal.figures) from refusal
     for k in np.flatnonzero(~found.settled)[:1]:
         raise Refused(
             f"{_called(batch.names[k])}the contact under {load[k]:.6g} N did not settle in "
@@ -178,7 +178,7 @@ class _Found(NamedTuple):
     settled: Mask  # (K,)
 
     @classmethod
-    def begun(cls, force: Array, newton: bool) -> _Found:
+    def initial(cls, force: Array, newton: bool) -> _Found:
         count = len(force)
         approach, slope = np.zeros((2, count))
         step, passes = np.full(count, np.inf), np.zeros(count, dtype=np.int64)
@@ -208,7 +208,7 @@ def _certified(batch: ContactBatch, load: Array, found: _Found) -> tuple[Contact
     certificates = certify_contacts(batch, load, found.force, found.approach)
     for name, part, certificate in zip(batch.names, load, certificates, strict=True):
         if not certificate.passed:
-            raise Refused(_told(name, float(part), certificate), certificate.failing)
+            raise Refused(_message(name, float(part), certificate), certificate.failing)
     distance = np.where(found.force > 0.0, 0.0, found.distance)
     return tuple(
         Contact(
@@ -223,7 +223,7 @@ def _called(name: str) -> str:
     return f"{name}: " if name else ""
 
 
-def _told(name: str, load: float, certificate: ContactCertificate) -> str:
+def _message(name: str, load: float, certificate: ContactCertificate) -> str:
     figures = ", ".join(f"{n} {v:.1e}" for n, v in certificate.failing.items())
     return (
         f"{_called(name)}the contact under {load:.6g} N does not pass its certificate: {figures}, "
@@ -303,7 +303,7 @@ def by_interface(matrix: Array, gap: Array, load: float, force: Array, solver: B
     """Solve the linear contact by the package's solver interface.
 
     Reading at a point what a strip of another width does leaves a small skew part in the matrix;
-    it acts on the last forces, beside the gap.
+    it acts on the last forces, besides the gap.
 
     Parameters
     ----------

@@ -173,8 +173,8 @@ class FaceGearPair(GearPair):
         other = self.shaper_roll(roll), np.full_like(roll, -self.working_angle)
         patches = self.driver_patch(pairs, own, driver), self.driven_patch(pairs, other, driven)
         turns = np.stack(self.turns(pairs, driver, driven), axis=-1)
-        begun = anchor(own, other, patches)
-        return Valleys(self._numbers, turns, begun, Known.nothing(len(pairs)))
+        start = anchor(own, other, patches)
+        return Valleys(self._numbers, turns, start, Known.nothing(len(pairs)))
 
     @cached_property
     def _numbers(self) -> Flanks:

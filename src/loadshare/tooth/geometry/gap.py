@@ -16,7 +16,7 @@ from loadshare.tooth.geometry.flank import Patch, dot, solve_3
 
 # Parts of a line in which the least gap is looked for, at least.
 FEWEST = 15
-# Stations of the second look, between those beside the least gap of the first.
+# Stations of the second look, between those next to the least gap of the first.
 FINER = 9
 
 
@@ -134,7 +134,7 @@ class Extents:
 def least_gap(lines: Extents, points: int = FEWEST) -> tuple[Array, Array, Trace]:
     """Least gap on each line, ends included, and its station.
 
-    Two grids find the place; where the slope of the gap changes sign beside it, the secant of the
+    Two grids find the place; where the slope of the gap changes sign next to it, the secant of the
     slope gives the station.
 
     Returns

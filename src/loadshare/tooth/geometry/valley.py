@@ -207,7 +207,7 @@ def span(margin: Margin, reach: Array) -> tuple[NDArray[np.int64], Array, Array]
         after = np.maximum(np.argmax(values <= 0.0, axis=-1), 1)[..., None]
         good, bad = (np.take_along_axis(grid, at, -1)[..., 0] for at in (after - 1, after))
     within, beyond = np.moveaxis(both_ends(np.stack([good, bad], axis=-1)), -1, 0)
-    # The edge may lie beside the cell by what the grids' values were off.
+    # The edge may lie outside the cell by what the grids' values were off.
     fall = np.maximum(within - beyond, np.finfo(float).tiny)
     ends = good + (bad - good) * np.clip(within / fall, -1.0, 2.0)
     start, end = np.clip(ends, -reach[found], reach[found])

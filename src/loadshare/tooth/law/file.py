@@ -26,7 +26,7 @@ from loadshare.tooth.pair.file import PairFile
 from loadshare.tooth.pair.model import Load, Number, Positions
 
 MISSED = 0.01
-"""Part of the mean deflection that positions may miss without a word."""
+"""Part of the mean deflection that positions may miss silently."""
 _GEARS = {"driver": "driver", "driven": "driven gear"}
 Share = Annotated[float, Strict(), Field(ge=0, allow_inf_nan=False)]
 
@@ -43,7 +43,7 @@ class Rim(Element):
     assumed: bool
     """Whether the gear's own is 1.5 tooth heights because the pair does not say."""
 
-    def told(self, gear: str) -> str:
+    def text(self, gear: str) -> str:
         """Return what it says in a line."""
         low, own, high = (f"{1e3 * value.si:.4g} mm" for value in self.thickness)
         softer, stiffer = (f"{100.0 * (self.stiffness[k] - 1.0):+.1f} %" for k in (0, 2))
@@ -127,21 +127,21 @@ class MeshLaw(Element):
         for key in ("a", "b", "c", "misfit"):
             found = len(getattr(self, key))
             if found != self.computed.positions:
-                told = f"has {count(found)}, computed.positions is {self.computed.positions}"
-                yield Rule(told, (key,))
+                message = f"has {count(found)}, computed.positions is {self.computed.positions}"
+                yield Rule(message, (key,))
 
     @property
     def findings(self) -> tuple[str, ...]:
         """How far the law hangs on rims and positions, a line each."""
-        told = [rim.told(_GEARS[name]) for name, rim in self.rim.items()]
+        lines = [rim.text(_GEARS[name]) for name, rim in self.rim.items()]
         missed = 0.0 if self.sampled is None else self.sampled - 1.0
         if abs(missed) > MISSED:
-            told.append(
+            lines.append(
                 f"Sampled at {count(self.computed.positions, 'position')}, the mean deflection is "
                 f"{100.0 * missed:+.1f} % off that of the whole cycle; analysis.sampling = "
                 '"means" carries it right.'
             )
-        return (*told, *self._most_loaded())
+        return (*lines, *self._most_loaded())
 
     def _most_loaded(self) -> Iterator[str]:
         """Yield which teeth are in contact under T, and which carry most."""

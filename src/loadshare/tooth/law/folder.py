@@ -74,9 +74,9 @@ def cache_folder() -> Path | None:
 
     None for a user without a home: services and containers may lack one.
     """
-    told = os.environ.get(VARIABLE)
+    given = os.environ.get(VARIABLE)
     try:
-        found = Path(told).expanduser() if told else user_cache_path("loadshare", appauthor=False)
+        found = Path(given).expanduser() if given else user_cache_path("loadshare", appauthor=False)
     except RuntimeError:
         return None
     # Versions of platformdirs differ in what they make of a home that is not known.

@@ -88,7 +88,7 @@ def _gear(gear: Gear) -> dict[str, Any]:
     tooth = gear.tooth
     if tooth is None or gear.face_width is None:
         raise ValueError("a gear without teeth or face width")
-    said: dict[str, Any] = {
+    content: dict[str, Any] = {
         "module": f"{tooth.module!r} m",
         "teeth": tooth.teeth,
         "pressure_angle": f"{tooth.pressure_angle!r} rad",
@@ -99,11 +99,11 @@ def _gear(gear: Gear) -> dict[str, Any]:
         "face_width": f"{gear.face_width.si!r} m",
     }
     if gear.helix_angle is not None:
-        said["helix_angle"] = f"{tooth.helix_angle!r} rad"
+        content["helix_angle"] = f"{tooth.helix_angle!r} rad"
     if gear.tip_radius is not None:
-        said["tip_radius"] = gear.tip_radius
+        content["tip_radius"] = gear.tip_radius
     rim = _rim(gear)
-    return said if rim is None else said | {"rim": f"{rim!r} m"}
+    return content if rim is None else content | {"rim": f"{rim!r} m"}
 
 
 def _rim(gear: Gear) -> float | None:
@@ -122,8 +122,10 @@ def _in_case(case: Case, name: str, problem: Problem) -> Problem:
     mesh = case.meshes[name]
     ends = {"driver": mesh.driver, "driven": mesh.driven}
     if which not in ends:
-        told = f"{problem.key} = {problem.given}: {problem.message}" if which else problem.message
-        return case.problem(("meshes", name, "law"), told, problem.allowed, problem.hint)
+        message = (
+            f"{problem.key} = {problem.given}: {problem.message}" if which else problem.message
+        )
+        return case.problem(("meshes", name, "law"), message, problem.allowed, problem.hint)
     gear = case.gears[ends[which]]
     if key == "rim":
         key = next(iter(gear.given("rim", "bore", "outside_diameter")), "module")

@@ -142,9 +142,11 @@ def _read(
                 laws[name] = load_law(file)
                 found = laws[name].computed.positions
                 if found != positions:
-                    told = f"holds {count(found, 'position')}, operating.positions is {positions}"
+                    message = (
+                        f"holds {count(found, 'position')}, operating.positions is {positions}"
+                    )
                     hint = f"Write it again: loadshare ltca PAIR.toml --positions {positions}."
-                    problems[case.problem(key, told, "", hint)] = None
+                    problems[case.problem(key, message, "", hint)] = None
             else:
                 if file not in known:
                     known[file] = load_pair(file).revised(positions=positions)
@@ -173,7 +175,7 @@ def _by_formula(
         try:
             stiffness = mesh_stiffness(pair, distance, measured=measured)
         except ValueError as error:
-            path, hint = ("meshes", name, "law"), _distance_told(pair, distance)
+            path, hint = ("meshes", name, "law"), _distance_hint(pair, distance)
             problems.append(case.problem(path, str(error), hint=hint))
             continue
         compliance = 1.0 / (stiffness * pair[0].acting_radius ** 2)
@@ -185,8 +187,8 @@ def _by_formula(
     return found, problems
 
 
-def _distance_told(pair: tuple[Gear, Gear], distance: float) -> str:
-    """Say at which centre distance [m] two gears would mesh, if they stand too far apart."""
+def _distance_hint(pair: tuple[Gear, Gear], distance: float) -> str:
+    """Say at which centre distance [m] two gears would mesh, if they are too far apart."""
     one, two = pair[0].tooth, pair[1].tooth
     if one is None or two is None:
         return ""

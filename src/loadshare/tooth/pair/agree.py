@@ -79,7 +79,7 @@ def _base_helix(pair: PairFile) -> float:
 
 
 def _type(pair: PairFile, which: str) -> str:
-    said = getattr(pair.content, which)
+    gear = getattr(pair.content, which)
     if isinstance(pair.geometry, FaceGearPair):
         return "external" if which == "driver" else "face"
-    return "internal" if said.internal else "external"
+    return "internal" if gear.internal else "external"

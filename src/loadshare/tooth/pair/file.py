@@ -79,8 +79,8 @@ class PairFile:
     @cached_property
     def hash(self) -> str:
         """SHA-256 of what bears on the law: all values in SI units, no titles and notes."""
-        said = self.content.model_dump(mode="json", exclude=set(ABOUT), context="SI")
-        text = json.dumps(said, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
+        values = self.content.model_dump(mode="json", exclude=set(ABOUT), context="SI")
+        text = json.dumps(values, sort_keys=True, separators=(",", ":"), ensure_ascii=True)
         return hashlib.sha256(text.encode()).hexdigest()
 
     @cached_property
@@ -274,26 +274,26 @@ def _helicoid(content: HelicoidContent) -> HelicoidPair:
 
 
 def _face(content: FaceGearContent) -> FaceGearPair:
-    pinion, said = _gear(content.driver, {}), content.driven
-    cutter = said.shaper
+    pinion, driven = _gear(content.driver, {}), content.driven
+    cutter = driven.shaper
     shift = pinion.profile_shift if cutter.profile_shift is None else cutter.profile_shift
     shaper = Shaper(pinion.module, cutter.teeth, pinion.pressure_angle, shift, cutter.addendum)
-    gear = FaceGear(**(_si(said) | _pitch(said) | {"shaper": shaper}))
+    gear = FaceGear(**(_si(driven) | _pitch(driven) | {"shaper": shaper}))
     return face_gear_pair(pinion, gear, FaceMisalignment(**_si(content.misalignment)))
 
 
-def _gear(said: Cylindrical, fitting: dict[str, Any]) -> HelicoidGear:
+def _gear(element: Cylindrical, fitting: dict[str, Any]) -> HelicoidGear:
     """A gear; `fitting` gives what it leaves out."""
-    values = _si(said) | _pitch(said)
+    values = _si(element) | _pitch(element)
     values["modification"] = Modification(**values["modification"])
     return HelicoidGear(**(fitting | values))
 
 
-def _pitch(said: Body) -> dict[str, Any]:
+def _pitch(body: Body) -> dict[str, Any]:
     """Pitch deviations of a gear, where it has some."""
-    if said.pitch is None:
+    if body.pitch is None:
         return {}
-    return {"pitch": PitchDeviations(said.pitch.ahead, said.pitch.first_tooth)}
+    return {"pitch": PitchDeviations(body.pitch.ahead, body.pitch.first_tooth)}
 
 
 def _si(element: Any) -> dict[str, Any]:

@@ -110,8 +110,8 @@ class Body(Element):
             values = getattr(pitch, key)
             if len(values) > self.teeth or (key == "single" and len(values) < self.teeth):
                 most = "" if key == "single" else " at most"
-                told = f"has {count(len(values))}"
-                yield Rule(told, ("pitch", key), f"{self.teeth}{most}, one per tooth")
+                message = f"has {count(len(values))}"
+                yield Rule(message, ("pitch", key), f"{self.teeth}{most}, one per tooth")
             elif key == "single" and abs(sum(v.si for v in values)) > TEETH.closing:
                 off = f"{1e6 * sum(v.si for v in values):.4g} µm"
                 yield Rule(f"adds up to {off} around the gear", ("pitch", key), "0")
@@ -231,7 +231,7 @@ class Analysis(Element):
     part of the cycle, so that the mean over the cycle does not depend on how many there are."""
 
     points: Annotated[int, Strict(), Field(ge=3)] = Field(
-        default_factory=lambda said: POINTS[said.get("compliance", "finite elements")]
+        default_factory=lambda values: POINTS[values.get("compliance", "finite elements")]
     )
     """Points on a contact line [-]; 32 with finite elements, 16 with slices when left out."""
 

@@ -76,7 +76,7 @@ def _bound_all(of, here, claim, found, group, errors):  # type: ignore[no-untype
 def _proved(of, found, group, g, s, residual, carried):  # type: ignore[no-untyped-def]
     """Error of a torque [N·m] if all holds that was assumed; else infinite."""
     largest, moved, torque = _answered(of, found, group, g, s, residual, carried)
-    # Beyond their reach laws, above all of light Hertz contacts, are not what is said of them.
+    # Beyond their reach laws, above all of light Hertz contacts, no longer hold as assumed.
     if found.room[s] > moved + found.width[s] and largest <= found.reach[s] and torque < np.inf:
         return torque + found.aside[s]
     return np.inf
@@ -202,7 +202,7 @@ def _carried(of, found, group, g, s):  # type: ignore[no-untyped-def]
     """What carrying a load by radial elements adds.
 
     Energy per load; the load that comes back of each, because a slip carries none along its line;
-    and the way [m] that is not told by the force of a slip.
+    and the way [m] that the force of a slip does not determine.
     """
     more, back, blind = 0.0, 0.0, 0.0
     for q in range(found.soft.shape[1]):

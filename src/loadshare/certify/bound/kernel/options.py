@@ -16,5 +16,5 @@ _how: dict[str, Any] = {
 }
 compiled = compilation.jit(**_how)
 within = compilation.within(**_how)
-# Claim by claim they read the same arrays, whose places would be read anew by each of them.
+# Claim by claim they read the same arrays, whose places would be read again by each of them.
 inlined = compilation.within(forceinline=True, **_how)

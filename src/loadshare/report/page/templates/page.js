@@ -1,5 +1,5 @@
 "use strict";
-// Figures: each has its specification beside it.
+// Figures: each has its specification next to it.
 const SMALLEST = 0.82; // of their size; what is still too wide scrolls in its own box
 
 function wrapped(lines, letters) {

@@ -2,7 +2,7 @@
 
 Every loop that costs runs along the samples, so that the processor works on several of them at a
 time. They are taken up together and put down together; the few samples that take longer than the
-others begin again beside one another, where they stand. Tangents of power laws are taken at the
+others begin again side by side, where they stand. Tangents of power laws are taken at the
 forces, which here takes fewer passes than at the compressions. What has settled is refined for as
 long as its neighbours pass; what is given up stands. So an answer depends on the company it was
 found in by no more than round-off.

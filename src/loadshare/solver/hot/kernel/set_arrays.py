@@ -1,9 +1,9 @@
 """What the compiled kernel reads of sets of acting elements and of the samples.
 
-Every array that is handed over costs a tenth of a microsecond, so all sets of a call stand in two.
+Every array that is handed over costs a tenth of a microsecond, so all sets of a call are in two.
 
 Springs that are the same in all samples never change from pass to pass: what they add to the
-redundants' matrix is written down once. All other columns, `contacts` here, stand in the order in
+redundants' matrix is written down once. All other columns, `contacts` here, are in the order in
 which the passes treat them: the two columns of every radial element whose direction turns, flanks
 with a power law, with a table, linear rows, and at last what is linear and no row (springs that
 differ from sample to sample, radial elements on their first piece or pinned).
@@ -118,7 +118,7 @@ _TABLES = SetArrays._fields.index("springs")
 _LISTS = SetArrays._fields.index("powers") - _TABLES
 _NUMBERS = SetArrays._fields.index("states") - _TABLES - _LISTS
 _FRONT = 3 * (_TABLES + _LISTS)
-"""Where the numbers of a set stand; before them three numbers of every table and list."""
+"""Where the numbers of a set are; before them three numbers of every table and list."""
 
 
 def packed_sets(structure: Structure, loading: Loading, sets: States) -> tuple[Array, Rows, Rows]:

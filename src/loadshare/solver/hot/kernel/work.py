@@ -13,7 +13,7 @@ from loadshare.solver.hot.kernel.set_arrays import Rows, States
 
 
 class Given(NamedTuple):
-    """Samples to settle, where they stand, and what is told of them."""
+    """Samples to settle, where they stand, and what is found of them."""
 
     rows: Rows  # (k,): their numbers
     xs: Array  # (S, n)

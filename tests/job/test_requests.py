@@ -1,4 +1,4 @@
-"""What may be asked for: a tolerance that certifies something, and positions that exist."""
+"""What may be requested: a tolerance that certifies something, and positions that exist."""
 
 import math
 
@@ -53,7 +53,7 @@ def test_any_other_tolerance_is_taken():
 
 
 @pytest.mark.parametrize(
-    ("positions", "told"),
+    ("positions", "message"),
     [
         ([0], "positions 0: this case has positions 1 to 5"),
         ([1.0], r"positions 1\.0: this"),
@@ -66,10 +66,10 @@ def test_any_other_tolerance_is_taken():
         ([2, 1, 2], "positions 2: given more than once"),
     ],
 )
-def test_positions_that_are_none_are_refused(positions, told):
-    with pytest.raises(ValueError, match=f"^{told}"):
+def test_positions_that_are_none_are_refused(positions, message):
+    with pytest.raises(ValueError, match=f"^{message}"):
         ls.solve(shipped("fgfbstts/limit_ring"), positions=positions)
-    with pytest.raises(ValueError, match=f"^{told}"):
+    with pytest.raises(ValueError, match=f"^{message}"):
         ls.solve_many(shipped("fgfbstts/limit_ring"), SAMPLES, positions=positions)
 
 
@@ -85,7 +85,7 @@ def test_a_search_takes_a_position_out_of_an_array():
 
 
 @pytest.mark.parametrize(
-    ("settings", "told"),
+    ("settings", "message"),
     [
         ({"solver": "gurobi"}, "unknown solver 'gurobi'; allowed: auto, clarabel, osqp, cvxpy"),
         ({"solver": None}, "unknown solver None; allowed: auto"),
@@ -95,8 +95,8 @@ def test_a_search_takes_a_position_out_of_an_array():
     ],
     ids=str,
 )
-def test_a_way_that_is_none_is_refused(settings, told):
-    with pytest.raises(ValueError, match=told):
+def test_a_way_that_is_none_is_refused(settings, message):
+    with pytest.raises(ValueError, match=message):
         ls.solve(shipped("fgfbstts/base"), **settings)
 
 

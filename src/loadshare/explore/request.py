@@ -11,7 +11,7 @@ from starlette.requests import Request
 from loadshare.settings import EXPLORE
 
 
-class Unasked(Exception):  # noqa: N818 -- a request that is none
+class RequestError(Exception):
     """A request that cannot be answered, with why.
 
     Parameters
@@ -26,28 +26,28 @@ class Unasked(Exception):  # noqa: N818 -- a request that is none
         super().__init__(message)
 
 
-async def asked(request: Request) -> dict[str, Any]:
+async def body_of(request: Request) -> dict[str, Any]:
     """Return the body of a request.
 
     Raises
     ------
-    Unasked
+    RequestError
         If it is too long, or no JSON object as a page sends it.
     """
     kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
     if kind != "application/json":
-        raise Unasked(415, f'the content type is "{kind}"; allowed: application/json')
+        raise RequestError(415, f'the content type is "{kind}"; allowed: application/json')
     held = b""
     async for piece in request.stream():
         held += piece
         if len(held) > EXPLORE.body:
-            raise Unasked(413, f"the request is longer than {EXPLORE.body} bytes")
+            raise RequestError(413, f"the request is longer than {EXPLORE.body} bytes")
     try:
         found = json.loads(held, parse_constant=_no_number)
     except (ValueError, RecursionError):
-        raise Unasked(400, "the request is no JSON") from None
+        raise RequestError(400, "the request is no JSON") from None
     if not isinstance(found, dict):
-        raise Unasked(400, "the request is no JSON object")
+        raise RequestError(400, "the request is no JSON object")
     return found
 
 
@@ -59,7 +59,7 @@ def setting(body: Mapping[str, Any]) -> dict[str, object]:
     """Return the inputs that a page has changed, by key."""
     given = body.get("changes", {})
     if not isinstance(given, dict):
-        raise Unasked(400, "changes is no object of values by key")
+        raise RequestError(400, "changes is no object of values by key")
     return given
 
 
@@ -67,7 +67,7 @@ def number(body: Mapping[str, Any], name: str, default: int, least: int, most: i
     """Return a whole number of a request, within its bounds."""
     given = body.get(name, default)
     if isinstance(given, bool) or not isinstance(given, int) or not least <= given <= most:
-        raise Unasked(400, f"{name} is no whole number from {least} to {most}")
+        raise RequestError(400, f"{name} is no whole number from {least} to {most}")
     return given
 
 
@@ -75,5 +75,5 @@ def text(body: Mapping[str, Any], name: str) -> str:
     """Return a text of a request."""
     given = body.get(name)
     if not isinstance(given, str) or not given or len(given) > EXPLORE.text * 10:
-        raise Unasked(400, f"{name} is no text")
+        raise RequestError(400, f"{name} is no text")
     return given
